@@ -1,0 +1,11 @@
+"""Words, number formats and blocks: how a program is spelt, for any control that writes words.
+
+In:     columns of numbers, one a word, and lines of text between them.
+Out:    the bytes of the program, in blocks.
+Knows nothing of machines, of CL files, or of what a word means to a control.
+"""
+
+from trunnion.nc.words import ABSENT, NumberFormat, Word, counts
+from trunnion.nc.writer import BlockNumbers, BlockWriter
+
+__all__ = ["ABSENT", "BlockNumbers", "BlockWriter", "NumberFormat", "Word", "counts"]

@@ -1,0 +1,309 @@
+"""Blocks out of columns: one compiled kernel for the dense ones, text lines between them.
+
+The kernel compares what would be printed, word by word, with what was last printed, and writes what differs. It
+knows words, digits and block numbers; it does not know any control.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import BinaryIO
+
+import numpy as np
+from numba import njit
+
+from trunnion.arrays import Bytes, Ints
+from trunnion.errors import Problem, Refused
+from trunnion.nc.words import ABSENT, Word
+
+#: Rows that go through the kernel at a time; the table of one chunk stays in the processor's cache.
+CHUNK = 16384
+
+_DIGITS = 20  # of an int64, with sign and point
+_LETTERS = 8
+_NUMBER = 12  # N99999999 and a blank, with room to spare
+
+# columns of the table that describes the words to the kernel
+_MODAL, _DECIMALS, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH = range(8)
+
+
+@dataclass(frozen=True, slots=True)
+class BlockNumbers:
+    """Block numbers: ``letter`` (empty: none), first number, step, and the highest before they start again."""
+
+    letter: str = "N"
+    start: int = 10
+    step: int = 10
+    highest: int = 99999999
+
+
+@njit(cache=True)  # type: ignore[misc]
+def _write_blocks(
+    table: Ints,
+    forced: Ints,
+    text_before: Ints,
+    text_bytes: Bytes,
+    text_ends: Ints,
+    rule: Ints,
+    spelling: Bytes,
+    last: Ints,
+    number: Ints,
+    number_letter: Bytes,
+    skip: Bytes,
+    out: Bytes,
+) -> int:
+    """Write the blocks of one chunk into ``out``; returns the bytes written.
+
+    table        (w, n) int64   counts, ABSENT where a word is not wanted
+    forced       (n,)   int64   bit k set: word k is written even if it prints as before
+    text_before  (n,)   int64   index of the text line that stands before the row, -1 for none
+    text_bytes, text_ends       the text lines, end to end
+    rule         (w, 8) int64   modal, decimals, point, leading, trailing, plus, length of letter, length of zero
+    spelling     (w, 16) uint8  letter in the first 8 bytes, spelling of zero in the last 8
+    last         (w,)   int64   what was last printed; kept up to date
+    number       (4,)   int64   next block number, step, first, highest; the first is kept up to date
+    """
+    words, rows = table.shape
+    at = 0
+    digits = np.empty(_DIGITS, np.uint8)
+    for row in range(rows):
+        pieces = 2 if text_before[row] >= 0 else 1
+        for piece in range(pieces):
+            block_start = at
+            # the block number, written first and taken back when nothing follows it
+            if number_letter.shape[0] > 0:
+                for k in range(skip.shape[0]):
+                    out[at] = skip[k]
+                    at += 1
+                for k in range(number_letter.shape[0]):
+                    out[at] = number_letter[k]
+                    at += 1
+                length = 0
+                rest = number[0]
+                while rest > 0 or length == 0:
+                    digits[length] = 48 + rest % 10
+                    rest //= 10
+                    length += 1
+                for k in range(length):
+                    out[at + k] = digits[length - 1 - k]
+                at += length
+                out[at] = 32
+                at += 1
+            else:
+                for k in range(skip.shape[0]):
+                    out[at] = skip[k]
+                    at += 1
+            content_start = at
+            if piece < pieces - 1:
+                line = text_before[row]
+                begin = 0 if line == 0 else text_ends[line - 1]
+                for k in range(begin, text_ends[line]):
+                    out[at] = text_bytes[k]
+                    at += 1
+                at += 1  # stands for the blank that every word leaves behind it
+            else:
+                for word in range(words):
+                    count = table[word, row]
+                    if count == ABSENT:
+                        continue
+                    if rule[word, _MODAL] == 1 and count == last[word] and (forced[row] >> word) & 1 == 0:
+                        continue
+                    last[word] = count
+                    for k in range(rule[word, _LETTER_LENGTH]):
+                        out[at] = spelling[word, k]
+                        at += 1
+                    if count == 0 and rule[word, _ZERO_LENGTH] > 0:
+                        for k in range(rule[word, _ZERO_LENGTH]):
+                            out[at] = spelling[word, _LETTERS + k]
+                            at += 1
+                    else:
+                        rest = count
+                        if count < 0:
+                            out[at] = 45
+                            at += 1
+                            rest = -count
+                        elif rule[word, _PLUS] == 1:
+                            out[at] = 43
+                            at += 1
+                        decimals = rule[word, _DECIMALS]
+                        kept = decimals
+                        if rule[word, _TRAILING] == 0:
+                            while kept > 0 and rest % 10 == 0:
+                                rest //= 10
+                                kept -= 1
+                        length = 0
+                        while rest > 0 or length < kept:
+                            digits[length] = 48 + rest % 10
+                            rest //= 10
+                            length += 1
+                        if length == kept and (kept == 0 or rule[word, _LEADING] == 1):
+                            out[at] = 48
+                            at += 1
+                        for k in range(length - 1, kept - 1, -1):
+                            out[at] = digits[k]
+                            at += 1
+                        if decimals > 0 and (kept > 0 or rule[word, _POINT] == 1):
+                            out[at] = 46
+                            at += 1
+                        for k in range(kept - 1, -1, -1):
+                            out[at] = digits[k]
+                            at += 1
+                    out[at] = 32
+                    at += 1
+            if at == content_start:
+                at = block_start
+            else:
+                out[at - 1] = 10
+                if number_letter.shape[0] > 0:
+                    number[0] += number[1]
+                    if number[0] > number[3]:
+                        number[0] = number[2]
+    return at
+
+
+class BlockWriter:
+    """Writes blocks to a binary sink and remembers what each word last printed.
+
+    ``words`` stand in the order in which a block holds them. The writer is the only place that knows the modal state
+    of the words; text lines do not touch it unless the caller says so with ``remember`` or ``forget``.
+    """
+
+    def __init__(self, sink: BinaryIO, words: Sequence[Word], numbers: BlockNumbers) -> None:
+        self._sink = sink
+        self._numbers = numbers
+        self._number = np.array([numbers.start, numbers.step, numbers.start, numbers.highest], np.int64)
+        self._letter = np.frombuffer(numbers.letter.encode(), np.uint8)
+        self._skip = np.zeros(0, np.uint8)
+        self._memory: dict[str, int] = {}
+        self.use(words)
+
+    def use(self, words: Sequence[Word]) -> None:
+        """Take up another set of words. What was last printed stays known for the words that print as before."""
+        kept = dict(zip(self._keys, self._last, strict=True)) if hasattr(self, "_keys") else {}
+        formats = {word.key: word for word in words}
+        same = {key for key, word in formats.items() if hasattr(self, "_words") and self._words.get(key) == word}
+        self._words = formats
+        self._keys = [word.key for word in words]
+        self._last = np.array([kept[key] if key in same else ABSENT for key in self._keys], np.int64)
+        self._rule = np.array([_rule(word) for word in words], np.int64).reshape(len(words), 8)
+        self._spelling = np.zeros((len(words), 2 * _LETTERS), np.uint8)
+        for row, word in zip(self._spelling, words, strict=True):
+            row[: len(word.letter)] = np.frombuffer(word.letter.encode(), np.uint8)
+            row[_LETTERS : _LETTERS + len(word.format.zero)] = np.frombuffer(word.format.zero.encode(), np.uint8)
+
+    def word(self, key: str) -> Word:
+        """The word of that key."""
+        return self._words[key]
+
+    def forget(self, *keys: str) -> None:
+        """Have these words (all, if none is named) written again at their next occasion."""
+        for k, key in enumerate(self._keys):
+            if not keys or key in keys:
+                self._last[k] = ABSENT
+
+    def remember(self, key: str, count: int) -> None:
+        """Take it that the word has just been printed with this count."""
+        self._last[self._keys.index(key)] = count
+
+    def skip_blocks(self, on: bool) -> None:
+        """Begin the blocks that follow with the block-skip sign, or no longer."""
+        self._skip = np.frombuffer(b"/" if on else b"", np.uint8)
+
+    def lines(self, lines: Iterable[str]) -> None:
+        """Write lines of text, a block each."""
+        texts = list(lines)
+        if not texts:
+            return
+        empty = np.zeros((0, len(texts)), np.int64)
+        none = np.zeros(len(texts), np.int64)
+        self._emit(empty, none, np.arange(len(texts)), texts, np.zeros((0, 8), np.int64), self._last[:0])
+
+    def table(
+        self,
+        columns: Mapping[str, Ints],
+        forced: Mapping[str, bool | Ints] | None = None,
+        text_before: Ints | None = None,
+        texts: Sequence[str] = (),
+    ) -> None:
+        """Write one block a row.
+
+        Parameters
+        ----------
+        columns
+            Word key -> (n,) int64 counts, ``ABSENT`` where the row lacks the word. Keys that are missing are absent.
+        forced
+            Word key -> (n,) 0 or 1, or one flag for all rows: write the word even where it prints as before.
+        text_before : (n,) int64, optional
+            Index into ``texts`` of a line that stands before the row, -1 for none.
+
+        A row of which nothing is left to print makes no block.
+        """
+        rows = len(next(iter(columns.values())))
+        flags = np.zeros(rows, np.int64)
+        for key, flag in (forced or {}).items():
+            flags |= np.int64(1 << self._keys.index(key)) * np.asarray(flag, np.int64)
+        before = np.full(rows, -1, np.int64) if text_before is None else text_before
+        for start in range(0, rows, CHUNK):
+            part = slice(start, min(start + CHUNK, rows))
+            chunk = np.full((len(self._keys), part.stop - part.start), ABSENT, np.int64)
+            for key, column in columns.items():
+                chunk[self._keys.index(key)] = column[part]
+            self._check_range(chunk)
+            self._emit(chunk, flags[part], before[part], texts, self._rule, self._last)
+
+    def _check_range(self, chunk: Ints) -> None:
+        """Refuse a number that the word's format has no room for."""
+        for word, column in zip(self._words.values(), chunk, strict=True):
+            scale = 10**word.format.decimals
+            high = int(column.max())
+            if high == ABSENT:
+                continue
+            low = int(np.where(column == ABSENT, high, column).min())
+            if high > word.format.greatest * scale or low < word.format.least * scale:
+                value = (high if high > word.format.greatest * scale else low) / scale
+                limit = word.format.greatest if high > word.format.greatest * scale else word.format.least
+                raise Refused(
+                    Problem(
+                        "program",
+                        0,
+                        f"word {word.letter}{value:g} is beyond {limit:g}",
+                        "see the word's limits in the definition",
+                    )
+                )
+
+    def _emit(self, table: Ints, forced: Ints, before: Ints, texts: Sequence[str], rule: Ints, last: Ints) -> None:
+        encoded = [text.encode() for text in texts]
+        text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
+        ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
+        heads = _NUMBER + len(self._letter) + 1
+        width = heads + len(rule) * (_DIGITS + _LETTERS + 1) + 1
+        text_room = sum(len(encoded[k]) + heads + 1 for k in before[before >= 0])
+        out = np.empty(table.shape[1] * width + text_room, np.uint8)
+        written = _write_blocks(
+            table,
+            forced,
+            before,
+            text_bytes,
+            ends,
+            rule,
+            self._spelling[: len(rule)],
+            last,
+            self._number,
+            self._letter,
+            self._skip,
+            out,
+        )
+        self._sink.write(memoryview(out[:written]))
+
+
+def _rule(word: Word) -> list[int]:
+    number = word.format
+    return [
+        int(word.modal),
+        number.decimals,
+        int(number.point),
+        int(number.leading_zero),
+        int(number.trailing_zeros),
+        int(number.plus),
+        len(word.letter.encode()),
+        len(number.zero.encode()),
+    ]
