@@ -46,7 +46,7 @@ class Moves:
     axis     (n, 3) float64   tool axis at the end point, unit vector from tip to holder
     kind     (n,)   uint8     a ``Kind``
     phase    (n,)   uint8     a ``Phase``
-    feed     (n,)   float64   mm/min, or mm/rev where ``per_rev``; NaN before the first FEDRAT. Rapids carry the modal feed.
+    feed     (n,)   float64   mm/min, or mm/rev where ``per_rev``; NaN before the first FEDRAT; rapids carry it on
     per_rev  (n,)   bool      feed is per spindle revolution
     line     (n,)   int32     line of the CL file, from 1
     """
@@ -75,7 +75,7 @@ class Arcs:
     centre   (m, 3) float64   mm
     normal   (m, 3) float64   unit vector; the tip turns about it by the right-hand rule
     radius   (m,)   float64   mm
-    turns    (m,)   int64     whole turns made besides the arc from start to end. A full circle has start = end and 0 here.
+    turns    (m,)   int64     whole turns besides the arc from start to end; a full circle (start = end) has 0
     """
 
     row: Ints
@@ -146,7 +146,10 @@ class Coolant(Event):
 
 @dataclass(frozen=True, slots=True)
 class CutterComp(Event):
-    """Cutter radius compensation: LEFT, RIGHT, ON or OFF; plane XYPLAN, ZXPLAN, YZPLAN or empty; register, 0 if none."""
+    """Cutter radius compensation.
+
+    side is LEFT, RIGHT, ON or OFF; plane XYPLAN, ZXPLAN, YZPLAN or empty; register 0 if none was named.
+    """
 
     side: str
     plane: str = ""

@@ -15,7 +15,7 @@ from trunnion.arrays import Bytes, Ints
 from trunnion.errors import Problem, Refused
 from trunnion.nc.words import ABSENT, Word
 
-#: Rows that go through the kernel at a time; the table of one chunk stays in the processor's cache.
+#: Rows that a caller best hands over at a time: the table of one chunk stays in the processor's cache.
 CHUNK = 16384
 
 _DIGITS = 20  # of an int64, with sign and point
@@ -36,7 +36,7 @@ class BlockNumbers:
     highest: int = 99999999
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _write_blocks(
     table: Ints,
     forced: Ints,
@@ -173,17 +173,18 @@ class BlockWriter:
         self._number = np.array([numbers.start, numbers.step, numbers.start, numbers.highest], np.int64)
         self._letter = np.frombuffer(numbers.letter.encode(), np.uint8)
         self._skip = np.zeros(0, np.uint8)
-        self._memory: dict[str, int] = {}
+        self._words: dict[str, Word] = {}
+        self._keys: list[str] = []
+        self._last = np.zeros(0, np.int64)
         self.use(words)
 
     def use(self, words: Sequence[Word]) -> None:
         """Take up another set of words. What was last printed stays known for the words that print as before."""
-        kept = dict(zip(self._keys, self._last, strict=True)) if hasattr(self, "_keys") else {}
-        formats = {word.key: word for word in words}
-        same = {key for key, word in formats.items() if hasattr(self, "_words") and self._words.get(key) == word}
-        self._words = formats
+        printed = dict(zip(self._keys, self._last, strict=True))
+        kept = {word.key: printed[word.key] for word in words if self._words.get(word.key) == word}
+        self._words = {word.key: word for word in words}
         self._keys = [word.key for word in words]
-        self._last = np.array([kept[key] if key in same else ABSENT for key in self._keys], np.int64)
+        self._last = np.array([kept.get(key, ABSENT) for key in self._keys], np.int64)
         self._rule = np.array([_rule(word) for word in words], np.int64).reshape(len(words), 8)
         self._spelling = np.zeros((len(words), 2 * _LETTERS), np.uint8)
         for row, word in zip(self._spelling, words, strict=True):
@@ -242,13 +243,11 @@ class BlockWriter:
         for key, flag in (forced or {}).items():
             flags |= np.int64(1 << self._keys.index(key)) * np.asarray(flag, np.int64)
         before = np.full(rows, -1, np.int64) if text_before is None else text_before
-        for start in range(0, rows, CHUNK):
-            part = slice(start, min(start + CHUNK, rows))
-            chunk = np.full((len(self._keys), part.stop - part.start), ABSENT, np.int64)
-            for key, column in columns.items():
-                chunk[self._keys.index(key)] = column[part]
-            self._check_range(chunk)
-            self._emit(chunk, flags[part], before[part], texts, self._rule, self._last)
+        table = np.full((len(self._keys), rows), ABSENT, np.int64)
+        for key, column in columns.items():
+            table[self._keys.index(key)] = column
+        self._check_range(table)
+        self._emit(table, flags, before, texts, self._rule, self._last)
 
     def _check_range(self, chunk: Ints) -> None:
         """Refuse a number that the word's format has no room for."""
@@ -292,7 +291,7 @@ class BlockWriter:
             self._skip,
             out,
         )
-        self._sink.write(memoryview(out[:written]))
+        self._sink.write(out[:written].data)
 
 
 def _rule(word: Word) -> list[int]:

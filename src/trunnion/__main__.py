@@ -1,0 +1,7 @@
+"""``python -m trunnion``."""
+
+import sys
+
+from trunnion.cli import main
+
+sys.exit(main())

@@ -1,0 +1,34 @@
+"""The command line: the only place that prints, and that ends the process.
+
+Results go to stdout, everything else to stderr. Exit 0: done. 1: understood, but the program must not run as it is.
+2: input or usage error. An output file appears whole or not at all.
+"""
+
+import sys
+from collections.abc import Sequence
+
+from trunnion.errors import InputError, Refused
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit code."""
+    from trunnion.cli.arguments import parse
+
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # Windows consoles and pipes do not speak UTF-8 by themselves
+            stream.reconfigure(encoding="utf-8", errors="replace")
+    arguments = parse(sys.argv[1:] if argv is None else argv)
+    try:
+        code: int = arguments.run(arguments)
+    except Refused as refused:
+        print(refused, file=sys.stderr)
+        return 1
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except BrokenPipeError:  # the reader of our output has gone away
+        return 2
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return 2
+    return code

@@ -1,0 +1,60 @@
+"""What can be written on the command line."""
+
+import argparse
+from collections.abc import Sequence
+
+from trunnion import __version__
+
+
+def _pair(text: str) -> tuple[str, str]:
+    key, equals, value = text.partition("=")
+    if not equals or not key:
+        raise argparse.ArgumentTypeError(f"{text!r} is no setting; write KEY=VALUE")
+    return key, value
+
+
+def parse(argv: Sequence[str]) -> argparse.Namespace:
+    """The command and its arguments; ``run`` is the function that carries it out.
+
+    Ends the process with exit code 2 and a usage line when they cannot be understood.
+    """
+    parser = argparse.ArgumentParser(
+        prog="trunnion", description="CL files to proven NC programs for five-axis machine tools."
+    )
+    parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    _post(commands.add_parser("post", help="write the NC program of one or more CL files"))
+    _machines(commands.add_parser("machines", help="list the machines, or print one definition"))
+    _check(commands.add_parser("check", help="validate a machine definition"))
+    return parser.parse_args(list(argv))
+
+
+def _post(parser: argparse.ArgumentParser) -> None:
+    from trunnion.cli.post import run
+
+    parser.add_argument("files", nargs="+", metavar="CL", help="CL file")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
+    parser.add_argument(
+        "--output", metavar="FILE|-|FOLDER", help="program, stdout, or a folder that takes one program a CL file"
+    )
+    parser.add_argument(
+        "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",
+        help="what templates print (title, part, date, method, …), units, zero; may be repeated",
+    )  # fmt: skip
+    parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors")
+    parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
+    parser.set_defaults(run=run)
+
+
+def _machines(parser: argparse.ArgumentParser) -> None:
+    from trunnion.cli.definitions import machines
+
+    parser.add_argument("name", nargs="?", metavar="NAME", help="machine whose definition is printed")
+    parser.set_defaults(run=machines)
+
+
+def _check(parser: argparse.ArgumentParser) -> None:
+    from trunnion.cli.definitions import check
+
+    parser.add_argument("file", metavar="MACHINE.toml", help="definition to validate")
+    parser.set_defaults(run=check)

@@ -1,0 +1,47 @@
+"""``trunnion machines`` and ``trunnion check``."""
+
+import argparse
+from pathlib import Path
+
+from trunnion.control import load_control
+from trunnion.definition import load_table
+from trunnion.errors import InputError, Problem
+from trunnion.machine import load_machine, shipped
+from trunnion.machine.load import library
+
+
+def machines(arguments: argparse.Namespace) -> int:
+    """List the shipped machines, or print one definition as its file has it."""
+    if arguments.name:
+        load_machine(arguments.name)
+        folder = library()
+        shipped_file = folder.joinpath(f"{arguments.name}.toml")
+        source = shipped_file if shipped_file.is_file() else Path(arguments.name)
+        print(source.read_text(encoding="utf-8"), end="")
+        return 0
+    found = [load_machine(key) for key in shipped()]
+    width = max(len(machine.key) for machine in found)
+    for machine in found:
+        print(f"{machine.key:<{width}}  {machine.name}")
+    return 0
+
+
+def check(arguments: argparse.Namespace) -> int:
+    """Validate a definition: every mistake of the machine and of its control at once."""
+    problems: list[Problem] = []
+    for load in (load_machine, _load_control):
+        try:
+            load(arguments.file)
+        except InputError as error:
+            problems += [problem for problem in error.problems if problem not in problems]
+    if problems:
+        raise InputError(problems)
+    print(f"{arguments.file}: good")
+    return 0
+
+
+def _load_control(file: str) -> None:
+    """Read the control's part of a definition, unless it only names a family."""
+    table = load_table(file, library(), kind="machine").table("control")
+    if table.keys() not in ([], ["family"]):
+        load_control(table)

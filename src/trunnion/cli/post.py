@@ -1,0 +1,126 @@
+"""``trunnion post``: CL files in, one NC program out (or one each, into a folder)."""
+
+import argparse
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from tqdm import tqdm
+
+from trunnion.cl import read_cl
+from trunnion.cli.output import whole
+from trunnion.control import Control, Program, check_program, load_control, write_program
+from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.machine import Machine, load_machine
+from trunnion.plan import plan
+from trunnion.toolpath import Toolpath
+
+#: Settings that say how to read and to place the part rather than what to print.
+_RUN_SETTINGS = ("units", "zero")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Post every CL file."""
+    machine = load_machine(arguments.machine)
+    control = load_control(machine.control)
+    settings = dict(arguments.settings)
+    _check_settings(settings, control)
+    if "zero" in settings:
+        machine = replace(machine, workpiece_zero=_point(settings["zero"]))
+    printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
+    for target, files in _targets(arguments, control).items():
+        with whole(target) as sink:
+            paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
+            program = _program(paths, machine, control, printed, arguments.force)
+            rows = sum(len(motion.operation.moves) for motion in program.motions)
+            with tqdm(total=rows, unit=" points", desc="writing", delay=1, disable=None, leave=False) as bar:
+                write_program(program, sink, bar.update)
+        if target != "-":
+            print(f"{target}: {rows} points, {len(program.motions)} operations", file=sys.stderr)
+    return 0
+
+
+def _read(file: str, units: str | None, strict: bool) -> Toolpath:
+    path = Path(file)
+    size = path.stat().st_size if path.is_file() else 0
+    with tqdm(total=size, unit="B", unit_scale=True, desc=path.name, delay=1, disable=None, leave=False) as bar:
+        toolpath = read_cl(path, units=units, strict=strict, progress=lambda done: bar.update(done - bar.n))
+    _say(toolpath.remarks)
+    return toolpath
+
+
+def _program(
+    paths: Sequence[Toolpath], machine: Machine, control: Control, settings: Mapping[str, str], force: bool
+) -> Program:
+    planned = plan(paths, machine, control.chord_tolerance)
+    program = Program(machine, control, planned.motions, settings, paths[0].file)
+    lacking = check_program(program)
+    errors = [problem for problem in lacking if problem.severity is Severity.ERROR]
+    if errors:
+        raise InputError(lacking)
+    _say(lacking)
+    against = [problem for problem in planned.problems if problem.severity is Severity.ERROR]
+    if against and not force:
+        raise Refused((*planned.problems, Problem(paths[0].file, 0, "no program is written", "--force writes it")))
+    _say(planned.problems)
+    notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in against]
+    return replace(program, notices=notices)
+
+
+def _say(problems: Sequence[Problem]) -> None:
+    for problem in problems:
+        print(problem, file=sys.stderr)
+
+
+def _check_settings(settings: Mapping[str, str], control: Control) -> None:
+    known = (*control.settings, *_RUN_SETTINGS)
+    problems = [
+        Problem("--set", 0, f"{key} is no setting of {control.name}", f"write one of {', '.join(known)}")
+        for key in settings
+        if key not in known
+    ]
+    problems += [
+        Problem("--set", 0, f"{key} has a line break or a control character in it", "write it in one line")
+        for key, value in settings.items()
+        if any(ord(character) < 32 for character in value)
+    ]
+    if settings.get("units", "mm") not in ("mm", "inch"):
+        problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
+    if not settings.get("edge", "1").isdigit():
+        problems.append(Problem("--set", 0, f"edge is {settings['edge']!r}", "write a whole number, such as edge=1"))
+    if problems:
+        raise InputError(problems)
+
+
+def _point(text: str) -> tuple[float, float, float]:
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(
+            Problem("--set", 0, f"zero is {text!r}", "write zero=X,Y,Z: the workpiece zero on the machine, mm")
+        ) from None
+    return x, y, z
+
+
+def _targets(arguments: argparse.Namespace, control: Control) -> dict[str, list[str]]:
+    """Which program is made from which CL files."""
+    output = arguments.output
+    if output == "-":
+        return {"-": arguments.files}
+    folder = output is not None and (Path(output).is_dir() or output.endswith(("/", os.sep)))
+    if output is not None and not folder:
+        return {output: arguments.files}
+    if output is None and len(arguments.files) > 1:
+        raise InputError(Problem("post", 0, "several CL files, and no output named", "write --output FILE or FOLDER"))
+    into = Path(output or ".")
+    if not into.is_dir():
+        raise InputError(Problem(str(into), 0, "is no folder", "make it first"))
+    targets: dict[str, list[str]] = {}
+    for file in arguments.files:
+        targets.setdefault(str(into / (Path(file).stem + control.extension)), []).append(file)
+    twice = next((files for files in targets.values() if len(files) > 1), None)
+    if twice:
+        raise InputError(Problem(twice[1], 0, f"would write over the program of {twice[0]}", "rename one of them"))
+    return targets

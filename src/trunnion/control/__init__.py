@@ -1,0 +1,10 @@
+"""Controls: what a program for each family of controls says, and in which order.
+
+In:     a toolpath, its motion on the machine, the control's definition and the settings of the run.
+Out:    the NC program, through the block writer.
+"""
+
+from trunnion.control.definition import Control, load_control
+from trunnion.control.program import Program, check_program, write_program
+
+__all__ = ["Control", "Program", "check_program", "load_control", "write_program"]

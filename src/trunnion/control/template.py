@@ -1,0 +1,59 @@
+"""Text templates: lines with ``{name}`` and ``{name:format}`` in them.
+
+A template can print values and nothing else: it computes nothing and reads nothing. A line that names a value which
+is absent is left out whole, so that a program without a date has no line for one.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from trunnion.errors import InputError, Problem
+from trunnion.nc import NumberFormat
+
+Value = str | float | None
+
+_FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """The lines of one template, and where it stands in its definition."""
+
+    name: str
+    lines: tuple[str, ...]
+    file: str = ""
+    line: int = 0
+
+    def fields(self) -> set[tuple[str, str]]:
+        """Every (name, format) that the template asks for; format is empty where none is named."""
+        return {(name, form or "") for text in self.lines for name, form in _FIELD.findall(text)}
+
+    def expand(self, values: Mapping[str, Value], formats: Mapping[str, NumberFormat]) -> list[str]:
+        """The lines with their values; those that name an absent value are left out.
+
+        Raises
+        ------
+        InputError
+            When a value that must be a number is none.
+        """
+
+        def printed(match: re.Match[str]) -> str:
+            value = values[match[1]]
+            if match[2]:
+                return formats[match[2]].text(self._number(match[1], value))
+            return f"{value:g}" if isinstance(value, float) else str(value)
+
+        return [
+            _FIELD.sub(printed, text)
+            for text in self.lines
+            if all(values[name] not in (None, "") for name, _ in _FIELD.findall(text))
+        ]
+
+    def _number(self, name: str, value: Value) -> float:
+        try:
+            return float(value)  # type: ignore[arg-type]  # None was left out before
+        except ValueError:
+            raise InputError(
+                Problem(self.file, self.line, f"setting {name} is {value!r}", f"write a number: --set {name}=0.5")
+            ) from None

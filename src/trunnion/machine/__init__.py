@@ -1,0 +1,27 @@
+"""Machines: the chain of axes from the workpiece to the tool, as data, and its mathematics, which is one for all.
+
+``load_machine`` reads a definition, ``forward`` says where the tool is, ``inverse`` where the axes must be. Kernels of
+other rooms use ``trunnion.machine.inverse.pack`` with ``solve_point`` and ``solve_slides``.
+"""
+
+from trunnion.machine.chain import forward
+from trunnion.machine.inverse import Packed, Solutions, inverse, pack
+from trunnion.machine.load import load_machine, shipped
+from trunnion.machine.model import Axis, AxisKind, Carries, Facts, Machine, Output, Positive
+
+__all__ = [
+    "Axis",
+    "AxisKind",
+    "Carries",
+    "Facts",
+    "Machine",
+    "Output",
+    "Packed",
+    "Positive",
+    "Solutions",
+    "forward",
+    "inverse",
+    "load_machine",
+    "pack",
+    "shipped",
+]

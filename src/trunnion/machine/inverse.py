@@ -1,0 +1,315 @@
+"""Where the axes must be for the tool to be somewhere: one closed form for every chain with two rotary axes.
+
+In:     a ``Machine``, tool tips and tool axes in workpiece coordinates.
+Out:    displayed axis values, two branches a row. Choosing between them, and between turns, is the planner's business.
+Units:  mm and degrees; rotary values in (-180, 180].
+
+The form. Let w1 and w2 be the directions of the two rotary axes (w1 next to the workpiece) and s the spindle, all axes
+at zero. The tool axis is u = R1 R2 s, so the vector v = R2 s stands as far from w2 as s does, and as far from w1 as u
+does: it is the third corner of a spherical triangle with three known sides,
+
+    A = angle(w1, u)      B = angle(w2, s)      G = angle(w1, w2)
+
+and the half-angle formula gives its corner at w2,
+
+    tan^2(phi/2) = sin(S-B) sin(S-G) / (sin S sin(S-A)),    S = (A + B + G)/2,
+
+to both sides of the great circle through w1 and w2: two branches. The formula loses no digits near the pole, as an arc
+cosine would. The first angle then turns v onto u about w1. With both angles known, the slides solve a 3x3 linear system
+whose columns are the slides' directions, each turned by the rotary axes that stand between it and the workpiece.
+
+This is the second of the classic subproblems of Paden and Kahan (Murray, Li, Sastry: A Mathematical Introduction to
+Robotic Manipulation, 3.3.2) in the shape of spherical trigonometry. It shares nothing with ``trunnion.machine.chain``.
+
+Status bits, kernels do not raise:
+
+    0             two solutions, which coincide on the edge of what the rotary axes reach
+    UNREACHABLE   no rotary angles give this tool axis; the row is NaN
+    POLE          the tool axis is parallel to the first rotary axis, whose angle is free and carries 0 here. Whoever
+                  keeps another angle there calls ``solve_slides`` with it
+    STUCK         the slides are linearly dependent at these angles (possible only where a rotary axis stands between
+                  slides, such as a quill at 90 degrees); slide values are NaN
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.machine.model import Machine
+
+UNREACHABLE: Final = 1
+POLE: Final = 2
+STUCK: Final = 4
+
+#: How far a tool axis may lie outside the reach of the rotary axes and still be taken for the edge of it, rad. CL files
+#: print seven decimals, which moves a vector by up to 0.9e-7: so much is noise. On a tool of 100 mm it is 0.01 um.
+REACH_TOLERANCE: Final = 1e-7
+
+#: How near to the first rotary axis a tool axis counts as parallel to it, rad; the same noise of CL files. The tool
+#: axis is then taken to be exactly parallel.
+POLE_TOLERANCE: Final = 1e-7
+
+#: Least volume of the three slide directions, as a box of unit vectors.
+_FLAT: Final = 1e-9
+
+
+class Packed(NamedTuple):
+    """A machine with a tool, as plain arrays for compiled kernels. Directions point where growing values move the tool.
+
+    columns   (5,) int64       columns of: first rotary, second rotary, the three slides
+    frame_1   (3, 3) float64   rows: two unit vectors across the first rotary axis, the first towards w2; its line
+    frame_2   (3, 3) float64   rows: two unit vectors across the second rotary axis, the first towards w1; its line
+    sense_1   float            -1 where the line of ``frame_1`` points against growing values
+    between   float            angle between the two lines, rad (G above)
+    lean      float            angle between the second line and the spindle, rad (B above)
+    phase     float            second angle, rad, from where the spindle leans most towards w1 to zero, in (-pi/2, pi/2]
+    spindle   (3,) float64     the spindle in ``frame_2``
+    slides    (3, 3) float64   rows: directions of the slides
+    inside    (3,) int64       how many rotary axes stand between the slide and the workpiece
+    base      (3,) float64     point of the first rotary axis, from workpiece zero, mm
+    link      (3,) float64     from there to the point of the second rotary axis, mm
+    reach     (3,) float64     from there to the tool tip, mm
+    """
+
+    columns: Ints
+    frame_1: Floats
+    frame_2: Floats
+    sense_1: float
+    between: float
+    lean: float
+    phase: float
+    spindle: Floats
+    slides: Floats
+    inside: Ints
+    base: Floats
+    link: Floats
+    reach: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solutions:
+    """Axis values for rows of tool positions.
+
+    joints     (2, n, 5) float64  displayed values, mm or deg; NaN where not reachable; branches as in ``solve_point``
+    reachable  (n,) bool          the rotary axes reach the tool axis and the slides can follow; travel is not looked at
+    pole       (n,) bool          the angle of the first rotary axis is free and carries 0
+    """
+
+    joints: Floats
+    reachable: Flags
+    pole: Flags
+
+
+def pack(machine: Machine, tool_length: float = 0.0) -> Packed:
+    """Plain arrays for the kernels of this module, for a machine and the length (mm) of the tool in its spindle."""
+    first, second = machine.rotary
+    directions = np.array([[axis.sense * d for d in axis.direction] for axis in machine.axes])
+    points = np.array([axis.point for axis in machine.axes])
+    s = np.array(machine.spindle_direction)
+    w1, w2 = directions[first], directions[second]
+    sense = _towards(w1, w2, s)
+    w1 = sense * w1
+    frame_1 = _frame(w1, w2)
+    frame_2 = _frame(w2, w1)
+    spindle = frame_2 @ s
+    tip = np.array(machine.spindle_point) - tool_length * s
+    zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
+    slides = machine.linear
+    return Packed(
+        columns=np.array([first, second, *slides]),
+        frame_1=frame_1,
+        frame_2=frame_2,
+        sense_1=sense,
+        between=_angle(w1, w2),
+        lean=_angle(w2, s),
+        phase=math.atan2(spindle[1], spindle[0]),
+        spindle=spindle,
+        slides=np.ascontiguousarray(directions[list(slides)]),
+        inside=np.array([(first < k) + (second < k) for k in slides]),
+        base=points[first] - zero,
+        link=points[second] - points[first],
+        reach=tip - points[second],
+    )
+
+
+def _angle(a: Floats, b: Floats) -> float:
+    """Angle between two vectors, rad, in [0, pi], good to the last digits everywhere."""
+    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(np.dot(a, b)))
+
+
+def _frame(line: Floats, other: Floats) -> Floats:
+    """Rows: the unit vector across ``line`` towards ``other``, the one that makes it right-handed, the line."""
+    across = np.cross(np.cross(line, other), line)
+    across = across / np.linalg.norm(across)
+    return np.array([across, np.cross(line, across), line])
+
+
+def _towards(w1: Floats, w2: Floats, s: Floats) -> float:
+    """Sign that makes the first line lean towards the spindle, as seen along the second: it fixes which branch is 0."""
+    frame = _frame(w2, w1)
+    lean = float(frame[0] @ s)
+    if abs(lean) > 1e-9:
+        return math.copysign(1.0, lean)
+    # The spindle stands square to both, as on a fork that turns about X and then Y: the side where zero is in branch 0.
+    return 1.0 if float(frame[1] @ s) > 0.0 else -1.0
+
+
+def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float = 0.0) -> Solutions:
+    """Both sets of axis values for rows of tool tips and tool axes.
+
+    Parameters
+    ----------
+    machine
+        The chain, from the workpiece to the tool.
+    tip : (n, 3) float64, mm
+        In workpiece coordinates, counted from ``machine.workpiece_zero``; from the machine's own zero if that is None.
+    axis : (n, 3) float64
+        From tip to holder, in workpiece coordinates; any length but zero.
+    tool_length
+        From the gauge point to the tip, mm.
+    """
+    tips = np.ascontiguousarray(tip, dtype=np.float64)
+    axes = np.ascontiguousarray(axis, dtype=np.float64)
+    if tips.ndim != 2 or tips.shape[1] != 3 or axes.shape != tips.shape:
+        raise ValueError(f"tip and axis must both have shape (n, 3), not {tips.shape} and {axes.shape}")
+    joints = np.empty((2, len(tips), 5))
+    status = np.empty(len(tips), np.uint8)
+    solve_rows(pack(machine, tool_length), tips, axes, joints, status)
+    return Solutions(joints, (status & (UNREACHABLE | STUCK)) == 0, (status & POLE) != 0)
+
+
+@njit(cache=True)
+def solve_rows(packed: Packed, tip: Floats, axis: Floats, joints: Floats, status: Codes) -> None:
+    """Call ``solve_point`` for each row; joints (2, n, 5) and status (n,) uint8 are written."""
+    for row in range(tip.shape[0]):
+        status[row] = solve_point(
+            packed,
+            tip[row, 0],
+            tip[row, 1],
+            tip[row, 2],
+            axis[row, 0],
+            axis[row, 1],
+            axis[row, 2],
+            joints[:, row, :],
+        )
+
+
+@njit(cache=True)
+def solve_point(packed: Packed, x: float, y: float, z: float, i: float, j: float, k: float, out: Floats) -> int:
+    """Write both branches of one tool position into ``out`` (2, 5), mm and deg; return the status bits.
+
+    Branch 0 has the second rotary angle phi - phase, branch 1 has -phi - phase, with phi in [0, 180]. On machines whose
+    tool axis at zero lies in the plane of the two rotary axes phase is 0: branch 0 is the positive tilt, branch 1 the
+    negative one. On fork heads that turn about X and then Y phase is 90: branch 0 has the second angle in [-90, 90].
+    Along a path each branch is continuous, away from poles.
+    """
+    one, two = packed.frame_1, packed.frame_2
+    u0 = one[0, 0] * i + one[0, 1] * j + one[0, 2] * k
+    u1 = one[1, 0] * i + one[1, 1] * j + one[1, 2] * k
+    u2 = one[2, 0] * i + one[2, 1] * j + one[2, 2] * k
+    across = math.sqrt(u0 * u0 + u1 * u1)
+    off = math.atan2(across, u2)  # A of the module's docstring
+    pole = off < POLE_TOLERANCE or math.pi - off < POLE_TOLERANCE
+    if pole:
+        off = 0.0 if u2 > 0.0 else math.pi
+    half = 0.5 * (off + packed.lean + packed.between)
+    least = min(min(half - off, half - packed.lean), min(half - packed.between, math.pi - half))
+    length = across + abs(u2)
+    # Written so that NaN is out of reach as well.
+    if not (least >= -0.5 * REACH_TOLERANCE and length > 0.0 and length < math.inf):
+        out[:, :] = math.nan
+        return UNREACHABLE
+    num = math.sin(max(half - packed.lean, 0.0)) * math.sin(max(half - packed.between, 0.0))
+    den = math.sin(min(half, math.pi)) * math.sin(max(half - off, 0.0))
+    phi = 2.0 * math.atan2(math.sqrt(max(num, 0.0)), math.sqrt(max(den, 0.0)))
+    status = POLE if pole else 0
+    for branch in range(2):
+        turn = (phi if branch == 0 else -phi) - packed.phase
+        first = 0.0
+        if not pole:
+            # v = R2 s, then its components across the first line.
+            cos, sin = math.cos(turn), math.sin(turn)
+            s0, s1, s2 = packed.spindle[0], packed.spindle[1], packed.spindle[2]
+            a, b = cos * s0 - sin * s1, sin * s0 + cos * s1
+            v0 = two[0, 0] * a + two[1, 0] * b + two[2, 0] * s2
+            v1 = two[0, 1] * a + two[1, 1] * b + two[2, 1] * s2
+            v2 = two[0, 2] * a + two[1, 2] * b + two[2, 2] * s2
+            a = one[0, 0] * v0 + one[0, 1] * v1 + one[0, 2] * v2
+            b = one[1, 0] * v0 + one[1, 1] * v1 + one[1, 2] * v2
+            first = packed.sense_1 * math.degrees(math.atan2(u1 * a - u0 * b, u0 * a + u1 * b))
+        second = math.degrees(turn)
+        if second <= -180.0:
+            second += 360.0
+        elif second > 180.0:
+            second -= 360.0
+        if first <= -180.0:
+            first = 180.0
+        # Adding zero turns -0.0 into 0.0.
+        status |= solve_slides(packed, first + 0.0, second + 0.0, x, y, z, out[branch])
+    return status
+
+
+@njit(cache=True)
+def solve_slides(packed: Packed, first: float, second: float, x: float, y: float, z: float, out: Floats) -> int:
+    """Write one whole row ``out`` (5,): the rotary values as given, deg, and the slides that bring the tip to x, y, z.
+
+    Returns 0 or STUCK. Rotary values are displayed ones and may be wound up: whole turns drop out without loss.
+    """
+    one, two = packed.frame_1, packed.frame_2
+    angle = packed.sense_1 * math.radians(first - 360.0 * math.floor(first / 360.0 + 0.5))
+    cos_1, sin_1 = math.cos(angle), math.sin(angle)
+    angle = math.radians(second - 360.0 * math.floor(second / 360.0 + 0.5))
+    cos_2, sin_2 = math.cos(angle), math.sin(angle)
+    # Where the tip would be with the slides at zero.
+    px, py, pz = turned(two, cos_2, sin_2, packed.reach[0], packed.reach[1], packed.reach[2])
+    px, py, pz = turned(one, cos_1, sin_1, px + packed.link[0], py + packed.link[1], pz + packed.link[2])
+    px, py, pz = x - px - packed.base[0], y - py - packed.base[1], z - pz - packed.base[2]
+    ax, ay, az = slide_direction(packed, 0, cos_1, sin_1, cos_2, sin_2)
+    bx, by, bz = slide_direction(packed, 1, cos_1, sin_1, cos_2, sin_2)
+    cx, cy, cz = slide_direction(packed, 2, cos_1, sin_1, cos_2, sin_2)
+    # Cramer: the reciprocal basis of the three slide directions.
+    rx, ry, rz = by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx
+    box = ax * rx + ay * ry + az * rz
+    out[packed.columns[0]] = first
+    out[packed.columns[1]] = second
+    if abs(box) < _FLAT:
+        for slide in range(3):
+            out[packed.columns[2 + slide]] = math.nan
+        return STUCK
+    out[packed.columns[2]] = (px * rx + py * ry + pz * rz) / box + 0.0
+    rx, ry, rz = cy * az - cz * ay, cz * ax - cx * az, cx * ay - cy * ax
+    out[packed.columns[3]] = (px * rx + py * ry + pz * rz) / box + 0.0
+    rx, ry, rz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    out[packed.columns[4]] = (px * rx + py * ry + pz * rz) / box + 0.0
+    return 0
+
+
+@njit(cache=True)
+def slide_direction(
+    packed: Packed, slide: int, cos_1: float, sin_1: float, cos_2: float, sin_2: float
+) -> tuple[float, float, float]:
+    """Direction of a slide as seen from the workpiece, with the rotary axes at these angles."""
+    x, y, z = packed.slides[slide, 0], packed.slides[slide, 1], packed.slides[slide, 2]
+    if packed.inside[slide] == 2:
+        x, y, z = turned(packed.frame_2, cos_2, sin_2, x, y, z)
+    if packed.inside[slide] >= 1:
+        x, y, z = turned(packed.frame_1, cos_1, sin_1, x, y, z)
+    return x, y, z
+
+
+@njit(cache=True)
+def turned(frame: Floats, cos: float, sin: float, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Return a vector turned about the third row of ``frame``, an orthonormal (3, 3)."""
+    a = frame[0, 0] * x + frame[0, 1] * y + frame[0, 2] * z
+    b = frame[1, 0] * x + frame[1, 1] * y + frame[1, 2] * z
+    c = frame[2, 0] * x + frame[2, 1] * y + frame[2, 2] * z
+    a, b = cos * a - sin * b, sin * a + cos * b
+    return (
+        frame[0, 0] * a + frame[1, 0] * b + frame[2, 0] * c,
+        frame[0, 1] * a + frame[1, 1] * b + frame[2, 1] * c,
+        frame[0, 2] * a + frame[1, 2] * b + frame[2, 2] * c,
+    )

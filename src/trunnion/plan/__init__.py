@@ -1,0 +1,12 @@
+"""The planner: how the machine makes the motion that a toolpath asks for.
+
+In:     operations in the CAM's coordinate systems, and a machine.
+Out:    ``Motion``: the same operations in the program's coordinate system, with five axis positions a row, and what
+        was found wrong on the way.
+Knows nothing of text, neither of CL files nor of NC programs.
+"""
+
+from trunnion.plan.motion import Motion, Plan
+from trunnion.plan.planner import plan
+
+__all__ = ["Motion", "Plan", "plan"]

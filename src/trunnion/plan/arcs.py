@@ -1,0 +1,117 @@
+"""Arcs into lines, where the control is not to be given an arc.
+
+A control turns the tool tip about X, Y or Z of its coordinate system. An arc about any other direction, or one on
+which the tool axis changes, becomes lines that leave the arc by no more than a chord error.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.toolpath import Arcs, Kind, Moves, Operation
+
+#: Directions are taken as along a coordinate axis within this sine; seven printed decimals give 1e-7.
+_ALONG = 1e-6
+
+
+def arc_sweeps(operation: Operation) -> Floats:
+    """Angle that the tip turns through on each arc.
+
+    Returns
+    -------
+    (m,) float64
+        Radians, always positive; a full circle is 2 pi, and whole turns count.
+    """
+    arcs, tip = operation.arcs, operation.moves.tip
+    start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
+    across = np.einsum("ij,ij->i", np.cross(start, end), arcs.normal)
+    start_in_plane = start - np.einsum("ij,ij->i", start, arcs.normal)[:, None] * arcs.normal
+    along = np.einsum("ij,ij->i", start_in_plane, end)
+    angle = np.mod(np.arctan2(across, along), 2.0 * np.pi)
+    # start = end in the plane is a full circle; rounding of the file may put the end a hair before or after it
+    closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < 1e-4
+    return np.asarray(np.where(closed, 2.0 * np.pi, angle) + 2.0 * np.pi * arcs.turns)
+
+
+def plain_arcs(operation: Operation) -> Flags:
+    """(m,) bool: the arc turns about X, Y or Z and the tool axis is the same at its start and its end."""
+    arcs, axis = operation.arcs, operation.moves.axis
+    about_axis = np.sort(np.abs(arcs.normal), axis=1)[:, 1] < _ALONG
+    steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _ALONG
+    return np.asarray(about_axis & steady)
+
+
+def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:
+    """Replace the arcs that are not kept by lines.
+
+    Parameters
+    ----------
+    operation
+        Its arcs' rows have a row before them, which is where the arc starts.
+    keep : (m,) bool
+        Arcs that stay arcs.
+    chord_tolerance
+        Largest distance between arc and line, mm.
+
+    Returns
+    -------
+    Operation
+        The tool axis turns evenly along the arc's length; added rows carry the line of the arc's end point.
+    """
+    if bool(keep.all()):
+        return operation
+    moves, arcs = operation.moves, operation.arcs
+    sweep = arc_sweeps(operation)
+    half = np.sqrt(np.minimum(chord_tolerance / (2.0 * np.maximum(arcs.radius, chord_tolerance)), 0.25))
+    pieces = np.where(keep, 1, np.ceil(sweep / (4.0 * np.arcsin(half)))).astype(np.int64)
+    copies = np.ones(len(moves), np.int64)
+    copies[arcs.row] = np.maximum(pieces, 1)
+    source = np.repeat(np.arange(len(moves)), copies)
+    new_row = np.cumsum(copies) - 1  # where each old row ends up: the last of its copies
+    tip, axis = moves.tip[source], moves.axis[source]
+    kind = moves.kind[source]
+    for m in np.flatnonzero(~keep):
+        row = arcs.row[m]
+        part = slice(new_row[row] - copies[row] + 1, new_row[row] + 1)
+        tip[part], axis[part] = _points_on_arc(operation, int(m), float(sweep[m]), int(copies[row]))
+        kind[part] = Kind.LINEAR
+    return replace(
+        operation,
+        moves=Moves(
+            tip, axis, kind, moves.phase[source], moves.feed[source], moves.per_rev[source], moves.line[source]
+        ),
+        arcs=Arcs(new_row[arcs.row[keep]], arcs.centre[keep], arcs.normal[keep], arcs.radius[keep], arcs.turns[keep]),
+        events=tuple(replace(event, row=_moved(event.row, new_row, copies)) for event in operation.events),
+    )
+
+
+def _moved(row: int, new_row: Ints, copies: Ints) -> int:
+    """The new index of the row before which an event stands: ahead of the first copy."""
+    return int(new_row[row] - copies[row] + 1) if row < len(new_row) else int(new_row[-1]) + 1 if len(new_row) else 0
+
+
+def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> tuple[Floats, Floats]:
+    """``pieces`` points on arc ``m``, the start left out and the end exact, and the tool axes there."""
+    moves, arcs = operation.moves, operation.arcs
+    row, centre, normal = int(arcs.row[m]), arcs.centre[m], arcs.normal[m]
+    part = np.arange(1, pieces + 1) / pieces
+    start, end = moves.tip[row - 1] - centre, moves.tip[row] - centre
+    rise_start, rise_end = float(start @ normal), float(end @ normal)
+    radial = start - rise_start * normal
+    angle = (part * sweep)[:, None]
+    tip = centre + np.cos(angle) * radial + np.sin(angle) * np.cross(normal, radial)
+    tip = tip + (rise_start + part * (rise_end - rise_start))[:, None] * normal
+    # the file rounds centre and end: spread what is missing at the end over the arc, so that the end is met exactly
+    tip += part[:, None] * (moves.tip[row] - tip[-1])
+    return tip, _turned_evenly(moves.axis[row - 1], moves.axis[row], part)
+
+
+def _turned_evenly(first: Floats, last: Floats, part: Floats) -> Floats:
+    """Great-circle turn from ``first`` to ``last`` (unit vectors), at the fractions ``part``."""
+    angle = float(np.arctan2(np.linalg.norm(np.cross(first, last)), first @ last))
+    if angle < 1e-12:
+        return np.repeat(last[None, :], len(part), axis=0)
+    weight = np.sin(np.outer(np.column_stack((1.0 - part, part)), angle).reshape(-1, 2)) / np.sin(angle)
+    turned = weight[:, :1] * first + weight[:, 1:] * last
+    return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))

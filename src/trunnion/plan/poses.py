@@ -1,0 +1,138 @@
+"""Which of the possible axis positions the machine takes, row after row.
+
+First version of the choice: of the two branches, and of the turns of each, the one nearest to the last position that
+keeps every axis within its limits. At the pole the free angle stays as it was.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.machine import Machine, Packed, pack
+from trunnion.machine.inverse import POLE, UNREACHABLE, solve_point, solve_slides
+
+#: A value beyond a limit by less than this, mm or degrees, prints as the limit and is put onto it.
+LIMIT_TOLERANCE = 1e-5
+
+#: What became of a row: nothing to say; 1 + index of the axis that is beyond its limit; or one of these.
+FINE, TURNED_OVER, OUT_OF_REACH = 0, 100, 200
+
+
+@dataclass(frozen=True, slots=True)
+class Poses:
+    """joints (n, 5) float64 mm or degrees, as the axes display them; outcome (n,) uint8 as listed above."""
+
+    joints: Floats
+    outcome: Codes
+
+
+@njit(cache=True)
+def _nearest_turn(angle: float, last: float, low: float, high: float) -> float:
+    """``angle`` plus the whole turns that bring it nearest to ``last`` within the limits, or nearest at all."""
+    turns: float = np.rint((last - angle) / 360.0)
+    if np.isfinite(low) and angle + 360.0 * turns < low - LIMIT_TOLERANCE:
+        turns = np.ceil((low - LIMIT_TOLERANCE - angle) / 360.0)
+    if np.isfinite(high) and angle + 360.0 * turns > high + LIMIT_TOLERANCE:
+        turns = np.floor((high + LIMIT_TOLERANCE - angle) / 360.0)
+    return angle + 360.0 * turns
+
+
+@njit(cache=True)
+def _follow(
+    packed: Packed,
+    rotary: Ints,
+    low: Floats,
+    high: Floats,
+    display_low: Floats,
+    tip: Floats,
+    axis: Floats,
+    start: Floats,
+    joints: Floats,
+    outcome: Codes,
+) -> None:
+    """Fill ``joints`` and ``outcome`` row by row.
+
+    rotary       (2,) int64     columns of the rotary axes, the one next to the workpiece first
+    low, high    (5,) float64   limits, infinite where none is to be kept
+    display_low  (5,) float64   lower end of the 360 degrees that an axis displays, NaN: as it is
+    start        (2,) float64   rotary positions before the first row
+    """
+    found = np.empty((2, 5))
+    candidate = np.empty(5)
+    last = start.copy()
+    last_branch = -1
+    for row in range(tip.shape[0]):
+        x, y, z = tip[row, 0], tip[row, 1], tip[row, 2]
+        i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
+        status = solve_point(packed, x, y, z, i, j, k, found)
+        if status & UNREACHABLE:
+            outcome[row] = OUT_OF_REACH
+            joints[row, :] = np.nan
+            continue
+        best_cost, best_beyond, best_branch = np.inf, 99, 0
+        for branch in range(2):
+            for r in range(2):
+                column = rotary[r]
+                angle = last[r] if r == 0 and status & POLE else found[branch, column]
+                candidate[column] = _nearest_turn(angle, last[r], low[column], high[column])
+            solve_slides(packed, candidate[rotary[0]], candidate[rotary[1]], x, y, z, candidate)
+            beyond, which = 0, 0
+            for column in range(5):
+                value = candidate[column]
+                if value < low[column] - LIMIT_TOLERANCE or value > high[column] + LIMIT_TOLERANCE:
+                    beyond += 1
+                    which = column + 1
+                elif value < low[column]:
+                    candidate[column] = low[column]
+                elif value > high[column]:
+                    candidate[column] = high[column]
+            cost = abs(candidate[rotary[0]] - last[0]) + abs(candidate[rotary[1]] - last[1])
+            if beyond < best_beyond or (beyond == best_beyond and cost < best_cost - 1e-9):
+                best_cost, best_beyond, best_branch = cost, beyond, branch
+                joints[row] = candidate
+                outcome[row] = which
+        if outcome[row] == FINE and last_branch >= 0 and best_branch != last_branch and best_cost > 90.0:
+            outcome[row] = TURNED_OVER
+        last_branch = -1 if status & POLE else best_branch
+        last[0], last[1] = joints[row, rotary[0]], joints[row, rotary[1]]
+        for column in rotary:
+            if not np.isnan(display_low[column]):
+                joints[row, column] -= 360.0 * np.floor((joints[row, column] - display_low[column]) / 360.0)
+
+
+def follow(machine: Machine, tip: Floats, axis: Floats, keep_slides: bool) -> Poses:
+    """Axis positions for every row, starting from the home position of the rotary axes.
+
+    Parameters
+    ----------
+    machine
+        Its limits are kept; those of the slides only with ``keep_slides``.
+    tip : (n, 3) float64
+        mm, workpiece frame.
+    axis : (n, 3) float64
+        Unit vectors, workpiece frame.
+    """
+    packed = pack(machine)
+    rotary = np.array(machine.rotary, np.int64)
+    low = np.array([a.low for a in machine.axes])
+    high = np.array([a.high for a in machine.axes])
+    if not keep_slides:
+        slides = np.array(machine.linear)
+        low[slides], high[slides] = -np.inf, np.inf
+    display = np.array([a.display_low for a in machine.axes])
+    start = np.array([machine.axes[c].home for c in rotary])
+    joints = np.empty((len(tip), 5))
+    outcome = np.zeros(len(tip), np.uint8)
+    _follow(packed, rotary, low, high, display, tip, axis, start, joints, outcome)
+    return Poses(joints, outcome)
+
+
+def beyond_fit(machine: Machine, joints: Floats) -> Flags:
+    """(5,) bool: the slide needs more room than its whole travel has, wherever the workpiece may sit."""
+    span = joints.max(axis=0) - joints.min(axis=0)
+    travel = np.array([a.high - a.low for a in machine.axes])
+    slides = np.zeros(5, bool)
+    slides[list(machine.linear)] = True
+    return np.asarray(slides & (span > travel + LIMIT_TOLERANCE))
