@@ -31,11 +31,13 @@ class Poses:
 @njit(cache=True)
 def _nearest_turn(angle: float, last: float, low: float, high: float) -> float:
     """``angle`` plus the whole turns that bring it nearest to ``last`` within the limits, or nearest at all."""
-    turns: float = np.rint((last - angle) / 360.0)
-    if np.isfinite(low) and angle + 360.0 * turns < low - LIMIT_TOLERANCE:
-        turns = np.ceil((low - LIMIT_TOLERANCE - angle) / 360.0)
-    if np.isfinite(high) and angle + 360.0 * turns > high + LIMIT_TOLERANCE:
-        turns = np.floor((high + LIMIT_TOLERANCE - angle) / 360.0)
+    nearest: float = np.rint((last - angle) / 360.0)
+    turns = nearest
+    if np.isfinite(low) and np.isfinite(high):
+        fewest = np.ceil((low - LIMIT_TOLERANCE - angle) / 360.0)
+        most = np.floor((high + LIMIT_TOLERANCE - angle) / 360.0)
+        if fewest <= most:
+            turns = min(max(nearest, fewest), most)
     return angle + 360.0 * turns
 
 

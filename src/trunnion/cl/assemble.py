@@ -1,0 +1,293 @@
+"""From drafts to operations: units, feeds, phases, axes and arcs, a run of rows at a time.
+
+In:     a ``Draft``, the columns of the file with tip and axis written, and the length unit in mm.
+Out:    an ``Operation``; its moves are slices of the columns, not copies.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion.arrays import Codes, Floats, Ints
+from trunnion.cl.draft import Circle, Columns, Draft, Feed, Start, SurfaceSpeed
+from trunnion.cl.findings import MOST, Findings
+from trunnion.cl.scan import settle_axes
+from trunnion.toolpath import Arcs, CycleOn, Event, Frame, From, Kind, Moves, Operation, Phase, SpindleOn, Tool
+
+#: Start and end of an arc may be so far off its radius, mm: coordinates are printed with three or four decimals.
+RADIUS_TOLERANCE = 0.02
+
+#: The colours in which NX paints the parts of a path. 211 is decided by what stands around it.
+COLOURS = {
+    186: Phase.RAPID,
+    42: Phase.ENGAGE,
+    31: Phase.CUT,
+    36: Phase.STEPOVER,
+    37: Phase.RETRACT,
+    211: Phase.APPROACH,
+}
+_TRANSFER = 211
+_IDLE = 186
+
+#: Couplets of CYCLE whose numbers are lengths.
+CYCLE_LENGTHS = frozenset({"RAPTO", "FEDTO", "RTRCTO", "CLEAR", "STEP", "CSKDIA", "HOLDIA"})
+
+
+def operation(draft: Draft, columns: Columns, unit: float, findings: Findings) -> Operation:
+    """Return the operation that ``draft`` describes.
+
+    Parameters
+    ----------
+    draft
+        What was read of the operation.
+    columns
+        Columns of the file; rows ``draft.first:draft.stop`` belong to the operation, tip in mm.
+    unit
+        Length unit of the file, mm.
+    findings
+        Takes what turns out wrong.
+    """
+    here = slice(draft.first, draft.stop)
+    n = draft.stop - draft.first
+    tip, feed, per_rev, kind = columns.tip[here], columns.feed[here], columns.per_rev[here], columns.kind[here]
+    fill_feeds(feed, per_rev, draft.feeds, unit)
+    rapids = np.array([row for row in draft.rapids if row < n], np.int64)
+    kind[:] = Kind.LINEAR
+    kind[rapids] = Kind.RAPID
+    fill_phases(columns.phase[here], rapids, draft.colours)
+    _remark_colours(draft, findings)
+    starts = _settle(columns, draft, unit, findings)
+    circles = _circles(draft, kind, n, findings)
+    kind[[circle.row for circle in circles]] = Kind.ARC
+    arcs = _arcs(circles, starts, tip, unit, findings)
+    tool = _tool_in_mm(draft.tool, unit)
+    events: list[Event] = [_in_mm(event, unit, tool, findings) for event in draft.events]
+    events.extend(starts)
+    events.sort(key=lambda event: event.line)
+    return Operation(
+        name=draft.name,
+        tool=tool,
+        frame=_frame_in_mm(draft.frame, unit),
+        moves=Moves(tip, columns.axis[here], kind, columns.phase[here], feed, per_rev, columns.line[here]),
+        arcs=arcs,
+        events=tuple(events),
+        line=draft.line,
+        intol=None if draft.intol is None else draft.intol * unit,
+        outtol=None if draft.outtol is None else draft.outtol * unit,
+    )
+
+
+def fill_feeds(
+    feed: Floats, per_rev: np.ndarray[tuple[int], np.dtype[np.bool_]], feeds: Sequence[Feed], unit: float
+) -> None:
+    """Write the modal feed into each row.
+
+    feed     (n,) float64   mm/min or mm/rev
+    per_rev  (n,) bool
+    """
+    begin, value, each = 0, math.nan, False
+    for change in feeds:
+        feed[begin : change.row] = value
+        per_rev[begin : change.row] = each
+        begin, each = change.row, change.per_rev
+        value = change.value * unit if change.bare else change.value
+    feed[begin:] = value
+    per_rev[begin:] = each
+
+
+def fill_phases(phase: Codes, rapids: Ints, colours: Sequence[tuple[int, int]]) -> None:
+    """Write the phase of each row from the colours in which the CAM system painted the path.
+
+    The colour 211 says only that the tool travels slowly above the part. The first stretch of it after cutting
+    leaves the part, the last before something else comes up to it, and those in between cross over.
+
+    phase    (n,) uint8
+    rapids   rows of rapid moves
+    colours  (row, colour) of each PAINT/COLOR; one with the same number begins a stretch too
+    """
+    n = len(phase)
+    phase[:] = Phase.CUT
+    phase[rapids] = Phase.RAPID
+    groups = _groups(colours, n)
+    if not groups:
+        return
+    phase[: groups[0][0]] = Phase.INITIAL
+    before: Phase | None = None
+    run = 0
+    for place, (begin, stop, colour) in enumerate(groups):
+        following = groups[place + 1][2] if place + 1 < len(groups) else None
+        run = run + 1 if colour == _TRANSFER else 0
+        if colour == _TRANSFER:
+            now = _transfer(before, run, following)
+        elif colour == _IDLE and begin == 0:
+            now = Phase.INITIAL
+        else:
+            now = COLOURS[colour]
+        phase[begin:stop] = now
+        before = now
+
+
+def _groups(colours: Sequence[tuple[int, int]], n: int) -> list[tuple[int, int, int]]:
+    """Begin, stop and colour of each stretch that has rows and a colour that says something; others join the one before."""
+    groups: list[tuple[int, int, int]] = []
+    known = [(row, colour) for row, colour in colours if colour in COLOURS]
+    for place, (row, colour) in enumerate(known):
+        stop = known[place + 1][0] if place + 1 < len(known) else n
+        if row < stop:
+            groups.append((row, stop, colour))
+    return groups
+
+
+def _transfer(before: Phase | None, run: int, following: int | None) -> Phase:
+    """Phase of the ``run``-th 211 stretch in a row, after a stretch of phase ``before``."""
+    if run == 1 and before not in (None, Phase.INITIAL, Phase.RAPID):
+        return Phase.DEPARTURE
+    return Phase.TRAVERSE if following == _TRANSFER else Phase.APPROACH
+
+
+def _remark_colours(draft: Draft, findings: Findings) -> None:
+    seen: set[int] = set()
+    for _, colour in draft.colours:
+        if colour not in COLOURS and colour not in seen:
+            seen.add(colour)
+            findings.remark(
+                draft.line,
+                f"operation {draft.name} uses colour {colour}, which says nothing of the phase; the phase before it goes on",
+                "use the standard path colours of the CAM system",
+            )
+
+
+def _settle(columns: Columns, draft: Draft, unit: float, findings: Findings) -> list[From]:
+    """Make the modal tool axis explicit in every row; return the FROM events with theirs."""
+    seed = np.array([0.0, 0.0, 1.0])
+    bad = np.empty(MOST + 1, np.int64)
+    at = draft.first
+    events = []
+    for start in [*draft.starts, None]:
+        stop = draft.first + start.row if start else draft.stop
+        wrong = settle_axes(columns.axis, at, stop, seed, bad)
+        for row in bad[: min(wrong, len(bad))].tolist():
+            _bad_axis(columns.axis[row], int(columns.line[row]), findings)
+        at = stop
+        if start:
+            events.append(_from(start, seed, unit, findings))
+    return events
+
+
+def _from(start: Start, seed: Floats, unit: float, findings: Findings) -> From:
+    """Return the event of a FROM; an axis that it names is in force from here on."""
+    if start.axis:
+        one = np.array([start.axis])
+        if settle_axes(one, 0, 1, seed, np.empty(1, np.int64)):
+            _bad_axis(one[0], start.line, findings)
+    x, y, z = start.tip
+    i, j, k = seed.tolist()
+    return From(start.row, start.line, (x * unit, y * unit, z * unit), (i, j, k))
+
+
+def _bad_axis(vector: Floats, line: int, findings: Findings) -> None:
+    length = float(np.sqrt(np.sum(vector * vector)))
+    what = "the tool-axis vector is zero" if length == 0 else f"the tool-axis vector has the length {length:.6g}, not 1"
+    findings.error(line, what, "write i, j, k as a unit vector from the tip to the holder")
+
+
+def _circles(draft: Draft, kind: Codes, n: int, findings: Findings) -> list[Circle]:
+    """Return the circles that have an end point."""
+    circles = draft.circles
+    if circles and circles[-1].row >= n:
+        findings.error(circles[-1].line, "CIRCLE without a GOTO after it", "write GOTO/ with the end point of the arc")
+        circles = circles[:-1]
+    for circle in circles:
+        if kind[circle.row] == Kind.RAPID:
+            findings.remark(circle.line, "RAPID before an arc; the arc is made at the feed rate", "take the RAPID away")
+    return circles
+
+
+def _arcs(circles: Sequence[Circle], starts: Iterable[From], tip: Floats, unit: float, findings: Findings) -> Arcs:
+    """Return the arcs of an operation, checked against their start and end points.
+
+    tip  (n, 3) float64   mm
+    """
+    fromed = {start.row: start.tip for start in starts}
+    usable = [circle for circle in circles if circle.row > 0 or circle.row in fromed]
+    for circle in circles:
+        if circle.row == 0 and 0 not in fromed:
+            findings.error(circle.line, "CIRCLE has no start point", "write FROM/ or GOTO/ before the first arc")
+    if not usable:
+        return Arcs.none()
+    row = np.array([circle.row for circle in usable], np.int64)
+    numbers = np.array([circle.numbers for circle in usable])
+    # TIMES,n counts the turns that the helix begins, the arc from start to end being the last of them: TIMES,2
+    # is one whole turn and that arc. A full circle, start = end, is one turn: TIMES,1, or none named.
+    turns = np.array([circle.turns - 1 for circle in usable], np.int64)
+    centre = numbers[:, 0:3] * unit
+    normal = numbers[:, 3:6]
+    radius = numbers[:, 6] * unit
+    length = np.sqrt(np.sum(normal * normal, axis=1))
+    end = tip[row]
+    start = tip[np.maximum(row - 1, 0)]
+    for place, circle in enumerate(usable):
+        if circle.row in fromed:
+            start[place] = fromed[circle.row]
+    normal = normal / np.where(length > 0, length, 1.0)[:, None]
+    off_start = np.abs(_distance(start - centre, normal) - radius)
+    off_end = np.abs(_distance(end - centre, normal) - radius)
+    for place in np.flatnonzero(np.abs(length - 1) > 0.01).tolist():
+        findings.error(usable[place].line, "the normal of CIRCLE is not a unit vector", "write i, j, k with length 1")
+    for place in np.flatnonzero(radius <= 0).tolist():
+        findings.error(usable[place].line, "the radius of CIRCLE is not positive", "write a radius above 0")
+    sound = (np.abs(length - 1) <= 0.01) & (radius > 0)
+    for place in np.flatnonzero(sound & (np.maximum(off_start, off_end) > RADIUS_TOLERANCE)).tolist():
+        which, off = ("start", off_start[place]) if off_start[place] > RADIUS_TOLERANCE else ("end", off_end[place])
+        findings.error(
+            usable[place].line,
+            f"the {which} point of the arc lies {off:.3f} mm off its radius {radius[place]:.4f}",
+            "write centre, radius and points of one and the same circle",
+        )
+    return Arcs(row, centre, normal, radius, turns)
+
+
+def _distance(offset: Floats, normal: Floats) -> Floats:
+    """(m,) float64: distance from the line through the origin along ``normal``, for (m, 3) offsets."""
+    along = np.sum(offset * normal, axis=1)
+    across = offset - along[:, None] * normal
+    return np.asarray(np.sqrt(np.sum(across * across, axis=1)), np.float64)
+
+
+def _in_mm(event: Event, unit: float, tool: Tool, findings: Findings) -> Event:
+    """Return ``event`` with lengths in mm and surface speeds in rev/min."""
+    if isinstance(event, CycleOn):
+        values = [
+            (word, tuple(number * unit for number in given) if word in CYCLE_LENGTHS else given)
+            for word, given in event.values
+        ]
+        return replace(event, values=tuple(values))
+    if isinstance(event, SurfaceSpeed):
+        diameter = tool.diameter if event.diameter is None else event.diameter * unit
+        if diameter <= 0:
+            findings.error(
+                event.line,
+                "the spindle speed is a surface speed, and the tool has no diameter",
+                "give the diameter in TLDATA, or the speed in RPM",
+            )
+            return event
+        return SpindleOn(event.row, event.line, event.speed / (math.pi * diameter), event.sense)
+    return event
+
+
+def _tool_in_mm(tool: Tool, unit: float) -> Tool:
+    return replace(
+        tool,
+        diameter=tool.diameter * unit,
+        corner_radius=tool.corner_radius * unit,
+        length=tool.length * unit,
+        flute_length=tool.flute_length * unit,
+        upper_radius=tool.upper_radius * unit,
+    )
+
+
+def _frame_in_mm(frame: Frame, unit: float) -> Frame:
+    x, y, z = frame.origin
+    return replace(frame, origin=(x * unit, y * unit, z * unit))

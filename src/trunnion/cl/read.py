@@ -1,0 +1,203 @@
+"""Reads an NX CLSF into a ``Toolpath``.
+
+The file goes by twice, a piece at a time: once to count its lines, which sizes the columns, and to see what
+it is written in; once to be read. Points never become Python objects.
+"""
+
+import stat
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from trunnion.cl.assemble import operation
+from trunnion.cl.draft import Columns
+from trunnion.cl.encoding import Guess
+from trunnion.cl.findings import Findings
+from trunnion.cl.nx import Interpreter
+from trunnion.cl.scan import LONGEST, SPAN, Mark, scan
+from trunnion.toolpath import Toolpath
+
+#: Bytes read at a time.
+CHUNK = 4 << 20
+#: Statements that one walk of the scan writes down before it hands over.
+_SPANS = 1 << 15
+_SURVEY = 1 << 20
+_BOM = b"\xef\xbb\xbf"
+
+_PLAIN_TEXT = "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)"
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """What the first pass found: bytes to skip at the beginning, line ends, encoding, whether the last line ends."""
+
+    skip: int
+    lines: int
+    encoding: str
+    whole: bool
+
+
+def read_cl(
+    path: Path,
+    *,
+    units: str | None = None,
+    strict: bool = False,
+    progress: Callable[[int], None] | None = None,
+) -> Toolpath:
+    """Read an NX CLSF.
+
+    Parameters
+    ----------
+    path
+        The file.
+    units
+        Length unit of the file, ``"mm"`` or ``"inch"``; without it the file decides.
+    strict
+        Make a statement that is not known an error instead of a remark.
+    progress
+        Is told from time to time how many bytes are done.
+
+    Returns
+    -------
+    Toolpath
+        All lengths in mm, in the frame of each operation.
+
+    Raises
+    ------
+    InputError
+        With every problem found, if the file cannot be used.
+    """
+    return read_in_chunks(path, CHUNK, units=units, strict=strict, progress=progress)
+
+
+def read_in_chunks(
+    path: Path,
+    chunk: int,
+    *,
+    units: str | None = None,
+    strict: bool = False,
+    progress: Callable[[int], None] | None = None,
+) -> Toolpath:
+    """Do what ``read_cl`` says, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
+    findings = Findings(str(path))
+    if units is not None and units.lower() not in ("mm", "inch"):
+        raise findings.fatal(0, f"units are {units!r}", "units are mm or inch")
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            what = "is a folder" if path.is_dir() else "is not a regular file"
+            raise findings.fatal(0, what, "give a CL file")
+        with path.open("rb", buffering=0) as file:
+            survey = _survey(file, findings)
+            columns = Columns.room_for(survey.lines + 1)
+            interpreter = Interpreter(columns, findings, survey.encoding, strict)
+            file.seek(survey.skip)
+            rows, line = _scan_file(file, survey, chunk, columns, interpreter, findings, progress)
+    except OSError as error:
+        raise findings.fatal(
+            0, f"cannot be read: {error.strerror or error}", "give a CL file that you may read"
+        ) from error
+    except ValueError as error:  # a NUL in the name
+        raise findings.fatal(0, f"cannot be read: {error}", "give the name of a CL file") from error
+    interpreter.finish(rows, survey.whole, line)
+    unit = interpreter.unit(units)
+    if unit != 1.0:
+        columns.tip[:rows] *= unit
+    operations = tuple(operation(draft, columns, unit, findings) for draft in interpreter.drafts)
+    findings.check()
+    return Toolpath(str(path), operations, interpreter.part, findings.remarks)
+
+
+def _survey(file: BinaryIO, findings: Findings) -> Survey:
+    """Count lines, and refuse what is no text."""
+    guess = Guess()
+    lines = skip = size = 0
+    lone = whole = False
+    while piece := file.read(_SURVEY):
+        if size == 0:
+            if piece.startswith((b"\xff\xfe", b"\xfe\xff")):
+                raise findings.fatal(1, "unknown encoding: this is UTF-16", _PLAIN_TEXT)
+            skip = len(_BOM) if piece.startswith(_BOM) else 0
+        if (nul := piece.find(0)) >= 0:
+            line = lines + piece.count(b"\n", 0, nul) + 1
+            raise findings.fatal(line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT)
+        guess.add(piece)
+        size += len(piece)
+        lines += piece.count(b"\n")
+        lone = lone or (lines == 0 and b"\r" in piece.rstrip())
+        whole = piece.endswith(b"\n")
+    if size == skip:
+        raise findings.fatal(0, "the file is empty", "write the tool path out of the CAM system again")
+    if lone and lines == 0:
+        raise findings.fatal(1, "the lines end with a lone carriage return", "save the file with LF or CRLF line ends")
+    return Survey(skip, lines, guess.name(), whole)
+
+
+def _scan_file(
+    file: BinaryIO,
+    survey: Survey,
+    chunk: int,
+    columns: Columns,
+    interpreter: Interpreter,
+    findings: Findings,
+    progress: Callable[[int], None] | None,
+) -> tuple[int, int]:
+    """Read the file to its end; return the number of rows and of the last line.
+
+    What is not yet a whole statement at the end of a piece is carried over to the next. It is never longer than
+    ``LONGEST``, and that bounds the buffer.
+    """
+    data = bytearray(LONGEST + chunk + 2)
+    view = memoryview(data)
+    array = np.frombuffer(data, np.uint8)
+    spans = np.empty((_SPANS, SPAN), np.int64)
+    filled = rows = 0
+    line = 1
+    done = survey.skip
+    last = False
+    while not last:
+        got = file.readinto(view[filled : filled + chunk]) or 0  # type: ignore[attr-defined]
+        last = got == 0
+        done += got
+        filled += got
+        if last and filled and data[filled - 1] != ord("\n"):
+            data[filled] = ord("\n")
+            filled += 1
+        stop = data.rfind(b"\n", 0, filled) + 1
+        at = 0
+        while at < stop:
+            before = at
+            at, line, rows, count = scan(
+                array, at, stop, last, line, rows, columns.tip, columns.axis, columns.line, spans
+            )
+            for begin, length, number, row, mark in spans[:count].tolist():
+                if mark & Mark.ENDLESS:
+                    raise _endless(number, findings)
+                if mark & Mark.OPEN:
+                    findings.error(
+                        number, "the file ends after a continuation sign $", "write the rest of the statement"
+                    )
+                interpreter.take(bytes(view[begin : begin + length]), number, row, mark)
+            if interpreter.hopeless():
+                raise findings.fatal(0, "not a CL file: no statement in it is known", "give an NX CLSF (*.cls)")
+            if at == before:
+                break
+        if rows == len(columns.line) and at < stop:
+            raise findings.fatal(line, "the file grew while it was read", "read it again when it is whole")
+        if filled - at > LONGEST:
+            raise _endless(line, findings)
+        data[: filled - at] = view[at:filled]
+        filled -= at
+        if progress:
+            progress(done)
+    return rows, line if not survey.whole else line - 1
+
+
+def _endless(line: int, findings: Findings) -> Exception:
+    return findings.fatal(
+        line,
+        f"a statement longer than {LONGEST} bytes",
+        "no CL statement is that long: look whether line ends are missing",
+    )

@@ -1,0 +1,302 @@
+"""The compiled walk over the bytes of a CL file: points into columns, everything else into spans.
+
+In:     a buffer of whole lines.
+Out:    tip and axis of each plain ``GOTO`` as numbers of the file, and the place of every other statement.
+Units:  those of the file; nothing is scaled here.
+
+The kernels check nothing but syntax: what a statement means is the business of ``trunnion.cl.nx``.
+"""
+
+import numpy as np
+from numba import njit
+
+from trunnion.arrays import Bytes, Floats, Ints, Lines
+
+#: A statement longer than this is no CL statement; it bounds the memory that one statement can take.
+LONGEST = 1 << 20
+
+#: Columns of a span: offset in the buffer, bytes, line, row before which it stands, marks.
+SPAN = 5
+
+
+#: Marks of a span, which may come together. Plain integers: they are tested for every statement.
+#: The statement is a motion, and a row is kept free for it.
+ROW = 1
+#: The file ended after a continuation sign.
+OPEN = 2
+#: The statement is longer than ``LONGEST``.
+ENDLESS = 4
+
+
+#: Powers of ten that a double holds exactly.
+_TEN = 10.0 ** np.arange(23)
+_EXACT = 1 << 53
+#: Eighteen digits always fit into an int64.
+_DIGITS = 18
+
+
+_TAB, _NEWLINE, _RETURN, _BLANK = 9, 10, 13, 32
+_DOLLAR, _PLUS, _COMMA, _MINUS, _POINT, _SLASH, _ZERO, _NINE = 36, 43, 44, 45, 46, 47, 48, 57
+
+_GOTO = np.frombuffer(b"GOTO", np.uint8)
+_GODLTA = np.frombuffer(b"GODLTA", np.uint8)
+_GOHOME = np.frombuffer(b"GOHOME", np.uint8)
+#: Majors whose text is taken as it stands, dollar signs and all.
+_TEXTS = (
+    np.frombuffer(b"PPRINT", np.uint8),
+    np.frombuffer(b"INSERT", np.uint8),
+    np.frombuffer(b"DISPL", np.uint8),
+    np.frombuffer(b"PARTNO", np.uint8),
+    np.frombuffer(b"TPRINT", np.uint8),
+    np.frombuffer(b"TOOLPATH", np.uint8),
+    np.frombuffer(b"STOP", np.uint8),
+    np.frombuffer(b"OPSTOP", np.uint8),
+)
+
+
+@njit(cache=True)
+def scan(
+    data: Bytes,
+    start: int,
+    stop: int,
+    last: bool,
+    line_no: int,
+    row: int,
+    tip: Floats,
+    axis: Floats,
+    line: Lines,
+    spans: Ints,
+) -> tuple[int, int, int, int]:
+    """Read the lines of ``data[start:stop]`` until they, the rows or the spans are used up.
+
+    data     (b,)   uint8      whole lines: ``data[stop - 1]`` is a newline
+    last     nothing of the file follows, so a statement that wants to go on cannot
+    line_no  line of the file that begins at ``start``
+    row      first free row of the columns
+    tip      (n, 3) float64    written from ``row`` on; the rows of spans marked ROW are left as they are
+    axis     (n, 3) float64    NaN where the GOTO gives no vector
+    line     (n,)   int32      line of the file
+    spans    (s, 5) int64      written from 0 on, see ``SPAN``
+    returns  where to go on in ``data``, the line there, the next free row, number of spans written
+
+    A statement whose continuation lies behind ``stop`` is not touched: the walk ends before it.
+    """
+    count = 0
+    at = start
+    while at < stop and count < spans.shape[0] and row < tip.shape[0]:
+        following = _point(data, at, tip, axis, row)
+        if following > 0 and following - at <= LONGEST:
+            line[row] = line_no
+            row += 1
+            line_no += 1
+            at = following
+            continue
+        begin, end, lines, mark = _statement(data, at, stop)
+        if mark & OPEN and not last:
+            break
+        following = _next_line(data, end)
+        if following - at > LONGEST:
+            mark = ENDLESS
+        if end > begin or mark:
+            spans[count, 0] = begin
+            spans[count, 1] = end - begin
+            spans[count, 2] = line_no
+            spans[count, 3] = row
+            if _makes_row(data, begin, end):
+                mark |= ROW
+                line[row] = line_no
+                axis[row, :] = np.nan
+                row += 1
+            spans[count, 4] = mark
+            count += 1
+            if mark & ENDLESS:
+                break
+        line_no += lines
+        at = following
+    return at, line_no, row, count
+
+
+@njit(cache=True)
+def _point(data: Bytes, at: int, tip: Floats, axis: Floats, row: int) -> int:
+    """Read a plain ``GOTO/x,y,z[,i,j,k]`` line into a row; return where the next line begins, or 0 if it is not plain.
+
+    Blanks may stand around the numbers and a ``$$`` comment behind them. No bound is checked on the way:
+    the newline at the end of the buffer stops every loop.
+    """
+    if data[at] != 71 or data[at + 1] != 79 or data[at + 2] != 84 or data[at + 3] != 79:
+        return 0
+    at += 4
+    while data[at] == _BLANK:
+        at += 1
+    if data[at] != _SLASH:
+        return 0
+    read = 0
+    while True:
+        at += 1
+        while data[at] == _BLANK:
+            at += 1
+        negative = data[at] == _MINUS
+        if negative or data[at] == _PLUS:
+            at += 1
+        mantissa = 0
+        first = at
+        digit = int(data[at]) - _ZERO
+        while 0 <= digit <= 9:
+            mantissa = mantissa * 10 + digit
+            at += 1
+            digit = int(data[at]) - _ZERO
+        digits = at - first
+        decimals = 0
+        if data[at] == _POINT:
+            at += 1
+            first = at
+            digit = int(data[at]) - _ZERO
+            while 0 <= digit <= 9:
+                mantissa = mantissa * 10 + digit
+                at += 1
+                digit = int(data[at]) - _ZERO
+            decimals = at - first
+            digits += decimals
+        # Whole number and power of ten are both exact here, so that one division rounds correctly.
+        if digits == 0 or digits > _DIGITS or mantissa > _EXACT:
+            return 0
+        value = mantissa / _TEN[decimals]
+        if negative:
+            value = -value
+        if read < 3:
+            tip[row, read] = value
+        else:
+            axis[row, read - 3] = value
+        read += 1
+        while data[at] == _BLANK:
+            at += 1
+        if data[at] != _COMMA:
+            break
+        if read == 6:
+            return 0
+    if data[at] == _DOLLAR and data[at + 1] == _DOLLAR:
+        while data[at] != _NEWLINE:
+            at += 1
+    if data[at] == _RETURN:
+        at += 1
+    if data[at] != _NEWLINE:
+        return 0
+    if read == 3:
+        axis[row, 0] = np.nan
+        axis[row, 1] = np.nan
+        axis[row, 2] = np.nan
+    elif read != 6:
+        return 0
+    return at + 1
+
+
+@njit(cache=True)
+def _statement(data: Bytes, at: int, stop: int) -> tuple[int, int, int, int]:
+    """Begin, end, lines and mark of the statement at ``at``, bare of blanks and comment; empty if nothing is left."""
+    while _is_blank(data[at]) and data[at] != _NEWLINE:
+        at += 1
+    begin = at
+    lines = 1
+    while True:
+        content, end = _content(data, at, False)
+        signed = content > at and data[content - 1] == _DOLLAR
+        if (signed or data[end] == _DOLLAR) and lines == 1 and content > begin and _is_text(data, begin, content):
+            content, end = _content(data, at, True)
+            signed = False
+        if not signed:
+            return begin, max(content, begin), lines, 0
+        if end + 1 >= stop:
+            return begin, content, lines, OPEN
+        at = end + 1
+        lines += 1
+
+
+@njit(cache=True)
+def _content(data: Bytes, at: int, text: bool) -> tuple[int, int]:
+    """End of what counts in the line at ``at``, and where its ``$$`` comment or newline is; text has no comments."""
+    content = at
+    while data[at] != _NEWLINE and (text or data[at] != _DOLLAR or data[at + 1] != _DOLLAR):
+        if not _is_blank(data[at]):
+            content = at + 1
+        at += 1
+    return content, at
+
+
+@njit(cache=True)
+def _next_line(data: Bytes, at: int) -> int:
+    """Start of the line after the one in which ``at`` lies."""
+    while data[at] != _NEWLINE:
+        at += 1
+    return at + 1
+
+
+@njit(cache=True)
+def _is_blank(byte: int) -> bool:
+    return byte in (_BLANK, _TAB, _RETURN, _NEWLINE)
+
+
+@njit(cache=True)
+def _word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
+    """Where ``word`` ends if it stands at ``at``, in any case and with blanks anywhere; else 0."""
+    for letter in word:
+        while at < stop and (_is_blank(data[at]) or data[at] == _DOLLAR):
+            at += 1
+        if at >= stop or (data[at] != letter and data[at] != letter + 32):
+            return 0
+        at += 1
+    while at < stop and (_is_blank(data[at]) or data[at] == _DOLLAR):
+        at += 1
+    return at
+
+
+@njit(cache=True)
+def _makes_row(data: Bytes, begin: int, end: int) -> bool:
+    """Whether a statement is a motion: GOTO/, GODLTA/, or GOHOME/ with a number."""
+    for word in (_GOTO, _GODLTA):
+        at = _word(data, begin, end, word)
+        if at and at < end and data[at] == _SLASH:
+            return True
+    at = _word(data, begin, end, _GOHOME)
+    if at == 0 or at >= end or data[at] != _SLASH:
+        return False
+    at += 1
+    while at < end and (_is_blank(data[at]) or data[at] == _DOLLAR):
+        at += 1
+    if at < end and (data[at] == _PLUS or data[at] == _MINUS or data[at] == _POINT):
+        return True
+    return at < end and _ZERO <= data[at] <= _NINE
+
+
+@njit(cache=True)
+def _is_text(data: Bytes, begin: int, end: int) -> bool:
+    """Whether a statement carries text, in which a dollar sign is a dollar sign."""
+    for word in _TEXTS:  # noqa: SIM110 - Numba has no generators here
+        if _word(data, begin, end, word):
+            return True
+    return False
+
+
+@njit(cache=True)
+def settle_axes(axis: Floats, start: int, stop: int, seed: Floats, bad: Ints) -> int:
+    """Give the rows without a vector the one before them, and every vector the length 1.
+
+    axis     (n, 3) float64   rows ``start:stop`` are settled in place
+    seed     (3,)   float64   the vector in force before ``start``; the one in force at ``stop`` on return
+    bad      (b,)   int64     the first rows whose vector is zero, or more than 1 % off length 1
+    returns  how many such rows there are
+    """
+    wrong = 0
+    i, j, k = seed[0], seed[1], seed[2]
+    for row in range(start, stop):
+        if not np.isnan(axis[row, 0]):
+            i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
+            length = np.sqrt(i * i + j * j + k * k)
+            if not 0.99 <= length <= 1.01:
+                if wrong < bad.shape[0]:
+                    bad[wrong] = row
+                wrong += 1
+            elif abs(length - 1.0) > 1e-15:
+                i, j, k = i / length, j / length, k / length
+        axis[row, 0], axis[row, 1], axis[row, 2] = i, j, k
+    seed[0], seed[1], seed[2] = i, j, k
+    return wrong

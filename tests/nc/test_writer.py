@@ -1,0 +1,115 @@
+"""The block kernel against its slow twin, and what the writer remembers."""
+
+import io
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from trunnion.errors import Refused
+from trunnion.nc import ABSENT, BlockNumbers, BlockWriter, NumberFormat, Word, counts
+
+COORDINATE = NumberFormat(5, zero="0.0", least=-1e11, greatest=1e11)
+WORDS = [
+    Word("motion", "G", NumberFormat(0, least=-1e11, greatest=1e11)),
+    Word("X", "X", COORDINATE),
+    Word("I", "I=AC", COORDINATE, modal=False),
+    Word("feed", "F", NumberFormat(2, plus=True, leading_zero=True, least=-1e11, greatest=1e11)),
+]
+
+cell = st.one_of(st.just(ABSENT), st.integers(-(10**10), 10**10), st.integers(-3, 3))
+tables = st.lists(st.tuples(cell, cell, cell, cell, st.integers(0, 15), st.integers(-1, 1)), max_size=30)
+TEXTS = ["; a line", ";叶片"]
+
+
+def slow_blocks(rows: list[tuple[int, ...]], numbers: BlockNumbers) -> str:
+    """What the writer must write, in the most obvious way."""
+    last: dict[str, int] = {}
+    number, lines = numbers.start, []
+
+    def block(text: str) -> None:
+        nonlocal number
+        lines.append((f"{numbers.letter}{number} " if numbers.letter else "") + text)
+        number = numbers.start if number + numbers.step > numbers.highest else number + numbers.step
+
+    for *values, forced, text in rows:
+        if text >= 0:
+            block(TEXTS[text])
+        words = []
+        for k, (word, count) in enumerate(zip(WORDS, values, strict=True)):
+            if count == ABSENT or (word.modal and last.get(word.key) == count and not forced >> k & 1):
+                continue
+            last[word.key] = count
+            words.append(word.letter + word.format.of_count(count))
+        if words:
+            block(" ".join(words))
+    return "".join(line + "\n" for line in lines)
+
+
+@settings(deadline=None)
+@given(tables, st.sampled_from([BlockNumbers(), BlockNumbers(""), BlockNumbers("N", 1, 1, 7)]))
+def test_the_kernel_writes_what_its_slow_twin_writes(rows: list[tuple[int, ...]], numbers: BlockNumbers) -> None:
+    sink = io.BytesIO()
+    writer = BlockWriter(sink, WORDS, numbers)
+    for part in (rows[:7], rows[7:]):  # memory goes on from table to table
+        if part:
+            table = np.array(part, np.int64)
+            writer.table(
+                {word.key: table[:, k] for k, word in enumerate(WORDS)},
+                {word.key: table[:, 4] >> k & 1 for k, word in enumerate(WORDS)},
+                table[:, 5],
+                TEXTS,
+            )
+    assert sink.getvalue().decode() == slow_blocks(rows, numbers)
+
+
+def written(writer: BlockWriter, sink: io.BytesIO, x: float) -> str:
+    """The text of one block with an X word."""
+    sink.seek(0)
+    sink.truncate()
+    writer.table({"X": counts(np.array([x]), 5)})
+    return sink.getvalue().decode()
+
+
+def test_what_was_forgotten_is_written_again() -> None:
+    sink = io.BytesIO()
+    writer = BlockWriter(sink, WORDS, BlockNumbers(""))
+    assert written(writer, sink, 1.0) == "X1.\n"
+    assert written(writer, sink, 1.0) == ""
+    writer.forget("X")
+    assert written(writer, sink, 1.0) == "X1.\n"
+    writer.forget()
+    assert written(writer, sink, 1.0) == "X1.\n"
+
+
+def test_what_is_remembered_is_not_written() -> None:
+    sink = io.BytesIO()
+    writer = BlockWriter(sink, WORDS, BlockNumbers(""))
+    writer.remember("X", 100000)
+    assert written(writer, sink, 1.0) == ""
+
+
+def test_a_change_of_format_makes_the_word_new_again() -> None:
+    sink = io.BytesIO()
+    writer = BlockWriter(sink, WORDS, BlockNumbers(""))
+    written(writer, sink, 1.0)
+    writer.use([Word("X", "X", NumberFormat(3, zero="0.0"))])
+    writer.table({"X": counts(np.array([1.0]), 3)})
+    assert sink.getvalue().decode() == "X1.\nX1.\n"
+
+
+def test_block_skip_goes_before_the_block_number() -> None:
+    sink = io.BytesIO()
+    writer = BlockWriter(sink, WORDS, BlockNumbers())
+    writer.skip_blocks(True)
+    writer.lines([";off"])
+    writer.skip_blocks(False)
+    writer.lines([";on"])
+    assert sink.getvalue().decode() == "/N10 ;off\nN20 ;on\n"
+
+
+def test_a_number_beyond_its_word_is_refused_and_names_the_limit() -> None:
+    writer = BlockWriter(io.BytesIO(), [Word("S", "S", NumberFormat(0, greatest=99999))], BlockNumbers())
+    with pytest.raises(Refused, match="word S100000 is beyond 99999"):
+        writer.table({"S": np.array([100000])})
