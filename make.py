@@ -1,7 +1,7 @@
 """Set up Trunnion in a folder of its own and do one thing with it. Needs Python 3.11 or later and nothing else.
 
-    python3 make.py sample     set up, and post a real five-axis toolpath
-    python3 make.py test       set up, and pass the tests
+python3 make.py sample     set up, and post a real five-axis toolpath
+python3 make.py test       set up, and pass the tests
 """
 
 import os
@@ -27,7 +27,7 @@ def run(*command: str | Path) -> None:
 
 def set_up(what: str) -> None:
     """Make the environment once, and install this checkout into it."""
-    if sys.version_info < (3, 11):
+    if sys.version_info < (3, 11):  # noqa: UP036 - whoever starts this may have an older one
         sys.exit("Trunnion needs Python 3.11 or later; this is " + sys.version.split()[0])
     if not (BIN / ("python.exe" if os.name == "nt" else "python")).exists():
         try:

@@ -40,6 +40,9 @@ UNITS: Final[Mapping[str, str]] = {
     "_kg": "kilograms",
 }
 
+#: Deeper keys are refused unread: the TOML parser takes time that grows with the cube of their depth.
+DEEPEST_KEY: Final = 32
+
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
@@ -91,9 +94,17 @@ def _entry(value: object, file: str, lines: Mapping[Path_, int], path: Path_ = (
 def key_lines(text: str) -> dict[Path_, int]:
     """Line of every key of a TOML text, from 1; tables in arrays are told apart by their index.
 
-    ``tomllib`` keeps no lines. The text must be TOML that ``tomllib`` accepts: nothing is checked here.
+    ``tomllib`` keeps no lines. Nothing is checked here: of a text that is not TOML, any lines or none may come out.
+
+    Raises
+    ------
+    RecursionError
+        If tables nest too deeply.
     """
-    return _Lines(text).index()
+    try:
+        return _Lines(text).index()
+    except (IndexError, ValueError):
+        return {}
 
 
 class _Lines:
@@ -157,6 +168,8 @@ class _Lines:
             self._blank(newlines=False)
             if not self.text.startswith(".", self.at):
                 return parts
+            if len(parts) > DEEPEST_KEY:
+                raise RecursionError
             self.at += 1
 
     def _header(self, brackets: int, *, array: bool) -> Path_:
@@ -258,8 +271,8 @@ def _read(source: _File) -> Entry:
         line = data.count(b"\n", 0, error.start) + 1
         raise InputError(Problem(label, line, "is not UTF-8 text", "save the file as UTF-8")) from None
     try:
-        raw = tomllib.loads(text)
         lines = key_lines(text)
+        raw = tomllib.loads(text)
         return _entry(raw, label, lines, (), 1)
     except RecursionError:
         raise InputError(Problem(label, 0, "nests too deeply", "a definition needs three levels")) from None
@@ -339,16 +352,20 @@ def _short(label: str) -> str:
 # Merging
 
 
-def _merge(parent: Entry, child: Entry, path: str, problems: list[Problem]) -> Entry:
-    """Return the parent with what the child says instead; tables merge deeply, named tables by name."""
+def _merge(parent: Entry, child: Entry, path: str, problems: list[Problem], later: bool = False) -> Entry:
+    """Return the parent with what the child says instead; tables merge deeply, named tables by name.
+
+    ``later``: the table extends something else that is not looked at yet (see ``extended``), so that removals must stay.
+    """
     if isinstance(parent.value, dict) and isinstance(child.value, dict):
         table = dict(parent.value)
+        later = later or "extends" in parent.value or "extends" in child.value
         for key, entry in child.value.items():
             below = f"{path}.{key}" if path else key
-            table[key] = _merge(table[key], entry, below, problems) if key in table else entry
+            table[key] = _merge(table[key], entry, below, problems, later) if key in table else entry
         return Entry(table, child.file, child.line)
     if _named(parent) and _holds_tables(child):
-        return Entry(_merge_by_name(parent, child, path, problems), child.file, child.line)
+        return Entry(_merge_by_name(parent, child, path, problems, later), child.file, child.line)
     return child
 
 
@@ -369,7 +386,7 @@ def _name_of(item: Entry) -> str | None:
     return name.value if isinstance(name, Entry) and isinstance(name.value, str) else None
 
 
-def _merge_by_name(parent: Entry, child: Entry, path: str, problems: list[Problem]) -> list[Entry]:
+def _merge_by_name(parent: Entry, child: Entry, path: str, problems: list[Problem], later: bool) -> list[Entry]:
     """Merge two arrays of named tables: the parent's order first, then the child's new ones."""
     result = list(_items(parent))
     taken: set[str] = set()
@@ -381,14 +398,17 @@ def _merge_by_name(parent: Entry, child: Entry, path: str, problems: list[Proble
             cure = "write the name of the one to change, or a new name"
             problems.append(Problem(item.file, item.line, f"{where}.name is missing", cure))
             continue
-        remove = item.value.pop("remove", None)
+        remove = item.value.get("remove")
+        item = item if later else _without_remove(item)
         at = next((k for k, old in enumerate(result) if _name_of(old) == name), None)
         if remove is not None and not isinstance(remove.value, bool):
             problems.append(
                 Problem(remove.file, remove.line, f"{where}.remove is {_shown(remove.value)}", "write true")
             )
         elif remove is not None and remove.value:
-            if at is None:
+            if later:
+                result = [old for old in result if _name_of(old) != name] + [item]
+            elif at is None:
                 what = f'{where}: there is no {path} called "{name}" to remove'
                 problems.append(Problem(remove.file, remove.line, what, _near(name, map(str, map(_name_of, result)))))
             else:
@@ -397,9 +417,14 @@ def _merge_by_name(parent: Entry, child: Entry, path: str, problems: list[Proble
             # The second of two with one name is kept apart, for the reader to complain of.
             result.append(item)
         else:
-            result[at] = _merge(result[at], item, where, problems)
+            result[at] = _merge(result[at], item, where, problems, later)
         taken.add(name)
     return result
+
+
+def _without_remove(item: Entry) -> Entry:
+    assert isinstance(item.value, dict)
+    return Entry({key: value for key, value in item.value.items() if key != "remove"}, item.file, item.line)
 
 
 # ---------------------------------------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ def arc_operation(
     start: Floats, end: Floats, centre: Floats, normal: Floats, turns: int = 0, axes: Floats | None = None
 ) -> Operation:
     """A line to the start of an arc, the arc, and a line away from it; a dwell stands before the arc."""
-    tip = np.array([start, end, end + [0.0, 0.0, 10.0]])
+    tip = np.array([start, end, end + np.array([0.0, 0.0, 10.0])])
     axis = np.tile([0.0, 0.0, 1.0], (3, 1)) if axes is None else axes
     kind = np.array([Kind.LINEAR, Kind.ARC, Kind.LINEAR], np.uint8)
     moves = Moves(

@@ -80,7 +80,9 @@ def test_the_pole_keeps_the_last_angle() -> None:
 def test_an_endless_axis_is_displayed_from_0_to_360_and_never_as_360() -> None:
     machine = load_machine("yl569")
     turns = np.linspace(0, 1080, 400)
-    joints = planned(machine, operation(np.zeros((400, 3)), np.array([direction(40, c) for c in turns]))).motions[0].joints
+    joints = (
+        planned(machine, operation(np.zeros((400, 3)), np.array([direction(40, c) for c in turns]))).motions[0].joints
+    )
     c = joints[:, machine.column("C")]
     assert ((c >= 0) & (c < 360)).all()
     assert np.abs((c - turns + 180) % 360 - 180).max() < 1e-9

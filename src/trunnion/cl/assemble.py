@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.arrays import Codes, Floats, Ints
+from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.cl.draft import Circle, Columns, Draft, Feed, Start, SurfaceSpeed
 from trunnion.cl.findings import MOST, Findings
 from trunnion.cl.scan import settle_axes
@@ -79,9 +79,7 @@ def operation(draft: Draft, columns: Columns, unit: float, findings: Findings) -
     )
 
 
-def fill_feeds(
-    feed: Floats, per_rev: np.ndarray[tuple[int], np.dtype[np.bool_]], feeds: Sequence[Feed], unit: float
-) -> None:
+def fill_feeds(feed: Floats, per_rev: Flags, feeds: Sequence[Feed], unit: float) -> None:
     """Write the modal feed into each row.
 
     feed     (n,) float64   mm/min or mm/rev
@@ -130,7 +128,7 @@ def fill_phases(phase: Codes, rapids: Ints, colours: Sequence[tuple[int, int]]) 
 
 
 def _groups(colours: Sequence[tuple[int, int]], n: int) -> list[tuple[int, int, int]]:
-    """Begin, stop and colour of each stretch that has rows and a colour that says something; others join the one before."""
+    """Begin, stop and colour of each stretch that has rows and a known colour; others join the one before."""
     groups: list[tuple[int, int, int]] = []
     known = [(row, colour) for row, colour in colours if colour in COLOURS]
     for place, (row, colour) in enumerate(known):
@@ -154,7 +152,7 @@ def _remark_colours(draft: Draft, findings: Findings) -> None:
             seen.add(colour)
             findings.remark(
                 draft.line,
-                f"operation {draft.name} uses colour {colour}, which says nothing of the phase; the phase before it goes on",
+                f"operation {draft.name} uses colour {colour}, which names no phase; the one before it goes on",
                 "use the standard path colours of the CAM system",
             )
 

@@ -1,4 +1,4 @@
-"""What the interpreter of a CL dialect writes down, in the units of the file, until the end of the file settles the units."""
+"""What the interpreter of a CL dialect writes down, in units of the file, until the end of the file settles them."""
 
 from dataclasses import dataclass, field
 from typing import NamedTuple

@@ -13,7 +13,7 @@ from dataclasses import replace
 from trunnion.cl.assemble import CYCLE_LENGTHS
 from trunnion.cl.draft import Circle, Columns, Draft, Feed, Start, SurfaceSpeed
 from trunnion.cl.findings import Findings, Wrong
-from trunnion.cl.scan import Mark
+from trunnion.cl.scan import ROW
 from trunnion.cl.statement import Statement, is_whole, numbers, parse
 from trunnion.toolpath import (
     BlockSkip,
@@ -64,6 +64,8 @@ _KEEP = 4096
 
 #: After so many statements without one that is known, the file is no CL file.
 _PATIENCE = 1000
+_NOT_CL = "not a CL file: no statement in it is known"
+_GIVE_CL = "give an NX CLSF (*.cls)"
 
 
 class Interpreter:
@@ -104,7 +106,7 @@ class Interpreter:
         """
         self._line = line
         self._row = row
-        self._has_row = bool(mark & Mark.ROW)
+        self._has_row = mark & ROW != 0
         try:
             rule, statement = self._kept.get(raw) or self._look_up(raw)
             if rule is None:
@@ -114,10 +116,6 @@ class Interpreter:
                 self._known += 1
         except Wrong as wrong:
             self._findings.error(line, wrong.what, wrong.cure)
-
-    def hopeless(self) -> bool:
-        """Whether so much was read without a known statement that the rest need not be."""
-        return self._known == 0 and self._strange > _PATIENCE and self._row == 0
 
     def finish(self, row: int, whole: bool, lines: int) -> None:
         """Close the file.
@@ -132,14 +130,12 @@ class Interpreter:
             what = f"operation {draft.name} has no END-OF-PATH before the end of the file"
             if not whole:
                 what += f", which ends in the middle of line {lines}"
-            self._findings.error(
-                lines if not whole else draft.line, what, "the file is cut off: write it out of the CAM again"
-            )
+            self._findings.error(lines if not whole else draft.line, what, "the file is cut off: write it out again")
             self._close()
         elif row > self._draft.first:
             self._motion_outside()
         if not self._known and not row:
-            self._findings.error(0, "not a CL file: no statement in it is known", "give an NX CLSF (*.cls)")
+            self._findings.error(0, _NOT_CL, _GIVE_CL)
         elif not row and not self._findings.failed:
             self._findings.error(0, "there is no motion in the file", "write out an operation with a tool path")
         if self.drafts and self._draft.events:
@@ -184,7 +180,11 @@ class Interpreter:
         return self._row - self._draft.first
 
     def _unknown(self, statement: Statement) -> None:
+        if not statement.source:
+            return  # the end mark of a DOS file
         self._strange += 1
+        if self._strange > _PATIENCE and self._known == 0 and self._row == 0:
+            raise self._findings.fatal(0, _NOT_CL, _GIVE_CL)
         self._unsure(statement, f"{statement.major or 'a statement without a word'} is not known")
 
     def _unsure(self, statement: Statement, what: str) -> None:
@@ -207,6 +207,7 @@ class Interpreter:
             self._close()
         elif self._here:
             self._motion_outside()
+            self._draft.starts.clear()
         # The tool's name may have commas in it, the word TOOL stands between the two names.
         name, _, tool = statement.text.partition(",TOOL,")
         outside = self._draft
@@ -253,9 +254,7 @@ class Interpreter:
 
     def _msys(self, statement: Statement) -> None:
         if self._here:
-            raise Wrong(
-                "MSYS after motion", "one operation has one coordinate system: write MSYS before its first GOTO"
-            )
+            raise Wrong("MSYS after motion", "one operation has one frame: write MSYS before its first GOTO")
         ox, oy, oz, *vectors = statement.numbers(9)
         x, y = vectors[:3], vectors[3:]
         for name, vector in (("X", x), ("Y", y)):
@@ -267,9 +266,7 @@ class Interpreter:
         x = _unit(x)
         along = _dot(x, y)
         if abs(along) > _FRAME_TOLERANCE:
-            raise Wrong(
-                "X and Y of MSYS are not square to each other", "write origin, X and Y of the coordinate system"
-            )
+            raise Wrong("X and Y of MSYS are not square to each other", "write origin, X and Y of the frame")
         y = _unit([b - along * a for a, b in zip(x, y, strict=True)])
         self._draft.frame = Frame((ox, oy, oz), (x[0], x[1], x[2]), (y[0], y[1], y[2]))
 
@@ -498,9 +495,7 @@ class Interpreter:
         words: list[tuple[str, str]] = []
         values = statement.values
         if not values or not isinstance(values[0], str):
-            raise Wrong(
-                "CYCLE without a word for its kind", "write CYCLE/DRILL, CYCLE/TAP, CYCLE/BORE ... or CYCLE/OFF"
-            )
+            raise Wrong("CYCLE without a word for its kind", "write CYCLE/DRILL, CYCLE/TAP, ..., or CYCLE/OFF")
         at = 0
         while at < len(values):
             word = values[at]

@@ -17,7 +17,7 @@ from trunnion.cl.draft import Columns
 from trunnion.cl.encoding import Guess
 from trunnion.cl.findings import Findings
 from trunnion.cl.nx import Interpreter
-from trunnion.cl.scan import LONGEST, SPAN, Mark, scan
+from trunnion.cl.scan import ENDLESS, LONGEST, OPEN, SPAN, scan
 from trunnion.toolpath import Toolpath
 
 #: Bytes read at a time.
@@ -96,9 +96,8 @@ def read_in_chunks(
             file.seek(survey.skip)
             rows, line = _scan_file(file, survey, chunk, columns, interpreter, findings, progress)
     except OSError as error:
-        raise findings.fatal(
-            0, f"cannot be read: {error.strerror or error}", "give a CL file that you may read"
-        ) from error
+        what = f"cannot be read: {error.strerror or error}"
+        raise findings.fatal(0, what, "give the name of a file that you may read") from error
     except ValueError as error:  # a NUL in the name
         raise findings.fatal(0, f"cannot be read: {error}", "give the name of a CL file") from error
     interpreter.finish(rows, survey.whole, line)
@@ -173,15 +172,11 @@ def _scan_file(
                 array, at, stop, last, line, rows, columns.tip, columns.axis, columns.line, spans
             )
             for begin, length, number, row, mark in spans[:count].tolist():
-                if mark & Mark.ENDLESS:
+                if mark & ENDLESS:
                     raise _endless(number, findings)
-                if mark & Mark.OPEN:
-                    findings.error(
-                        number, "the file ends after a continuation sign $", "write the rest of the statement"
-                    )
+                if mark & OPEN:
+                    findings.error(number, "the file ends after a continuation sign $", "write the rest of it")
                 interpreter.take(bytes(view[begin : begin + length]), number, row, mark)
-            if interpreter.hopeless():
-                raise findings.fatal(0, "not a CL file: no statement in it is known", "give an NX CLSF (*.cls)")
             if at == before:
                 break
         if rows == len(columns.line) and at < stop:
@@ -192,12 +187,9 @@ def _scan_file(
         filled -= at
         if progress:
             progress(done)
-    return rows, line if not survey.whole else line - 1
+    return rows, line - 1
 
 
 def _endless(line: int, findings: Findings) -> Exception:
-    return findings.fatal(
-        line,
-        f"a statement longer than {LONGEST} bytes",
-        "no CL statement is that long: look whether line ends are missing",
-    )
+    what = f"a statement longer than {LONGEST} bytes"
+    return findings.fatal(line, what, "no CL statement is that long: look whether line ends are missing")

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NoReturn
 
 from tqdm import tqdm
 
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
             program = _program(paths, machine, control, printed, arguments.force)
             rows = sum(len(motion.operation.moves) for motion in program.motions)
             with tqdm(total=rows, unit=" points", desc="writing", delay=1, disable=None, leave=False) as bar:
-                write_program(program, sink, bar.update)
+                write_program(program, sink, lambda more: _advance(bar, more))
         if target != "-":
             print(f"{target}: {rows} points, {len(program.motions)} operations", file=sys.stderr)
     return 0
@@ -46,9 +47,13 @@ def _read(file: str, units: str | None, strict: bool) -> Toolpath:
     path = Path(file)
     size = path.stat().st_size if path.is_file() else 0
     with tqdm(total=size, unit="B", unit_scale=True, desc=path.name, delay=1, disable=None, leave=False) as bar:
-        toolpath = read_cl(path, units=units, strict=strict, progress=lambda done: bar.update(done - bar.n))
+        toolpath = read_cl(path, units=units, strict=strict, progress=lambda done: _advance(bar, done - int(bar.n)))
     _say(toolpath.remarks)
     return toolpath
+
+
+def _advance(bar: "tqdm[NoReturn]", more: int) -> None:
+    bar.update(more)
 
 
 def _program(

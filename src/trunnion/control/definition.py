@@ -6,11 +6,10 @@ table of a machine); only what words cannot say is code, in the module of the co
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-
-from trunnion.control.template import Template
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
+from trunnion.control.template import Template
 from trunnion.definition import Table, extended
 from trunnion.nc import BlockNumbers, NumberFormat, Word
 
@@ -140,7 +139,7 @@ def load_control(own: Table) -> Control:
         chord_tolerance=_chord_tolerance(table.table("arcs")),
         templates=_templates(table.table("templates")),
     )
-    _check_templates(table, control)
+    _check_templates(table.table("templates"), control)
     table.finish()
     table.check()
     return control
@@ -201,7 +200,7 @@ def _texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
 
 
 def _settings(table: Table) -> dict[str, str]:
-    found = {name: table.text(name) for name in table.keys()}
+    found = {name: table.text(name) for name in list(table.keys())}
     table.finish()
     return found
 
@@ -228,20 +227,20 @@ def _templates(table: Table) -> dict[str, Template]:
     return found
 
 
-def _check_templates(table: Table, control: Control) -> None:
+def _check_templates(templates: Table, control: Control) -> None:
     """A template that asks for what does not exist is a mistake of the definition, not of the run."""
     known = FIELDS | control.settings.keys()
     for template in control.templates.values():
         for name, form in sorted(template.fields()):
             if name not in known:
-                table.problem(
-                    f"templates.{template.name}",
+                templates.problem(
+                    template.name,
                     f"asks for {{{name}}}, which nobody sets",
                     f"write one of {', '.join(sorted(known))}, or add it to [control.settings]",
                 )
             if form and form not in control.formats:
-                table.problem(
-                    f"templates.{template.name}",
+                templates.problem(
+                    template.name,
                     f"prints {{{name}:{form}}}, but there is no format {form!r}",
                     f"write one of {', '.join(sorted(control.formats))}",
                 )

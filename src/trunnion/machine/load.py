@@ -178,10 +178,11 @@ def _vector(numbers: tuple[float, ...]) -> Vector:
 
 def _direction(table: Table, key: str, default: Vector | None) -> Vector:
     """Return a unit vector along the one that is written; a mistake gives Z."""
+    before = len(table.problems)
     numbers = table.vector(key, 3) if default is None else table.vector(key, 3, default)
     largest = max(map(abs, numbers))
     if largest == 0.0:
-        if key in table and not any(problem.what.startswith(table.dotted(key)) for problem in table.problems):
+        if len(table.problems) == before:
             table.problem(key, "is [0, 0, 0]", "write a vector that has a direction")
         return _VECTOR_FALLBACK
     # Scaled first, so that squares neither vanish nor overflow.

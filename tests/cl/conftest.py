@@ -1,0 +1,61 @@
+"""Small CL files for the tests of this room."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from trunnion.cl import read_cl
+from trunnion.errors import InputError, Problem
+from trunnion.toolpath import Operation, Toolpath
+
+Read = Callable[..., Toolpath]
+Body = Callable[..., Operation]
+Fail = Callable[..., tuple[Problem, ...]]
+
+HEAD = "TOOL PATH/OP,TOOL,T1\nTLDATA/MILL,10.0,1.0,50.0,0.0,0.0\n"
+FOOT = "\nEND-OF-PATH\n"
+
+
+@pytest.fixture
+def read(tmp_path: Path) -> Read:
+    """Return a function that reads text or bytes as a CL file."""
+
+    def reader(text: str | bytes, **options: object) -> Toolpath:
+        path = tmp_path / "a.cls"
+        path.write_bytes(text.encode() if isinstance(text, str) else text)
+        return read_cl(path, **options)  # type: ignore[arg-type]
+
+    return reader
+
+
+@pytest.fixture
+def body(read: Read) -> Body:
+    """Return a function that reads statements as the inside of one operation."""
+
+    def reader(*lines: str, **options: object) -> Operation:
+        return read(HEAD + "\n".join(lines) + FOOT, **options).operations[0]
+
+    return reader
+
+
+@pytest.fixture
+def fails(read: Read) -> Fail:
+    """Return a function that reads a bad file and gives back its problems."""
+
+    def reader(text: str | bytes, **options: object) -> tuple[Problem, ...]:
+        with pytest.raises(InputError) as caught:
+            read(text, **options)
+        return caught.value.problems
+
+    return reader
+
+
+@pytest.fixture
+def body_fails(fails: Fail) -> Fail:
+    """Return a function that reads bad statements inside one operation; the first of them is line 3."""
+
+    def reader(*lines: str, **options: object) -> tuple[Problem, ...]:
+        return fails(HEAD + "\n".join(lines) + FOOT, **options)
+
+    return reader

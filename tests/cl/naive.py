@@ -1,0 +1,67 @@
+"""Slow twins of the kernels in ``trunnion.cl.scan``: the same in the way of a textbook."""
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+MAJOR = re.compile(r"GOTO/|GODLTA/|GOHOME/[-+.0-9]")
+TEXT = re.compile(r"PPRINT|INSERT|DISPL|PARTNO|TPRINT|TOOLPATH|STOP|OPSTOP")
+
+
+def blank(text: str) -> str:
+    """Return the text without white space around it."""
+    return text.strip(" \t\r\n")
+
+
+def statements(data: bytes) -> Iterator[tuple[str, int, bool]]:
+    """Yield (statement, line, marked open) of a file, without comments, continuation lines joined by newlines."""
+    lines = data.split(b"\n")
+    if lines[-1] == b"":
+        lines.pop()
+    at = 0
+    while at < len(lines):
+        first = at
+        content = lines[at].decode("latin-1")
+        if TEXT.match(re.sub(r"[ \t\r$]", "", content.lstrip(" \t\r")).upper()):
+            yield blank(content), first + 1, False
+            at += 1
+            continue
+        whole = ""
+        unfinished = False
+        while True:
+            raw = lines[at].decode("latin-1")
+            content = raw.partition("$$")[0].rstrip(" \t\r")
+            at += 1
+            if not content.endswith("$"):
+                whole += content
+                break
+            if at == len(lines):
+                whole += content
+                unfinished = True
+                break
+            whole += raw + "\n"
+        whole = blank(whole)
+        if whole:
+            yield whole, first + 1, unfinished
+
+
+def is_row(statement: str) -> bool:
+    """Whether a statement is a motion."""
+    return MAJOR.match(re.sub(r"[ \t\r\n$]", "", statement).upper()) is not None
+
+
+def numbers(statement: str) -> list[float]:
+    """The numbers of a GOTO as Python reads them."""
+    return [float(field) for field in statement.partition("/")[2].split(",")]
+
+
+def settle(vectors: Sequence[list[float] | None], seed: list[float]) -> list[list[float]]:
+    """Fill and normalize modal vectors; None stands for a row without one."""
+    result: list[list[float]] = []
+    now = seed
+    for vector in vectors:
+        if vector is not None:
+            length = math.sqrt(sum(part * part for part in vector))
+            now = [part / length for part in vector] if abs(length - 1) > 1e-15 else list(vector)
+        result.append(now)
+    return result

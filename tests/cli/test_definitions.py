@@ -1,0 +1,67 @@
+"""``trunnion machines`` and ``trunnion check``."""
+
+from pathlib import Path
+
+import pytest
+
+from trunnion.cli import main
+from trunnion.machine import shipped
+
+
+def test_the_list_names_every_shipped_machine(capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["machines"]) == 0
+    listed = [line.split()[0] for line in capfd.readouterr().out.splitlines()]
+    assert listed == shipped()
+    assert {"yl569", "ucp800", "hs664rt", "dmu65", "mikron_600u"} < set(listed)
+
+
+def test_a_definition_is_printed_as_it_is(capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["machines", "yl569"]) == 0
+    out = capfd.readouterr().out
+    assert 'name = "Yalong YL569"' in out
+    assert "limits_deg = [-11, 100]" in out
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_every_shipped_machine_is_good(name: str, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", name]) == 0
+
+
+def test_mistakes_of_machine_and_control_come_all_at_once_with_their_lines(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'schema = 1\nextends = "yl569"\n'
+        '[[axis]]\nname = "B"\nlimits_deg = [100, -11]\n'
+        '[[axis]]\nname = "X"\nlimits_inch = [-10, 10]\n'
+        '[control.codes]\nrapidd = 0\n[control.templates]\nprogram_end = "M30 {datum}"\n',
+        encoding="utf-8",
+    )
+    assert main(["check", str(file)]) == 2
+    err = capfd.readouterr().err.replace(str(file), "mine.toml")
+    assert "mine.toml:5: error: axis" in err
+    assert "mine.toml:8: error: axis" in err
+    assert "mine.toml:10: error: control.codes.rapidd" in err
+    assert "mine.toml:12: error: control.templates.program_end" in err
+    assert "{datum}" in err
+
+
+def test_a_machine_of_ones_own_extends_a_shipped_one_and_changes_its_texts(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'schema = 1\nextends = "yl569"\nname = "Ours"\n'
+        '[control]\nextends = "sinumerik_840d"\n'
+        '[control.templates]\nprogram_end = "; the end of {machine}\\nM2"\n'
+        '[[control.format]]\nname = "coordinate"\ndecimals = 4\n[control.block_numbers]\nletter = ""\n',
+        encoding="utf-8",
+    )
+    assert main(["check", str(file)]) == 0
+    capfd.readouterr()
+    golden = Path(__file__).parents[1] / "golden" / "yl569" / "2_hub_rough.cls"
+    assert main(["post", str(golden), "--machine", str(file), "--output", "-"]) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert lines[-2:] == ["; the end of Ours", "M2"]
+    assert any(line.startswith("G0 X50.1536 Y11.4572 Z-20.309 S2000") for line in lines)

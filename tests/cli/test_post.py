@@ -1,0 +1,214 @@
+"""``trunnion post`` as a user meets it: exit codes, messages, and output that appears whole or not at all."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.paths import YL569
+from trunnion.cli import main
+
+GOOD = (YL569 / "2_hub_rough.cls").read_text(encoding="utf-8")
+POINT = "GOTO/49.032380,11.151730,-21.134940\n"
+
+
+class Outcome:
+    """Posts one file into a folder and keeps what happened."""
+
+    def __init__(self, source: Path, capfd: pytest.CaptureFixture[str], *arguments: str) -> None:
+        self.target = source.parent / "out" / "program.mpf"
+        self.target.parent.mkdir(exist_ok=True)
+        self.code = main(["post", str(source), "--machine", "yl569", "--output", str(self.target), *arguments])
+        self.out, self.err = capfd.readouterr()
+        self.err = self.err.replace(str(source), "part.cls")
+        self.left = sorted(path.name for path in self.target.parent.iterdir())
+
+
+def post_text(folder: Path, capfd: pytest.CaptureFixture[str], text: str | bytes, *arguments: str) -> Outcome:
+    """Post a file that holds ``text``."""
+    source = folder / "part.cls"
+    source.write_bytes(text.encode() if isinstance(text, str) else text)
+    return Outcome(source, capfd, *arguments)
+
+
+BAD: dict[str, tuple[str | bytes, str, str]] = {
+    "not a CL file": ("Dear colleague,\nplease find the drawing attached.\n", "part.cls", "CL file"),
+    "empty": ("", "part.cls", "empty"),
+    "truncated in mid-line": (GOOD[: GOOD.index("GOTO/47.735880") + 9], "part.cls:19", ""),
+    "NaN": (GOOD.replace(POINT, "GOTO/nan,11.151730,-21.134940\n"), "part.cls:17", ""),
+    "zero vector": (GOOD.replace(POINT, "GOTO/1,2,3,0.0,0.0,0.0\n"), "part.cls:17", "zero"),
+    "vector off unit length": (GOOD.replace(POINT, "GOTO/1,2,3,0.0,0.0,0.98\n"), "part.cls:17", "0.98"),
+    "seven numbers": (GOOD.replace(POINT, "GOTO/1,2,3,0,0,1,7\n"), "part.cls:17", "7"),
+    "two circles": (GOOD.replace(POINT, 2 * "CIRCLE/0,0,0,0,0,1,5\n" + POINT), "part.cls:18", "CIRCLE"),
+    "missing END-OF-PATH": (GOOD.replace("END-OF-PATH\n", ""), "part.cls", "END-OF-PATH"),
+    "unknown encoding": (GOOD.encode("utf-16"), "part.cls", "encoding"),
+    "a line of 10 MB": (GOOD.replace(POINT, "PPRINT/" + "x" * 10_000_000 + "\n"), "part.cls:17", "long"),
+    "splines": (GOOD.replace(POINT, "NURBS/3\n"), "part.cls:17", "NURBS"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input_ends_with_2_names_its_place_and_leaves_no_file(
+    name: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    text, place, word = BAD[name]
+    outcome = post_text(tmp_path, capfd, text)
+    assert outcome.code == 2
+    assert outcome.err.startswith(f"{place}:")
+    assert ": error: " in outcome.err
+    assert word.lower() in outcome.err.lower()
+    assert (outcome.out, outcome.left) == ("", [])
+
+
+def test_a_directory_is_no_cl_file(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "folder.cls"
+    folder.mkdir()
+    outcome = Outcome(folder, capfd)
+    assert outcome.code == 2
+    assert "error" in outcome.err
+    assert "folder" in outcome.err or "directory" in outcome.err
+    assert outcome.left == []
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    outcome = Outcome(tmp_path / "nothing.cls", capfd)
+    assert outcome.code == 2
+    assert "error" in outcome.err
+    assert outcome.left == []
+
+
+def test_an_output_in_a_folder_that_is_not_there_is_said_before_any_work(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    code = main(
+        ["post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl569", "--output", str(tmp_path / "no" / "p.mpf")]
+    )
+    assert code == 2
+    assert "p.mpf: error: cannot be written" in capfd.readouterr().err
+
+
+def test_a_folder_that_cannot_be_written_into_is_an_error(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    code = main(["post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl569", "--output", str(blocked / "p.mpf")])
+    assert code == 2
+    assert "cannot be written" in capfd.readouterr().err
+    assert blocked.read_text() == "in the way"
+
+
+def long_file(limit_line: int, lines: int = 60_000) -> str:
+    """A CL file with a tool axis beyond the B limit in one line."""
+    head = GOOD[: GOOD.index("GOTO/49.032380")]
+    body = ["GOTO/10.0,10.0,10.0,0.5,0.0,0.866025403784\n"] * (lines - head.count("\n"))
+    body[limit_line - 1 - head.count("\n")] = "GOTO/10.0,10.0,10.0,0.939692620786,0.0,-0.342020143326\n"
+    return head + "".join(body) + "END-OF-PATH\n"
+
+
+def test_a_limit_exceeded_in_line_50000_is_refused_with_its_place_and_no_file(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    outcome = post_text(tmp_path, capfd, long_file(50_000))
+    assert outcome.code == 1
+    assert "part.cls:50000: error: axis B would go to 110.00000, above its limit 100 degrees" in outcome.err
+    assert (outcome.out, outcome.left) == ("", [])
+
+
+def test_force_writes_it_and_its_head_says_so(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    outcome = post_text(tmp_path, capfd, long_file(50_000), "--force")
+    assert outcome.code == 0
+    head = outcome.target.read_text(encoding="utf-8").splitlines()[0]
+    assert (
+        head
+        == "N10 ;MUST NOT RUN AS IT IS, written by --force: axis B would go to 110.00000, above its limit 100 degrees"
+    )
+
+
+def test_an_unknown_statement_is_a_warning_and_an_error_under_strict(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    text = GOOD.replace(POINT, "FROBNICATE/ON\n" + POINT)
+    outcome = post_text(tmp_path, capfd, text)
+    assert outcome.code == 0
+    assert "part.cls:17: warning: " in outcome.err
+    assert "FROBNICATE" in outcome.err
+    assert outcome.left == ["program.mpf"]
+    outcome.target.unlink()
+    strict = post_text(tmp_path, capfd, text, "--strict")
+    assert (strict.code, strict.left) == (2, [])
+    assert "part.cls:17: error: " in strict.err
+
+
+def test_an_old_program_stays_when_the_new_one_fails(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    first = post_text(tmp_path, capfd, GOOD)
+    before = first.target.read_bytes()
+    second = post_text(tmp_path, capfd, GOOD.replace("END-OF-PATH\n", ""))
+    assert second.code == 2
+    assert second.target.read_bytes() == before
+    assert second.left == ["program.mpf"]
+
+
+def test_a_folder_takes_one_program_for_each_cl_file(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    files = [str(YL569 / f"{name}.cls") for name in ("2_hub_rough", "3_blade_finish")]
+    assert main(["post", *files, "--machine", "yl569", "--output", str(tmp_path)]) == 0
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["2_hub_rough.mpf", "3_blade_finish.mpf"]
+
+
+def test_several_cl_files_become_one_program_in_one_file(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    files = [str(YL569 / f"{name}.cls") for name in ("1_contour_rough", "2_hub_rough")]
+    target = tmp_path / "both.mpf"
+    assert main(["post", *files, "--machine", "yl569", "--output", str(target)]) == 0
+    program = target.read_text(encoding="utf-8")
+    assert program.count(";Start of Path") == 2
+    assert program.count("M30") == 1
+    assert [line for line in program.splitlines() if "T=" in line] == ["N190 T=1", "N1550 T=2"] or "T=2" in program
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["--set", "titel=x"], "titel is no setting"),
+        (["--set", "units=feet"], "units is 'feet'"),
+        (["--set", "zero=1,2"], "zero is '1,2'"),
+        (["--set", "title=a\nM30"], "line break"),
+        (["--set", "edge=x"], "edge is 'x'"),
+        (["--set", "stock=thick"], "setting stock is 'thick'"),
+    ],
+)
+def test_a_setting_that_makes_no_sense_is_named(
+    arguments: list[str], word: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    outcome = post_text(tmp_path, capfd, GOOD, *arguments)
+    assert outcome.code == 2
+    assert word in outcome.err
+    assert outcome.left == []
+
+
+def test_a_machine_that_is_not_there_is_named_with_those_that_are(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl596", "--output", "-"]) == 2
+    assert "yl569" in capfd.readouterr().err
+
+
+def test_a_machine_whose_control_cannot_be_written_yet_says_so(capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["post", str(YL569 / "2_hub_rough.cls"), "--machine", "dmu65", "--output", "-"]) == 2
+    assert "no programs can be written yet" in capfd.readouterr().err
+
+
+def test_the_installed_command_speaks_utf8_through_a_pipe(tmp_path: Path) -> None:
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
+    command = [sys.executable, "-m", "trunnion", "post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl569"]
+    done = subprocess.run(
+        [*command, "--output", "-", "--set", "title=轮毂"], capture_output=True, check=False, env=environment
+    )
+    assert done.returncode == 0
+    assert done.stderr == b"", "no progress bar in a pipe"
+    assert done.stdout.startswith("N10 ;轮毂\n".encode())
+
+
+def test_a_usage_error_is_2() -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["post"])
+    assert stopped.value.code == 2

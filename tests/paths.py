@@ -1,0 +1,18 @@
+"""Where the tests' own files lie, and the golden cases with the settings of their runs."""
+
+from pathlib import Path
+
+TESTS = Path(__file__).parent
+GOLDEN = TESTS / "golden"
+YL569 = GOLDEN / "yl569"
+
+PART = "C:\\Users\\lhx\\Desktop\\中德20210422\\11\\叶轮加工\\jg.prt"
+
+#: Name of the case -> settings with which its program was made.
+HEADS = {
+    "2_hub_rough": {"title": "轮毂粗加工", "part": PART, "date": "Tue Apr 30 12:54:07 2021"},
+    "3_blade_finish": {"title": "叶片精加工", "part": PART, "date": "Tue Apr 30 14:16:10 2021"},
+}
+
+#: Real files of others that are not part of the project; tests that want them skip when they are not there.
+SHARED = Path(__file__).resolve().parents[2] / "shared"
