@@ -298,7 +298,7 @@ def _parent(extends: Entry, child: _File, library: Library) -> _File:
         found = _shipped(name, library)
         if not found.place.is_file():
             near = _near(name, names_in(library))
-            cure = near or "write one of " + ", ".join(names_in(library)) if names_in(library) else ""
+            cure = near or "write one of " + ", ".join(names_in(library))
             raise InputError(Problem(file, line, f'extends: nothing shipped is called "{name}"', cure))
         return found
     reach = "write the name of a shipped definition, or a path to a .toml file in the same folder or below it"
@@ -355,7 +355,7 @@ def _short(label: str) -> str:
 def _merge(parent: Entry, child: Entry, path: str, problems: list[Problem], later: bool = False) -> Entry:
     """Return the parent with what the child says instead; tables merge deeply, named tables by name.
 
-    ``later``: the table extends something else that is not looked at yet (see ``extended``), so that removals must stay.
+    ``later``: the table extends something that is not looked at yet (see ``extended``), so that removals must stay.
     """
     if isinstance(parent.value, dict) and isinstance(child.value, dict):
         table = dict(parent.value)
@@ -465,8 +465,10 @@ def load_table(
     else:
         source = _shipped(text, library)
         if not _NAME.fullmatch(text) or not source.place.is_file():
-            cure = _near(text, names_in(library)) or "write one of " + ", ".join(names_in(library))
-            raise InputError(Problem(text, 0, f"there is no shipped {kind} of this name", f"{cure}, or a .toml file"))
+            near = _near(text, names_in(library))
+            cure = f"{near} " if near else ""
+            cure += f"write the path of a .toml file, or one of {', '.join(names_in(library))}"
+            raise InputError(Problem(text, 0, f"there is no shipped {kind} of this name", cure))
     problems: list[Problem] = []
     root = _line_of_ancestors(_read(source), source, library, problems)
     if overrides:

@@ -21,12 +21,12 @@ def test_an_arc_is_a_row_with_its_circle(body: Body) -> None:
 
 @pytest.mark.parametrize("normal", [(0, 0, 1), (0, 1, 0), (1, 0, 0), (0.6, 0, 0.8), (-0.48, 0.6, 0.64)])
 def test_arcs_lie_in_any_plane(body: Body, normal: tuple[float, float, float]) -> None:
-    normal = np.array(normal)
-    u = np.cross(normal, (0.3, 0.5, 0.9))
+    axis = np.array(normal)
+    u = np.cross(axis, (0.3, 0.5, 0.9))
     u /= np.linalg.norm(u)
-    v = np.cross(normal, u)
+    v = np.cross(axis, u)
     centre = np.array((10, 20, 30))
-    text = ["{:.7f},{:.7f},{:.7f}".format(*point) for point in (centre + 5 * u, centre, normal, centre + 5 * v)]
+    text = ["{:.7f},{:.7f},{:.7f}".format(*point) for point in (centre + 5 * u, centre, axis, centre + 5 * v)]
     arcs = body(f"GOTO/{text[0]}", f"CIRCLE/{text[1]},{text[2]},5.0", f"GOTO/{text[3]}").arcs
     assert np.allclose(arcs.normal, normal, atol=1e-7)
     assert np.linalg.norm(arcs.normal) == pytest.approx(1, abs=1e-15)

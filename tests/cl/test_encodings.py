@@ -3,6 +3,7 @@
 import pytest
 
 from tests.cl.conftest import Read
+from trunnion.toolpath import Message
 
 
 @pytest.mark.parametrize(
@@ -30,7 +31,8 @@ from tests.cl.conftest import Read
 def test_a_name_is_read_in_its_encoding(read: Read, name: str, encoding: str) -> None:
     text = f"TOOL PATH/{name},TOOL,{name}\nPPRINT/{name}\nGOTO/1,2,3\nEND-OF-PATH\n"
     (operation,) = read(text.encode(encoding)).operations
-    assert (operation.name, operation.tool.name, operation.events[0].text) == (name, name, name)
+    assert operation.events == (Message(0, 2, name),)
+    assert (operation.name, operation.tool.name) == (name, name)
 
 
 def test_a_byte_order_mark_does_not_shift_lines(read: Read) -> None:

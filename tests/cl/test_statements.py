@@ -109,6 +109,7 @@ def test_load_select_and_their_registers(body: Body) -> None:
 )
 def test_spindl_becomes_revolutions_and_sense(body: Body, text: str, rpm: float, sense: Sense) -> None:
     (event,) = body(f"SPINDL/{text}", GO).events
+    assert isinstance(event, SpindleOn)
     assert (event.row, event.line, event.sense) == (0, 3, sense)
     assert event.rpm == pytest.approx(rpm, rel=1e-15)
 
@@ -300,6 +301,8 @@ def test_everything_that_is_a_length_is_turned_into_mm(read: Read, statement: st
     assert operation.arcs.centre.tolist() == [[0, 50.8, 3 * 25.4]]
     start, spindle, cycle, _ = operation.events
     assert start == From(0, 5, (25.4, 25.4, 25.4), (0, 0, 1))
+    assert isinstance(spindle, SpindleOn)
+    assert isinstance(cycle, CycleOn)
     assert spindle.rpm == pytest.approx(100 * 304.8 / (math.pi * 25.4), rel=1e-14)
     assert dict(cycle.values) == {"RAPTO": (0.1 * 25.4,), "FEDTO": (-25.4,), "TLANGL": (118,), "MMPR": (0.2,)}
 
@@ -362,6 +365,8 @@ def test_cycle_is_read_by_couplets_in_any_order(
 
 def test_cycle_on_repeats_the_last_cycle(body: Body) -> None:
     first, _, again = body("CYCLE/DRILL,RAPTO,3", GO, "CYCLE/OFF", "CYCLE/ON", GO).events
+    assert isinstance(first, CycleOn)
+    assert isinstance(again, CycleOn)
     assert again.values == first.values
     assert again.row == 1
 

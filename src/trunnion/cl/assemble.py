@@ -197,9 +197,10 @@ def _circles(draft: Draft, kind: Codes, n: int, findings: Findings) -> list[Circ
     if circles and circles[-1].row >= n:
         findings.error(circles[-1].line, "CIRCLE without a GOTO after it", "write GOTO/ with the end point of the arc")
         circles = circles[:-1]
-    for circle in circles:
-        if kind[circle.row] == Kind.RAPID:
-            findings.remark(circle.line, "RAPID before an arc; the arc is made at the feed rate", "take the RAPID away")
+    rapid = kind[[circle.row for circle in circles]] == Kind.RAPID
+    for place in np.flatnonzero(rapid).tolist():
+        line = circles[place].line
+        findings.remark(line, "RAPID before an arc; the arc is made at the feed rate", "take the RAPID away")
     return circles
 
 

@@ -171,7 +171,7 @@ def _scan_file(
             at, line, rows, count = scan(
                 array, at, stop, last, line, rows, columns.tip, columns.axis, columns.line, spans
             )
-            for begin, length, number, row, mark in spans[:count].tolist():
+            for begin, length, number, row, mark in zip(*spans[:count].T.tolist(), strict=True):
                 if mark & ENDLESS:
                     raise _endless(number, findings)
                 if mark & OPEN:

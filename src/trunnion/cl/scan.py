@@ -73,7 +73,7 @@ def scan(
     last     nothing of the file follows, so a statement that wants to go on cannot
     line_no  line of the file that begins at ``start``
     row      first free row of the columns
-    tip      (n, 3) float64    written from ``row`` on; the rows of spans marked ROW are left as they are
+    tip      (n, 3) float64    written from ``row`` on; NaN in the rows of spans marked ROW
     axis     (n, 3) float64    NaN where the GOTO gives no vector
     line     (n,)   int32      line of the file
     spans    (s, 5) int64      written from 0 on, see ``SPAN``
@@ -105,6 +105,7 @@ def scan(
             if _makes_row(data, begin, end):
                 mark |= ROW
                 line[row] = line_no
+                tip[row, :] = np.nan
                 axis[row, :] = np.nan
                 row += 1
             spans[count, 4] = mark

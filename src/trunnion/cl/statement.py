@@ -1,7 +1,7 @@
 """One CL statement taken apart: ``MAJOR/minor,minor`` into words and numbers, or text left as it stands."""
 
-import math
 import re
+from math import isfinite
 from typing import NamedTuple
 
 from trunnion.cl.findings import Wrong
@@ -11,9 +11,10 @@ _TEXT = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 _TEXT_BEGINS = frozenset(b"TPIDSOtpidso")
-_CONTINUED = re.compile(rb"\$[ \t]*\r?\n")
+_CONTINUED = re.compile(r"\$[ \t]*\r?\n")
 _CONTROL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _NUMERIC = frozenset("+-.0123456789")
+_ENDS = frozenset(".0123456789")
 
 #: No length, feed or angle of a machine tool is larger; what is, is a slip of the file.
 _LARGEST = 1e12
@@ -41,7 +42,7 @@ def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[
     for value in values:
         if isinstance(value, str):
             raise Wrong(f"{major} has {value or 'nothing'!r} where a number belongs", "write a decimal number")
-        if not abs(value) <= _LARGEST:
+        if value > _LARGEST or value < -_LARGEST:
             raise Wrong(f"{major} has the number {value}", "write finite numbers of a size that a machine can have")
     if counts and len(values) not in counts:
         wanted = " or ".join(map(str, counts))
@@ -59,18 +60,16 @@ def parse(raw: bytes, encoding: str) -> Statement:
         )
     if raw[:1] and raw[0] in _TEXT_BEGINS and (text := _TEXT.match(raw)):
         return _text_statement(text, raw, encoding)
-    source = raw.decode(encoding, "replace")
-    if b"$" in raw:
-        raw = _CONTINUED.sub(b"", raw)
-        raw = raw.partition(b"$$")[0]
-    if b"\r" in raw:
+    source = plain = raw.decode(encoding, "replace")
+    if "$" in plain:
+        plain = _CONTINUED.sub("", plain).partition("$$")[0]
+    if "\r" in plain:
         raise Wrong("a carriage return without a line feed", "save the file with LF or CRLF line ends")
-    major, slash, rest = raw.decode(encoding, "replace").partition("/")
+    major, slash, rest = plain.partition("/")
     name = "".join(major.split()).upper()
     if "$" in name or "$" in rest:
         raise Wrong(f"{name} has a dollar sign within the line", "a dollar sign continues a line only at its end")
-    values = tuple([_value(field) for field in rest.split(",")]) if slash and rest.strip() else ()
-    return Statement(name, values, "", source)
+    return Statement(name, _values(rest) if slash else (), "", source)
 
 
 def _text_statement(match: re.Match[bytes], raw: bytes, encoding: str) -> Statement:
@@ -82,14 +81,25 @@ def _text_statement(match: re.Match[bytes], raw: bytes, encoding: str) -> Statem
     return Statement(major, (), text if major == "INSERT" else text.strip(), raw.decode(encoding, "replace"))
 
 
+def _values(rest: str) -> tuple[str | float, ...]:
+    """Return what stands between the commas."""
+    fields = rest.split(",")
+    if "_" not in rest and rest.isascii():
+        try:
+            plain = tuple(map(float, fields))
+        except ValueError:
+            pass
+        else:
+            # The words INF and NAN are numbers to Python, but not in a CL file.
+            if isfinite(sum(plain)):
+                return plain
+    return tuple(map(_value, fields)) if rest.strip() else ()
+
+
 def _value(field: str) -> str | float:
     """Return a number if the field is one, else the word in capitals without blanks."""
     field = field.strip()
-    if field[:1] in _NUMERIC and "_" not in field and field.isascii():
-        try:
-            return float(field)
-        except ValueError:
-            pass
+    if field[:1] in _NUMERIC and field[-1] in _ENDS and "_" not in field and field.isascii():
         try:
             return float(field.upper().replace("D", "E", 1))  # FORTRAN writes 1.5D3
         except ValueError:
@@ -99,4 +109,4 @@ def _value(field: str) -> str | float:
 
 def is_whole(value: float, least: int) -> bool:
     """Whether a number is whole and at least ``least``."""
-    return math.isfinite(value) and value == int(value) and value >= least
+    return isfinite(value) and value == int(value) and value >= least

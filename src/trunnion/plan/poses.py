@@ -11,7 +11,7 @@ from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machine import Machine, Packed, pack
-from trunnion.machine.inverse import POLE, UNREACHABLE, solve_point, solve_slides
+from trunnion.machine.inverse import POLE, UNREACHABLE, solve_angles, solve_slides
 
 #: A value beyond a limit by less than this, mm or degrees, prints as the limit and is put onto it.
 LIMIT_TOLERANCE = 1e-5
@@ -61,25 +61,30 @@ def _follow(
     display_low  (5,) float64   lower end of the 360 degrees that an axis displays, NaN: as it is
     start        (2,) float64   rotary positions before the first row
     """
-    found = np.empty((2, 5))
+    first_column, second_column = rotary[0], rotary[1]
     candidate = np.empty(5)
-    last = start.copy()
-    last_branch = -1
+    last_first, last_second = start[0], start[1]
+    last_branch, chosen = -1, 0
+    status, first_0, second_0, first_1, second_1 = 0, 0.0, 0.0, 0.0, 0.0
     for row in range(tip.shape[0]):
         x, y, z = tip[row, 0], tip[row, 1], tip[row, 2]
         i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
-        status = solve_point(packed, x, y, z, i, j, k, found)
+        if row == 0 or i != axis[row - 1, 0] or j != axis[row - 1, 1] or k != axis[row - 1, 2]:
+            status, first_0, second_0, first_1, second_1 = solve_angles(packed, i, j, k)
         if status & UNREACHABLE:
             outcome[row] = OUT_OF_REACH
             joints[row, :] = np.nan
             continue
-        best_cost, best_beyond, best_branch = np.inf, 99, 0
+        best_cost, best_beyond = np.inf, 99
         for branch in range(2):
-            for r in range(2):
-                column = rotary[r]
-                angle = last[r] if r == 0 and status & POLE else found[branch, column]
-                candidate[column] = _nearest_turn(angle, last[r], low[column], high[column])
-            solve_slides(packed, candidate[rotary[0]], candidate[rotary[1]], x, y, z, candidate)
+            first = last_first if status & POLE else (first_0 if branch == 0 else first_1)
+            second = second_0 if branch == 0 else second_1
+            first = _nearest_turn(first, last_first, low[first_column], high[first_column])
+            second = _nearest_turn(second, last_second, low[second_column], high[second_column])
+            cost = abs(first - last_first) + abs(second - last_second)
+            if best_beyond == 0 and cost >= best_cost - 1e-9:
+                continue
+            solve_slides(packed, first, second, x, y, z, candidate)
             beyond, which = 0, 0
             for column in range(5):
                 value = candidate[column]
@@ -90,15 +95,14 @@ def _follow(
                     candidate[column] = low[column]
                 elif value > high[column]:
                     candidate[column] = high[column]
-            cost = abs(candidate[rotary[0]] - last[0]) + abs(candidate[rotary[1]] - last[1])
             if beyond < best_beyond or (beyond == best_beyond and cost < best_cost - 1e-9):
-                best_cost, best_beyond, best_branch = cost, beyond, branch
+                best_cost, best_beyond, chosen = cost, beyond, branch
                 joints[row] = candidate
                 outcome[row] = which
-        if outcome[row] == FINE and last_branch >= 0 and best_branch != last_branch and best_cost > 90.0:
+        if outcome[row] == FINE and last_branch >= 0 and chosen != last_branch and best_cost > 90.0:
             outcome[row] = TURNED_OVER
-        last_branch = -1 if status & POLE else best_branch
-        last[0], last[1] = joints[row, rotary[0]], joints[row, rotary[1]]
+        last_branch = -1 if status & POLE else chosen
+        last_first, last_second = joints[row, first_column], joints[row, second_column]
         for column in rotary:
             if not np.isnan(display_low[column]):
                 joints[row, column] -= 360.0 * np.floor((joints[row, column] - display_low[column]) / 360.0)

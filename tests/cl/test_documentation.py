@@ -1,0 +1,19 @@
+"""The page about CL files and the reader do not drift apart."""
+
+import re
+from pathlib import Path
+
+from trunnion.cl.assemble import COLOURS, RADIUS_TOLERANCE
+from trunnion.cl.nx import RULES
+
+PAGE = (Path(__file__).parents[2] / "docs" / "cl.md").read_text(encoding="utf-8")
+
+
+def test_every_statement_that_is_read_is_in_the_page() -> None:
+    named = set(re.findall(r"`([A-Z-]+(?: PATH)?)", PAGE))
+    assert {major.replace("TOOLPATH", "TOOL PATH") for major in RULES} <= named
+
+
+def test_every_colour_and_the_tolerance_are_in_the_page() -> None:
+    assert all(re.search(rf"\| {colour} \|", PAGE) for colour in COLOURS)
+    assert f"{RADIUS_TOLERANCE} mm" in PAGE
