@@ -69,9 +69,9 @@ class Packed(NamedTuple):
     frame_1   (9,) float    rows: two unit vectors across the first rotary axis, the first towards w2; its line
     frame_2   (9,) float    rows: two unit vectors across the second rotary axis, the first towards w1; its line
     sense_1   float         -1 where the line of ``frame_1`` points against growing values
-    between   float         angle between the two lines, rad (G above)
-    lean      float         angle between the second line and the spindle, rad (B above)
-    phase     float         second angle, rad, from where the spindle leans most towards w1 to zero, in (-pi/2, pi/2]
+    less      (2,) float    cosine and sine of (G - B)/2
+    more      (2,) float    cosine and sine of (G + B)/2
+    phase     (2,) float    cosine and sine of the second angle from where the spindle leans most towards w1 to zero
     spindle   (3,) float    the spindle in ``frame_2``
     slides    (9,) float    rows: directions of the slides
     inside    (3,) int      how many rotary axes stand between the slide and the workpiece
@@ -84,9 +84,9 @@ class Packed(NamedTuple):
     frame_1: Numbers
     frame_2: Numbers
     sense_1: float
-    between: float
-    lean: float
-    phase: float
+    less: Numbers
+    more: Numbers
+    phase: Numbers
     spindle: Numbers
     slides: Numbers
     inside: tuple[int, ...]
@@ -129,9 +129,9 @@ def pack(machine: Machine, tool_length: float = 0.0) -> Packed:
         frame_1=_flat(frame_1),
         frame_2=_flat(frame_2),
         sense_1=sense,
-        between=_angle(w1, w2),
-        lean=_angle(w2, s),
-        phase=math.atan2(float(spindle[1]), float(spindle[0])),
+        less=_cos_sin(0.5 * (_angle(w1, w2) - _angle(w2, s))),
+        more=_cos_sin(0.5 * (_angle(w1, w2) + _angle(w2, s))),
+        phase=_flat(spindle[:2] / math.hypot(spindle[0], spindle[1])),
         spindle=_flat(spindle),
         slides=_flat(directions[list(slides)]),
         inside=tuple(int(first < k) + int(second < k) for k in slides),
@@ -143,6 +143,10 @@ def pack(machine: Machine, tool_length: float = 0.0) -> Packed:
 
 def _flat(array: Floats) -> Numbers:
     return tuple(array.ravel().tolist())
+
+
+def _cos_sin(angle: float) -> Numbers:
+    return math.cos(angle), math.sin(angle)
 
 
 def _angle(a: Floats, b: Floats) -> float:
@@ -209,57 +213,83 @@ def solve_rows(packed: Packed, tip: Floats, axis: Floats, joints: Floats, status
 
 @njit(cache=True)
 def solve_point(packed: Packed, x: float, y: float, z: float, i: float, j: float, k: float, out: Floats) -> int:
-    """Write both branches of one tool position into ``out`` (2, 5), mm and deg; return the status bits.
+    """Write both branches of one tool position into ``out`` (2, 5), mm and deg; return the status bits."""
+    status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
+    if status == UNREACHABLE:
+        out[:, :] = math.nan
+        return UNREACHABLE
+    first, second = branch_angles(packed, u0, u1, cos, sin, status)
+    status |= solve_slides(packed, first, second, x, y, z, out[0])
+    first, second = branch_angles(packed, u0, u1, cos, -sin, status)
+    status |= solve_slides(packed, first, second, x, y, z, out[1])
+    return status
 
-    Branch 0 has the second rotary angle phi - phase, branch 1 has -phi - phase, with phi in [0, 180]. On machines whose
-    tool axis at zero lies in the plane of the two rotary axes phase is 0: branch 0 is the positive tilt, branch 1 the
-    negative one. On fork heads that turn about X and then Y phase is 90: branch 0 has the second angle in [-90, 90].
-    Along a path each branch is continuous, away from poles.
+
+@njit(cache=True)
+def solve_tilt(packed: Packed, i: float, j: float, k: float) -> tuple[int, float, float, float, float]:
+    """Return what both branches of a tool axis share.
+
+    That is the status bits, the two components of the tool axis across the first line, and cosine and sine of phi, in
+    [0, 180] degrees. All sines of the module's formula come from those of A/2 by addition, so that nothing but square
+    roots is needed.
     """
-    one, two = packed.frame_1, packed.frame_2
+    one = packed.frame_1
     u0 = one[0] * i + one[1] * j + one[2] * k
     u1 = one[3] * i + one[4] * j + one[5] * k
     u2 = one[6] * i + one[7] * j + one[8] * k
     across = math.sqrt(u0 * u0 + u1 * u1)
-    off = math.atan2(across, u2)  # A of the module's docstring
-    pole = off < POLE_TOLERANCE or math.pi - off < POLE_TOLERANCE
+    length = math.sqrt(across * across + u2 * u2)
+    if not 0.0 < length < math.inf:  # written so that NaN is out of reach as well
+        return UNREACHABLE, math.nan, math.nan, math.nan, math.nan
+    pole = across < POLE_TOLERANCE * length
     if pole:
-        off = 0.0 if u2 > 0.0 else math.pi
-    half = 0.5 * (off + packed.lean + packed.between)
-    least = min(min(half - off, half - packed.lean), min(half - packed.between, math.pi - half))
-    length = across + abs(u2)
-    # Written so that NaN is out of reach as well.
-    if not (least >= -0.5 * REACH_TOLERANCE and length > 0.0 and length < math.inf):
-        out[:, :] = math.nan
-        return UNREACHABLE
-    num = math.sin(max(half - packed.lean, 0.0)) * math.sin(max(half - packed.between, 0.0))
-    den = math.sin(min(half, math.pi)) * math.sin(max(half - off, 0.0))
-    phi = 2.0 * math.atan2(math.sqrt(max(num, 0.0)), math.sqrt(max(den, 0.0)))
-    status = POLE if pole else 0
-    for branch in range(2):
-        turn = (phi if branch == 0 else -phi) - packed.phase
-        first = 0.0
-        if not pole:
-            # v = R2 s, then its components across the first line.
-            cos, sin = math.cos(turn), math.sin(turn)
-            s0, s1, s2 = packed.spindle[0], packed.spindle[1], packed.spindle[2]
-            a, b = cos * s0 - sin * s1, sin * s0 + cos * s1
-            v0 = two[0] * a + two[3] * b + two[6] * s2
-            v1 = two[1] * a + two[4] * b + two[7] * s2
-            v2 = two[2] * a + two[5] * b + two[8] * s2
-            a = one[0] * v0 + one[1] * v1 + one[2] * v2
-            b = one[3] * v0 + one[4] * v1 + one[5] * v2
-            first = packed.sense_1 * math.degrees(math.atan2(u1 * a - u0 * b, u0 * a + u1 * b))
-        second = math.degrees(turn)
-        if second <= -180.0:
-            second += 360.0
-        elif second > 180.0:
-            second -= 360.0
-        if first <= -180.0:
-            first = 180.0
-        # Adding zero turns -0.0 into 0.0.
-        status |= solve_slides(packed, first + 0.0, second + 0.0, x, y, z, out[branch])
-    return status
+        across, length = 0.0, abs(u2)
+    if u2 >= 0.0:
+        cos_a = math.sqrt(0.5 + 0.5 * u2 / length)
+        sin_a = 0.5 * across / (length * cos_a)
+    else:
+        sin_a = math.sqrt(0.5 - 0.5 * u2 / length)
+        cos_a = 0.5 * across / (length * sin_a)
+    lean = sin_a * packed.less[0] + cos_a * packed.less[1]  # sin(S - B)
+    between = sin_a * packed.less[0] - cos_a * packed.less[1]  # sin(S - G)
+    half = sin_a * packed.more[0] + cos_a * packed.more[1]  # sin S
+    off = cos_a * packed.more[1] - sin_a * packed.more[0]  # sin(S - A)
+    if min(min(lean, between), min(half, off)) < -0.5 * REACH_TOLERANCE:
+        return UNREACHABLE, math.nan, math.nan, math.nan, math.nan
+    num, den = max(lean, 0.0) * max(between, 0.0), max(half, 0.0) * max(off, 0.0)
+    return POLE if pole else 0, u0, u1, (den - num) / (den + num), 2.0 * math.sqrt(num * den) / (den + num)
+
+
+@njit(cache=True)
+def branch_angles(packed: Packed, u0: float, u1: float, cos: float, sin: float, status: int) -> tuple[float, float]:
+    """First and second rotary angle of one branch, deg, in (-180, 180].
+
+    Branch 0 has the second rotary angle phi - phase, branch 1, for which ``sin`` comes negative, -phi - phase. On
+    machines whose tool axis at zero lies in the plane of the two rotary axes phase is 0: branch 0 is the positive tilt,
+    branch 1 the negative one. On fork heads that turn about X and then Y phase is 90: branch 0 has the second angle in
+    [-90, 90]. Along a path each branch is continuous, away from poles.
+
+    u0, u1, cos, sin and status are as ``solve_tilt`` gives them.
+    """
+    cos, sin = cos * packed.phase[0] + sin * packed.phase[1], sin * packed.phase[0] - cos * packed.phase[1]
+    second = math.degrees(math.atan2(sin, cos))
+    first = 0.0
+    if not status & POLE:
+        # v = R2 s, then its components across the first line.
+        one, two = packed.frame_1, packed.frame_2
+        s0, s1, s2 = packed.spindle[0], packed.spindle[1], packed.spindle[2]
+        a, b = cos * s0 - sin * s1, sin * s0 + cos * s1
+        v0 = two[0] * a + two[3] * b + two[6] * s2
+        v1 = two[1] * a + two[4] * b + two[7] * s2
+        v2 = two[2] * a + two[5] * b + two[8] * s2
+        a = one[0] * v0 + one[1] * v1 + one[2] * v2
+        b = one[3] * v0 + one[4] * v1 + one[5] * v2
+        first = packed.sense_1 * math.degrees(math.atan2(u1 * a - u0 * b, u0 * a + u1 * b))
+    if first <= -180.0:
+        first = 180.0
+    if second <= -180.0:
+        second = 180.0
+    return first + 0.0, second + 0.0  # adding zero turns -0.0 into 0.0
 
 
 @njit(cache=True)

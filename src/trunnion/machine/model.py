@@ -151,7 +151,7 @@ class Machine:
 
     @property
     def primary(self) -> int:
-        """Column of the primary rotary axis (the fourth): bolted to the base, or the one of the head on mixed machines."""
+        """Column of the primary rotary axis (the fourth): the one on the base, or of the head on mixed machines."""
         first, second = self.rotary
         both_in_table = self.axes[second].carries is Carries.PART
         mixed = self.axes[first].carries is Carries.PART and self.axes[second].carries is Carries.TOOL

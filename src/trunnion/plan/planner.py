@@ -65,11 +65,9 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
 
 
 def _is_upright(axis: Floats) -> bool:
-    return bool(
-        axis[:, 2].min() > 1.0 - _UPRIGHT
-        and max(abs(float(axis[:, c].max())) for c in (0, 1)) < _UPRIGHT
-        and max(abs(float(axis[:, c].min())) for c in (0, 1)) < _UPRIGHT
-    )
+    if axis[0, 2] < 1.0 - _UPRIGHT:  # the usual case decides itself at the first row
+        return False
+    return bool(np.abs(axis - [0.0, 0.0, 1.0]).max() < _UPRIGHT)
 
 
 def into_frame(operation: Operation, frame: Frame) -> Operation:

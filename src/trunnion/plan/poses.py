@@ -11,7 +11,7 @@ from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machine import Machine, Packed, pack
-from trunnion.machine.inverse import POLE, UNREACHABLE, solve_angles, solve_slides
+from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, solve_slides, solve_tilt
 
 #: A value beyond a limit by less than this, mm or degrees, prints as the limit and is put onto it.
 LIMIT_TOLERANCE = 1e-5
@@ -64,26 +64,28 @@ def _follow(
     first_column, second_column = rotary[0], rotary[1]
     candidate = np.empty(5)
     last_first, last_second = start[0], start[1]
-    last_branch, chosen = -1, 0
-    status, first_0, second_0, first_1, second_1 = 0, 0.0, 0.0, 0.0, 0.0
+    chosen, known = 0, False
+    status, u0, u1, cos, sin = 0, 0.0, 0.0, 0.0, 0.0
     for row in range(tip.shape[0]):
         x, y, z = tip[row, 0], tip[row, 1], tip[row, 2]
         i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
         if row == 0 or i != axis[row - 1, 0] or j != axis[row - 1, 1] or k != axis[row - 1, 2]:
-            status, first_0, second_0, first_1, second_1 = solve_angles(packed, i, j, k)
+            status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
         if status & UNREACHABLE:
             outcome[row] = OUT_OF_REACH
             joints[row, :] = np.nan
             continue
-        best_cost, best_beyond = np.inf, 99
-        for branch in range(2):
-            first = last_first if status & POLE else (first_0 if branch == 0 else first_1)
-            second = second_0 if branch == 0 else second_1
+        best_cost, best_beyond, before = np.inf, 99, chosen
+        for turn in range(2):
+            branch = before if turn == 0 else 1 - before
+            if turn == 1 and best_beyond == 0 and best_cost < np.degrees(sin):
+                break  # the branches' second angles lie 2 phi apart, so the other one is farther away
+            first, second = branch_angles(packed, u0, u1, cos, sin if branch == 0 else -sin, status)
+            if status & POLE:
+                first = last_first
             first = _nearest_turn(first, last_first, low[first_column], high[first_column])
             second = _nearest_turn(second, last_second, low[second_column], high[second_column])
             cost = abs(first - last_first) + abs(second - last_second)
-            if best_beyond == 0 and cost >= best_cost - 1e-9:
-                continue
             solve_slides(packed, first, second, x, y, z, candidate)
             beyond, which = 0, 0
             for column in range(5):
@@ -99,9 +101,9 @@ def _follow(
                 best_cost, best_beyond, chosen = cost, beyond, branch
                 joints[row] = candidate
                 outcome[row] = which
-        if outcome[row] == FINE and last_branch >= 0 and chosen != last_branch and best_cost > 90.0:
+        if outcome[row] == FINE and known and chosen != before and best_cost > 90.0:
             outcome[row] = TURNED_OVER
-        last_branch = -1 if status & POLE else chosen
+        known = not status & POLE
         last_first, last_second = joints[row, first_column], joints[row, second_column]
         for column in rotary:
             if not np.isnan(display_low[column]):

@@ -1,0 +1,51 @@
+"""The forward map as a textbook would write it: a product of 4x4 matrices, in plain NumPy."""
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.machine import Machine
+
+
+def translation(offset: Floats) -> Floats:
+    """4x4 of a shift."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = offset
+    return matrix
+
+
+def rotation(direction: Floats, degrees: float) -> Floats:
+    """4x4 of a right-handed turn about a line through the origin."""
+    x, y, z = direction
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = np.radians(degrees)
+    matrix = np.eye(4)
+    matrix[:3, :3] += np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    return matrix
+
+
+def naive_forward(machine: Machine, joints: Floats, tool_length: float) -> tuple[Floats, Floats]:
+    """Tool tip and tool axis of one row of axis values."""
+    pose = np.eye(4)
+    for axis, value in zip(machine.axes, joints, strict=True):
+        direction, point = np.array(axis.direction), np.array(axis.point)
+        signed = value if axis.positive == "standard" else -value
+        if axis.kind == "linear":
+            pose = pose @ translation(direction * signed)
+        else:
+            pose = pose @ translation(point) @ rotation(direction, signed) @ translation(-point)
+    spindle = np.array(machine.spindle_direction)
+    tip = np.append(np.array(machine.spindle_point) - tool_length * spindle, 1.0)
+    zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
+    return (pose @ tip)[:3] - zero, pose[:3, :3] @ spindle
+
+
+def slide_volume(machine: Machine, joints: Floats) -> float:
+    """Volume of the three slide directions with the rotary axes at these values: how well the slides span space."""
+    turned, directions = np.eye(3), []
+    for axis, value in zip(machine.axes, joints, strict=True):
+        direction = np.array(axis.direction)
+        if axis.kind == "linear":
+            directions.append(turned @ direction)
+        else:
+            turned = turned @ rotation(direction, value if axis.positive == "standard" else -value)[:3, :3]
+    return float(abs(np.dot(np.cross(directions[0], directions[1]), directions[2])))
