@@ -37,15 +37,3 @@ def naive_forward(machine: Machine, joints: Floats, tool_length: float) -> tuple
     tip = np.append(np.array(machine.spindle_point) - tool_length * spindle, 1.0)
     zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
     return (pose @ tip)[:3] - zero, pose[:3, :3] @ spindle
-
-
-def slide_volume(machine: Machine, joints: Floats) -> float:
-    """Volume of the three slide directions with the rotary axes at these values: how well the slides span space."""
-    turned, directions = np.eye(3), []
-    for axis, value in zip(machine.axes, joints, strict=True):
-        direction = np.array(axis.direction)
-        if axis.kind == "linear":
-            directions.append(turned @ direction)
-        else:
-            turned = turned @ rotation(direction, value if axis.positive == "standard" else -value)[:3, :3]
-    return float(abs(np.dot(np.cross(directions[0], directions[1]), directions[2])))

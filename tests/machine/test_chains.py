@@ -28,12 +28,13 @@ def solve(packed: Packed, tip: Floats, axis: Floats, out: Floats) -> int:
 
 
 def spread(machine: Machine, values: Floats) -> float:
-    """Volume of the box that a millimetre of each slide spans: 1 where they stand square, 0 where they lie in a plane."""
+    """Volume of the box that a millimetre of each slide spans: 1 where they stand square, 0 where they are flat."""
     moved = np.repeat(np.asarray(values, float)[None, :], 4, axis=0)
     for row, column in enumerate(machine.linear, 1):
         moved[row, column] += 1.0
     tip, _ = forward(machine, moved)
-    return abs(float(np.linalg.det(tip[1:] - tip[0])))
+    x, y, z = tip[1:] - tip[0]
+    return abs(float(np.dot(np.cross(x, y), z)))
 
 
 @settings(deadline=None, max_examples=300)
@@ -118,7 +119,8 @@ def test_slides_solved_for_given_angles_are_those_of_the_branch(machine: Machine
         wound = branch[first] + 360.0 * 7
         assert solve_slides(packed, wound, branch[second], tip[0, 0], tip[0, 1], tip[0, 2], again) == 0
         assert again[first] == wound
-        tolerance = 1e-11 * max(1.0, float(np.abs(branch).max()))
+        # The turned columns differ in the last digit, which counts for more the flatter the slides lie.
+        tolerance = 1e-12 * max(1000.0, float(np.abs(branch).max())) / spread(machine, branch)
         np.testing.assert_allclose(again[slides], branch[slides], rtol=0, atol=tolerance)
 
 

@@ -99,7 +99,7 @@ class Packed(NamedTuple):
 class Solutions:
     """Axis values for rows of tool positions.
 
-    joints     (2, n, 5) float64  displayed values, mm or deg; NaN where not reachable; branches as in ``solve_point``
+    joints     (2, n, 5) float64  displayed values, mm or deg; NaN where not reachable; branches as in ``branch_angles``
     reachable  (n,) bool          the rotary axes reach the tool axis and the slides can follow; travel is not looked at
     pole       (n,) bool          the angle of the first rotary axis is free and carries 0
     """

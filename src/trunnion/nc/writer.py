@@ -23,7 +23,7 @@ _LETTERS = 8
 _NUMBER = 12  # N99999999 and a blank, with room to spare
 
 # columns of the table that describes the words to the kernel
-_MODAL, _DECIMALS, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH = range(8)
+_MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH = range(9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +34,95 @@ class BlockNumbers:
     start: int = 10
     step: int = 10
     highest: int = 99999999
+
+
+@njit(cache=True, inline="always")
+def _put_whole(number: int, out: Bytes, at: int) -> int:
+    """Write the digits of a number from 0 up at ``at``, two at a time; returns where they end.
+
+    (pair * 103) >> 10 is pair // 10 for pairs below 100.
+    """
+    length, power = 1, 10
+    while number >= power:
+        length += 1
+        power *= 10
+    rest, place = number, at + length
+    while rest >= 100:
+        quotient = rest // 100
+        pair = rest - quotient * 100
+        tens = (pair * 103) >> 10
+        place -= 2
+        out[place] = 48 + tens
+        out[place + 1] = 48 + pair - tens * 10
+        rest = quotient
+    if rest >= 10:
+        tens = (rest * 103) >> 10
+        out[at] = 48 + tens
+        out[at + 1] = 48 + rest - tens * 10
+    else:
+        out[at] = 48 + rest
+    return at + length
+
+
+@njit(cache=True, inline="always")
+def _put_fraction(fraction: int, decimals: int, out: Bytes, at: int) -> int:
+    """Write exactly so many digits at ``at``, with zeros in front; returns where they end."""
+    rest, place = fraction, at + decimals
+    while place - at >= 2:
+        quotient = rest // 100
+        pair = rest - quotient * 100
+        tens = (pair * 103) >> 10
+        place -= 2
+        out[place] = 48 + tens
+        out[place + 1] = 48 + pair - tens * 10
+        rest = quotient
+    if place > at:
+        out[at] = 48 + rest
+    return at + decimals
+
+
+@njit(cache=True, inline="always")
+def _put_number(
+    count: int,
+    decimals: int,
+    scale: int,
+    point: bool,
+    leading: bool,
+    trailing: bool,
+    plus: bool,
+    out: Bytes,
+    at: int,
+) -> int:
+    """Write a count of last digits as ``NumberFormat.of_count`` does; returns where it ends."""
+    rest = count
+    if count < 0:
+        out[at] = 45
+        at += 1
+        rest = -count
+    elif plus:
+        out[at] = 43
+        at += 1
+    # A product is quicker than a division by a number that the compiler does not know; it is one off at most.
+    whole = np.int64(rest * (1.0 / scale))
+    fraction = rest - whole * scale
+    if fraction < 0:
+        whole -= 1
+        fraction += scale
+    elif fraction >= scale:
+        whole += 1
+        fraction -= scale
+    trailing = trailing and decimals > 0
+    if whole > 0 or leading or (fraction == 0 and not trailing):
+        at = _put_whole(whole, out, at)
+    if fraction > 0 or trailing:
+        out[at] = 46
+        at = _put_fraction(fraction, decimals, out, at + 1)
+        while not trailing and out[at - 1] == 48:
+            at -= 1
+    elif decimals > 0 and point:
+        out[at] = 46
+        at += 1
+    return at
 
 
 @njit(cache=True)
@@ -51,52 +140,38 @@ def _write_blocks(
     skip: Bytes,
     out: Bytes,
 ) -> int:
-    """Write the blocks of one chunk into ``out``; returns the bytes written.
+    """Write the blocks of one table into ``out``; returns the bytes written.
 
     table        (w, n) int64   counts, ABSENT where a word is not wanted
     forced       (n,)   int64   bit k set: word k is written even if it prints as before
     text_before  (n,)   int64   index of the text line that stands before the row, -1 for none
     text_bytes, text_ends       the text lines, end to end
-    rule         (w, 8) int64   modal, decimals, point, leading, trailing, plus, length of letter, length of zero
+    rule         (w, 9) int64   modal, decimals, 10**decimals, point, leading, trailing, plus, length of letter, of zero
     spelling     (w, 16) uint8  letter in the first 8 bytes, spelling of zero in the last 8
     last         (w,)   int64   what was last printed; kept up to date
     number       (4,)   int64   next block number, step, first, highest; the first is kept up to date
     """
     words, rows = table.shape
     at = 0
-    digits = np.empty(_DIGITS, np.uint8)
+    numbered = number_letter.shape[0] > 0
     for row in range(rows):
-        pieces = 2 if text_before[row] >= 0 else 1
-        for piece in range(pieces):
+        for piece in range(0 if text_before[row] >= 0 else 1, 2):
+            # skip sign and block number are written first, and taken back when nothing follows them
             block_start = at
-            # the block number, written first and taken back when nothing follows it
-            if number_letter.shape[0] > 0:
-                for k in range(skip.shape[0]):
-                    out[at] = skip[k]
-                    at += 1
+            for k in range(skip.shape[0]):
+                out[at] = skip[k]
+                at += 1
+            if numbered:
                 for k in range(number_letter.shape[0]):
                     out[at] = number_letter[k]
                     at += 1
-                length = 0
-                rest = number[0]
-                while rest > 0 or length == 0:
-                    digits[length] = 48 + rest % 10
-                    rest //= 10
-                    length += 1
-                for k in range(length):
-                    out[at + k] = digits[length - 1 - k]
-                at += length
+                at = _put_whole(number[0], out, at)
                 out[at] = 32
                 at += 1
-            else:
-                for k in range(skip.shape[0]):
-                    out[at] = skip[k]
-                    at += 1
             content_start = at
-            if piece < pieces - 1:
+            if piece == 0:
                 line = text_before[row]
-                begin = 0 if line == 0 else text_ends[line - 1]
-                for k in range(begin, text_ends[line]):
+                for k in range(0 if line == 0 else text_ends[line - 1], text_ends[line]):
                     out[at] = text_bytes[k]
                     at += 1
                 at += 1  # stands for the blank that every word leaves behind it
@@ -105,7 +180,7 @@ def _write_blocks(
                     count = table[word, row]
                     if count == ABSENT:
                         continue
-                    if rule[word, _MODAL] == 1 and count == last[word] and (forced[row] >> word) & 1 == 0:
+                    if count == last[word] and rule[word, _MODAL] == 1 and (forced[row] >> word) & 1 == 0:
                         continue
                     last[word] = count
                     for k in range(rule[word, _LETTER_LENGTH]):
@@ -116,47 +191,27 @@ def _write_blocks(
                             out[at] = spelling[word, _LETTERS + k]
                             at += 1
                     else:
-                        rest = count
-                        if count < 0:
-                            out[at] = 45
-                            at += 1
-                            rest = -count
-                        elif rule[word, _PLUS] == 1:
-                            out[at] = 43
-                            at += 1
-                        decimals = rule[word, _DECIMALS]
-                        kept = decimals
-                        if rule[word, _TRAILING] == 0:
-                            while kept > 0 and rest % 10 == 0:
-                                rest //= 10
-                                kept -= 1
-                        length = 0
-                        while rest > 0 or length < kept:
-                            digits[length] = 48 + rest % 10
-                            rest //= 10
-                            length += 1
-                        if length == kept and (kept == 0 or rule[word, _LEADING] == 1):
-                            out[at] = 48
-                            at += 1
-                        for k in range(length - 1, kept - 1, -1):
-                            out[at] = digits[k]
-                            at += 1
-                        if decimals > 0 and (kept > 0 or rule[word, _POINT] == 1):
-                            out[at] = 46
-                            at += 1
-                        for k in range(kept - 1, -1, -1):
-                            out[at] = digits[k]
-                            at += 1
+                        at = _put_number(
+                            count,
+                            rule[word, _DECIMALS],
+                            rule[word, _SCALE],
+                            rule[word, _POINT] == 1,
+                            rule[word, _LEADING] == 1,
+                            rule[word, _TRAILING] == 1,
+                            rule[word, _PLUS] == 1,
+                            out,
+                            at,
+                        )
                     out[at] = 32
                     at += 1
             if at == content_start:
                 at = block_start
-            else:
-                out[at - 1] = 10
-                if number_letter.shape[0] > 0:
-                    number[0] += number[1]
-                    if number[0] > number[3]:
-                        number[0] = number[2]
+                continue
+            out[at - 1] = 10
+            if numbered:
+                number[0] += number[1]
+                if number[0] > number[3]:
+                    number[0] = number[2]
     return at
 
 
@@ -185,7 +240,7 @@ class BlockWriter:
         self._words = {word.key: word for word in words}
         self._keys = [word.key for word in words]
         self._last = np.array([kept.get(key, ABSENT) for key in self._keys], np.int64)
-        self._rule = np.array([_rule(word) for word in words], np.int64).reshape(len(words), 8)
+        self._rule = np.array([_rule(word) for word in words], np.int64).reshape(len(words), 9)
         self._spelling = np.zeros((len(words), 2 * _LETTERS), np.uint8)
         for row, word in zip(self._spelling, words, strict=True):
             row[: len(word.letter)] = np.frombuffer(word.letter.encode(), np.uint8)
@@ -214,9 +269,9 @@ class BlockWriter:
         texts = list(lines)
         if not texts:
             return
-        empty = np.zeros((0, len(texts)), np.int64)
+        no_words = np.zeros((0, len(texts)), np.int64)
         none = np.zeros(len(texts), np.int64)
-        self._emit(empty, none, np.arange(len(texts)), texts, np.zeros((0, 8), np.int64), self._last[:0])
+        self._emit(no_words, none, np.arange(len(texts)), texts, self._rule[:0], self._spelling[:0], self._last[:0])
 
     def table(
         self,
@@ -239,37 +294,23 @@ class BlockWriter:
         A row of which nothing is left to print makes no block.
         """
         rows = len(next(iter(columns.values())))
+        present = [k for k, key in enumerate(self._keys) if key in columns]
+        table = np.empty((len(present), rows), np.int64)
         flags = np.zeros(rows, np.int64)
-        for key, flag in (forced or {}).items():
-            flags |= np.int64(1 << self._keys.index(key)) * np.asarray(flag, np.int64)
+        for k, index in enumerate(present):
+            key = self._keys[index]
+            table[k] = columns[key]
+            _check_range(self._words[key], table[k])
+            if forced and key in forced:
+                flags |= np.int64(1 << k) * np.asarray(forced[key], np.int64)
         before = np.full(rows, -1, np.int64) if text_before is None else text_before
-        table = np.full((len(self._keys), rows), ABSENT, np.int64)
-        for key, column in columns.items():
-            table[self._keys.index(key)] = column
-        self._check_range(table)
-        self._emit(table, flags, before, texts, self._rule, self._last)
+        last = self._last[present]
+        self._emit(table, flags, before, texts, self._rule[present], self._spelling[present], last)
+        self._last[present] = last
 
-    def _check_range(self, chunk: Ints) -> None:
-        """Refuse a number that the word's format has no room for."""
-        for word, column in zip(self._words.values(), chunk, strict=True):
-            scale = 10**word.format.decimals
-            high = int(column.max())
-            if high == ABSENT:
-                continue
-            low = int(np.where(column == ABSENT, high, column).min())
-            if high > word.format.greatest * scale or low < word.format.least * scale:
-                value = (high if high > word.format.greatest * scale else low) / scale
-                limit = word.format.greatest if high > word.format.greatest * scale else word.format.least
-                raise Refused(
-                    Problem(
-                        "program",
-                        0,
-                        f"word {word.letter}{value:g} is beyond {limit:g}",
-                        "see the word's limits in the definition",
-                    )
-                )
-
-    def _emit(self, table: Ints, forced: Ints, before: Ints, texts: Sequence[str], rule: Ints, last: Ints) -> None:
+    def _emit(
+        self, table: Ints, forced: Ints, before: Ints, texts: Sequence[str], rule: Ints, spelling: Bytes, last: Ints
+    ) -> None:
         encoded = [text.encode() for text in texts]
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
@@ -278,20 +319,24 @@ class BlockWriter:
         text_room = sum(len(encoded[k]) + heads + 1 for k in before[before >= 0])
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
         written = _write_blocks(
-            table,
-            forced,
-            before,
-            text_bytes,
-            ends,
-            rule,
-            self._spelling[: len(rule)],
-            last,
-            self._number,
-            self._letter,
-            self._skip,
-            out,
+            table, forced, before, text_bytes, ends, rule, spelling, last, self._number, self._letter, self._skip, out
         )
         self._sink.write(out[:written].data)
+
+
+def _check_range(word: Word, column: Ints) -> None:
+    """Refuse a number that the word's format has no room for."""
+    scale = 10**word.format.decimals
+    most, fewest = int(column.max()), int(column.min())
+    if fewest == ABSENT and most != ABSENT:
+        fewest = int(column[column != ABSENT].min())
+    for count, limit, beyond in (
+        (most, word.format.greatest, most > word.format.greatest * scale),
+        (fewest, word.format.least, fewest < word.format.least * scale),
+    ):
+        if beyond and count != ABSENT:
+            what = f"word {word.letter}{count / scale:g} is beyond {limit:g}"
+            raise Refused(Problem("program", 0, what, "see the limits of the word's format in the definition"))
 
 
 def _rule(word: Word) -> list[int]:
@@ -299,6 +344,7 @@ def _rule(word: Word) -> list[int]:
     return [
         int(word.modal),
         number.decimals,
+        10**number.decimals,
         int(number.point),
         int(number.leading_zero),
         int(number.trailing_zeros),
