@@ -2,9 +2,9 @@
  *
  *     cc -O2 floor.c -o floor -lm && ./floor FILE.cls FILE.mpf
  *
- * Does:     reads a CL file in blocks; parses the numbers of GOTO by hand; B = acos(k), C = atan2(j, i) in degrees,
+ * Does:     reads a CL file whole; parses the numbers of GOTO by hand; B = acos(k), C = atan2(j, i) in degrees,
  *           0 to 360; rounds to five decimals; writes the motion blocks of the YL569 with TCP on, numbered by tens, words
- *           left out that print as they last did, through one buffer. One thread, no printf, no allocation.
+ *           left out that print as they last did, and writes them at once. One thread, no printf.
  * Does not: any statement but GOTO, RAPID and FEDRAT; comments, `$` continuations, exponents, arcs, cycles; head and foot of
  *           a program; a machine definition, limits, other branches, other formats; checks of any kind, except that the
  *           files can be opened and written. It is a floor under a post, not a post.
@@ -20,9 +20,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define IN_SIZE (1u << 18)
-#define OUT_SIZE (1u << 18)
-#define BLOCK_ROOM 256 /* the longest block is below 120 bytes */
 #define SCALE 1e5
 #define NONE INT64_MIN
 
@@ -30,8 +27,6 @@ static const double DEGREES = 180.0 / 3.14159265358979323846;
 
 static const double POWER[] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
-static char in[IN_SIZE + 8]; /* room for a line end, and for comparing a keyword past it */
-static char out[OUT_SIZE + BLOCK_ROOM];
 static char pair[200]; /* "00" "01" ... "99" */
 
 /* What the words last printed, as counts of the last digit. */
@@ -162,8 +157,14 @@ int main(int argc, char **argv)
     FILE *target = fopen(argv[2], "wb");
     if (!target)
         fail(argv[2]);
-    setvbuf(source, NULL, _IONBF, 0); /* the blocks are large: no second buffer between */
-    setvbuf(target, NULL, _IONBF, 0);
+    fseek(source, 0, SEEK_END);
+    size_t size = (size_t)ftell(source);
+    rewind(source);
+    /* room for a line end and a keyword past it; a block is at most twice as long as its line, and 100 bytes */
+    char *in = malloc(size + 16), *out = malloc(2 * size + 4096);
+    if (!in || !out || fread(in, 1, size, source) != size)
+        fail(argv[1]);
+    memset(in + size, '\n', 16);
     for (int n = 0; n < 100; n++) {
         pair[2 * n] = (char)('0' + n / 10);
         pair[2 * n + 1] = (char)('0' + n % 10);
@@ -171,98 +172,71 @@ int main(int argc, char **argv)
 
     int64_t b = 0, c = 0, f = 0;
     int rapid = 0, first = 1;
-    size_t kept = 0; /* bytes of an unfinished line, at the start of the block */
     char *o = out;
-    for (;;) {
-        size_t got = fread(in + kept, 1, IN_SIZE - kept, source);
-        size_t size = kept + got;
-        if (size == 0)
-            break;
-        const char *end = in + size;
-        if (got == 0)
-            in[size] = '\n', end++; /* the last line had no end */
-        else
-            while (end > in && end[-1] != '\n')
-                end--;
-        if (end == in && size == IN_SIZE) {
-            fputs("a line is longer than the buffer\n", stderr);
-            return 2;
-        }
-        for (const char *p = in; p < end; p++) {
-            if (memcmp(p, "GOTO/", 5) == 0) {
-                p += 5;
-                double x = parse(&p);
+    const char *end = in + size;
+    for (const char *p = in; p < end; p++) {
+        if (memcmp(p, "GOTO/", 5) == 0) {
+            p += 5;
+            double x = parse(&p);
+            p++;
+            double y = parse(&p);
+            p++;
+            double z = parse(&p);
+            if (*p == ',') { /* without a vector the last one stands */
                 p++;
-                double y = parse(&p);
+                double i = parse(&p);
                 p++;
-                double z = parse(&p);
-                if (*p == ',') { /* without a vector the last one stands */
-                    p++;
-                    double i = parse(&p);
-                    p++;
-                    double j = parse(&p);
-                    p++;
-                    double k = parse(&p);
-                    double angle = atan2(j, i) * DEGREES;
-                    b = count_of(acos(k) * DEGREES);
-                    c = count_of(angle < 0.0 ? angle + 360.0 : angle);
-                    if (c == 36000000)
-                        c = 0;
-                }
-                if (first) { /* the rotary axes go to their place before TCP comes on */
-                    o = put_number(o);
-                    memcpy(o, " G0", 3);
-                    o = put_word(o + 3, 'B', b, &last_b);
-                    o = put_word(o, 'C', c, &last_c);
-                    *o++ = '\n';
-                    first = 0;
-                }
-                char *start = o;
-                o = put_number(o);
-                char *words = o;
-                if (last_g != !rapid) {
-                    last_g = !rapid;
-                    memcpy(o, rapid ? " G0" : " G1", 3);
-                    o += 3;
-                }
-                o = put_word(o, 'X', count_of(x), &last_x);
-                o = put_word(o, 'Y', count_of(y), &last_y);
-                o = put_word(o, 'Z', count_of(z), &last_z);
-                o = put_word(o, 'B', b, &last_b);
-                o = put_word(o, 'C', c, &last_c);
-                if (!rapid)
-                    o = put_word(o, 'F', f, &last_f);
-                rapid = 0;
-                if (o == words) { /* nothing changed: no block */
-                    o = start;
-                    block_number -= 10;
-                } else {
-                    *o++ = '\n';
-                }
-                if (o >= out + OUT_SIZE) {
-                    if (fwrite(out, 1, (size_t)(o - out), target) != (size_t)(o - out))
-                        fail(argv[2]);
-                    o = out;
-                }
-            } else if (memcmp(p, "RAPID", 5) == 0) {
-                rapid = 1;
-            } else if (memcmp(p, "FEDRAT/", 7) == 0) {
-                const char *number = p + 7;
-                for (const char *q = number; *q != '\n'; q++)
-                    if (*q == ',')
-                        number = q + 1;
-                f = count_of(parse(&number));
+                double j = parse(&p);
+                p++;
+                double k = parse(&p);
+                double angle = atan2(j, i) * DEGREES;
+                b = count_of(acos(k) * DEGREES);
+                c = count_of(angle < 0.0 ? angle + 360.0 : angle);
+                if (c == 36000000)
+                    c = 0;
             }
-            while (*p != '\n')
-                p++;
+            if (first) { /* the rotary axes go to their place before TCP comes on */
+                o = put_number(o);
+                memcpy(o, " G0", 3);
+                o = put_word(o + 3, 'B', b, &last_b);
+                o = put_word(o, 'C', c, &last_c);
+                *o++ = '\n';
+                first = 0;
+            }
+            char *start = o;
+            o = put_number(o);
+            char *words = o;
+            if (last_g != !rapid) {
+                last_g = !rapid;
+                memcpy(o, rapid ? " G0" : " G1", 3);
+                o += 3;
+            }
+            o = put_word(o, 'X', count_of(x), &last_x);
+            o = put_word(o, 'Y', count_of(y), &last_y);
+            o = put_word(o, 'Z', count_of(z), &last_z);
+            o = put_word(o, 'B', b, &last_b);
+            o = put_word(o, 'C', c, &last_c);
+            if (!rapid)
+                o = put_word(o, 'F', f, &last_f);
+            rapid = 0;
+            if (o == words) { /* nothing changed: no block */
+                o = start;
+                block_number -= 10;
+            } else {
+                *o++ = '\n';
+            }
+        } else if (memcmp(p, "RAPID", 5) == 0) {
+            rapid = 1;
+        } else if (memcmp(p, "FEDRAT/", 7) == 0) {
+            const char *number = p + 7;
+            for (const char *q = number; *q != '\n'; q++)
+                if (*q == ',')
+                    number = q + 1;
+            f = count_of(parse(&number));
         }
-        if (got == 0)
-            break;
-        kept = size - (size_t)(end - in);
-        memmove(in, end, kept);
+        while (*p != '\n')
+            p++;
     }
-    if (ferror(source))
-        fail(argv[1]);
     if (fwrite(out, 1, (size_t)(o - out), target) != (size_t)(o - out) || fclose(target) != 0)
         fail(argv[2]);
     fclose(source);

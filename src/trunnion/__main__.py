@@ -1,7 +1,5 @@
 """``python -m trunnion``."""
 
-import sys
+from trunnion.cli import run
 
-from trunnion.cli import main
-
-sys.exit(main())
+run()

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.cl import naive
 from trunnion.arrays import Floats, Lines
-from trunnion.cl.read import read_in_chunks
+from trunnion.cl.read import read_cl, read_in_chunks
 from trunnion.cl.scan import OPEN, ROW, SPAN, scan, settle_axes
 from trunnion.errors import InputError
 from trunnion.toolpath import Toolpath
@@ -245,3 +245,16 @@ def test_whatever_happens_to_the_bytes_the_end_is_a_toolpath_or_an_input_error(
     path = tmp_path / "a.cls"
     path.write_bytes(bytes(data))
     outcome(path, 1 << 16)
+
+
+def test_a_file_whose_lines_get_shorter_has_room_for_all_its_points(tmp_path: Path) -> None:
+    talk = "PPRINT/" + "x" * 5000 + "\n"
+    points = "".join(f"GOTO/{n},0,1\n" for n in range(40_000))
+    file = tmp_path / "late.cls"
+    file.write_text(f"TOOL PATH/OP,TOOL,T\n{talk * 300}FEDRAT/MMPM,100\n{points}END-OF-PATH\n", encoding="utf-8")
+    moves = read_cl(file).operations[0].moves
+    assert len(moves) == 40_000
+    assert (moves.tip[:, 0] == np.arange(40_000)).all()
+    assert (moves.axis == [0.0, 0.0, 1.0]).all()
+    assert (moves.line == np.arange(303, 40_303)).all()
+    assert (moves.feed == 100.0).all()

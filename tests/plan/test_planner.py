@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
 from trunnion.errors import Refused, Severity
-from trunnion.machine import Machine, forward, load_machine, shipped
+from trunnion.machine import Machine, forward, load_machine, shipped, slide_positions
 from trunnion.plan import Plan, plan
 from trunnion.plan.planner import into_frame
 from trunnion.toolpath import Arcs, Frame, Moves, Operation, Tool, Toolpath
@@ -32,6 +32,12 @@ def planned(machine: Machine, *operations: Operation) -> Plan:
     return plan([Toolpath("part.cls", operations)], machine, 0.001)
 
 
+def joints_of(machine: Machine, *operations: Operation) -> Floats:
+    """(n, 5) axis positions of the first operation."""
+    motion = planned(machine, *operations).motions[0]
+    return slide_positions(machine, motion.operation.moves.tip, motion.rotary)
+
+
 def direction(b: float, c: float) -> Floats:
     """Tool axis of the YL569 at B and C, degrees."""
     b, c = np.radians(b), np.radians(c)
@@ -50,21 +56,21 @@ def test_the_published_angles_of_the_yl569_follow_from_its_tool_axes(
     b: float, c: float, axis: tuple[float, float, float]
 ) -> None:
     machine = load_machine("yl569")
-    joints = planned(machine, operation(np.zeros((1, 3)), np.array([axis]) / np.linalg.norm(axis))).motions[0].joints
+    joints = joints_of(machine, operation(np.zeros((1, 3)), np.array([axis]) / np.linalg.norm(axis)))
     assert joints[0, machine.column("B")] == pytest.approx(b, abs=0.01)  # vectors are printed with four decimals
     assert joints[0, machine.column("C")] == pytest.approx(c, abs=0.01)
 
 
 def test_the_branch_within_the_limits_is_taken_even_if_it_is_farther() -> None:
     machine = load_machine("yl569")
-    joints = planned(machine, operation(np.zeros((1, 3)), np.array([direction(30, 200)]))).motions[0].joints[0]
+    joints = joints_of(machine, operation(np.zeros((1, 3)), np.array([direction(30, 200)])))[0]
     assert joints[machine.column("B")] == pytest.approx(30), "B -30 with C 20 is nearer, but B ends at -11"
     assert joints[machine.column("C")] == pytest.approx(200)
 
 
 def test_of_two_possible_branches_the_nearer_one_is_taken() -> None:
     machine = load_machine("yl569")
-    joints = planned(machine, operation(np.zeros((1, 3)), np.array([direction(5, 190)]))).motions[0].joints[0]
+    joints = joints_of(machine, operation(np.zeros((1, 3)), np.array([direction(5, 190)])))[0]
     assert joints[machine.column("B")] == pytest.approx(-5)
     assert joints[machine.column("C")] == pytest.approx(10)
 
@@ -72,7 +78,7 @@ def test_of_two_possible_branches_the_nearer_one_is_taken() -> None:
 def test_the_pole_keeps_the_last_angle() -> None:
     machine = load_machine("yl569")
     axes = np.array([direction(20, 123.0), [0.0, 0.0, 1.0], direction(20, 123.0)])
-    joints = planned(machine, operation(np.zeros((3, 3)), axes)).motions[0].joints
+    joints = joints_of(machine, operation(np.zeros((3, 3)), axes))
     assert joints[:, machine.column("C")] == pytest.approx([123.0] * 3)
     assert joints[1, machine.column("B")] == 0.0
 
@@ -80,9 +86,7 @@ def test_the_pole_keeps_the_last_angle() -> None:
 def test_an_endless_axis_is_displayed_from_0_to_360_and_never_as_360() -> None:
     machine = load_machine("yl569")
     turns = np.linspace(0, 1080, 400)
-    joints = (
-        planned(machine, operation(np.zeros((400, 3)), np.array([direction(40, c) for c in turns]))).motions[0].joints
-    )
+    joints = joints_of(machine, operation(np.zeros((400, 3)), np.array([direction(40, c) for c in turns])))
     c = joints[:, machine.column("C")]
     assert ((c >= 0) & (c < 360)).all()
     assert np.abs((c - turns + 180) % 360 - 180).max() < 1e-9
@@ -106,7 +110,7 @@ def test_a_value_that_prints_as_the_limit_is_put_onto_it() -> None:
     machine = load_machine("yl569")
     motion = planned(machine, operation(np.zeros((1, 3)), np.array([direction(100.000004, 0)])))
     assert motion.problems == ()
-    assert motion.motions[0].joints[0, machine.column("B")] == 100.0
+    assert motion.motions[0].rotary[0, machine.rotary.index(machine.column("B"))] == 100.0
 
 
 def test_a_part_larger_than_the_travel_is_refused_wherever_it_sits() -> None:
@@ -159,7 +163,7 @@ def test_the_tool_is_where_the_toolpath_wants_it_on_every_shipped_machine(
     axes = np.array([direction(b, c) for b, c, *_ in poses])
     tips = np.array([p[2:] for p in poses])
     motion = planned(machine, operation(tips, axes)).motions[0]
-    tip, axis = forward(machine, motion.joints)
+    tip, axis = forward(machine, slide_positions(machine, tips, motion.rotary))
     near_pole = 1e-7  # a tool axis nearer to the pole than CL files resolve is taken to be on it
     assert np.abs(axis - axes).max() < near_pole
     assert np.abs(tip - tips).max() < 1e-9 + near_pole * 1000

@@ -9,7 +9,7 @@ from trunnion.arrays import Codes, Flags, Floats, Lines
 from trunnion.toolpath import Event, Frame, Sense, Tool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Columns:
     """The columns of the whole file, with room for ``n`` rows; operations are slices of them.
 
@@ -24,6 +24,14 @@ class Columns:
     feed: Floats
     per_rev: Flags
     line: Lines
+
+    def grow(self) -> None:
+        """Make room for half as many rows again."""
+        for name in ("tip", "axis", "kind", "phase", "feed", "per_rev", "line"):
+            old = getattr(self, name)
+            new = np.empty((len(old) * 3 // 2 + 1, *old.shape[1:]), old.dtype)
+            new[: len(old)] = old
+            setattr(self, name, new)
 
     @staticmethod
     def room_for(n: int) -> "Columns":

@@ -1,7 +1,7 @@
 """Reads an NX CLSF into a ``Toolpath``.
 
-The file goes by twice, a piece at a time: once to count its lines, which sizes the columns, and to see what
-it is written in; once to be read. Points never become Python objects.
+The file goes by twice, a piece at a time: once to see what it is written in and how long its lines are, which sizes the
+columns; once to be read. Points never become Python objects.
 """
 
 import stat
@@ -32,7 +32,7 @@ _PLAIN_TEXT = "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)"
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """What the first pass found: bytes to skip at the beginning, line ends, encoding, whether the last line ends."""
+    """What the first pass found: bytes to skip, about how many lines, encoding, whether the last line ends."""
 
     skip: int
     lines: int
@@ -91,7 +91,7 @@ def read_in_chunks(
             raise findings.fatal(0, what, "give a CL file")
         with path.open("rb", buffering=0) as file:
             survey = _survey(file, findings)
-            columns = Columns.room_for(survey.lines + 1)
+            columns = Columns.room_for(survey.lines)
             interpreter = Interpreter(columns, findings, survey.encoding, strict)
             file.seek(survey.skip)
             rows, line = _scan_file(file, survey, chunk, columns, interpreter, findings, progress)
@@ -110,28 +110,41 @@ def read_in_chunks(
 
 
 def _survey(file: BinaryIO, findings: Findings) -> Survey:
-    """Count lines, and refuse what is no text."""
+    """Look through the whole file, and refuse what is no text."""
     guess = Guess()
-    lines = skip = size = 0
-    lone = whole = False
+    skip = size = 0
+    per_byte = 1.0
+    whole = lines = False
     while piece := file.read(_SURVEY):
         if size == 0:
             if piece.startswith((b"\xff\xfe", b"\xfe\xff")):
                 raise findings.fatal(1, "unknown encoding: this is UTF-16", _PLAIN_TEXT)
             skip = len(_BOM) if piece.startswith(_BOM) else 0
+            per_byte = (piece.count(b"\n") + 1) / len(piece)
         if (nul := piece.find(0)) >= 0:
-            line = lines + piece.count(b"\n", 0, nul) + 1
+            line = _line_at(file, size + nul)
             raise findings.fatal(line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT)
         guess.add(piece)
         size += len(piece)
-        lines += piece.count(b"\n")
-        lone = lone or (lines == 0 and b"\r" in piece.rstrip())
         whole = piece.endswith(b"\n")
+        lines = lines or b"\n" in piece
+        if not lines and b"\r" in piece.rstrip():
+            raise findings.fatal(
+                1, "the lines end with a lone carriage return", "save the file with LF or CRLF line ends"
+            )
     if size == skip:
         raise findings.fatal(0, "the file is empty", "write the tool path out of the CAM system again")
-    if lone and lines == 0:
-        raise findings.fatal(1, "the lines end with a lone carriage return", "save the file with LF or CRLF line ends")
-    return Survey(skip, lines, guess.name(), whole)
+    return Survey(skip, int(1.02 * per_byte * size) + 16, guess.name(), whole)
+
+
+def _line_at(file: BinaryIO, offset: int) -> int:
+    """Line, from 1, in which a byte of the file lies."""
+    file.seek(0)
+    line, left = 1, offset
+    while left and (piece := file.read(min(left, _SURVEY))):
+        line += piece.count(b"\n")
+        left -= len(piece)
+    return line
 
 
 def _scan_file(
@@ -177,10 +190,10 @@ def _scan_file(
                 if mark & OPEN:
                     findings.error(number, "the file ends after a continuation sign $", "write the rest of it")
                 interpreter.take(bytes(view[begin : begin + length]), number, row, mark)
-            if at == before:
+            if rows == len(columns.line):
+                columns.grow()
+            elif at == before:
                 break
-        if rows == len(columns.line) and at < stop:
-            raise findings.fatal(line, "the file grew while it was read", "read it again when it is whole")
         if filled - at > LONGEST:
             raise _endless(line, findings)
         data[: filled - at] = view[at:filled]

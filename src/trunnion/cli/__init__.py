@@ -4,10 +4,26 @@ Results go to stdout, everything else to stderr. Exit 0: done. 1: understood, bu
 2: input or usage error. An output file appears whole or not at all.
 """
 
+import gc
+import os
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from trunnion.errors import InputError, Refused
+
+
+def run() -> NoReturn:
+    """The command of the shell: do it, and be gone.
+
+    A run makes no garbage in circles, and taking the interpreter down piece by piece takes a fifth of the time that
+    posting a small file does: the collector stays off, and the process ends as soon as everything is written.
+    """
+    gc.disable()
+    code = main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -6,12 +6,10 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NoReturn
-
-from tqdm import tqdm
 
 from trunnion.cl import read_cl
 from trunnion.cli.output import whole
+from trunnion.cli.progress import progress
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, load_machine
@@ -36,8 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
             program = _program(paths, machine, control, printed, arguments.force)
             rows = sum(len(motion.operation.moves) for motion in program.motions)
-            with tqdm(total=rows, unit=" points", desc="writing", delay=1, disable=None, leave=False) as bar:
-                write_program(program, sink, lambda more: _advance(bar, more))
+            with progress("writing", rows, "points") as advance:
+                write_program(program, sink, advance)
         if target != "-":
             print(f"{target}: {rows} points, {len(program.motions)} operations", file=sys.stderr)
     return 0
@@ -46,14 +44,17 @@ def run(arguments: argparse.Namespace) -> int:
 def _read(file: str, units: str | None, strict: bool) -> Toolpath:
     path = Path(file)
     size = path.stat().st_size if path.is_file() else 0
-    with tqdm(total=size, unit="B", unit_scale=True, desc=path.name, delay=1, disable=None, leave=False) as bar:
-        toolpath = read_cl(path, units=units, strict=strict, progress=lambda done: _advance(bar, done - int(bar.n)))
+    with progress(path.name, size, "B") as advance:
+        done = 0
+
+        def so_far(read: int) -> None:
+            nonlocal done
+            advance(read - done)
+            done = read
+
+        toolpath = read_cl(path, units=units, strict=strict, progress=so_far)
     _say(toolpath.remarks)
     return toolpath
-
-
-def _advance(bar: "tqdm[NoReturn]", more: int) -> None:
-    bar.update(more)
 
 
 def _program(

@@ -142,6 +142,7 @@ class _Author:
         self._progress = progress
         axes = program.machine.axes
         self._primary, self._secondary = program.machine.primary, program.machine.secondary
+        self._column = {k: c for c, k in enumerate(program.machine.rotary)}
         self._letters = axes[self._primary].name, axes[self._secondary].name
         words = self._control.block_words(*self._letters, three_axis=False)
         self._writer = BlockWriter(sink, words, self._control.numbers)
@@ -179,7 +180,7 @@ class _Author:
             self._writer.remember(word, code)
         self._expand(f"approach_{kind}", values, motion)
         for word, column in (("primary", self._primary), ("secondary", self._secondary)):
-            self._writer.remember(word, int(self._angle_counts(motion.joints[:1, column], word)[0]))
+            self._writer.remember(word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word)[0]))
         self._motion(motion)
         self._back_in_force()
         self._expand(f"operation_end_{kind}", values, motion)
@@ -202,7 +203,9 @@ class _Author:
         formats = {word.key: word for word in control.block_words(*self._letters, motion.three_axis)}
         angles = {
             f"{word}_word": formats[word].letter
-            + formats[word].format.of_count(int(self._angle_counts(motion.joints[:1, column], word, motion)[0]))
+            + formats[word].format.of_count(
+                int(self._angle_counts(motion.rotary[:1, self._column[column]], word, motion)[0])
+            )
             for word, column in (("primary", self._primary), ("secondary", self._secondary))
         }
         return {
@@ -344,8 +347,8 @@ class _Author:
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
-        columns["primary"] = self._angle_counts(motion.joints[part, self._primary], "primary")
-        columns["secondary"] = self._angle_counts(motion.joints[part, self._secondary], "secondary")
+        columns["primary"] = self._angle_counts(motion.rotary[part, self._column[self._primary]], "primary")
+        columns["secondary"] = self._angle_counts(motion.rotary[part, self._column[self._secondary]], "secondary")
         columns["motion"] = np.where(rapid, control.codes["rapid"], control.codes["linear"]).astype(np.int64)
         columns["feed"] = np.where(rapid, ABSENT, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"]))
         mode = np.where(moves.per_rev[part], control.codes["feed_per_revolution"], control.codes["feed_per_minute"])

@@ -5,7 +5,7 @@ other rooms use ``trunnion.machine.inverse.pack`` with ``solve_point`` and ``sol
 """
 
 from trunnion.machine.chain import forward
-from trunnion.machine.inverse import Packed, Solutions, inverse, pack
+from trunnion.machine.inverse import Packed, Solutions, inverse, pack, slide_positions
 from trunnion.machine.load import load_machine, shipped
 from trunnion.machine.model import Axis, AxisKind, Carries, Facts, Machine, Output, Positive
 
@@ -24,4 +24,5 @@ __all__ = [
     "load_machine",
     "pack",
     "shipped",
+    "slide_positions",
 ]

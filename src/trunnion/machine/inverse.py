@@ -195,6 +195,33 @@ def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float = 0.
     return Solutions(joints, (status & (UNREACHABLE | STUCK)) == 0, (status & POLE) != 0)
 
 
+def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: float = 0.0) -> Floats:
+    """All five axis positions for rows of tool tips when the rotary positions are known.
+
+    Parameters
+    ----------
+    tip : (n, 3) float64, mm
+        In workpiece coordinates, as for ``inverse``.
+    rotary : (n, 2) float64, deg
+        Displayed values in the order of ``machine.rotary``.
+
+    Returns
+    -------
+    (n, 5) float64
+        mm or deg, in the order of ``machine.axes``; NaN slides where they are stuck.
+    """
+    joints = np.empty((len(tip), 5))
+    slide_rows(pack(machine, tool_length), np.ascontiguousarray(tip), np.ascontiguousarray(rotary), joints)
+    return joints
+
+
+@njit(cache=True)
+def slide_rows(packed: Packed, tip: Floats, rotary: Floats, joints: Floats) -> None:
+    """Call ``solve_slides`` for each row; joints (n, 5) is written."""
+    for row in range(tip.shape[0]):
+        solve_slides(packed, rotary[row, 0], rotary[row, 1], tip[row, 0], tip[row, 1], tip[row, 2], joints[row])
+
+
 @njit(cache=True)
 def solve_rows(packed: Packed, tip: Floats, axis: Floats, joints: Floats, status: Codes) -> None:
     """Call ``solve_point`` for each row; joints (2, n, 5) and status (n,) uint8 are written."""

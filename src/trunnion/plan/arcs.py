@@ -14,6 +14,9 @@ from trunnion.toolpath import Arcs, Kind, Moves, Operation
 #: Directions are taken as along a coordinate axis within this sine; seven printed decimals give 1e-7.
 _ALONG = 1e-6
 
+#: Start and end of an arc that lie nearer to each other than this, mm, could print as the same point.
+_CLEAR = 0.005
+
 
 def arc_sweeps(operation: Operation) -> Floats:
     """Angle that the tip turns through on each arc.
@@ -35,11 +38,17 @@ def arc_sweeps(operation: Operation) -> Floats:
 
 
 def plain_arcs(operation: Operation) -> Flags:
-    """(m,) bool: the arc turns about X, Y or Z and the tool axis is the same at its start and its end."""
-    arcs, axis = operation.arcs, operation.moves.axis
+    """(m,) bool: the arc turns about X, Y or Z, the tool axis is the same at its start and its end, and both ends are clear.
+
+    A control takes an arc whose end prints as its start for a full circle. An arc that ends so near to its start without
+    meeting it is therefore none to be given to a control, be it a tiny one or all but a circle.
+    """
+    arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
     about_axis = np.sort(np.abs(arcs.normal), axis=1)[:, 1] < _ALONG
     steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _ALONG
-    return np.asarray(about_axis & steady)
+    apart = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
+    in_plane = np.linalg.norm(np.cross(tip[arcs.row] - tip[arcs.row - 1], arcs.normal), axis=1)
+    return np.asarray(about_axis & steady & ((in_plane > _CLEAR) | (apart == 0.0) | ((in_plane == 0.0) & (apart > _CLEAR))))
 
 
 def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:

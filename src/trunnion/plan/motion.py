@@ -13,17 +13,17 @@ class Motion:
 
     operation    the operation in the program's coordinate system (workpiece frame), with arcs that the control is not
                  to be given as arcs turned into lines
-    joints       (n, 5) float64   axis positions, mm or degrees, in the order of ``machine.axes``; rotary positions lie
-                 in the range that the axis displays
+    rotary       (n, 2) float64   positions of the rotary axes, degrees, in the order of ``machine.rotary`` and in the
+                 range that each displays. The slides follow from them and the tip: ``trunnion.machine.slide_positions``
     three_axis   the tool axis is +Z of the program's coordinate system throughout
     """
 
     operation: Operation
-    joints: Floats
+    rotary: Floats
     three_axis: bool
 
     def __post_init__(self) -> None:
-        self.joints.setflags(write=False)
+        self.rotary.setflags(write=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

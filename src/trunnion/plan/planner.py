@@ -1,16 +1,16 @@
 """From operations to motions: the stages, in their order."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Codes, Floats
+from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
 from trunnion.plan.motion import Motion, Plan
-from trunnion.plan.poses import OUT_OF_REACH, TURNED_OVER, beyond_fit, follow
+from trunnion.plan.poses import OUT_OF_REACH, TURNED_OVER, Poses, beyond_fit, follow
 from trunnion.toolpath import Frame, From, Kind, Operation, Toolpath
 
 #: An operation is three-axis when no component of its tool axis differs from +Z by more than this.
@@ -44,24 +44,31 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
     program_frame = pairs[0][1].frame
-    motions: list[Motion] = []
+    stretches: list[_Stretch] = []
     problems: list[Problem] = []
-    reachable = True
     for path, original in pairs:
         operation = into_frame(original, program_frame)
         operation = lines_for_arcs(operation, plain_arcs(operation), chord_tolerance)
         moves = operation.moves
         poses = follow(machine, moves.tip, moves.axis, keep_slides=machine.workpiece_zero is not None)
+        stretches.append(_Stretch(path.file, operation, poses))
         if poses.outcome.any():
-            problems += _row_problems(path.file, operation, machine, poses.joints, poses.outcome)
-            reachable = reachable and not bool((poses.outcome == OUT_OF_REACH).any())
-        upright = _is_upright(moves.axis)
-        motions.append(Motion(operation, poses.joints, upright))
-    if not reachable:
+            problems += _row_problems(stretches[-1], machine)
+    if any((stretch.poses.outcome == OUT_OF_REACH).any() for stretch in stretches):
         raise Refused(problems)
     if machine.workpiece_zero is None:
-        problems += _fit_problems(pairs[0][0].file, motions, machine)
-    return Plan(tuple(motions), tuple(problems))
+        problems += _fit_problems(stretches, machine)
+    motions = tuple(Motion(s.operation, s.poses.rotary, _is_upright(s.operation.moves.axis)) for s in stretches)
+    return Plan(motions, tuple(problems))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Stretch:
+    """An operation with its poses, and the file that it came from."""
+
+    file: str
+    operation: Operation
+    poses: Poses
 
 
 def _is_upright(axis: Floats) -> bool:
@@ -95,72 +102,53 @@ def into_frame(operation: Operation, frame: Frame) -> Operation:
     )
 
 
-def _row_problems(
-    file: str, operation: Operation, machine: Machine, joints: Floats, outcome: Codes
-) -> Iterable[Problem]:
+def _row_problems(stretch: _Stretch, machine: Machine) -> Iterable[Problem]:
     """Say what is wrong with which rows: each kind of trouble at its first few places, then how many there are."""
     problems: list[Problem] = []
-    line, kind = operation.moves.line, operation.moves.kind
-    for code in np.unique(outcome[outcome > 0]):
+    moves, outcome = stretch.operation.moves, stretch.poses.outcome
+    for code in np.unique(outcome[outcome > 0]).tolist():
         rows = np.flatnonzero(outcome == code)
         if code == TURNED_OVER:
-            rows = rows[kind[rows] != Kind.RAPID]
-        for row in rows[:_NAMED]:
-            problems.append(_row_problem(file, int(line[row]), int(code), machine, joints[row], operation, int(row)))
+            rows = rows[moves.kind[rows] != Kind.RAPID]
+        problems += [_row_problem(stretch, machine, code, row) for row in rows[:_NAMED].tolist()]
         if len(rows) > _NAMED:
-            more = f"the same at {len(rows) - _NAMED} further points, the last in line {line[rows[-1]]}"
-            problems.append(Problem(file, int(line[rows[_NAMED]]), more, severity=problems[-1].severity))
+            more = f"the same at {len(rows) - _NAMED} further points, the last in line {moves.line[rows[-1]]}"
+            line = int(moves.line[rows[_NAMED]])
+            problems.append(Problem(stretch.file, line, more, severity=problems[-1].severity))
     return problems
 
 
-def _row_problem(
-    file: str, line: int, code: int, machine: Machine, joints: Floats, operation: Operation, row: int
-) -> Problem:
+def _row_problem(stretch: _Stretch, machine: Machine, code: int, row: int) -> Problem:
+    moves = stretch.operation.moves
+    place = stretch.file, int(moves.line[row])
     if code == OUT_OF_REACH:
-        i, j, k = operation.moves.axis[row]
-        return Problem(
-            file,
-            line,
-            f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}",
-            "tilt the workpiece or use a machine that reaches it",
-        )
+        i, j, k = moves.axis[row]
+        what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
+        return Problem(*place, what, "tilt the workpiece or use a machine that reaches it")
     if code == TURNED_OVER:
-        return Problem(
-            file,
-            line,
-            "the rotary axes turn over to their other solution while cutting",
-            "split the operation there or tilt the workpiece",
-            Severity.WARNING,
-        )
-    axis = machine.axes[code - 1]
-    value = float(joints[code - 1])
+        what = "the rotary axes turn over to their other solution while cutting"
+        return Problem(*place, what, "split the operation there or tilt the workpiece", Severity.WARNING)
+    axis, value = machine.axes[code - 1], float(stretch.poses.beyond[row])
     limit, word = (axis.low, "below") if value < axis.low else (axis.high, "above")
     unit = "degrees" if axis.is_rotary else "mm"
-    return Problem(
-        file,
-        line,
-        f"axis {axis.name} would go to {value:.5f}, {word} its limit {limit:g} {unit}",
-        "move or tilt the workpiece, or post for another machine",
-    )
+    what = f"axis {axis.name} would go to {value:.5f}, {word} its limit {limit:g} {unit}"
+    return Problem(*place, what, "move or tilt the workpiece, or post for another machine")
 
 
-def _fit_problems(file: str, motions: Sequence[Motion], machine: Machine) -> Iterable[Problem]:
+def _fit_problems(stretches: Sequence[_Stretch], machine: Machine) -> Iterable[Problem]:
     """The slides that have no room for the whole program, with the line of the point farthest out."""
-    joints = np.array([[m.joints.min(axis=0), m.joints.max(axis=0)] for m in motions]).reshape(-1, 5)
+    extremes = np.array([s.poses.extremes for s in stretches])
+    extremes = np.column_stack((extremes[:, :, 0].min(axis=0), extremes[:, :, 1].max(axis=0)))
     problems = []
-    for column in np.flatnonzero(beyond_fit(machine, joints)):
+    for column in np.flatnonzero(beyond_fit(machine, extremes)).tolist():
         axis = machine.axes[column]
-        low, high = float(joints[:, column].min()), float(joints[:, column].max())
-        outermost = high if abs(high) >= abs(low) else low
-        motion = next(m for m in motions if outermost in (m.joints[:, column].min(), m.joints[:, column].max()))
-        row = int(np.flatnonzero(motion.joints[:, column] == outermost)[0])
-        problems.append(
-            Problem(
-                file,
-                int(motion.operation.moves.line[row]),
-                f"axis {axis.name} would go from {low:.3f} to {high:.3f}, {high - low:.3f} mm;"
-                f" its travel from {axis.low:g} to {axis.high:g} has room for {axis.high - axis.low:g} mm",
-                "move or turn the workpiece, or post for another machine",
-            )
+        low, high = extremes[column].tolist()
+        end = 1 if abs(high) >= abs(low) else 0
+        stretch = next(s for s in stretches if s.poses.extremes[column, end] == extremes[column, end])
+        line = int(stretch.operation.moves.line[stretch.poses.where[column, end]])
+        what = (
+            f"axis {axis.name} would go from {low:.3f} to {high:.3f}, {high - low:.3f} mm;"
+            f" its travel from {axis.low:g} to {axis.high:g} has room for {axis.high - axis.low:g} mm"
         )
+        problems.append(Problem(stretch.file, line, what, "move or turn the workpiece, or post for another machine"))
     return problems

@@ -22,10 +22,20 @@ FINE, TURNED_OVER, OUT_OF_REACH = 0, 100, 200
 
 @dataclass(frozen=True, slots=True)
 class Poses:
-    """joints (n, 5) float64 mm or degrees, as the axes display them; outcome (n,) uint8 as listed above."""
+    """What ``follow`` found.
 
-    joints: Floats
+    rotary    (n, 2) float64  positions of the rotary axes as they display them, degrees
+    outcome   (n,) uint8      as listed above
+    beyond    (n,) float64    where an axis is beyond its limit: its value, mm or degrees; not written elsewhere
+    extremes  (5, 2) float64  least and greatest value of every axis, mm or degrees
+    where     (5, 2) int64    the rows where they are
+    """
+
+    rotary: Floats
     outcome: Codes
+    beyond: Floats
+    extremes: Floats
+    where: Ints
 
 
 @njit(cache=True)
@@ -51,10 +61,13 @@ def _follow(
     tip: Floats,
     axis: Floats,
     start: Floats,
-    joints: Floats,
+    found: Floats,
     outcome: Codes,
+    excess: Floats,
+    extremes: Floats,
+    where: Ints,
 ) -> None:
-    """Fill ``joints`` and ``outcome`` row by row.
+    """Fill the columns of ``Poses`` row by row.
 
     rotary       (2,) int64     columns of the rotary axes, the one next to the workpiece first
     low, high    (5,) float64   limits, infinite where none is to be kept
@@ -62,7 +75,7 @@ def _follow(
     start        (2,) float64   rotary positions before the first row
     """
     first_column, second_column = rotary[0], rotary[1]
-    candidate = np.empty(5)
+    candidate, joints = np.empty(5), np.empty(5)
     last_first, last_second = start[0], start[1]
     chosen, known = 0, False
     status, u0, u1, cos, sin = 0, 0.0, 0.0, 0.0, 0.0
@@ -73,7 +86,7 @@ def _follow(
             status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
         if status & UNREACHABLE:
             outcome[row] = OUT_OF_REACH
-            joints[row, :] = np.nan
+            found[row, :] = np.nan
             continue
         best_cost, best_beyond, before = np.inf, 99, chosen
         for turn in range(2):
@@ -99,15 +112,24 @@ def _follow(
                     candidate[column] = high[column]
             if beyond < best_beyond or (beyond == best_beyond and cost < best_cost - 1e-9):
                 best_cost, best_beyond, chosen = cost, beyond, branch
-                joints[row] = candidate
+                joints[:] = candidate
                 outcome[row] = which
         if outcome[row] == FINE and known and chosen != before and best_cost > 90.0:
             outcome[row] = TURNED_OVER
         known = not status & POLE
-        last_first, last_second = joints[row, first_column], joints[row, second_column]
-        for column in rotary:
-            if not np.isnan(display_low[column]):
-                joints[row, column] -= 360.0 * np.floor((joints[row, column] - display_low[column]) / 360.0)
+        if FINE < outcome[row] <= 5:
+            excess[row] = joints[outcome[row] - 1]
+        for column in range(5):
+            if joints[column] < extremes[column, 0]:
+                extremes[column, 0] = joints[column]
+                where[column, 0] = row
+            if joints[column] > extremes[column, 1]:
+                extremes[column, 1] = joints[column]
+                where[column, 1] = row
+        last_first, last_second = joints[first_column], joints[second_column]
+        for r in range(2):
+            value, begin = joints[rotary[r]], display_low[rotary[r]]
+            found[row, r] = value if np.isnan(begin) else value - 360.0 * np.floor((value - begin) / 360.0)
 
 
 def follow(machine: Machine, tip: Floats, axis: Floats, keep_slides: bool) -> Poses:
@@ -131,15 +153,23 @@ def follow(machine: Machine, tip: Floats, axis: Floats, keep_slides: bool) -> Po
         low[slides], high[slides] = -np.inf, np.inf
     display = np.array([a.display_low for a in machine.axes])
     start = np.array([machine.axes[c].home for c in rotary])
-    joints = np.empty((len(tip), 5))
-    outcome = np.zeros(len(tip), np.uint8)
-    _follow(packed, rotary, low, high, display, tip, axis, start, joints, outcome)
-    return Poses(joints, outcome)
+    poses = Poses(
+        rotary=np.empty((len(tip), 2)),
+        outcome=np.zeros(len(tip), np.uint8),
+        beyond=np.empty(len(tip)),
+        extremes=np.tile([np.inf, -np.inf], (5, 1)),
+        where=np.zeros((5, 2), np.int64),
+    )
+    _follow(
+        packed, rotary, low, high, display, tip, axis, start,
+        poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where,
+    )  # fmt: skip
+    return poses
 
 
-def beyond_fit(machine: Machine, joints: Floats) -> Flags:
+def beyond_fit(machine: Machine, extremes: Floats) -> Flags:
     """(5,) bool: the slide needs more room than its whole travel has, wherever the workpiece may sit."""
-    span = joints.max(axis=0) - joints.min(axis=0)
+    span = extremes[:, 1] - extremes[:, 0]
     travel = np.array([a.high - a.low for a in machine.axes])
     slides = np.zeros(5, bool)
     slides[list(machine.linear)] = True
