@@ -245,11 +245,15 @@ def solve_point(packed: Packed, x: float, y: float, z: float, i: float, j: float
     if status == UNREACHABLE:
         out[:, :] = math.nan
         return UNREACHABLE
-    first, second = branch_angles(packed, u0, u1, cos, sin, status)
-    status |= solve_slides(packed, first, second, x, y, z, out[0])
-    first, second = branch_angles(packed, u0, u1, cos, -sin, status)
-    status |= solve_slides(packed, first, second, x, y, z, out[1])
-    return status
+    both = status
+    for branch in range(2):
+        first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(
+            packed, u0, u1, cos, sin if branch == 0 else -sin, status
+        )
+        out[branch, packed.columns[0]] = first
+        out[branch, packed.columns[1]] = second
+        both |= place_slides(packed, cos_1, sin_1, cos_2, sin_2, x, y, z, out[branch])
+    return both
 
 
 @njit(cache=True)
@@ -288,8 +292,10 @@ def solve_tilt(packed: Packed, i: float, j: float, k: float) -> tuple[int, float
 
 
 @njit(cache=True)
-def branch_angles(packed: Packed, u0: float, u1: float, cos: float, sin: float, status: int) -> tuple[float, float]:
-    """First and second rotary angle of one branch, deg, in (-180, 180].
+def branch_angles(
+    packed: Packed, u0: float, u1: float, cos: float, sin: float, status: int
+) -> tuple[float, float, float, float, float, float]:
+    """First and second rotary angle of one branch, deg, in (-180, 180], and cosine and sine of each about its line.
 
     Branch 0 has the second rotary angle phi - phase, branch 1, for which ``sin`` comes negative, -phi - phase. On
     machines whose tool axis at zero lies in the plane of the two rotary axes phase is 0: branch 0 is the positive tilt,
@@ -300,7 +306,7 @@ def branch_angles(packed: Packed, u0: float, u1: float, cos: float, sin: float, 
     """
     cos, sin = cos * packed.phase[0] + sin * packed.phase[1], sin * packed.phase[0] - cos * packed.phase[1]
     second = math.degrees(math.atan2(sin, cos))
-    first = 0.0
+    first, cos_1, sin_1 = 0.0, 1.0, 0.0
     if not status & POLE:
         # v = R2 s, then its components across the first line.
         one, two = packed.frame_1, packed.frame_2
@@ -311,12 +317,15 @@ def branch_angles(packed: Packed, u0: float, u1: float, cos: float, sin: float, 
         v2 = two[2] * a + two[5] * b + two[8] * s2
         a = one[0] * v0 + one[1] * v1 + one[2] * v2
         b = one[3] * v0 + one[4] * v1 + one[5] * v2
-        first = packed.sense_1 * math.degrees(math.atan2(u1 * a - u0 * b, u0 * a + u1 * b))
+        cos_1, sin_1 = u0 * a + u1 * b, u1 * a - u0 * b
+        first = packed.sense_1 * math.degrees(math.atan2(sin_1, cos_1))
+        length = math.sqrt(cos_1 * cos_1 + sin_1 * sin_1)
+        cos_1, sin_1 = cos_1 / length, sin_1 / length
     if first <= -180.0:
         first = 180.0
     if second <= -180.0:
         second = 180.0
-    return first + 0.0, second + 0.0  # adding zero turns -0.0 into 0.0
+    return first + 0.0, second + 0.0, cos_1, sin_1, cos, sin  # adding zero turns -0.0 into 0.0
 
 
 @njit(cache=True)
@@ -325,11 +334,32 @@ def solve_slides(packed: Packed, first: float, second: float, x: float, y: float
 
     Returns 0 or STUCK. Rotary values are displayed ones and may be wound up: whole turns drop out without loss.
     """
-    one, two = packed.frame_1, packed.frame_2
     angle = packed.sense_1 * math.radians(first - 360.0 * math.floor(first / 360.0 + 0.5))
     cos_1, sin_1 = math.cos(angle), math.sin(angle)
     angle = math.radians(second - 360.0 * math.floor(second / 360.0 + 0.5))
     cos_2, sin_2 = math.cos(angle), math.sin(angle)
+    out[packed.columns[0]] = first
+    out[packed.columns[1]] = second
+    return place_slides(packed, cos_1, sin_1, cos_2, sin_2, x, y, z, out)
+
+
+@njit(cache=True)
+def place_slides(
+    packed: Packed,
+    cos_1: float,
+    sin_1: float,
+    cos_2: float,
+    sin_2: float,
+    x: float,
+    y: float,
+    z: float,
+    out: Floats,
+) -> int:
+    """Write the slides of ``out`` (5,) that bring the tip to x, y, z; returns 0 or STUCK.
+
+    The rotary axes stand at the angles with these cosines and sines, about the lines of ``frame_1`` and ``frame_2``.
+    """
+    one, two = packed.frame_1, packed.frame_2
     # Where the tip would be with the slides at zero.
     px, py, pz = turned(two, cos_2, sin_2, packed.reach[0], packed.reach[1], packed.reach[2])
     px, py, pz = turned(one, cos_1, sin_1, px + packed.link[0], py + packed.link[1], pz + packed.link[2])
@@ -340,8 +370,6 @@ def solve_slides(packed: Packed, first: float, second: float, x: float, y: float
     # Cramer: the reciprocal basis of the three slide directions.
     rx, ry, rz = by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx
     box = ax * rx + ay * ry + az * rz
-    out[packed.columns[0]] = first
-    out[packed.columns[1]] = second
     if abs(box) < _FLAT:
         for slide in range(3):
             out[packed.columns[2 + slide]] = math.nan

@@ -48,7 +48,9 @@ def plain_arcs(operation: Operation) -> Flags:
     steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _ALONG
     apart = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
     in_plane = np.linalg.norm(np.cross(tip[arcs.row] - tip[arcs.row - 1], arcs.normal), axis=1)
-    return np.asarray(about_axis & steady & ((in_plane > _CLEAR) | (apart == 0.0) | ((in_plane == 0.0) & (apart > _CLEAR))))
+    return np.asarray(
+        about_axis & steady & ((in_plane > _CLEAR) | (apart == 0.0) | ((in_plane == 0.0) & (apart > _CLEAR)))
+    )
 
 
 def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:

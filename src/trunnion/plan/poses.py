@@ -11,7 +11,7 @@ from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machine import Machine, Packed, pack
-from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, solve_slides, solve_tilt
+from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, place_slides, solve_tilt
 
 #: A value beyond a limit by less than this, mm or degrees, prints as the limit and is put onto it.
 LIMIT_TOLERANCE = 1e-5
@@ -93,13 +93,17 @@ def _follow(
             branch = before if turn == 0 else 1 - before
             if turn == 1 and best_beyond == 0 and best_cost < np.degrees(sin):
                 break  # the branches' second angles lie 2 phi apart, so the other one is farther away
-            first, second = branch_angles(packed, u0, u1, cos, sin if branch == 0 else -sin, status)
+            first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(
+                packed, u0, u1, cos, sin if branch == 0 else -sin, status
+            )
             if status & POLE:
                 first = last_first
+                cos_1, sin_1 = np.cos(np.radians(first)), packed.sense_1 * np.sin(np.radians(first))
             first = _nearest_turn(first, last_first, low[first_column], high[first_column])
             second = _nearest_turn(second, last_second, low[second_column], high[second_column])
             cost = abs(first - last_first) + abs(second - last_second)
-            solve_slides(packed, first, second, x, y, z, candidate)
+            candidate[first_column], candidate[second_column] = first, second
+            place_slides(packed, cos_1, sin_1, cos_2, sin_2, x, y, z, candidate)
             beyond, which = 0, 0
             for column in range(5):
                 value = candidate[column]
