@@ -8,6 +8,7 @@ import gc
 import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NoReturn
 
 from trunnion.errors import InputError, Refused
@@ -20,6 +21,8 @@ def run() -> NoReturn:
     posting a small file does: the collector stays off, and the process ends as soon as everything is written.
     """
     gc.disable()
+    if sys.stderr.isatty() and not Path(os.environ["NUMBA_CACHE_DIR"]).exists():
+        print("first run: compiling the kernels, once; this takes some seconds", file=sys.stderr)
     code = main()
     sys.stdout.flush()
     sys.stderr.flush()

@@ -1,0 +1,10 @@
+"""Programs read back: an independent author of what a control does with them.
+
+This room is written from the language of the controls. It shares nothing with what writes programs but the machine.
+"""
+
+from trunnion.reader.run import Comment, Finding, Happening, Orientation, Run, Written
+from trunnion.reader.sinumerik import run_program
+from trunnion.reader.subdivide import Samples, subdivide
+
+__all__ = ["Comment", "Finding", "Happening", "Orientation", "Run", "Samples", "Written", "run_program", "subdivide"]

@@ -1,0 +1,209 @@
+"""From what blocks say to where the five axes are.
+
+In:     per row the tip or the slide values, and a vector or rotary values, or neither: then the angles stay.
+Out:    five joints a row, rotary values as they wind from row to row, and tip and tool axis.
+Units:  mm and degrees.
+
+How a rotary word is reached (``way``): the first rotary axis in the low four bits, the second in the high four.
+"""
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+
+from trunnion.arrays import Codes, Flags, Floats
+from trunnion.machine import Machine, forward, inverse
+from trunnion.machine.inverse import Packed, solve_slides
+
+#: The number itself, as an axis with an end takes it.
+PLAIN: Final = 0
+#: By whichever way is shorter, up to half a turn.
+SHORTEST: Final = 1
+#: Only with growing values.
+POSITIVE: Final = 2
+#: Only with falling values.
+NEGATIVE: Final = 3
+#: Inside the turn in which the axis stands, as an endless axis takes an absolute position.
+SAME_TURN: Final = 4
+
+#: Row status.
+OUT_OF_TRAVEL: Final = 1
+UNREACHABLE: Final = 2
+STUCK: Final = 4
+
+#: Rows settled at a time: bounds what the two branches need besides the columns.
+PIECE: Final = 65536
+
+#: How far past its travel a rotary axis may stand before a branch is refused, degrees.
+SLACK: Final = 1e-6
+
+
+def settle(
+    machine: Machine, packed: Packed, joints: Floats, way: Codes, tip: Floats, axis: Floats, held: Floats, tips: bool
+) -> Codes:
+    """Work out the joints of consecutive rows; ``tip`` and ``axis`` are overwritten with where the tool really is.
+
+    Parameters
+    ----------
+    joints : (n, 5) float64, mm or deg
+        In: the rotary columns hold programmed values, NaN where the block has none. Out: everything.
+    way : (n,) uint8
+        See the module.
+    tip : (n, 3) float64, mm
+        In: tool tips in the workpiece frame if ``tips``, else slide values in the order X, Y, Z.
+    axis : (n, 3) float64
+        In: programmed vectors of any length, workpiece frame; NaN where the block has none.
+    held : (5,) float64
+        Joints before the first row.
+
+    Returns
+    -------
+    (n,) uint8
+        Bits OUT_OF_TRAVEL, UNREACHABLE (the angles stayed) and STUCK.
+    """
+    n = len(tip)
+    status = np.zeros(n, np.uint8)
+    slides = xyz(machine)
+    first, second = machine.rotary
+    for start in range(0, n, PIECE):
+        rows = slice(start, min(start + PIECE, n))
+        angles(machine, joints[rows], way[rows], axis[rows], held, status[rows])
+        if tips:
+            slide_rows(packed, first, second, tip[rows], joints[rows], status[rows])
+            axis[rows] = forward(machine, joints[rows])[1]
+        else:
+            joints[rows, slides] = tip[rows]
+            tip[rows], axis[rows] = forward(machine, joints[rows])
+        held = joints[rows.stop - 1].copy()
+    return status
+
+
+def angles(machine: Machine, joints: Floats, way: Codes, axis: Floats, held: Floats, status: Codes) -> None:
+    """Write the rotary columns of ``joints`` (n, 5), which hold programmed values or NaN, winding on from ``held``."""
+    vector = ~np.isnan(axis[:, 0])
+    branches = np.full((2, len(joints), 2), np.nan) if vector.any() else np.empty((2, 0, 2))
+    pole = np.zeros(len(joints), np.bool_)
+    columns = list(machine.rotary)
+    if vector.any():
+        solved = inverse(machine, np.zeros((int(vector.sum()), 3)), axis[vector])
+        branches[:, vector] = solved.joints[:, :, columns]
+        pole[vector] = solved.pole
+    axes = [machine.axes[column] for column in columns]
+    wind(
+        joints,
+        columns[0],
+        columns[1],
+        way,
+        vector,
+        branches,
+        pole,
+        held[columns],
+        np.array([a.endless for a in axes]),
+        np.array([[a.low, a.high] for a in axes]),
+        np.array([-180.0 if a.output == "-180..180" else 0.0 for a in axes]),
+        status,
+    )
+
+
+def xyz(machine: Machine) -> list[int]:
+    """Columns of the slides X, Y and Z."""
+    return [machine.column(name) for name in "XYZ"]
+
+
+@njit(cache=True)
+def wind(
+    joints: Floats,
+    first: int,
+    second: int,
+    way: Codes,
+    vector: Flags,
+    branches: Floats,
+    pole: Flags,
+    held: Floats,
+    endless: Flags,
+    travel: Floats,
+    lowest: Floats,
+    status: Codes,
+) -> None:
+    """Take the rotary columns ``first`` and ``second`` of ``joints`` (n, 5) to the turns that the control takes.
+
+    branches  (2, n, 2) float64  both solutions of rows with a vector, in (-180, 180]; may be empty if there are none
+    pole      (n,) bool          the first angle is free: it stays
+    held      (2,) float64       angles before the first row
+    endless   (2,) bool
+    travel    (2, 2) float64     lowest and highest value of each axis
+    lowest    (2,) float64       where the turn that the axis displays begins, 0 or -180
+    """
+    a, b = held[0], held[1]
+    for row in range(joints.shape[0]):
+        if not vector[row]:
+            a = reach(a, joints[row, first], way[row] & 15, lowest[0])
+            b = reach(b, joints[row, second], way[row] >> 4, lowest[1])
+        else:
+            best = np.inf
+            one, two = a, b
+            inside = False
+            for branch in range(2):
+                p, q = branches[branch, row, 0], branches[branch, row, 1]
+                if math.isnan(q):
+                    continue
+                p = a if pole[row] else nearest(a, p, endless[0], travel[0, 0], travel[0, 1])
+                q = nearest(b, q, endless[1], travel[1, 0], travel[1, 1])
+                fits = (
+                    travel[0, 0] - SLACK <= p <= travel[0, 1] + SLACK
+                    and travel[1, 0] - SLACK <= q <= travel[1, 1] + SLACK
+                )
+                cost = abs(p - a) + abs(q - b)
+                if (fits and not inside) or (fits == inside and cost < best - 1e-9):
+                    best, one, two, inside = cost, p, q, fits
+            if best == np.inf:
+                status[row] |= UNREACHABLE
+            elif not inside:
+                status[row] |= OUT_OF_TRAVEL
+            a, b = one, two
+        joints[row, first] = a
+        joints[row, second] = b
+
+
+@njit(cache=True)
+def reach(held: float, value: float, way: int, lowest: float) -> float:
+    """Position of a rotary axis that stands at ``held`` after a word with ``value`` (NaN: no word), deg."""
+    if math.isnan(value):
+        return held
+    if way == PLAIN:
+        return value
+    if way == SAME_TURN:
+        inside = value - 360.0 * math.floor((value - lowest) / 360.0)
+        return inside + 360.0 * math.floor((held - lowest) / 360.0)
+    # Counted in whole turns added to the number, so that the digits written are the digits reached.
+    turns = (held - value) / 360.0
+    if way == POSITIVE:
+        return value + 360.0 * math.ceil(turns - 1e-12)
+    if way == NEGATIVE:
+        return value + 360.0 * math.floor(turns + 1e-12)
+    return value + 360.0 * math.floor(turns + 0.5)
+
+
+@njit(cache=True)
+def nearest(held: float, value: float, endless: bool, low: float, high: float) -> float:
+    """The angle equal to ``value`` but for whole turns that is nearest to ``held``; inside the travel if any is."""
+    close = value + 360.0 * math.floor((held - value) / 360.0 + 0.5)
+    if endless or low <= close <= high:
+        return close
+    for turns in range(1, 4):
+        for sign in (-1.0, 1.0):
+            other = close + sign * turns * 360.0
+            if low <= other <= high:
+                return other
+    return close
+
+
+@njit(cache=True)
+def slide_rows(packed: Packed, first: int, second: int, tip: Floats, joints: Floats, status: Codes) -> None:
+    """Write the slide columns of ``joints`` (n, 5): the tip is to be at ``tip`` (n, 3) with the angles there are."""
+    for row in range(tip.shape[0]):
+        a, b = joints[row, first], joints[row, second]
+        if solve_slides(packed, a, b, tip[row, 0], tip[row, 1], tip[row, 2], joints[row]) != 0:
+            status[row] |= STUCK

@@ -1,0 +1,123 @@
+"""Circles as blocks say them: by centre, radius, opening angle or a point on the way.
+
+In and out in programmed coordinates, mm and degrees. A plane is the axis that stands on it: 2 for G17 (X, Y),
+1 for G18 (Z, X), 0 for G19 (Y, Z); seen from its positive end G3 turns counter-clockwise.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+
+#: How much the radius may differ between start and end: an amount, mm, or a part of the radius, whichever is more.
+#: These are the values that the control is delivered with.
+RADIUS_ERROR: Final = 0.01
+RADIUS_PART: Final = 0.001
+
+#: Points nearer than this are one point, mm.
+SAME: Final = 1e-9
+
+
+class ArcError(Exception):
+    """Why there is no such circle, in words."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arc:
+    """A circle or helix from start to end about a centre; it turns about ``normal`` by the right-hand rule."""
+
+    end: Floats
+    centre: Floats
+    normal: Floats
+    radius: float
+    turns: int = 0
+
+
+def normal_of(plane: int, clockwise: bool) -> Floats:
+    """Unit vector about which the arc turns by the right-hand rule."""
+    normal = np.zeros(3)
+    normal[plane] = -1.0 if clockwise else 1.0
+    return normal
+
+
+def by_centre(start: Floats, end: Floats, centre: Floats, plane: int, clockwise: bool, turns: int) -> Arc:
+    """Centre given; its coordinate along the plane's axis does not matter. A full circle if start is end."""
+    middle = centre.copy()
+    middle[plane] = start[plane]
+    first, last = start - middle, end - middle
+    first[plane] = last[plane] = 0.0
+    radius = float(np.linalg.norm(first))
+    off = abs(float(np.linalg.norm(last)) - radius)
+    if radius < SAME:
+        raise ArcError("the circle has no radius")
+    if off > max(RADIUS_ERROR, RADIUS_PART * radius):
+        raise ArcError(f"the radius is {radius:.4f} at the start and {np.linalg.norm(last):.4f} at the end")
+    return Arc(end, middle, normal_of(plane, clockwise), radius, turns)
+
+
+def by_radius(start: Floats, end: Floats, radius: float, plane: int, clockwise: bool, turns: int) -> Arc:
+    """CR=: a negative radius takes the longer way."""
+    chord = _chord(start, end, plane)
+    length = float(np.linalg.norm(chord))
+    if length < SAME:
+        raise ArcError("CR= cannot make a full circle: start and end are the same")
+    short = 0.5 * length - abs(radius)
+    if short > max(RADIUS_ERROR, RADIUS_PART * abs(radius)):
+        raise ArcError(f"CR={radius:g} is too small for a chord of {length:.4f}")
+    height = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0)) * math.copysign(1.0, radius)
+    return _beside_chord(start, end, chord, height, plane, clockwise, turns)
+
+
+def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
+    """AR= and the end point."""
+    chord = _chord(start, end, plane)
+    length = float(np.linalg.norm(chord))
+    if length < SAME or not 0.0 < angle < 360.0:
+        raise ArcError(f"AR={angle:g} makes no circle here")
+    half = math.radians(0.5 * angle)
+    height = 0.5 * length * math.cos(half) / math.sin(half)
+    return _beside_chord(start, end, chord, height, plane, clockwise, turns)
+
+
+def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
+    """AR= and the centre: the end follows."""
+    if not 0.0 < angle < 360.0:
+        raise ArcError(f"AR={angle:g} makes no circle here")
+    u, v = (plane + 1) % 3, (plane + 2) % 3
+    radians = math.radians(-angle if clockwise else angle)
+    a, b = start[u] - centre[u], start[v] - centre[v]
+    end = start.copy()
+    end[u] = centre[u] + a * math.cos(radians) - b * math.sin(radians)
+    end[v] = centre[v] + a * math.sin(radians) + b * math.cos(radians)
+    return by_centre(start, end, centre, plane, clockwise, turns)
+
+
+def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
+    """CIP: any plane in space, through a point on the way."""
+    a, b = through - start, end - start
+    normal = np.cross(a, b)
+    size = float(normal @ normal)
+    if size < SAME * max(float(a @ a), float(b @ b), SAME):
+        raise ArcError("the three points of CIP lie on a line")
+    centre = start + (np.cross(normal, a) * float(b @ b) + np.cross(b, normal) * float(a @ a)) / (2.0 * size)
+    return Arc(end, centre, normal / math.sqrt(size), float(np.linalg.norm(start - centre)), turns)
+
+
+def _chord(start: Floats, end: Floats, plane: int) -> Floats:
+    chord = end - start
+    chord[plane] = 0.0
+    return np.asarray(chord)
+
+
+def _beside_chord(
+    start: Floats, end: Floats, chord: Floats, height: float, plane: int, clockwise: bool, turns: int
+) -> Arc:
+    """Centre at a height over the middle of the chord: to its left when turning counter-clockwise."""
+    left = np.cross(normal_of(plane, clockwise), chord)
+    centre = start + 0.5 * chord + height * left / np.linalg.norm(left)
+    middle = np.asarray(centre)
+    radius = float(np.linalg.norm(start - middle))
+    return Arc(end, middle, normal_of(plane, clockwise), radius, turns)

@@ -1,0 +1,244 @@
+"""Plain motion blocks straight from bytes to columns.
+
+In:     bytes of a program, whole lines; where the control stands; columns with room.
+Out:    rows for the blocks that hold nothing but N, G0 or G1, X Y Z, rotary words, A3= B3= C3= and F with plain
+        numbers; the place of the first block that holds anything else, which is the interpreter's.
+Units:  mm and degrees; ``lengths`` and ``feeds`` turn inches into mm.
+
+A line is read to its end before anything is written: a line that turns out not to be plain has had no effect. Numbers
+have at most 15 digits, so that mantissa and power of ten are exact and the quotient is the nearest double, the same
+that Python would read; longer ones are the interpreter's.
+"""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from trunnion.arrays import Bytes, Codes, Floats, Ints, Lines
+
+NUMBER: Final = 1
+PREPARATORY: Final = 2
+FEED: Final = 3
+SLIDE: Final = 4  # and the two after it: X, Y, Z
+ROTARY: Final = 7  # and the one after it
+
+#: Fields of ``State.counts``: motion kind (0, 1, or more where plain blocks need a G word), rows, comments.
+KIND: Final = 0
+ROW: Final = 1
+COMMENTS: Final = 2
+POSITION: Final = 3
+LINE: Final = 4
+
+_POWERS: Final = np.array([10.0**k for k in range(23)])
+
+#: Larger numbers are looked at by the interpreter, which knows how far machines reach.
+_FARTHEST: Final = 1e5
+
+_TAB: Final = 9
+_LF: Final = 10
+_CR: Final = 13
+_SPACE: Final = 32
+_PLUS: Final = 43
+_MINUS: Final = 45
+_POINT: Final = 46
+_ZERO: Final = 48
+_THREE: Final = 51
+_NINE: Final = 57
+_SEMICOLON: Final = 59
+_EQUALS: Final = 61
+
+
+class Target(NamedTuple):
+    """Columns that rows go to; see ``Columns``."""
+
+    block: Lines
+    number: Ints
+    kind: Codes
+    programmed: Codes
+    way: Codes
+    feed: Floats
+    tip: Floats
+    axis: Floats
+    joints: Floats
+
+
+def letters(rotary: tuple[str, str]) -> Codes:
+    """Table (256,) uint8 from a byte to what it means to ``scan``, for the names of the two rotary axes."""
+    table = np.zeros(256, np.uint8)
+    meanings = {"N": NUMBER, "G": PREPARATORY, "F": FEED, "X": SLIDE, "Y": SLIDE + 1, "Z": SLIDE + 2}
+    for column, name in enumerate(rotary):
+        if len(name) == 1:
+            meanings.setdefault(name.upper(), ROTARY + column)
+    for letter, meaning in meanings.items():
+        table[ord(letter)] = table[ord(letter.lower())] = meaning
+    return table
+
+
+@njit(cache=True)
+def scan(
+    text: Bytes,
+    end: int,
+    table: Codes,
+    rotary: tuple[int, int],
+    vectors: bool,
+    lengths: float,
+    feeds: float,
+    way: int,
+    frame: Floats,
+    turn: Floats,
+    counts: Ints,
+    place: Floats,
+    target: Target,
+    comments: Ints,
+) -> None:
+    """Take plain blocks until one is not, the text ends, or the columns or the table of comments are full.
+
+    text      (m,) uint8       the program; whole lines up to ``end``
+    table     (256,) uint8     from ``letters``
+    rotary    two int          columns of the rotary axes in ``target.joints``
+    vectors   bool             A3= B3= C3= are allowed
+    frame     (3, 4) float64   from programmed position to ``target.tip``
+    turn      (3, 3) float64   from programmed vector to ``target.axis``
+    counts    (5,) int64       KIND, ROW, COMMENTS, POSITION (byte) and LINE (of the next block), updated
+    place     (4,) float64     programmed X Y Z, mm, and feed, updated
+    comments  (k, 4) int64     line, row, first byte and end of each comment, written
+    """
+    kind = counts[KIND]
+    row = counts[ROW]
+    noted = counts[COMMENTS]
+    position = counts[POSITION]
+    line = counts[LINE]
+    room = target.block.shape[0]
+    values = np.zeros(12)
+    while position < end and row < room and noted < comments.shape[0]:
+        at = position
+        seen = 0
+        number = -1
+        motion = kind
+        plain = True
+        comment = -1
+        while True:
+            char = text[at]
+            if char in (_SPACE, _TAB, _CR):
+                at += 1
+                continue
+            if char == _LF:
+                break
+            if char == _SEMICOLON:
+                comment = at + 1
+                while text[at] != _LF:
+                    at += 1
+                break
+            what = int(table[char])
+            upper = char & 0xDF
+            slot = what
+            at += 1
+            if vectors and 65 <= upper <= 67 and text[at] == _THREE and text[at + 1] == _EQUALS:
+                slot = 9 + upper - 65
+                what = ROTARY
+                at += 2
+            elif what == 0:
+                plain = False
+                break
+            elif what >= SLIDE and text[at] == _EQUALS:
+                at += 1
+            if seen & (1 << slot) or (what == NUMBER and seen != 0):
+                plain = False
+                break
+            seen |= 1 << slot
+            # The number: sign, digits, point, digits.
+            negative = False
+            if what >= SLIDE and (text[at] == _PLUS or text[at] == _MINUS):
+                negative = text[at] == _MINUS
+                at += 1
+            mantissa = 0
+            digits = 0
+            decimals = 0
+            point = False
+            while True:
+                char = text[at]
+                if _ZERO <= char <= _NINE:
+                    mantissa = 10 * mantissa + int(char) - _ZERO
+                    digits += 1
+                    if point:
+                        decimals += 1
+                elif char == _POINT and not point and what > PREPARATORY:
+                    point = True
+                else:
+                    break
+                at += 1
+                if digits > 15:
+                    break
+            if digits == 0 or digits > 15:
+                plain = False
+                break
+            # What may follow a number: a blank, the end, a comment, or a word of one letter that this kernel knows.
+            follows = text[at]
+            if not (
+                follows in (_SPACE, _TAB, _CR, _LF, _SEMICOLON)
+                or table[follows] != 0
+                or (vectors and 65 <= (follows & 0xDF) <= 67)
+            ):
+                plain = False
+                break
+            if what == NUMBER:
+                number = mantissa
+            elif what == PREPARATORY:
+                if mantissa > 1 or digits > 2:
+                    plain = False
+                    break
+                motion = mantissa
+            else:
+                value = mantissa / _POWERS[decimals]
+                if value > _FARTHEST:
+                    plain = False
+                    break
+                values[slot] = -value if negative else value
+        moves = (seen >> SLIDE) & 0xFF
+        if not plain or (moves and motion > 1) or ((moves >> 5) and (moves & 0b11000)):
+            break
+        kind = motion
+        if seen & (1 << FEED):
+            place[3] = values[FEED] * feeds
+        for k in range(3):
+            if seen & (1 << (SLIDE + k)):
+                place[k] = values[SLIDE + k] * lengths
+        if moves:
+            target.block[row] = line
+            target.number[row] = number
+            target.kind[row] = kind
+            target.feed[row] = place[3]
+            bits = moves & 0b11111
+            if seen & (1 << FEED):
+                bits |= 64
+            for k in range(3):
+                target.tip[row, k] = (
+                    frame[k, 0] * place[0] + frame[k, 1] * place[1] + frame[k, 2] * place[2] + frame[k, 3]
+                )
+            for k in range(2):
+                target.joints[row, rotary[k]] = values[ROTARY + k] if seen & (1 << (ROTARY + k)) else np.nan
+                target.axis[row, k] = np.nan
+            if moves >> 5:
+                bits |= 32
+                for k in range(3):
+                    # Components that a block does not write count as zero.
+                    values[9 + k] = values[9 + k] if seen & (1 << (9 + k)) else 0.0
+                for k in range(3):
+                    target.axis[row, k] = turn[k, 0] * values[9] + turn[k, 1] * values[10] + turn[k, 2] * values[11]
+            target.programmed[row] = bits
+            target.way[row] = way
+            row += 1
+        if comment >= 0:
+            comments[noted, 0] = line
+            comments[noted, 1] = row
+            comments[noted, 2] = comment
+            comments[noted, 3] = at
+            noted += 1
+        position = at + 1
+        line += 1
+    counts[KIND] = kind
+    counts[ROW] = row
+    counts[COMMENTS] = noted
+    counts[POSITION] = position
+    counts[LINE] = line

@@ -1,0 +1,103 @@
+"""A line of a program cut into tokens: names, single letters, numbers, texts and signs."""
+
+import math
+import re
+from enum import IntEnum
+from functools import lru_cache
+from typing import Final, NamedTuple
+
+#: The longest statement that is looked at; the control itself stops at 512 characters.
+LONGEST: Final = 4096
+
+#: More digits than any word has.
+_MOST_DIGITS: Final = 40
+
+
+class Sort(IntEnum):
+    """What a token is."""
+
+    NAME = 0
+    LETTER = 1
+    NUMBER = 2
+    TEXT = 3
+    SIGN = 4
+    BAD = 5
+
+
+class Token(NamedTuple):
+    """One token: its text (names and letters in capitals), its number, and where it stands in the line."""
+
+    sort: Sort
+    text: str
+    value: float
+    start: int
+    end: int
+
+
+_TOKEN = re.compile(
+    r"""
+    (?P<blank>[ \t\r\f\v]+)
+  | (?P<number>(?:\d+\.?\d*|\.\d+)(?:EX[+-]?\d+)?)
+  | (?P<name>\$?[A-Z_][A-Z_][A-Z0-9_]*)
+  | (?P<letter>[A-Z])
+  | (?P<text>"[^"]*")
+  | (?P<radix>'[HBD][0-9A-F]{1,13}')
+  | (?P<sign><=|>=|<>|==|<<|[-+*/()\[\],=:<>])
+    """,
+    re.VERBOSE | re.IGNORECASE | re.ASCII,
+)
+
+
+def split_comment(line: str) -> tuple[str, str | None]:
+    """Return a line without its comment, and the comment without its semicolon (None if there is none)."""
+    if ";" not in line:
+        return line, None
+    if '"' not in line:
+        statement, _, comment = line.partition(";")
+        return statement, comment
+    quoted = False
+    for at, char in enumerate(line):
+        if char == '"':
+            quoted = not quoted
+        elif char == ";" and not quoted:
+            return line[:at], line[at + 1 :]
+    return line, None
+
+
+@lru_cache(maxsize=4096)
+def tokenize(statement: str) -> tuple[Token, ...]:
+    """Cut a statement into tokens; what is no token becomes one of sort BAD and ends the list."""
+    tokens: list[Token] = []
+    at = 0
+    while at < len(statement):
+        match = _TOKEN.match(statement, at)
+        if match is None:
+            tokens.append(Token(Sort.BAD, statement[at : at + 20], 0.0, at, len(statement)))
+            break
+        kind = match.lastgroup
+        if kind != "blank":
+            tokens.append(_token(str(kind), match.group(), at, match.end()))
+        at = match.end()
+    return tuple(tokens)
+
+
+def _token(kind: str, text: str, start: int, end: int) -> Token:
+    if kind == "number":
+        value = _number(text)
+        return Token(Sort.NUMBER if math.isfinite(value) else Sort.BAD, text, value, start, end)
+    if kind == "radix":
+        base = {"H": 16, "B": 2, "D": 10}[text[1].upper()]
+        try:
+            return Token(Sort.NUMBER, text, float(int(text[2:-1], base)), start, end)
+        except ValueError:
+            return Token(Sort.BAD, text, 0.0, start, end)
+    if kind == "text":
+        return Token(Sort.TEXT, text[1:-1], 0.0, start, end)
+    sort = {"name": Sort.NAME, "letter": Sort.LETTER, "sign": Sort.SIGN}[kind]
+    return Token(sort, text.upper(), 0.0, start, end)
+
+
+def _number(text: str) -> float:
+    if len(text) > _MOST_DIGITS:
+        return math.inf
+    return float(text.upper().replace("EX", "E"))

@@ -1,0 +1,199 @@
+"""Every word that the reader knows, by what it does. ``docs/reader.md`` says the same to people."""
+
+from typing import Final
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+#: G words with an effect on motion, besides G0 to G3.
+G_PLANES: Final = {17: "Z", 18: "Y", 19: "X"}
+G_UNITS: Final = {70: (True, False), 71: (False, False), 700: (True, True), 710: (False, True)}
+G_FEEDS: Final = {
+    93: 93,
+    94: 94,
+    95: 95,
+    96: 95,
+    961: 94,
+    962: 95,
+    97: 95,
+    971: 94,
+    972: 94,
+    973: 95,
+}
+G_OFFSETS: Final = frozenset({54, 55, 56, 57, 500, *range(505, 600)})
+G_MACHINE: Final = frozenset({53, 153})
+
+#: G words that change how the control drives, not where to.
+G_SILENT: Final = {
+    9: "exact stop, one block",
+    40: "no radius compensation",
+    60: "exact stop",
+    601: "exact stop fine",
+    602: "exact stop coarse",
+    603: "exact stop at interpolation end",
+    62: "corner override",
+    621: "corner override",
+    64: "continuous path",
+    641: "continuous path with rounding",
+    642: "continuous path, axis tolerance",
+    643: "continuous path, block-internal",
+    644: "continuous path, best dynamics",
+    645: "continuous path, also tangential",
+    140: "smooth approach direction",
+    141: "smooth approach direction",
+    142: "smooth approach direction",
+    143: "smooth approach direction",
+    290: "Siemens mode",
+    340: "smooth approach in space",
+    341: "smooth approach in the plane",
+    450: "corners on arcs",
+    451: "corners on intersections",
+    460: "collision monitoring",
+    461: "collision monitoring",
+    462: "collision monitoring",
+    810: "reserved for the machine builder",
+    811: "reserved for the machine builder",
+    812: "reserved for the machine builder",
+    813: "reserved for the machine builder",
+    814: "reserved for the machine builder",
+    820: "reserved for the machine builder",
+    821: "reserved for the machine builder",
+    822: "reserved for the machine builder",
+    823: "reserved for the machine builder",
+    824: "reserved for the machine builder",
+}
+
+#: G words that are known and whose effect on the path is not simulated: a finding each time.
+G_NAMED: Final = {
+    33: ("thread cutting is taken as a straight line", False),
+    41: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
+    42: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
+    63: ("tapping is taken as a straight line", False),
+    331: ("tapping is taken as a straight line", False),
+    332: ("tapping is taken as a straight line", False),
+    74: ("goes to a reference point that only the machine knows", True),
+    75: ("goes to a fixed point that only the machine knows", True),
+    25: ("a limit; its words are not positions", False),
+    26: ("a limit; its words are not positions", False),
+    58: ("adds to the work offset: not simulated", True),
+    59: ("adds to the work offset: not simulated", True),
+    110: ("polar positions are not simulated", True),
+    111: ("polar positions are not simulated", True),
+    112: ("polar positions are not simulated", True),
+    147: ("smooth approach is not simulated", True),
+    148: ("smooth approach is not simulated", True),
+    247: ("smooth approach is not simulated", True),
+    248: ("smooth approach is not simulated", True),
+    291: ("ISO mode is another language", True),
+    347: ("smooth approach is not simulated", True),
+    348: ("smooth approach is not simulated", True),
+}
+
+#: G words after whose block the axis words of the same block are no positions.
+G_NO_MOTION: Final = frozenset({25, 26, 58, 59, 74, 75, 110, 111, 112})
+
+#: Words without a value that change how the control drives, not where to.
+SILENT: Final = _words("""
+    NORM KONT KONTC KONTT FNORM FLIN FCUB FPO
+    CFC CFTCP CFIN CFCIN
+    CUT2D CUT2DF CUT3DC CUT3DF CUT3DFS CUT3DFF CUTCONON CUTCONOF
+    COMPOF COMPON COMPCURV COMPCAD COMPSURF
+    FFWON FFWOF SOFT BRISK DRIVE SOFTA BRISKA DRIVEA
+    DYNNORM DYNPOS DYNROUGH DYNSEMIFIN DYNFINISH DYNPREC
+    UPATH SPATH
+    ORISON ORISOF
+    STOPRE STARTFIFO STOPFIFO WALIMON WALIMOF
+    SBLON SBLOF DISPLOF DISPLON SAVE ACTBLOCNO
+    TOFRAMEOF PAROTOF TOROTOF TCOFR TCABS
+    RTLION RTLIOF CPRECON CPRECOF
+    DIAMOF DIAM90 DIAMON DIAMCYCOF
+    IPOBRKA IPOENDA FINEA COARSEA
+    """)
+
+#: Names that take ``=value`` or ``[axis]=value`` and change how the control drives, not where to.
+SILENT_VALUES: Final = _words("""
+    ADIS ADISPOS CTOL OTOL ATOL STOL OTOLG CTOLG FGREF FL OVR OVRA OVRRAP ACC VELOLIM JERKLIM ACCLIM SCC LIMS
+    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA SPCON DITS DITE FZ SVC
+    """)
+
+#: Names that take arguments and change how the control drives, not where to.
+SILENT_CALLS: Final = _words("""
+    FGROUP WORKPIECE EXTERN SOFTA BRISKA DRIVEA FIFOCTRL SPCOF GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS
+    ORISOF ORISON GROUP_BEGIN GROUP_END GROUP_ADDEND TOFFOF
+    """)
+
+#: Known words whose effect on the path is not simulated: a finding each time, an error.
+NAMED: Final = _words("""
+    ROTS AROTS CROTS CROT CTRANS CSCALE CMIRROR TOFRAME TOFRAMEX TOFRAMEY TOFRAMEZ TOROT TOROTX TOROTY TOROTZ PAROT
+    TRANSMIT TRACYL TRAANG TRACON
+    BSPLINE ASPLINE CSPLINE POLY INVCW INVCCW CT
+    ORIPATH ORIPATHS ORICURVE ORICONCW ORICONCCW ORICONIO ORICONTO ORIVIRT1 ORIVIRT2 ORIRESET
+    TCARR CPON MEAS MEAW POS POSA SPOSA FXS COUPON COUPONC COUPOF DRFOF
+    REPEATB TOFFON
+    """)
+
+#: Words for the control of orientation.
+ORIENTATION: Final = frozenset({"ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE", "ORIEULER", "ORIRPY", "ORIRPY2"})
+
+#: Words for frames, each in a block of its own.
+FRAMES: Final = frozenset({"TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"})
+
+#: Words for the flow of the program.
+FLOW: Final = _words("""
+    IF ELSE ENDIF FOR TO ENDFOR WHILE ENDWHILE LOOP ENDLOOP REPEAT UNTIL
+    GOTO GOTOF GOTOB GOTOC GOTOS CASE OF DEFAULT
+    PROC ENDPROC RET DEF EXTERN CALL EXTCALL MCALL
+    """)
+
+#: Types of variables.
+TYPES: Final = frozenset({"REAL", "INT", "BOOL", "CHAR", "STRING", "AXIS", "FRAME"})
+
+#: Ways to say a position.
+WAYS: Final = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
+
+#: Remaining words with an effect: transformation, machine positions, arcs, cycles, messages.
+ACTIVE: Final = frozenset({"TRAORI", "TRAFOOF", "SUPA", "CIP", "CR", "TURN", "AR", "RPL", "SPOS", "MSG", "SETAL"})
+
+#: Values of names that the control predefines; CYCLE832 modes as the digits of S_TOLM.
+CONSTANTS: Final = {
+    "TRUE": 1,
+    "FALSE": 0,
+    "$PI": 3.141592653589793,
+    "PI": 3.141592653589793,
+    "_OFF": 0,
+    "_FINISH": 1,
+    "_SEMIFIN": 2,
+    "_ROUGH": 3,
+    "_PRECISION": 4,
+    "_ORI_FINISH": 11,
+    "_ORI_SEMIFIN": 12,
+    "_ORI_ROUGH": 13,
+    "_ORI_PRECISION": 14,
+    "_TOP_SURFACE_SMOOTH_OFF": 1000000,
+    "_TOP_SURFACE_SMOOTH_ON": 2000000,
+}
+
+#: M words that become events as they are: kind and value. Others belong to the machine builder and become events "m".
+M_EVENTS: Final = {
+    0: ("stop", None),
+    1: ("optional_stop", None),
+    3: ("spindle", "clockwise"),
+    4: ("spindle", "counter-clockwise"),
+    5: ("spindle", "off"),
+    7: ("coolant", "mist"),
+    8: ("coolant", "flood"),
+    9: ("coolant", "off"),
+}
+
+#: Sense of rotation of the spindle after an M word.
+M_SPINDLE: Final = {3: 1, 4: -1, 5: 0}
+
+#: M words that end a program, those that end a subprogram, and the one that changes the tool.
+M_ENDS: Final = frozenset({2, 30})
+M_RETURN: Final = 17
+M_CHANGE: Final = 6
+
+#: M words that act after the motion of their block.
+M_LATE: Final = frozenset({0, 1, 5, 9, M_RETURN}) | M_ENDS

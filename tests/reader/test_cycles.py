@@ -1,0 +1,110 @@
+"""Drilling cycles, motion by motion."""
+
+import pytest
+
+from tests.reader.conftest import Runner, close
+from trunnion.reader import Run
+from trunnion.reader.sinumerik.cycles import CycleError, strokes
+from trunnion.toolpath import Kind
+
+
+def heights(result: Run, kind: Kind | None = None) -> list[float]:
+    """Z of the rows, or of those of a kind."""
+    z = result.tip[:, 2]
+    return [float(height) for height in (z if kind is None else z[result.kind == kind])]
+
+
+HEAD = "G0 X0 Y0 Z50 S1000 M3\nF180\n"
+
+
+def test_a_modal_cycle_drills_at_every_position_until_it_ends(run: Runner) -> None:
+    result = run(HEAD + "MCALL CYCLE81(10,0,3,-6)\nX10 Y10\nX40\nMCALL\nX50")
+    assert result.findings == ()
+    close(
+        result.tip[1:],
+        [
+            [10, 10, 50], [10, 10, 3], [10, 10, -6], [10, 10, 10],
+            [40, 10, 10], [40, 10, 3], [40, 10, -6], [40, 10, 10],
+            [50, 10, 10],
+        ],
+    )  # fmt: skip
+    assert result.block[1:].tolist() == [4, 4, 4, 4, 5, 5, 5, 5, 7]
+    assert result.kind[1:5].tolist() == [Kind.RAPID, Kind.RAPID, Kind.LINEAR, Kind.RAPID]
+    assert result.programmed[2:5].tolist() == [0, 0, 0]
+    assert result.feed[3] == 180.0
+
+
+def test_a_cycle_without_mcall_drills_once_where_the_tool_is(run: Runner) -> None:
+    assert heights(run(HEAD + "CYCLE82(10,0,3,,6,0.5)\nX1")) == [50, 3, -6, 10, 10]
+    assert [e.value for e in run(HEAD + "CYCLE82(10,0,3,,6,0.5)").events if e.kind == "dwell"] == [0.5]
+
+
+def test_pecking_with_full_retraction(run: Runner) -> None:
+    # The facts' example: first stroke 6, then 1 less each time but not less than 2; chips are cleared at Z2.
+    result = run(HEAD + "CYCLE83(50,0,2,-20,,-6,,1,0.2,0,1,1,3,2,,0,1)")
+    assert result.findings == ()
+    bottoms = heights(result, Kind.LINEAR)
+    assert bottoms == [-6, -11, -15, -18, -20]
+    assert heights(result)[1:6] == [2, -6, 2, -5, -11]
+    assert heights(result)[-1] == 50
+
+
+def test_pecking_with_chip_breaking(run: Runner) -> None:
+    result = run(HEAD + "CYCLE83(50,0,2,-15,,,5,0,0,0,0.5,0,3,0,0.5)")
+    assert heights(result) == [50, 2, -5, -4.5, -10, -9.5, -15, 50]
+    assert result.feed[2] == 90.0
+    assert result.feed[4] == 180.0
+
+
+def test_strokes_of_deep_holes() -> None:
+    assert strokes(10, 10, 0, 0) == [10]
+    assert strokes(10, 4, 0, 0) == [4, 8, 10]
+    assert strokes(20, 8, -0.5, 2) == [8, 12, 14, 16, 18, 20]
+    with pytest.raises(CycleError, match="more than"):
+        strokes(10, 0.001, 0, 0)
+    with pytest.raises(CycleError, match="above"):
+        strokes(10, -1, 0, 0)
+
+
+def test_tapping_goes_at_the_pitch(run: Runner) -> None:
+    result = run(HEAD + "CYCLE84(20,0,3,-15,,0.1,3,,1.25,0,600,800)")
+    assert heights(result) == [50, 3, -15, 3, 20]
+    assert result.feed[2:4].tolist() == [750.0, 1000.0]
+    assert result.kind[3] == Kind.LINEAR
+    assert run(HEAD + "CYCLE84(20,0,3,-15,,,3,8)").feed[2] == 1250.0
+    assert run(HEAD + "CYCLE840(20,0,3,-15,,,0,3,0,,1.5)").feed[2] == 1500.0
+    assert "no pitch" in run(HEAD + "CYCLE84(20,0,3,-15)").errors[0].text
+
+
+def test_reaming_and_boring(run: Runner) -> None:
+    ream = run(HEAD + "CYCLE85(20,0,3,-15,,0,100,400)")
+    assert heights(ream) == [50, 3, -15, 3, 20]
+    assert ream.feed[2:4].tolist() == [100.0, 400.0]
+    bore = run(HEAD + "CYCLE86(20,0,3,-15,,0,3,0.2,-0.1,0.5,90)")
+    close(bore.tip[1:], [[0, 0, 3], [0, 0, -15], [0.2, -0.1, -14.5], [0.2, -0.1, 3], [0, 0, 20]])
+    assert heights(run(HEAD + "CYCLE89(20,0,3,-15)")) == [50, 3, -15, 3, 20]
+
+
+def test_cycles_drill_along_the_frame(run: Runner) -> None:
+    tilted = run("G0 B90\nTRAORI\nROT Y90\nX1 Y2 Z50\nCYCLE81(10,0,3,-6)")
+    assert tilted.findings == ()
+    close(tilted.tip[-2], [-6, 2, -1], atol=1e-9)
+    askew = run("TRAORI\nROT Y90\nX1 Y2 Z50\nCYCLE81(10,0,3,-6)")
+    assert "not the tool axis" in askew.findings[0].text
+    side = run("G19 G0 X50\nCYCLE81(10,0,3,-6)")
+    assert side.tip[:, 0].tolist() == [50, 3, -6, 10]
+
+
+def test_a_subprogram_may_be_modal(run: Runner) -> None:
+    result = run("MCALL L7\nX10\nX20\nMCALL\nX30", files={"L7.SPF": "Z=IC(-1)\nZ=IC(1)\nRET"})
+    assert result.tip[:, 0].tolist() == [10, 10, 10, 20, 20, 20, 30]
+    assert result.file.tolist() == [0, 1, 1, 0, 1, 1, 0]
+
+
+@pytest.mark.parametrize(
+    "cycle", ["CYCLE81(10,20,3,-6)", "CYCLE81(10,0,3)", "CYCLE81(,0,3,-6)", 'CYCLE81("A",0,3,-6)', "CYCLE81(9,9,0,9)"]
+)
+def test_cycles_that_make_no_sense_are_named(run: Runner, cycle: str) -> None:
+    result = run(HEAD + cycle)
+    assert len(result) == 1
+    assert "not executed" in result.errors[0].text
