@@ -29,6 +29,8 @@ def solve(packed: Packed, tip: Floats, axis: Floats, out: Floats) -> int:
 
 def spread(machine: Machine, values: Floats) -> float:
     """Volume of the box that a millimetre of each slide spans: 1 where they stand square, 0 where they are flat."""
+    if not np.isfinite(values).all():
+        return 0.0
     moved = np.repeat(np.asarray(values, float)[None, :], 4, axis=0)
     for row, column in enumerate(machine.linear, 1):
         moved[row, column] += 1.0
