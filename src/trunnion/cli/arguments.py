@@ -24,6 +24,7 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     _post(commands.add_parser("post", help="write the NC program of one or more CL files"))
+    _convert(commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine"))
     _machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _check(commands.add_parser("check", help="validate a machine definition"))
     return parser.parse_args(list(argv))
@@ -43,6 +44,25 @@ def _post(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
+    parser.set_defaults(run=run)
+
+
+def _convert(parser: argparse.ArgumentParser) -> None:
+    from trunnion.cli.convert import run
+
+    parser.add_argument("file", metavar="NC", help="NC program")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that the program is for")
+    into = parser.add_mutually_exclusive_group(required=True)
+    into.add_argument("--to-cl", action="store_true", help="write a CL file")
+    into.add_argument("--to-machine", metavar="NAME_OR_FILE", help="write a program for this machine")
+    parser.add_argument("--output", metavar="FILE|-|FOLDER", help="result; without it a file of that name here")
+    parser.add_argument(
+        "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",
+        help="what templates print, in place of what the program says, and zero; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--force", action="store_true", help="convert what was understood, and write a program that must not run"
+    )
     parser.set_defaults(run=run)
 
 

@@ -103,7 +103,7 @@ def _put_number(
         out[at] = 43
         at += 1
     # A product is quicker than a division by a number that the compiler does not know; it is one off at most.
-    whole = np.int64(rest * (1.0 / scale))
+    whole = int(rest * (1.0 / scale))
     fraction = rest - whole * scale
     if fraction < 0:
         whole -= 1
