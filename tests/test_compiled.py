@@ -16,15 +16,16 @@ def kept_in(package: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return Path(os.environ["NUMBA_CACHE_DIR"])
 
 
-def test_a_change_in_any_file_gives_all_kernels_a_new_folder_and_drops_the_old_one(
+def test_a_change_in_any_kernel_gives_all_kernels_a_new_folder_and_drops_the_old_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     callee = tmp_path / "inverse.py"
-    callee.write_text("x = 1\n")
+    callee.write_text("@njit\ndef f(): return 1\n")
     first = kept_in(tmp_path, monkeypatch)
     assert kept_in(tmp_path, monkeypatch) == first
     first.mkdir(parents=True)
-    callee.write_text("x = 22\n")
+    callee.write_text("@njit\ndef f(): return 2\n")
+    (tmp_path / "text.py").write_text("x = 1\n")
     second = kept_in(tmp_path, monkeypatch)
     assert second != first
     assert not first.exists()

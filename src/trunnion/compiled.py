@@ -2,7 +2,7 @@
 
 Numba keeps machine code by the file of each kernel, and does not notice when another file, whose functions the kernel
 calls, has changed: after an update that touched only ``machine/inverse.py`` the planner would go on with the old
-kinematics. So the code is kept in a folder named for the state of all files of the package.
+kinematics. So the code is kept in a folder named for what all files with kernels hold.
 """
 
 import hashlib
@@ -30,11 +30,12 @@ def keep_kernels(package: Path) -> None:
 
 
 def _state(package: Path) -> str:
-    """A short name for the present state of all source files."""
+    """A short name for what the files with kernels hold now."""
     digest = hashlib.sha256(str(package).encode())
     for file in sorted(package.rglob("*.py")):
-        status = file.stat()
-        digest.update(f"{file.relative_to(package)} {status.st_size} {status.st_mtime_ns}\n".encode())
+        source = file.read_bytes()
+        if b"njit" in source:
+            digest.update(source)
     return digest.hexdigest()[:16]
 
 
