@@ -1,0 +1,5 @@
+"""Reports: a verification as one HTML file that works offline, or as JSON."""
+
+from trunnion.report.write import write_report
+
+__all__ = ["write_report"]
