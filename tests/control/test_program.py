@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.verify.proven import unproven
 from trunnion.cli import main
 
 HEAD = """TOOL PATH/OP1,TOOL,D10
@@ -34,9 +35,9 @@ class Post:
         self._folder, self._capfd = folder, capfd
 
     def __call__(self, text: str, *arguments: str) -> list[str]:
-        """The lines of the program without block numbers; stderr must be silent."""
+        """The lines of the program without block numbers; stderr must hold nothing but checks that were passed."""
         code, out, err = self.all(text, *arguments)
-        assert (code, err) == (0, "")
+        assert (code, unproven(err)) == (0, "")
         return out
 
     def all(self, text: str, *arguments: str) -> tuple[int, list[str], str]:
@@ -177,10 +178,23 @@ def test_a_cut_without_a_feed_is_an_error(post: Post) -> None:
     assert "part.cls:10: error: cutting motion without a feed" in err
 
 
-def test_a_missing_tool_number_is_an_error_that_names_the_setting(post: Post) -> None:
+def test_without_load_tool_the_tool_is_called_by_its_name(post: Post) -> None:
     code, out, err = post.all(HEAD.replace("LOAD/TOOL,1,ADJUST,1\n", "") + FOOT)
+    assert code == 0
+    assert 'T="D10"' in out
+    assert "part.cls:1: warning: operation OP1 has no LOAD/TOOL; its tool is called by its name" in err
+
+
+def test_an_operation_without_load_tool_goes_on_with_the_tool_of_that_name(post: Post) -> None:
+    second = HEAD.replace("OP1", "OP2").replace("LOAD/TOOL,1,ADJUST,1\n", "")
+    lines = post(HEAD + FOOT + second + FOOT)
+    assert [line for line in lines if line.startswith("T=")] == ["T=1"]
+
+
+def test_a_tool_without_number_and_name_is_an_error_that_names_the_setting(post: Post) -> None:
+    code, out, err = post.all(HEAD.replace("LOAD/TOOL,1,ADJUST,1\n", "").replace(",TOOL,D10", ",TOOL,") + FOOT)
     assert (code, out) == (2, [])
-    assert "operation OP1 has no LOAD/TOOL" in err
+    assert "operation OP1 has no LOAD/TOOL, and its tool has no name" in err
     assert "--set tool=NUMBER" in err
 
 

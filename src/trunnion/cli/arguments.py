@@ -13,6 +13,16 @@ def _pair(text: str) -> tuple[str, str]:
     return key, value
 
 
+def _tolerance(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < 1e6:
+        raise argparse.ArgumentTypeError(f"{text!r} is no tolerance; write a number above 0, such as 0.001")
+    return value
+
+
 def parse(argv: Sequence[str]) -> argparse.Namespace:
     """The command and its arguments; ``run`` is the function that carries it out.
 
@@ -24,6 +34,8 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     _post(commands.add_parser("post", help="write the NC program of one or more CL files"))
+    _verify(commands.add_parser("verify", help="prove an NC program: read it, run it, compare it with its CL files"))
+    _diff(commands.add_parser("diff", help="compare what two NC programs make the tool do"))
     _convert(commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine"))
     _machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _check(commands.add_parser("check", help="validate a machine definition"))
@@ -44,6 +56,45 @@ def _post(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
+    parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
+    parser.set_defaults(run=run)
+
+
+def _verify(parser: argparse.ArgumentParser) -> None:
+    from trunnion.cli.verify import run
+
+    parser.add_argument("file", metavar="NC", help="NC program")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
+    parser.add_argument(
+        "--cl", action="append", default=[], metavar="CL",
+        help="CL file that it was made from; may be repeated, in the order in which they are cut",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tolerance", type=_tolerance, default=0.001, metavar="MM",
+        help="how far a coordinate may be off, and in degrees a rotary axis; 0.001",
+    )  # fmt: skip
+    parser.add_argument(
+        "--span", type=_tolerance, metavar="DEG", help="how far the tool axis may be off between points"
+    )
+    parser.add_argument("--tool", default="", metavar="T", help="tool that was called in place of the CL file's")
+    parser.add_argument("--offset", metavar="G", help="work offset of the program; G54 where there is a CL file")
+    parser.add_argument("--edge", type=int, metavar="D", help="cutting edge under which the tool works; with --cl 1")
+    parser.add_argument("--units", choices=("mm", "inch"), help="units of CL files that do not say them")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
+    parser.set_defaults(run=run)
+
+
+def _diff(parser: argparse.ArgumentParser) -> None:
+    from trunnion.cli.diff import run
+
+    parser.add_argument("files", nargs=2, metavar="NC", help="NC program")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs the first program")
+    parser.add_argument("--to-machine", metavar="NAME_OR_FILE", help="machine that runs the second one, if another")
+    parser.add_argument(
+        "--tolerance", type=_tolerance, default=0.001, metavar="MM",
+        help="how far tips may be apart, and in degrees tool axes; 0.001",
+    )  # fmt: skip
     parser.set_defaults(run=run)
 
 

@@ -16,13 +16,15 @@ from trunnion.errors import InputError, Problem
 def whole(target: str) -> Iterator[BinaryIO]:
     """A sink whose bytes reach ``target`` (a path, or ``-`` for stdout) when the block ends without an error.
 
+    Its ``name`` is the path under which it can be read back before that, once it is flushed.
+
     Raises
     ------
     InputError
         When the target cannot be written; this is found out before anything is computed.
     """
     if target == "-":
-        with tempfile.TemporaryFile() as spool:
+        with tempfile.TemporaryDirectory(prefix="trunnion-") as folder, (Path(folder) / "stdout").open("w+b") as spool:
             yield spool
             spool.seek(0)
             sys.stdout.flush()
@@ -38,7 +40,8 @@ def whole(target: str) -> Iterator[BinaryIO]:
         raise _cannot_write(target, error) from None
     part = Path(name)
     try:
-        with os.fdopen(handle, "wb") as sink:
+        os.close(handle)
+        with part.open("wb") as sink:
             yield sink
         if os.name == "posix":
             umask = os.umask(0)

@@ -67,7 +67,7 @@ class Program:
 def check_program(program: Program) -> list[Problem]:
     """What the program would lack, or what this control cannot yet be told; errors mean that it must not be written."""
     problems = []
-    spindle = False
+    spindle, in_spindle = False, ""
     for motion in program.motions:
         operation = motion.operation
         moves = operation.moves
@@ -82,6 +82,16 @@ def check_program(program: Program) -> list[Problem]:
         if not spindle:
             what = f"operation {operation.name} has no spindle speed"
             problems.append(Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING))
+        loaded = any(isinstance(e, LoadTool) for e in operation.events) or _setting(program, "tool")
+        if not loaded and operation.tool.name and operation.tool.name != in_spindle:
+            what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
+            problems.append(
+                Problem(program.file, operation.line, what, "--set tool=NUMBER calls it by number", Severity.WARNING)
+            )
+        if '"' in operation.tool.name and (not loaded or _setting(program, "tool_call") == "name"):
+            what = f"the tool name {operation.tool.name} has a quotation mark in it"
+            problems.append(Problem(program.file, operation.line, what, "write --set tool=NUMBER"))
+        in_spindle = operation.tool.name
         for event in operation.events:
             problems += _event_problems(program, operation, event)
         tolerance = operation.intol is not None and operation.outtol is not None
@@ -146,7 +156,7 @@ class _Author:
         self._letters = axes[self._primary].name, axes[self._secondary].name
         words = self._control.block_words(*self._letters, three_axis=False)
         self._writer = BlockWriter(sink, words, self._control.numbers)
-        self._tool = ""
+        self._tool = self._tool_name = ""
         self._spindle: SpindleOn | None = None
         self._coolant = "OFF"
 
@@ -174,6 +184,7 @@ class _Author:
         if tool != self._tool:
             self._expand("tool_change" if self._tool else "first_tool", values, motion)
             self._tool = tool
+        self._tool_name = motion.operation.tool.name
         self._writer.use(self._control.block_words(*self._letters, motion.three_axis))
         self._writer.forget()
         for word, code in self._control.in_force.items():
@@ -226,27 +237,20 @@ class _Author:
         }
 
     def _tool_call(self, motion: Motion) -> str:
-        """The tool as ``T=`` takes it: from the run's setting, from LOAD/TOOL, or the tool that is in the spindle."""
+        """The tool as ``T=`` takes it: the run's setting, the number of LOAD/TOOL, or else the tool's name."""
         operation = motion.operation
-        by_name = _setting(self._program, "tool_call") == "name"
-        number = _setting(self._program, "tool")
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
-        if by_name and operation.tool.name:
-            return sinumerik.tool_call(0, operation.tool.name, by_name=True)
+        number, name = _setting(self._program, "tool"), operation.tool.name
+        if self._tool and not loads and name == self._tool_name:
+            return self._tool
+        if name and (_setting(self._program, "tool_call") == "name" or not (number or loads)):
+            return sinumerik.tool_call(0, name, by_name=True)
         if number:
             return number
         if loads:
             return sinumerik.tool_call(loads[0].number, "", by_name=False)
-        if self._tool:
-            return self._tool
-        raise InputError(
-            Problem(
-                self._program.file,
-                operation.line,
-                f"operation {operation.name} has no LOAD/TOOL, so its tool has no number",
-                "write --set tool=NUMBER",
-            )
-        )
+        what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
+        raise InputError(Problem(self._program.file, operation.line, what, "write --set tool=NUMBER"))
 
     def _angle_counts(self, angle: Floats, word: str, motion: Motion | None = None) -> Ints:
         """Counts of a rotary word; an axis that displays 0 to 360 degrees prints 360 as 0."""

@@ -1,0 +1,83 @@
+"""``trunnion verify``: an NC program, read back by an author of its own, run, and compared with its CL files."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trunnion.control.definition import library
+from trunnion.definition import extended
+from trunnion.errors import InputError, Problem
+from trunnion.machine import Machine, load_machine
+
+if TYPE_CHECKING:
+    from trunnion.verify import Verification
+
+#: Families of controls whose programs can be read.
+READERS = ("sinumerik_840d",)
+
+#: What a report's name may end in.
+_REPORTS = (".html", ".json")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Verify one program."""
+    from trunnion.cl import read_cl
+    from trunnion.cli.post import _point
+    from trunnion.reader import run_program
+    from trunnion.verify import Allowed, Settings, check_lines, place_lines, verify
+
+    if arguments.report:
+        check_report(arguments.report)
+    machine = load_machine(arguments.machine)
+    check_reader(machine)
+    if arguments.zero:
+        machine = replace(machine, workpiece_zero=_point(arguments.zero))
+    paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
+    done = run_program(Path(arguments.file), machine)
+    found = verify(
+        done,
+        paths,
+        allowed=Allowed(tip=arguments.tolerance, angle=arguments.tolerance, chord=max(0.001, arguments.tolerance)),
+        settings=Settings(
+            tool=arguments.tool,
+            work_offset=_offset(arguments.offset, bool(paths)),
+            edge=1 if arguments.edge is None and paths else arguments.edge,
+            span=arguments.span,
+        ),
+    )
+    print(*check_lines(found), *place_lines(found), sep="\n")
+    if arguments.report:
+        report(found, arguments.report)
+    return 0 if found.passed else 1
+
+
+def check_reader(machine: Machine) -> None:
+    """Raise ``InputError`` for machines whose programs nobody can read yet."""
+    table = extended(machine.control, library())
+    family = table.text("family", READERS[0])
+    if family not in READERS:
+        what = f"its control is a {family}, whose programs cannot be read yet"
+        raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
+
+
+def check_report(file: str) -> None:
+    """Raise ``InputError`` for a report of a kind that there is not, before any work."""
+    if Path(file).suffix.lower() not in _REPORTS:
+        raise InputError(Problem(file, 0, "a report is a page or data", f"let its name end in {' or '.join(_REPORTS)}"))
+
+
+def report(found: "Verification", file: str) -> None:
+    """Write the report of a verification."""
+    from trunnion.report import write_report
+
+    write_report(found, Path(file))
+
+
+def _offset(text: str | None, with_cl: bool) -> int | None:
+    if text is None:
+        return 54 if with_cl else None
+    code = text.strip().upper().removeprefix("G")
+    if not code.isdigit():
+        raise InputError(Problem("--offset", 0, f"is {text!r}", "write it as the program does, such as G54"))
+    return int(code)

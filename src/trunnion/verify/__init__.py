@@ -1,0 +1,24 @@
+"""Verification: a program, read back and run by itself, against what was wanted of it."""
+
+from trunnion.verify.case import Settings
+from trunnion.verify.compare import Comparison, Difference, compare
+from trunnion.verify.model import Check, Place, Verification
+from trunnion.verify.text import check_lines, failures, place_line, place_lines
+from trunnion.verify.verify import verify
+from trunnion.verify.wanted import Allowed
+
+__all__ = [
+    "Allowed",
+    "Check",
+    "Comparison",
+    "Difference",
+    "Place",
+    "Settings",
+    "Verification",
+    "check_lines",
+    "compare",
+    "failures",
+    "place_line",
+    "place_lines",
+    "verify",
+]

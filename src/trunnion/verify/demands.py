@@ -1,0 +1,432 @@
+"""The words of a program against what the CL file asks for: how to move, feed, spindle, tool, coolant, offset, home."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.reader import Run
+from trunnion.toolpath import Kind
+from trunnion.verify.align import CHUNK
+from trunnion.verify.arcs import arc_of
+from trunnion.verify.case import NAMED, Case, judged
+from trunnion.verify.model import Check, Place
+from trunnion.verify.wanted import Call, Spindle, Stretch
+
+_KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
+
+#: How a CL coolant shows in a run; others are words of the machine builder, which nobody but him can read.
+_COOLANT = {"OFF": "off", "ON": "flood", "FLOOD": "flood", "TAP": "flood", "MIST": "mist"}
+
+#: A spindle speed is printed without decimals.
+_RPM = 0.5 + 1e-6
+
+#: Home is met within this, mm or degrees.
+_HOME = 1e-6
+
+
+def order(case: Case) -> Check:
+    """Every point has its block, and every block its point."""
+    wanted, pairs = case.wanted, case.pairs
+    assert wanted is not None
+    assert pairs is not None
+    title = "every CL point has its block, every block its point"
+    places = [case.missing(cl, "no block goes to this CL point") for cl in pairs.missing[:NAMED]]
+    told: list[Place] = []
+    count = len(pairs.missing)
+    for row in pairs.extra:
+        if _stands_still(case.run, row):
+            told.append(case.place(row, 0.0, "repeats the position before it: nothing moves"))
+            continue
+        count += 1
+        if len(places) < 2 * NAMED:
+            places.append(case.place(row, 0.0, "goes to a position that is no CL point"))
+    places.sort(key=lambda place: place.nc_line)
+    if places:
+        return judged("order", title, places, "", count)
+    left_out = len(wanted) - len(pairs.cl)
+    summary = f"{len(pairs.cl)} points in their order"
+    if left_out:
+        summary += f", {left_out} repeated ones left out"
+    if told:
+        summary += f", {len(told)} blocks that move nothing"
+    return Check("order", title, True, summary, places=tuple(told[:NAMED]))
+
+
+def _stands_still(run: Run, row: int) -> bool:
+    before = run.joints[row - 1] if row else run.start
+    still = bool((np.abs(run.joints[row] - before) < 1e-9).all())
+    return still and int(run.kind[row]) != Kind.ARC
+
+
+def _chunks(case: Case) -> Iterator[tuple[Ints, Ints, int]]:
+    """Rows of run and CL file that are partners, a chunk at a time, and the index of the first pair."""
+    assert case.pairs is not None
+    for start in range(0, len(case.pairs.nc), CHUNK):
+        yield case.pairs.nc[start : start + CHUNK], case.pairs.cl[start : start + CHUNK], start
+
+
+def kind(case: Case) -> Check:
+    """Rapid, line or circle, and for circles the centre, the way round and the turns."""
+    wanted, pairs, run = case.wanted, case.pairs, case.run
+    assert wanted is not None
+    assert pairs is not None
+    title = "rapid, line or circle as the CL file says"
+    by_lines = {pieces.cl for pieces in pairs.pieces}
+    places: list[Place] = []
+    count = 0
+    for nc, cl, _ in _chunks(case):
+        for k in np.flatnonzero(run.kind[nc] != wanted.kind[cl]).tolist():
+            row, point = int(nc[k]), int(cl[k])
+            is_, want = Kind(int(run.kind[row])), Kind(int(wanted.kind[point]))
+            if want is Kind.ARC and is_ is Kind.LINEAR and (point in by_lines or _is_flat(case, point)):
+                continue
+            count += 1
+            if len(places) < NAMED:
+                text = f"moves {_KINDS[is_]}; the CL file wants it {_KINDS[want]}"
+                places.append(case.place(row, 0.0, text, point))
+    for pieces in pairs.pieces:
+        for row in pieces.nc[run.kind[pieces.nc] != Kind.LINEAR].tolist():
+            count += 1
+            places.append(case.place(row, 0.0, "moves at rapid along an arc that is to be cut", pieces.cl))
+    circles = _circles(case)
+    count += len(circles)
+    rapids = int((wanted.kind == Kind.RAPID).sum())
+    good = f"{rapids} rapids, {len(wanted.arcs.row)} circles, the rest lines"
+    return judged("kind", title, sorted(places + circles, key=lambda p: p.nc_line), good, count)
+
+
+def _is_flat(case: Case, cl: int) -> bool:
+    """Whether a whole arc is so flat that one line stands for it."""
+    assert case.wanted is not None
+    arc = arc_of(case.wanted, cl)
+    half = min(0.5 * arc.sweep, np.pi)
+    return arc.radius * (1.0 - float(np.cos(half))) <= case.wanted.part_of(cl).allowed.chord * 1.01
+
+
+def _circles(case: Case) -> list[Place]:
+    """Circles that go round something else than they should."""
+    wanted, pairs, run = case.wanted, case.pairs, case.run
+    assert wanted is not None
+    assert pairs is not None
+    places: list[Place] = []
+    if not len(run.arcs.row) or not len(wanted.arcs.row):
+        return places
+    at = np.searchsorted(pairs.cl, wanted.arcs.row)
+    for k, (row, pair) in enumerate(zip(wanted.arcs.row.tolist(), at.tolist(), strict=True)):
+        if pair >= len(pairs.cl) or pairs.cl[pair] != row:
+            continue
+        motion = int(pairs.nc[pair])
+        if run.kind[motion] != Kind.ARC or motion == 0:
+            continue
+        m = int(np.searchsorted(run.arcs.row, motion))
+        normal = wanted.arcs.normal[k]
+        if float(run.arcs.normal[m] @ normal) < 1.0 - 1e-6:
+            places.append(case.place(motion, 0.0, "goes round the circle the other way, or in another plane", row))
+            continue
+        if run.arcs.turns[m] != wanted.arcs.turns[k]:
+            text = f"makes {run.arcs.turns[m]} whole turns besides; the CL file wants {wanted.arcs.turns[k]}"
+            places.append(case.place(motion, 0.0, text, row))
+        arm = run.arcs.centre[m] - run.tip[motion - 1] - (wanted.arcs.centre[k] - wanted.tip[row - 1])
+        arm = arm - (arm @ normal) * normal
+        off = float(np.abs(arm).max())
+        allowed = wanted.part_of(row).allowed.tip
+        if off > allowed + 1e-9:
+            text = f"the circle's centre is off by {off:.6f} mm, {allowed:.6f} is allowed"
+            places.append(case.place(motion, off, text, row))
+    return places
+
+
+def feed(case: Case) -> Check:
+    """Feeds of all rows that are not rapids."""
+    wanted, pairs, run = case.wanted, case.pairs, case.run
+    assert wanted is not None
+    assert pairs is not None
+    places: list[Place] = []
+    count = 0
+    seen: tuple[float, float] = (np.inf, -np.inf)
+    for nc, cl, _ in _chunks(case):
+        cuts = (run.kind[nc] != Kind.RAPID) & (wanted.kind[cl] != Kind.RAPID)
+        rate, per_rev = run.feed[nc], wanted.per_rev[cl]
+        asked = wanted.feed[cl]
+        allowed: float | Floats = max(part.allowed.feed for part in wanted.parts) + 1e-9
+        mode = run.feed_mode[nc]
+        if (mode == 93).any():
+            rate, allowed = _inverse_time(run, nc, mode, rate), np.where(mode == 93, 1e-3 * asked, allowed)
+        wrong = cuts & ((mode == 95) != per_rev)
+        wrong |= cuts & ~(np.abs(rate - asked) <= allowed) & ~np.isnan(asked)
+        known = asked[cuts & ~np.isnan(asked)]
+        if len(known):
+            seen = min(seen[0], float(known.min())), max(seen[1], float(known.max()))
+        if not wrong.any():
+            continue
+        bad = np.flatnonzero(wrong)
+        count += len(bad)
+        for k in bad[: max(NAMED - len(places), 0)].tolist():
+            unit = {93: "mm/min (inverse time)", 95: "mm/rev"}.get(int(mode[k]), "mm/min")
+            want = "mm/rev" if per_rev[k] else "mm/min"
+            has = "no feed" if np.isnan(rate[k]) else f"{rate[k]:g} {unit}"
+            text = f"moves with {has}; the CL file wants {asked[k]:g} {want}"
+            places.append(case.place(int(nc[k]), float(rate[k]), text, int(cl[k])))
+    for pieces in pairs.pieces:
+        asked_here = float(wanted.feed[pieces.cl])
+        off = np.abs(run.feed[pieces.nc] - asked_here) > wanted.part_of(pieces.cl).allowed.feed + 1e-9
+        for row in pieces.nc[off & (run.feed_mode[pieces.nc] != 93)].tolist():
+            count += 1
+            text = f"moves with F{run.feed[row]:g}; the CL file wants {asked_here:g}"
+            places.append(case.place(int(row), float(run.feed[row]), text, pieces.cl))
+    good = "nothing is cut" if seen[0] > seen[1] else f"{seen[0]:g} to {seen[1]:g}, as the CL file says"
+    return judged("feed", "feeds as the CL file says", places, good, count)
+
+
+def _inverse_time(run: Run, nc: Ints, mode: Codes, rate: Floats) -> Floats:
+    """Feeds in mm/min, where they are said as blocks a minute."""
+    before = run.tip[np.maximum(nc - 1, 0)]
+    length = np.sqrt(((run.tip[nc] - before) ** 2).sum(axis=1))
+    return np.asarray(np.where(mode == 93, rate * length, rate))
+
+
+def _part(case: Case, stretch: Stretch) -> tuple[int, int]:
+    """Which pairs belong to a stretch of CL rows."""
+    assert case.pairs is not None
+    first, end = np.searchsorted(case.pairs.cl, [stretch.first, stretch.end])
+    return int(first), int(end)
+
+
+def _first_wrong(wrong: Flags, first: int) -> int | None:
+    return first + int(np.argmax(wrong)) if len(wrong) and wrong.any() else None
+
+
+def spindle(case: Case) -> Check:
+    """Speed and sense at every point, and no other ones anywhere."""
+    wanted, pairs, run = case.wanted, case.pairs, case.run
+    assert wanted is not None
+    assert pairs is not None
+    places: list[Place] = []
+    asked: set[Spindle] = set()
+    for stretch in wanted.spindle():
+        want = stretch.value
+        first, end = _part(case, stretch)
+        if not isinstance(want, Spindle) or first == end:
+            continue
+        asked.add(want)
+        nc = pairs.nc[first:end]
+        turns = run.spindle[nc].astype(np.int64)
+        wrong = turns != want.sense
+        if want.sense == 0 and case.after(int(nc[0])) != nc[0]:
+            wrong[0] &= run.spindle[case.after(int(nc[0]))] != 0  # M5 acts after the motion of its block
+        if want.sense:
+            wrong |= np.abs(run.rpm[nc] - want.rpm) > _RPM
+        bad = _first_wrong(wrong, first)
+        if bad is not None:
+            row = int(pairs.nc[bad])
+            has, should = _turning(float(run.rpm[row]), int(run.spindle[row])), _turning(want.rpm, want.sense)
+            places.append(
+                case.place(row, float(run.rpm[row]), f"{has}; the CL file wants {should}", int(pairs.cl[bad]))
+            )
+    senses = {"clockwise": 1, "counter-clockwise": -1}
+    for event in run.events if asked else ():
+        if event.kind == "spindle":
+            sense = senses.get(str(event.value), event.value)
+            if isinstance(sense, int | float) and sense and not any(want.sense == sense for want in asked):
+                places.append(case.at(event, 0.0, "starts the spindle in a sense that the CL file never asks for"))
+        elif event.kind == "speed" and isinstance(event.value, float):
+            rpm = event.value
+            if not any(abs(want.rpm - rpm) <= _RPM for want in asked):
+                places.append(case.at(event, rpm, f"S{rpm:g} is no speed that the CL file asks for"))
+    good = ", ".join(_turning(want.rpm, want.sense) for want in sorted(asked, key=lambda w: (w.rpm, w.sense)))
+    places.sort(key=lambda place: place.nc_line)
+    return judged("spindle", "spindle as the CL file says", places, good or "the CL file says nothing of a spindle")
+
+
+def _turning(rpm: float, sense: int) -> str:
+    if sense == 0:
+        return "spindle off"
+    return f"{rpm:g} rev/min {'clockwise' if sense > 0 else 'counterclockwise'}"
+
+
+def tool(case: Case) -> Check:
+    """The tool at every point, its edge, and no other tool changed to."""
+    wanted, pairs, run, settings = case.wanted, case.pairs, case.run, case.settings
+    assert wanted is not None
+    assert pairs is not None
+    places: list[Place] = []
+    known: list[tuple[str, ...]] = []
+    for stretch in wanted.tools():
+        call = stretch.value
+        assert isinstance(call, Call)
+        names = (settings.tool,) if settings.tool else call.names
+        first, end = _part(case, stretch)
+        if (call.number is None and not settings.tool) or first == end:
+            continue
+        known.append(names)
+        right = [k for k, text in enumerate(run.tools) if _is_tool(text, names)]
+        bad = _first_wrong(~np.isin(run.tool[pairs.nc[first:end]], right), first)
+        if bad is not None:
+            row = int(pairs.nc[bad])
+            has = run.tools[run.tool[row]] or "no tool"
+            text = f"tool {has} is in the spindle; the CL file wants {names[0]}"
+            places.append(case.place(row, 0.0, text, int(pairs.cl[bad])))
+            calls = [e for e in run.events if e.kind in ("tool", "tool_change") and e.before_row <= row]
+            if calls:
+                places.append(case.at(calls[-1], 0.0, f"{text}: this is the last word on it"))
+    if settings.edge is not None:
+        for nc, cl, _ in _chunks(case):
+            bad = _first_wrong(run.edge[nc] != settings.edge, 0)
+            if bad is not None:
+                text = f"works with D{run.edge[nc[bad]]}, not with D{settings.edge}"
+                places.append(case.place(int(nc[bad]), 0.0, text, int(cl[bad])))
+                break
+        strange = (run.edge > 0) & (run.edge != settings.edge) & run.machine_frame
+        if strange.any():
+            row = int(np.argmax(strange))
+            places.append(case.place(row, 0.0, f"D{run.edge[row]} is not the edge of this tool, D{settings.edge}"))
+    for event in run.events if known else ():
+        if event.kind == "tool_change":
+            text = str(event.value or "")
+            if text and text != "0" and not any(_is_tool(text, names) for names in known):
+                places.append(case.at(event, 0.0, f"changes to tool {text}, which the CL file never asks for"))
+    good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in known)) or "the CL file names no tool"
+    return judged("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
+
+
+def _is_tool(text: str, names: tuple[str, ...]) -> bool:
+    return text in names or (text.isdigit() and str(int(text)) in names)
+
+
+def coolant(case: Case) -> Check:
+    """Coolant at every point, as far as its words are the control's own."""
+    wanted, pairs, run = case.wanted, case.pairs, case.run
+    assert wanted is not None
+    assert pairs is not None
+    places: list[Place] = []
+    changes = [(event.before_row, str(event.value), event) for event in run.events if event.kind == "coolant"]
+    rows = np.array([row for row, _, _ in changes], np.int64)
+    asked: set[str] = set()
+    unread: set[str] = set()
+    for stretch in wanted.coolant():
+        first, end = _part(case, stretch)
+        if first == end:
+            continue
+        word = str(stretch.value)
+        want = _COOLANT.get(word)
+        if want is None:
+            unread.add(word)
+            continue
+        asked.add(want)
+        begin, stop = int(pairs.nc[first]), int(pairs.nc[end - 1])
+        if want == "off":
+            begin += 1  # M9 acts after the motion of its block
+        k = int(np.searchsorted(rows, begin, "right"))
+        now = changes[k - 1][1] if k else "off"
+        inside = [state for row, state, _ in changes[k:] if row <= stop]
+        if begin > stop:
+            continue
+        if _differs(now, want, unread):
+            text = f"coolant is {now}; the CL file wants {want}"
+            places.append(case.place(begin, 0.0, text, int(pairs.cl[first])))
+        elif any(_differs(state, want, unread) for state in inside):
+            row = next(r for r, state, _ in changes[k:] if r <= stop and _differs(state, want, unread))
+            text = f"coolant changes; the CL file wants {want}"
+            places.append(case.place(min(row, len(run) - 1), 0.0, text))
+    for _, state, event in changes:
+        if not unread and state not in asked | {"off"}:
+            places.append(case.at(event, 0.0, f"coolant {state}, which the CL file never asks for"))
+    good = ", ".join(sorted(asked | {word.lower() + " (not read)" for word in unread}))
+    places.sort(key=lambda place: place.nc_line)
+    return judged("coolant", "coolant as the CL file says", places, good)
+
+
+def _differs(state: str, want: str, unread: set[str]) -> bool:
+    return state != want and not (unread and state != "off" and want != "off")
+
+
+def offset(case: Case) -> Check:
+    """One work offset wherever the tool works, and the one that was asked for."""
+    run, settings = case.run, case.settings
+    rows = case.pairs.nc if case.pairs is not None else np.flatnonzero(~run.machine_frame)
+    title = "one work offset throughout"
+    if not len(rows):
+        return Check("offset", title, True, "nothing moves")
+    want = settings.work_offset
+    if want is None:
+        want = int(run.offset[rows[-1]]) if case.pairs is None else int(run.offset[rows[0]])
+    places: list[Place] = []
+    count = 0
+    for start in range(0, len(rows), CHUNK):
+        part = rows[start : start + CHUNK]
+        used = run.offset[part]
+        wrong = (used != want) & ~((used == 0) & ~run.tcp[part] & (case.pairs is None))
+        if wrong.any():
+            bad = part[wrong]
+            count += len(bad)
+            places += [
+                case.place(int(row), 0.0, f"works in {_offset(int(run.offset[row]))}, not in {_offset(want)}")
+                for row in bad[: max(NAMED - len(places), 0)]
+            ]
+    used_at_all = {int(event) for event in np.unique(run.offset).tolist()} - {0, want}
+    if used_at_all and not places:
+        row = int(np.argmax(np.isin(run.offset, list(used_at_all))))
+        places.append(case.place(row, 0.0, f"{_offset(int(run.offset[row]))} is not the offset of this program"))
+    return judged("offset", title, places, f"{_offset(want)} throughout", count or None)
+
+
+def _offset(code: int) -> str:
+    return "no work offset" if code == 0 else f"G{code}"
+
+
+def home(case: Case) -> Check:
+    """Motions in the machine's frame: at rapid, back along one slide first, and to the machine's home positions.
+
+    A program that never goes to the home of the machine's definition has positions of its own, which nobody can judge.
+    """
+    run, machine = case.run, case.run.machine
+    title = "retreats to the machine's home"
+    rows = np.flatnonzero(run.machine_frame)
+    if not len(rows):
+        return Check("home", title, True, "the program does not go home")
+    apart = run.joints[rows] - machine.home
+    for k, axis in enumerate(machine.axes):
+        if axis.endless:
+            apart[:, k] -= 360.0 * np.rint(apart[:, k] / 360.0)
+    there = np.abs(apart) <= _HOME
+    if not there.any():
+        return Check("home", title, True, "goes to machine positions of its own, not to the home of the definition")
+    bits = np.zeros((len(rows), 5), np.bool_)
+    named = {"X": 1, "Y": 2, "Z": 4}
+    for k, axis in enumerate(machine.axes):
+        bit = named.get(axis.name, 0)
+        if axis.is_rotary:
+            bit = 8 if k == machine.rotary[0] else 16
+        bits[:, k] = (run.programmed[rows] & bit) != 0
+    places: list[Place] = []
+    before_retreat = True
+    last = -2
+    for k, row in enumerate(rows.tolist()):
+        axes = [machine.axes[c].name for c in np.flatnonzero(bits[k])]
+        away = [machine.axes[c].name for c in np.flatnonzero(bits[k] & ~there[k])]
+        if away:
+            text = f"moves {' and '.join(away)} to a machine position that is not its home"
+            places.append(case.place(row, 0.0, text))
+        if run.kind[row] != Kind.RAPID:
+            places.append(case.place(row, 0.0, "moves home at feed, not at rapid"))
+        if row != last + 1:
+            before_retreat = True
+        moved = np.abs(run.joints[row] - (run.joints[row - 1] if row else run.start)) > _HOME
+        if before_retreat and len(axes) > 1 and (moved.any() or row == 0):
+            text = f"moves {' and '.join(axes)} home before the tool has been drawn back along one slide"
+            places.append(case.place(row, 0.0, text))
+        before_retreat = False
+        last = row
+    slides = list(machine.linear)
+    for event in run.events:
+        if event.kind not in ("tool_change", "end") or not 0 < event.before_row <= len(run):
+            continue
+        row = event.before_row - 1
+        k = int(np.searchsorted(rows, row))
+        stands = k < len(rows) and rows[k] == row and there[k, slides].all()
+        if not stands:
+            what = "changes the tool" if event.kind == "tool_change" else "ends"
+            text = f"{what} in line {event.line} while the slides are not at home; this is the last motion before"
+            places.append(case.place(row, 0.0, text))
+    return judged("home", title, places, "slides and rotary axes at home before, after and at every tool change")

@@ -1,0 +1,185 @@
+"""What no program should do, whatever it is for: faults of modal state, and words that nobody knows."""
+
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from trunnion.errors import InputError, Severity
+from trunnion.reader import Finding, Happening, Run
+from trunnion.toolpath import Kind
+from trunnion.verify.align import CHUNK, PLACES
+from trunnion.verify.case import NAMED, Case, judged
+from trunnion.verify.model import Check, Place
+
+#: Rotary motion below this, degrees, is none.
+_TURNED = 1e-3
+
+#: Height and sideways motion below this, mm, are none.
+_MOVED = 1e-3
+
+
+def modal(case: Case) -> Check:
+    """Motion without feed or spindle, TCP on where it must be off, rapids below the retract height, no end."""
+    run = case.run
+    places = _without_feed_or_spindle(case)
+    places += _tcp_left_on(case)
+    places += _turned_under_tcp(case)
+    places += _low_rapids(case)
+    end = next((event for event in run.events if event.kind == "end"), None)
+    if end is None and len(run):
+        last = max(case.last_line, int(run.block[-1]))
+        places.append(Place(last, -1, 0.0, "the program has no end (M30 or M2) after this"))
+    for event in run.events:
+        if event.kind == "tool_change" and 0 < event.before_row <= len(run) and _spindle_at(run, event.before_row):
+            places.append(case.at(event, 0.0, "changes the tool while the spindle turns"))
+    places.sort(key=lambda place: place.nc_line)
+    good = "feed and spindle at every cut, TCP off at home, no low rapids, a proper end"
+    return judged("modal", "modal state", places, good)
+
+
+def _spindle_at(run: Run, before_row: int) -> bool:
+    """Whether the spindle turns before a row, as events tell."""
+    turning = False
+    for event in run.events:
+        if event.kind == "spindle" and event.before_row <= before_row:
+            turning = event.value not in (0, 0.0, "off", "oriented", None)
+        if event.kind == "tool_change" and event.before_row == before_row:
+            return turning
+    return turning
+
+
+def _without_feed_or_spindle(case: Case) -> list[Place]:
+    run = case.run
+    places: list[Place] = []
+    found = {"no feed": False, "spindle off": False}
+    for start in range(0, len(run), CHUNK):
+        part = slice(start, start + CHUNK)
+        cuts = run.kind[part] != Kind.RAPID
+        faults = {"no feed": cuts & ~(run.feed[part] > 0.0)}
+        # With a CL file it says where the spindle turns; some tools do not.
+        if case.wanted is None:
+            faults["spindle off"] = (
+                cuts & ((run.spindle[part] == 0) | (run.rpm[part] <= 0.0)) & ~run.machine_frame[part]
+            )
+        for what, rows in faults.items():
+            if not found[what] and rows.any():
+                found[what] = True
+                text = "moves at feed, but no feed was said" if what == "no feed" else "moves at feed, spindle off"
+                places.append(case.place(start + int(np.argmax(rows)), 0.0, text))
+    return places
+
+
+def _tcp_left_on(case: Case) -> list[Place]:
+    run = case.run
+    places = []
+    wrong = run.tcp & run.machine_frame
+    if wrong.any():
+        places.append(case.place(int(np.argmax(wrong)), 0.0, "moves in the machine's frame with TCP on"))
+    for event in run.events:
+        if event.kind not in ("tool_change", "end"):
+            continue
+        row = event.before_row - 1
+        if 0 <= row < len(run) and run.tcp[row] and not _switched_off(run, row, event):
+            what = "changes the tool" if event.kind == "tool_change" else "ends the program"
+            places.append(case.at(event, 0.0, f"{what} with TCP on"))
+    return places
+
+
+def _switched_off(run: Run, row: int, event: Happening) -> bool:
+    """Whether TCP is switched off between a motion and what happens after it; rows do not tell, the text does."""
+    if run.file[row] != event.file:
+        return row + 1 < len(run) and not run.tcp[row + 1]
+    first, last = int(run.block[row]), event.line
+    try:
+        with Path(run.files[event.file]).open(encoding="utf-8", errors="replace") as text:
+            between = list(islice(text, first - 1, max(last, first)))
+    except OSError:
+        return row + 1 < len(run) and not run.tcp[row + 1]
+    return any("TRAFOOF" in line.partition(";")[0].upper() for line in between)
+
+
+def _turned_under_tcp(case: Case) -> list[Place]:
+    """Rapids that swing rotary axes although TCP has only just been switched on: they were not placed before it."""
+    run = case.run
+    on = np.flatnonzero(run.tcp & ~np.concatenate(([False], run.tcp[:-1])))
+    places = []
+    for first in on.tolist():
+        end = min(first + 16, len(run))
+        for row in range(first, end):
+            if run.kind[row] != Kind.RAPID or not run.tcp[row]:
+                break
+            before = run.joints[row - 1] if row else run.start
+            turned = max(abs(float(run.joints[row, c] - before[c])) for c in run.machine.rotary)
+            if turned > _TURNED and not run.machine_frame[row]:
+                text = f"swings a rotary axis by {turned:.3f} degrees at rapid with TCP on: place it before TRAORI"
+                places.append(case.place(row, turned, text))
+            if run.programmed[row] & int(PLACES):
+                break
+    return places[:NAMED]
+
+
+def _low_rapids(case: Case) -> list[Place]:
+    """Rapids that go sideways below the height to which the tool was last drawn back, and that no CL file asks for."""
+    run = case.run
+    rapid = (run.kind == Kind.RAPID) & ~run.machine_frame
+    if case.pairs is not None:
+        assert case.wanted is not None
+        asked = case.wanted.kind[case.pairs.cl] == Kind.RAPID
+        rapid[case.pairs.nc[asked]] = False
+    rows = np.flatnonzero(rapid)
+    if not len(rows):
+        return []
+    every = np.flatnonzero((run.kind == Kind.RAPID) & ~run.machine_frame & ((run.programmed & int(PLACES)) != 0))
+    places: list[Place] = []
+    height: float | None = None
+    suspects = set(rows.tolist())
+    axis = np.zeros(3)
+    tool = -1
+    for row in every.tolist():
+        if np.abs(run.axis[row] - axis).max() > 1e-6 or run.tool[row] != tool:
+            height, axis, tool = None, run.axis[row], int(run.tool[row])
+        here, there = run.tip[row - 1] if row else run.tip[row], run.tip[row]
+        way = there - here
+        up = float(way @ axis)
+        aside = float(np.linalg.norm(way - up * axis))
+        high = max(float(here @ axis), float(there @ axis))
+        if row in suspects and height is not None and aside > _MOVED and high < height - _MOVED:
+            text = f"rapid goes sideways {height - high:.3f} mm below the retract height"
+            places.append(case.place(row, height - high, text))
+            if len(places) >= NAMED:
+                break
+        elif height is None or (aside <= _MOVED and up > _MOVED):
+            height = float(there @ axis)
+    return places
+
+
+def words(case: Case) -> Check:
+    """Words that the reader does not know or could not act upon."""
+    run = case.run
+    errors = [finding for finding in run.findings if finding.severity is Severity.ERROR]
+    wanted = case.wanted
+    if wanted is not None and errors and wanted.insert_texts:
+        errors = [finding for finding in errors if not _inserted(finding, wanted.insert_texts)]
+    if wanted is not None and not wanted.compensates:
+        errors += [f for f in run.findings if f not in errors and f.text.startswith(("G41", "G42"))]
+    places = [Place(finding.line, -1, 0.0, finding.text) for finding in errors]
+    warnings = len(run.findings) - len(errors)
+    good = "every word is known" + (f", {warnings} remarks" if warnings else "")
+    check = judged("words", "every word known", places, good)
+    if check.passed and warnings:
+        told = tuple(Place(f.line, -1, 0.0, f.text) for f in run.findings[:NAMED])
+        return Check(check.key, check.title, True, check.summary, places=told)
+    return check
+
+
+def _inserted(finding: Finding, texts: set[str]) -> bool:
+    """Whether the block is one that the CL file put into the program itself (INSERT)."""
+    try:
+        lines = Path(finding.file).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError as error:
+        raise InputError([]) from error
+    if not 0 < finding.line <= len(lines):
+        return False
+    line = lines[finding.line - 1].lstrip("/").strip()
+    return line in texts or line.partition(" ")[2].strip() in texts

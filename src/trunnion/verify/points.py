@@ -1,0 +1,209 @@
+"""How far the program is from its CL points: the tip in each coordinate, the tool axis in each rotary axis.
+
+In:     a run, what was wanted, and which rows answer to which.
+Out:    per pair two deviations, largest and root mean square of them.
+Units:  mm and degrees.
+
+The difference of two tool axes is split along the two directions into which the rotary axes turn the tool where it
+stands. That says what each rotary axis is off by, with the forward map alone, and leaves out an angle that is free.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numba import njit
+
+from trunnion.arrays import Floats, Ints
+from trunnion.machine import Machine
+from trunnion.reader import Run
+from trunnion.verify.align import CHUNK, Pairs
+from trunnion.verify.wanted import Wanted
+
+#: What the two maps, there and back, may differ by, rad.
+_NOISE: Final = 1e-11
+
+#: What the seven decimals of CL files leave open at a pole and at the edge of what the rotary axes reach, rad.
+_OPEN: Final = 1.1e-7
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Off:
+    """Deviations of one kind; ``excess`` is how much of what is allowed the worst takes, pair ``k`` the worst itself.
+
+    bad      pairs that are off by more than is allowed: the first of them, and the worst, worst first
+    count    how many there are
+    """
+
+    largest: float
+    rms: float
+    limit: float
+    excess: float
+    worst: int
+    bad: tuple[tuple[int, float], ...]
+    count: int
+
+
+def deviations(run: Run, wanted: Wanted, pairs: Pairs, named: int) -> tuple[Off, Off]:
+    """Tip and tool axis; of what is off, ``named`` pairs are named."""
+    tip, axis = _Gatherer(named), _Gatherer(named)
+    frame = Tilt.of(run.machine)
+    off_tip, off_axis = np.empty(CHUNK), np.empty(CHUNK)
+    for start, end, tip_limit, angle_limit in _chunks(wanted, pairs):
+        nc, cl = pairs.nc[start:end], pairs.cl[start:end]
+        count = end - start
+        squares = compare_rows(
+            run.tip, run.axis, run.joints, wanted.tip, wanted.axis, nc, cl, frame.column, frame.sense, frame.first,
+            frame.second, _NOISE, _OPEN, off_tip, off_axis,
+        )  # fmt: skip
+        tip.take(start, off_tip[:count], squares[0], tip_limit)
+        axis.take(start, off_axis[:count], squares[1], angle_limit)
+    return tip.off(), axis.off()
+
+
+def _chunks(wanted: Wanted, pairs: Pairs) -> Iterator[tuple[int, int, float, float]]:
+    """Pairs of one operation, a chunk at a time, with what is allowed there."""
+    ends = np.searchsorted(pairs.cl, [part.end for part in wanted.parts])
+    first = 0
+    for part, end in zip(wanted.parts, ends.tolist(), strict=True):
+        for start in range(first, end, CHUNK):
+            yield start, min(start + CHUNK, end), part.allowed.tip, part.allowed.angle
+        first = end
+
+
+class _Gatherer:
+    """Collects the worst of many chunks."""
+
+    def __init__(self, named: int) -> None:
+        self._named = named
+        self._squares = 0.0
+        self._rows = 0
+        self._count = 0
+        self._first: tuple[int, float] | None = None
+        self._bad: list[tuple[int, float]] = []
+        self._worst = (-1.0, 0.0, 0.0, 0)
+
+    def take(self, start: int, off: Floats, squares: float, limit: float) -> None:
+        """Add a chunk: deviations of the pairs from ``start`` on, and the sum of their squares."""
+        self._squares += squares
+        self._rows += len(off)
+        k = int(np.argmax(off))
+        excess = float(off[k]) / limit if limit else float(off[k])
+        if excess > self._worst[0]:
+            self._worst = excess, float(off[k]), limit, start + k
+        if off[k] <= limit:
+            return
+        bad = np.flatnonzero(~(off <= limit))
+        self._count += len(bad)
+        if self._first is None:
+            self._first = start + int(bad[0]), float(off[bad[0]])
+        order = bad[np.argsort(-off[bad], kind="stable")[: self._named]]
+        self._bad += [(start + int(k), float(off[k])) for k in order]
+        self._bad = sorted(self._bad, key=lambda place: -place[1])[: self._named]
+
+    def off(self) -> Off:
+        """Everything together."""
+        excess, largest, limit, worst = self._worst
+        bad = self._bad
+        if self._first is not None and self._first not in bad:
+            bad = [*bad, self._first]
+        rms = math.sqrt(self._squares / max(self._rows, 1))
+        return Off(largest, rms, limit, excess, worst, tuple(bad), self._count)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tilt:
+    """The rotary axes of a machine, for kernels.
+
+    column   column in ``joints`` of the rotary axis next to the workpiece
+    sense    1 or -1, how its values turn it
+    first    (3,) its direction, with all axes at zero
+    second   (3,) the direction of the other one
+    """
+
+    column: int
+    sense: float
+    first: Floats
+    second: Floats
+
+    @staticmethod
+    def of(machine: Machine) -> "Tilt":
+        """From a definition."""
+        first, second = machine.rotary
+        one, two = machine.axes[first], machine.axes[second]
+        return Tilt(first, one.sense, np.array(one.direction), np.array(two.direction))
+
+
+@njit(cache=True)
+def compare_rows(
+    nc_tip: Floats,
+    nc_axis: Floats,
+    joints: Floats,
+    cl_tip: Floats,
+    cl_axis: Floats,
+    nc: Ints,
+    cl: Ints,
+    column: int,
+    sense: float,
+    first: Floats,
+    second: Floats,
+    noise: float,
+    left_open: float,
+    off_tip: Floats,
+    off_axis: Floats,
+) -> tuple[float, float]:
+    """Write the largest deviation of each pair in X, Y or Z (mm) and in either rotary axis (deg).
+
+    Returns the sums of squared distances: of tips in mm, of tool axes in degrees.
+    """
+    w0, w1, w2 = first[0], first[1], first[2]
+    v0, v1, v2 = second[0], second[1], second[2]
+    along = w0 * v0 + w1 * v1 + w2 * v2
+    squares_tip = 0.0
+    squares_axis = 0.0
+    for k in range(nc.shape[0]):
+        i, j = nc[k], cl[k]
+        dx = nc_tip[i, 0] - cl_tip[j, 0]
+        dy = nc_tip[i, 1] - cl_tip[j, 1]
+        dz = nc_tip[i, 2] - cl_tip[j, 2]
+        squares_tip += dx * dx + dy * dy + dz * dz
+        largest = max(abs(dx), abs(dy), abs(dz))
+        off_tip[k] = largest if largest == largest else np.inf
+        a0, a1, a2 = nc_axis[i, 0], nc_axis[i, 1], nc_axis[i, 2]
+        e0, e1, e2 = a0 - cl_axis[j, 0], a1 - cl_axis[j, 1], a2 - cl_axis[j, 2]
+        chord = e0 * e0 + e1 * e1 + e2 * e2
+        if not chord > noise * noise:
+            off_axis[k] = 0.0 if chord == chord else np.inf
+            if chord == chord:
+                squares_axis += chord
+            continue
+        angle = 2.0 * math.asin(min(0.5 * math.sqrt(chord), 1.0))
+        squares_axis += angle * angle
+        if chord > 1e-4:  # not a small difference any more: the angle itself
+            off_axis[k] = math.degrees(angle)
+            continue
+        # The second axis where the first has turned it to, and the ways into which both turn the tool.
+        q = math.radians(sense * joints[i, column])
+        cos, sin = math.cos(q), math.sin(q)
+        rest = along * (1.0 - cos)
+        s0 = v0 * cos + (w1 * v2 - w2 * v1) * sin + w0 * rest
+        s1 = v1 * cos + (w2 * v0 - w0 * v2) * sin + w1 * rest
+        s2 = v2 * cos + (w0 * v1 - w1 * v0) * sin + w2 * rest
+        p0, p1, p2 = w1 * a2 - w2 * a1, w2 * a0 - w0 * a2, w0 * a1 - w1 * a0
+        r0, r1, r2 = s1 * a2 - s2 * a1, s2 * a0 - s0 * a2, s0 * a1 - s1 * a0
+        pp = p0 * p0 + p1 * p1 + p2 * p2
+        pr = p0 * r0 + p1 * r1 + p2 * r2
+        rr = r0 * r0 + r1 * r1 + r2 * r2
+        pe = p0 * e0 + p1 * e1 + p2 * e2
+        re = r0 * e0 + r1 * e1 + r2 * e2
+        volume = pp * rr - pr * pr
+        if volume < 1e-5 * pp * rr or pp < 1e-12 or rr < 1e-12:
+            # At a pole, or at the edge of what the axes reach: what each of them is off by cannot be told apart.
+            off_axis[k] = math.degrees(max(angle - left_open, 0.0) / (math.sqrt(pp) + math.sqrt(rr)))
+            continue
+        one = abs((rr * pe - pr * re) / volume) - noise / math.sqrt(pp)
+        two = abs((pp * re - pr * pe) / volume) - noise / math.sqrt(rr)
+        off_axis[k] = math.degrees(max(one, two, 0.0))
+    return squares_tip, squares_axis * (180.0 / math.pi) ** 2

@@ -1,0 +1,33 @@
+"""A verification as lines for a terminal."""
+
+from collections.abc import Iterator
+
+from trunnion.verify.model import Check, Place, Verification
+
+
+def check_lines(verification: Verification) -> Iterator[str]:
+    """One line a check."""
+    width = max(len(check.key) for check in verification.checks)
+    for check in verification.checks:
+        yield f"{check.key:<{width}}  {'ok  ' if check.passed else 'FAIL'}  {check.summary}"
+
+
+def place_lines(verification: Verification, *, failed_only: bool = False, most: int = 5) -> Iterator[str]:
+    """The worst places of each check, those of failed checks first: ``nc:line (N…), cl:line: text``."""
+    for check in sorted(verification.checks, key=lambda check: check.passed):
+        if check.passed and failed_only:
+            continue
+        for place in check.places[:most]:
+            yield f"{place_line(verification.program, place)} [{check.key}]"
+
+
+def place_line(program: str, place: Place) -> str:
+    """One place, in the form that editors know how to jump to."""
+    number = f" (N{place.number})" if place.number >= 0 else ""
+    cl = f", {place.cl_file}:{place.cl_line}" if place.cl_line else ""
+    return f"{program}:{place.nc_line}{number}{cl}: {place.text}"
+
+
+def failures(verification: Verification) -> list[Check]:
+    """The checks that were not passed."""
+    return [check for check in verification.checks if not check.passed]

@@ -1,0 +1,256 @@
+"""One program, all checks."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from trunnion.reader import Run
+from trunnion.toolpath import Toolpath
+from trunnion.verify import demands, modal
+from trunnion.verify.align import Pairs, in_order, matched
+from trunnion.verify.arcs import Arc, turned
+from trunnion.verify.case import NAMED, Case, Settings
+from trunnion.verify.model import Check, Place, Verification
+from trunnion.verify.points import Off, deviations
+from trunnion.verify.walk import Walk, Worst, walk
+from trunnion.verify.wanted import Allowed, Wanted
+
+#: Three coordinates off by one each are a point off by this.
+_DIAGONAL = math.sqrt(3.0) + 1e-6
+
+
+def verify(
+    run: Run,
+    toolpaths: Sequence[Toolpath] = (),
+    *,
+    allowed: Allowed | Sequence[Allowed] | None = None,
+    settings: Settings | None = None,
+) -> Verification:
+    """Put every question to a program.
+
+    Parameters
+    ----------
+    run
+        The program as the machine's control ran it.
+    toolpaths
+        What it was made from, in that order; without, the program is looked at by itself.
+    allowed
+        How far it may be from its CL points: one for all, or one for each operation that moves.
+    settings
+        What the CL files do not say.
+
+    Raises
+    ------
+    InputError
+        When the toolpaths have no motion.
+    """
+    settings = settings or Settings()
+    checks: list[Check] = []
+    wanted = Wanted(toolpaths, allowed or Allowed()) if toolpaths else None
+    pairs = None
+    if wanted is not None:
+        pairs, off_tip, off_axis = _paired(run, wanted)
+        case = Case(run, wanted, pairs, settings)
+        checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis)]
+        checks += [demands.kind(case), demands.feed(case), demands.spindle(case), demands.tool(case)]
+        checks += [demands.coolant(case), demands.offset(case), demands.home(case)]
+    else:
+        case = Case(run, None, None, settings)
+        checks.append(demands.offset(case))
+    way = walk(run, NAMED, math.inf if settings.span is None else settings.span)
+    checks += [_span(case, way), _travel(case, way), _speed(case, way), _acceleration(case, way)]
+    checks += [modal.modal(case), modal.words(case)]
+    cl_line = np.zeros(len(run), np.int32)
+    if wanted is not None and pairs is not None:
+        cl_line[pairs.nc] = wanted.line[pairs.cl]
+        for pieces in pairs.pieces:
+            cl_line[pieces.nc] = wanted.line[pieces.cl]
+    return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line)
+
+
+def _paired(run: Run, wanted: Wanted) -> tuple[Pairs, Off, Off]:
+    """Partners and how far they are apart: by counting if that fits, else by position."""
+    pairs = in_order(run, wanted)
+    if pairs is not None:
+        tip, axis = deviations(run, wanted, pairs, NAMED)
+        if not tip.count and not axis.count:
+            return pairs, tip, axis
+    pairs = matched(run, wanted)
+    return pairs, *deviations(run, wanted, pairs, NAMED)
+
+
+def _tip(case: Case, off: Off) -> Check:
+    wanted, pairs = case.wanted, case.pairs
+    assert wanted is not None
+    assert pairs is not None
+    places = []
+    for k, value in off.bad:
+        row, cl = int(pairs.nc[k]), int(pairs.cl[k])
+        is_, want = case.run.tip[row], wanted.tip[cl]
+        axes = [
+            f"{name}{now:.5f} for {then:.5f}"
+            for name, now, then in zip("XYZ", is_, want, strict=True)
+            if not abs(now - then) <= off.limit
+        ]
+        inches = " (the program counts in inches here)" if case.run.inches[row] else ""
+        places.append(case.place(row, value, f"the tip is {value:.6f} mm off: {', '.join(axes)}{inches}", cl))
+    count = off.count
+    if places:
+        first = min(int(pairs.nc[k]) for k, _ in off.bad)
+        by = None if case.run.tcp[first] else case.turned_by(first)
+        places += [by] if by is not None else []
+    for pieces in pairs.pieces:
+        part = wanted.part_of(pieces.cl)
+        away = np.sqrt((pieces.arc.deviation(case.run.tip[pieces.nc]) ** 2).sum(axis=1))
+        for k in np.flatnonzero(away > _DIAGONAL * part.allowed.tip + 1e-6 + _ragged(pieces.arc)).tolist():
+            count += 1
+            text = f"the tip is {away[k]:.6f} mm off the arc that the CL file asks for"
+            places.append(case.place(int(pieces.nc[k]), float(away[k]), text, pieces.cl))
+    return _measured("tip", "tool tip against the CL points", case, off, "mm", places, count)
+
+
+def _ragged(arc: Arc) -> float:
+    """By how much the radius at an arc's end differs from that at its start, mm, where that is rounding."""
+    arm = arc.end - arc.centre
+    arm = arm - (arm @ arc.normal) * arc.normal
+    return min(abs(float(np.linalg.norm(arm)) - arc.radius), 1e-3)
+
+
+def _axis(case: Case, off: Off) -> Check:
+    pairs = case.pairs
+    assert pairs is not None
+    places = []
+    for k, value in off.bad:
+        row = int(pairs.nc[k])
+        text = f"the tool axis is off, a rotary axis by {value:.6f} degrees"
+        places.append(case.place(row, value, text, int(pairs.cl[k])))
+    count = off.count
+    if places:
+        by = case.turned_by(min(int(pairs.nc[k]) for k, _ in off.bad))
+        places += [by] if by is not None else []
+    assert case.wanted is not None
+    for pieces in pairs.pieces:
+        arc, part = pieces.arc, case.wanted.part_of(pieces.cl)
+        begin, end = case.wanted.axis[pieces.cl - 1], case.wanted.axis[pieces.cl]
+        fraction = arc.fractions(case.run.tip[pieces.nc])
+        total = 2.0 * float(np.arcsin(min(0.5 * float(np.linalg.norm(end - begin)), 1.0)))
+        away = 2.0 * np.arcsin(
+            np.minimum(0.5 * np.linalg.norm(case.run.axis[pieces.nc] - turned(begin, end, fraction), axis=1), 1.0)
+        )
+        # Where on the arc a rounded point is, is known no better than this.
+        unsure = total * _DIAGONAL * part.allowed.tip / max(arc.radius * arc.sweep, 1e-9)
+        limit = _DIAGONAL * part.allowed.angle + np.degrees(unsure) + 1e-6
+        for k in np.flatnonzero(np.degrees(away) > limit).tolist():
+            count += 1
+            value = float(np.degrees(away[k]))
+            text = f"the tool axis is off by {value:.6f} degrees on its way round an arc"
+            places.append(case.place(int(pieces.nc[k]), value, text, pieces.cl))
+    return _measured("axis", "tool axis against the CL points", case, off, "deg", places, count)
+
+
+def _measured(key: str, title: str, case: Case, off: Off, unit: str, places: list[Place], count: int) -> Check:
+    assert case.pairs is not None
+    if not len(case.pairs.nc):
+        return Check(key, title, False, "no block answers to any CL point", unit=unit)
+    summary = f"largest {off.largest:.6f} {unit}, rms {off.rms:.6f}, allowed {off.limit:.6f}"
+    if count:
+        summary += f", {count} points off, first in {_block(min(places, key=lambda p: p.nc_line))}"
+    passed = not count
+    return Check(key, title, passed, summary, off.largest, off.limit, unit, tuple(places))
+
+
+def _block(place: Place) -> str:
+    return f"N{place.number}" if place.number >= 0 else f"line {place.nc_line}"
+
+
+def _span(case: Case, way: Walk) -> Check:
+    """How far the tool is off between the points."""
+    title = "tool between the points"
+    axis, tip = way.bend_axis, way.bend_tip
+    chord, row_of_chord = 0.0, -1
+    if case.pairs is not None:
+        for pieces in case.pairs.pieces:
+            fraction = np.diff(np.concatenate(([0.0], pieces.arc.fractions(case.run.tip[pieces.nc]), [1.0])))
+            sag = pieces.arc.radius * (1.0 - np.cos(0.5 * np.abs(fraction) * pieces.arc.sweep))
+            if len(sag) and sag.max() > chord:
+                chord, row_of_chord = float(sag.max()), int(pieces.nc[min(int(np.argmax(sag)), len(pieces.nc) - 1)])
+    off_tip, row = (tip.value, tip.row) if tip.value > chord else (chord, row_of_chord)
+    places = []
+    if axis.row >= 0:
+        rows = axis.rows or [(axis.row, axis.value)]
+        places += [case.place(r, v, f"half-way the tool axis is {v:.5f} degrees off the great circle") for r, v in rows]
+    if row >= 0 and off_tip > 0.0:
+        places.append(case.place(row, off_tip, f"between its ends the tip is {off_tip:.5f} mm off"))
+    summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off half-way"
+    if axis.row >= 0:
+        summary += f", in {case.block(axis.row)}"
+    limit = case.settings.span
+    if limit is not None:
+        summary += f", allowed {limit:.5f}"
+    return Check("span", title, not axis.count, summary, axis.value, limit, "deg", tuple(places))
+
+
+def _travel(case: Case, way: Walk) -> Check:
+    """Every axis inside its limits, and the least room that is left."""
+    machine = case.run.machine
+    title = "travel of the axes"
+    told: list[tuple[float, str, float, int, int]] = []
+    for k, axis in enumerate(machine.axes):
+        low, high = way.extremes[k].tolist()
+        if low > high or axis.endless or not (math.isfinite(axis.low) or math.isfinite(axis.high)):
+            continue
+        unit = "deg" if axis.is_rotary else "mm"
+        if not axis.is_rotary and machine.workpiece_zero is None:
+            room = (axis.high - axis.low) - (high - low)
+            text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm"
+            told.append((room, text, high - low, int(way.places[k, 1]), k))
+            continue
+        below, above = low - axis.low, axis.high - high
+        end = 0 if below < above else 1
+        value, limit = (low, axis.low) if end == 0 else (high, axis.high)
+        text = f"{axis.name} goes to {value:.3f}, its limit is {limit:g} {unit}"
+        told.append((min(below, above), text, value, int(way.places[k, end]), k))
+    if not told:
+        return Check("travel", title, True, "no limits are stated")
+    told.sort(key=lambda t: t[0] / max(machine.axes[t[4]].high - machine.axes[t[4]].low, 1e-9))
+    over = [t for t in told if t[0] < -1e-5]
+    places = tuple(
+        case.place(row, value, f"{text}, {-room:.3f} too far" if room < 0 else f"{text}, {room:.3f} left")
+        for room, text, value, row, _ in (over or told)
+    )
+    room, text, value, _, k = told[0]
+    unit = "deg" if machine.axes[k].is_rotary else "mm"
+    summary = f"{text}, {abs(room):.3f} {'too far' if over else 'left'}"
+    return Check("travel", title, not over, summary, room, 0.0, unit, places)
+
+
+def _speed(case: Case, way: Walk) -> Check:
+    return _asked(case, way.speed, "speed", "speed of the axes at the programmed feed", "rapid speed")
+
+
+def _acceleration(case: Case, way: Walk) -> Check:
+    return _asked(case, way.acceleration, "acceleration", "acceleration of the axes between blocks", "acceleration")
+
+
+def _asked(case: Case, worsts: Sequence[Worst], key: str, title: str, of: str) -> Check:
+    """Shares of what the axes can do; more than all of it is told, for the control slows down there."""
+    machine = case.run.machine
+    stated = [axis.rapid if key == "speed" else axis.acceleration for axis in machine.axes]
+    if not any(stated):
+        return Check(key, title, True, f"the machine's definition states no {of}")
+    places = [
+        case.place(row, share, f"{axis.name} would need {100.0 * share:.0f} % of its {of}: the control slows down")
+        for axis, worst in zip(machine.axes, worsts, strict=True)
+        for row, share in worst.rows
+    ]
+    places.sort(key=lambda place: -place.value)
+    top = max(range(5), key=lambda k: worsts[k].value)
+    worst = worsts[top]
+    if worst.row < 0:
+        return Check(key, title, True, "no axis moves at feed", 0.0, 1.0, "of all")
+    count = sum(w.count for w in worsts)
+    summary = f"{machine.axes[top].name} at most {100.0 * worst.value:.0f} % of its {of}, in {case.block(worst.row)}"
+    if count:
+        summary += f"; in {count} places the control slows down"
+    return Check(key, title, True, summary, worst.value, 1.0, "of all", tuple(places[:NAMED]))

@@ -1,0 +1,266 @@
+"""What the CL files ask for, in one row of columns: all operations, seen from the coordinate system of the program.
+
+In:     toolpaths, in the order in which they are cut.
+Out:    the columns of all operations one after the other, and from which row on which spindle, tool and coolant hold.
+Frame:  the coordinate system of the first operation that moves: it is the program's.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
+from trunnion.errors import InputError, Problem
+from trunnion.toolpath import (
+    Arcs,
+    Coolant,
+    CutterComp,
+    Frame,
+    Insert,
+    LoadTool,
+    Moves,
+    Operation,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+    Toolpath,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Allowed:
+    """How far a program may be from its CL points: mm in each coordinate, degrees in each rotary axis.
+
+    chord   distance of lines from the arc that they stand for, mm
+    feed    of a feed from the CL file's, in its own unit
+    """
+
+    tip: float = 0.001
+    angle: float = 0.001
+    chord: float = 0.001
+    feed: float = 0.005
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """An operation in the program's coordinate system; its first row is row ``first`` of the columns."""
+
+    file: str
+    operation: Operation
+    first: int
+    allowed: Allowed
+
+    @property
+    def end(self) -> int:
+        """The row after its last."""
+        return self.first + len(self.operation.moves)
+
+
+@dataclass(frozen=True, slots=True)
+class Spindle:
+    """What the spindle is to do: rev/min and +1 for clockwise, -1 for the other way, 0 for standing still."""
+
+    rpm: float
+    sense: int
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """The tool that is to be in the spindle; the number is None before the first LOAD/TOOL."""
+
+    number: int | None
+    name: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What a program may call it."""
+        return tuple(str(text) for text in (self.number, self.name) if text not in (None, ""))
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Rows ``first`` to ``end`` ask for ``value``."""
+
+    first: int
+    end: int
+    value: object
+
+
+class Wanted:
+    """All operations of a program. With one operation the columns are its own, otherwise copies end to end."""
+
+    def __init__(self, toolpaths: Sequence[Toolpath], allowed: Allowed | Sequence[Allowed]) -> None:
+        moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
+        if not moving:
+            file = toolpaths[0].file if toolpaths else "CL file"
+            raise InputError(Problem(file, 0, "there is no motion in it to compare with", "output the toolpath again"))
+        limits = [allowed] * len(moving) if isinstance(allowed, Allowed) else list(allowed)
+        if len(limits) != len(moving):
+            raise ValueError(f"{len(limits)} limits for {len(moving)} operations")
+        frame = moving[0][1].frame
+        parts: list[Part] = []
+        first = 0
+        for (path, operation), limit in zip(moving, limits, strict=True):
+            parts.append(Part(path.file, seen_from(frame, operation), first, limit))
+            first += len(operation.moves)
+        self.parts: tuple[Part, ...] = tuple(parts)
+        self.firsts: Ints = np.array([part.first for part in parts], np.int64)
+
+    def __len__(self) -> int:
+        return self.parts[-1].end
+
+    @cached_property
+    def tip(self) -> Floats:
+        """(n, 3) float64, mm."""
+        return self._joined("tip")
+
+    @cached_property
+    def axis(self) -> Floats:
+        """(n, 3) float64, unit vectors."""
+        return self._joined("axis")
+
+    @cached_property
+    def kind(self) -> Codes:
+        """(n,) uint8, a ``Kind``."""
+        return self._joined("kind")  # type: ignore[return-value]
+
+    @cached_property
+    def feed(self) -> Floats:
+        """(n,) float64, mm/min or mm/rev."""
+        return self._joined("feed")
+
+    @cached_property
+    def per_rev(self) -> Flags:
+        """(n,) bool."""
+        return self._joined("per_rev")  # type: ignore[return-value]
+
+    @cached_property
+    def line(self) -> Lines:
+        """(n,) int32, line of the CL file."""
+        return self._joined("line")  # type: ignore[return-value]
+
+    def _joined(self, name: str) -> Floats:
+        columns = [getattr(part.operation.moves, name) for part in self.parts]
+        joined: Floats = columns[0] if len(columns) == 1 else np.concatenate(columns)
+        joined.setflags(write=False)
+        return joined
+
+    @cached_property
+    def arcs(self) -> Arcs:
+        """The circles, rows counted through all operations."""
+        if len(self.parts) == 1:
+            return self.parts[0].operation.arcs
+        each = [(part.first, part.operation.arcs) for part in self.parts]
+        return Arcs(
+            np.concatenate([first + arcs.row for first, arcs in each]),
+            np.concatenate([arcs.centre for _, arcs in each]),
+            np.concatenate([arcs.normal for _, arcs in each]),
+            np.concatenate([arcs.radius for _, arcs in each]),
+            np.concatenate([arcs.turns for _, arcs in each]),
+        )
+
+    def part_of(self, row: int) -> Part:
+        """The operation that a row belongs to."""
+        return self.parts[int(np.searchsorted(self.firsts, row, "right")) - 1]
+
+    @cached_property
+    def inserts(self) -> dict[int, int]:
+        """Row -> how many texts of the CL file's own (INSERT) stand before it."""
+        count: dict[int, int] = {}
+        for part in self.parts:
+            for event in part.operation.events:
+                if isinstance(event, Insert):
+                    count[part.first + event.row] = count.get(part.first + event.row, 0) + 1
+        return count
+
+    @property
+    def insert_texts(self) -> set[str]:
+        """Texts that the CL file puts into the program as they stand."""
+        return {e.text.strip() for p in self.parts for e in p.operation.events if isinstance(e, Insert)}
+
+    @property
+    def compensates(self) -> bool:
+        """Whether cutter radius compensation is asked for anywhere."""
+        return any(isinstance(e, CutterComp) and e.side != "OFF" for p in self.parts for e in p.operation.events)
+
+    def spindle(self) -> list[Stretch]:
+        """Stretches of ``Spindle``, or None before the first SPINDL. Each operation starts with what was last on."""
+        last: Spindle | None = None
+        stretches: list[Stretch] = []
+        for part in self.parts:
+            changes: list[tuple[int, object]] = [(0, last)]
+            for event in part.operation.events:
+                if isinstance(event, SpindleOn):
+                    last = Spindle(event.rpm, 1 if event.sense is Sense.CLW else -1)
+                    changes.append((event.row, last))
+                elif isinstance(event, SpindleOff):
+                    changes.append((event.row, Spindle(last.rpm if last else 0.0, 0)))
+            stretches += _stretches(part, changes)
+        return stretches
+
+    def coolant(self) -> list[Stretch]:
+        """Stretches of coolant words. Each operation starts without."""
+        stretches: list[Stretch] = []
+        for part in self.parts:
+            changes: list[tuple[int, object]] = [(0, "OFF")]
+            changes += [(event.row, event.kind) for event in part.operation.events if isinstance(event, Coolant)]
+            stretches += _stretches(part, changes)
+        return stretches
+
+    def tools(self) -> list[Stretch]:
+        """Stretches of ``Call``."""
+        number: int | None = None
+        stretches: list[Stretch] = []
+        for part in self.parts:
+            name = part.operation.tool.name
+            changes: list[tuple[int, object]] = [(0, Call(number, name))]
+            for event in part.operation.events:
+                if isinstance(event, LoadTool):
+                    number = event.number
+                    changes.append((event.row, Call(number, name)))
+            stretches += _stretches(part, changes)
+        return stretches
+
+
+def _stretches(part: Part, changes: list[tuple[int, object]]) -> list[Stretch]:
+    """From changes at rows of an operation, in order, to stretches; of several changes at one row the last counts."""
+    ends = [row for row, _ in changes[1:]] + [len(part.operation.moves)]
+    return [
+        Stretch(part.first + row, part.first + end, value)
+        for (row, value), end in zip(changes, ends, strict=True)
+        if end > row
+    ]
+
+
+def seen_from(frame: Frame, operation: Operation) -> Operation:
+    """The operation in another coordinate system, by homogeneous matrices."""
+    if operation.frame == frame:
+        return operation
+    change = np.linalg.inv(_placement(frame)) @ _placement(operation.frame)
+    turn, shift = change[:3, :3], change[:3, 3]
+    moves, arcs = operation.moves, operation.arcs
+    return replace(
+        operation,
+        frame=frame,
+        moves=Moves(
+            np.ascontiguousarray(moves.tip @ turn.T + shift),
+            np.ascontiguousarray(moves.axis @ turn.T),
+            moves.kind,
+            moves.phase,
+            moves.feed,
+            moves.per_rev,
+            moves.line,
+        ),
+        arcs=Arcs(arcs.row, arcs.centre @ turn.T + shift, arcs.normal @ turn.T, arcs.radius, arcs.turns),
+    )
+
+
+def _placement(frame: Frame) -> Floats:
+    """(4, 4): from coordinates in the frame to the CAM's absolute system."""
+    matrix = np.eye(4)
+    matrix[:3, 0], matrix[:3, 1] = frame.x, frame.y
+    matrix[:3, 2] = np.cross(frame.x, frame.y)
+    matrix[:3, 3] = frame.origin
+    return matrix

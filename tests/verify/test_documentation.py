@@ -1,0 +1,18 @@
+"""The page about the checks and the checks do not drift apart."""
+
+import re
+from pathlib import Path
+
+from tests.verify.conftest import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier
+
+PAGE = (Path(__file__).parents[2] / "docs" / "checks.md").read_text(encoding="utf-8")
+
+
+def test_every_check_has_a_section_and_every_name_in_the_table_is_a_check(verified: Verifier) -> None:
+    program = HEAD + "G0 X0 Y0 Z50\n" + FOOT
+    keys = [check.key for check in verified(program, CL_HEAD + CL_FOOT).checks]
+    assert {check.key for check in verified(program).checks} <= set(keys)
+    sections = re.findall(r"^## (.*)$", PAGE, re.MULTILINE)
+    assert [key for key in keys if key not in sections] == []
+    linked = re.findall(r"\[([a-z]+)\]\(#\1\)", PAGE)
+    assert sorted(linked) == sorted(keys)
