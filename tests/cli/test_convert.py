@@ -1,0 +1,204 @@
+"""``trunnion convert`` as a user meets it."""
+
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.control.test_golden import motion_part
+from tests.paths import HEADS, YL569
+from trunnion.cl import read_cl
+from trunnion.cli import main
+from trunnion.machine import load_machine
+from trunnion.reader import run_program
+
+Capture = pytest.CaptureFixture[str]
+
+CASES = sorted(path.stem.removesuffix(".expected") for path in YL569.glob("*.mpf"))
+HUB = YL569 / "2_hub_rough.expected.mpf"
+
+
+def there_and_back(program: Path, folder: Path, capfd: Capture) -> bytes:
+    """NC to CL by ``convert``, and back by the ``post`` command that it prints."""
+    cl, again = folder / "x.cls", folder / "x.mpf"
+    assert main(["convert", str(program), "--machine", "yl569", "--to-cl", "--output", str(cl)]) == 0
+    err = capfd.readouterr().err
+    (line,) = [line for line in err.splitlines() if line.startswith("to post it with the same head: ")]
+    command = shlex.split(line.partition(": ")[2])
+    assert command[:3] == ["trunnion", "post", str(cl)]
+    assert main([*command[1:], "--output", str(again)]) == 0
+    assert "warning" not in capfd.readouterr().err
+    return again.read_bytes()
+
+
+@pytest.mark.parametrize("name", HEADS)
+def test_golden_programs_come_back_from_a_cl_file_byte_for_byte(name: str, tmp_path: Path, capfd: Capture) -> None:
+    program = YL569 / f"{name}.expected.mpf"
+    assert there_and_back(program, tmp_path, capfd) == program.read_bytes()
+
+
+def test_the_typed_head_of_a_golden_program_becomes_ours_and_its_motion_stays(tmp_path: Path, capfd: Capture) -> None:
+    program = YL569 / "1_contour_rough.expected.mpf"
+    assert motion_part(there_and_back(program, tmp_path, capfd)) == motion_part(program.read_bytes())
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_our_own_program_comes_back_twice(name: str, tmp_path: Path, capfd: Capture) -> None:
+    first = tmp_path / "first.mpf"
+    settings = ["--set=title=题", "--set=method=MILL_FINISH", "--set=stock=0.35", "--set=work_offset=G55"]
+    assert main(["post", str(YL569 / f"{name}.cls"), "--machine", "yl569", "--output", str(first), *settings]) == 0
+    capfd.readouterr()
+    again = there_and_back(first, tmp_path, capfd)
+    assert again == first.read_bytes()
+    first.write_bytes(again)
+    assert there_and_back(first, tmp_path, capfd) == again
+
+
+def test_several_operations_and_tools_come_back(tmp_path: Path, capfd: Capture) -> None:
+    first = tmp_path / "first.mpf"
+    files = [str(YL569 / f"{name}.cls") for name in CASES]
+    assert main(["post", *files, "--machine", "yl569", "--output", str(first)]) == 0
+    capfd.readouterr()
+    assert main(["convert", str(first), "--machine", "yl569", "--to-cl", "--output", str(tmp_path / "a.cls")]) == 0
+    assert "to post it" not in capfd.readouterr().err, "nothing but defaults"
+    assert main(["post", str(tmp_path / "a.cls"), "--machine", "yl569", "--output", str(tmp_path / "a.mpf")]) == 0
+    assert (tmp_path / "a.mpf").read_bytes() == first.read_bytes()
+    found = read_cl(tmp_path / "a.cls").operations
+    assert [operation.name for operation in found] == ["CAVITY_MILL", "MULTI_BLADE_ROUGH", "BLADE_FINISH"]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_for_the_same_machine_the_program_stays_the_same(name: str, tmp_path: Path, capfd: Capture) -> None:
+    program, target = YL569 / f"{name}.expected.mpf", tmp_path / "same.mpf"
+    arguments = ["convert", str(program), "--machine", "yl569", "--to-machine", "yl569", "--output", str(target)]
+    assert main(arguments) == 0
+    assert motion_part(target.read_bytes()) == motion_part(program.read_bytes())
+    assert target.read_bytes() == program.read_bytes() or name not in HEADS
+
+
+@pytest.mark.parametrize("key", ["generic_head_table_bc", "generic_head_head_ca", "generic_nutated_b45_c"])
+@pytest.mark.parametrize("name", HEADS)
+def test_on_another_machine_the_tool_does_the_same(name: str, key: str, tmp_path: Path, capfd: Capture) -> None:
+    program, target = YL569 / f"{name}.expected.mpf", tmp_path / "other.mpf"
+    arguments = ["convert", str(program), "--machine", "yl569", "--to-machine", key, "--output", str(target)]
+    assert main([*arguments, "--force"]) == 0, "travel is no matter here"
+    here, there = run_program(program, load_machine("yl569")), run_program(target, load_machine(key))
+    a = np.flatnonzero(~here.machine_frame & (here.programmed & 7 > 0))
+    b = np.flatnonzero(~there.machine_frame & (there.programmed & 7 > 0))
+    assert len(a) == len(b)
+    assert np.abs(here.tip[a] - there.tip[b]).max() < 5.1e-6
+    assert np.abs(here.axis[a] - there.axis[b]).max() < np.radians(1e-5)
+    text = target.read_text(encoding="utf-8")
+    assert f";DATE TIME :{HEADS[name]['date']}" in text, "settings are carried over"
+    axes = load_machine(key).axes
+    letters = [axes[column].name for column in load_machine(key).rotary]
+    assert all(re.search(rf"^N\d+ X.* {letter}[-\d.]", text, re.MULTILINE) for letter in letters)
+
+
+def test_what_is_set_counts_more_than_what_the_program_says(tmp_path: Path, capfd: Capture) -> None:
+    target = tmp_path / "a.mpf"
+    arguments = ["convert", str(HUB), "--machine", "yl569", "--to-machine", "yl569", "--output", str(target)]
+    assert main([*arguments, "--set", "title=new", "--set", "tolerance=0.02"]) == 0
+    lines = target.read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "N10 ;new"
+    assert "N230 _camtolerance=.02" in lines
+
+
+def test_the_cl_file_says_in_comments_what_it_cannot_hold(tmp_path: Path, capfd: Capture) -> None:
+    assert main(["convert", str(HUB), "--machine", "yl569", "--to-cl", "--output", str(tmp_path / "a.cls")]) == 0
+    lines = (tmp_path / "a.cls").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "$$ --set title=轮毂粗加工"
+    assert read_cl(tmp_path / "a.cls").part == HEADS["2_hub_rough"]["part"]
+
+
+def test_the_result_can_go_to_stdout_or_into_a_folder(tmp_path: Path, capfd: Capture) -> None:
+    assert main(["convert", str(HUB), "--machine", "yl569", "--to-cl", "--output", "-"]) == 0
+    out = capfd.readouterr().out
+    assert out.endswith("END-OF-PATH\n")
+    assert main(["convert", str(HUB), "--machine", "yl569", "--to-cl", "--output", str(tmp_path)]) == 0
+    assert (tmp_path / "2_hub_rough.expected.cls").read_text(encoding="utf-8") == out
+
+
+# Bad input
+
+
+def failed(folder: Path, capfd: Capture, *arguments: str, code: int = 2) -> str:
+    """Runs a command that must fail and leave nothing; returns what it says."""
+    target = folder / "out" / "x.cls"
+    target.parent.mkdir(exist_ok=True)
+    assert main(["convert", *arguments, "--output", str(target)]) == code
+    assert list(target.parent.iterdir()) == []
+    out, err = capfd.readouterr()
+    assert out == ""
+    return err
+
+
+def test_a_program_that_is_not_there_is_named(tmp_path: Path, capfd: Capture) -> None:
+    err = failed(tmp_path, capfd, str(tmp_path / "no.mpf"), "--machine", "yl569", "--to-cl")
+    assert "no.mpf: error:" in err
+
+
+def test_a_machine_that_is_not_there_is_named_with_those_that_are(tmp_path: Path, capfd: Capture) -> None:
+    assert "yl569" in failed(tmp_path, capfd, str(HUB), "--machine", "yl596", "--to-cl")
+    assert "yl569" in failed(tmp_path, capfd, str(HUB), "--machine", "yl569", "--to-machine", "yl596")
+
+
+def test_a_machine_whose_control_cannot_be_written_says_so(tmp_path: Path, capfd: Capture) -> None:
+    err = failed(tmp_path, capfd, str(HUB), "--machine", "yl569", "--to-machine", "dmu65")
+    assert "no programs can be written yet" in err
+
+
+@pytest.mark.parametrize("into", [[], ["--to-cl", "--to-machine", "yl569"]])
+def test_one_of_both_ways_out_must_be_chosen(into: list[str], capfd: Capture) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["convert", str(HUB), "--machine", "yl569", *into])
+    assert stopped.value.code == 2
+    assert "--to-cl" in capfd.readouterr().err
+
+
+def test_an_output_that_cannot_be_written_is_said(tmp_path: Path, capfd: Capture) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    arguments = ["convert", str(HUB), "--machine", "yl569", "--to-cl", "--output", str(blocked / "x.cls")]
+    assert main(arguments) == 2
+    assert "cannot be written" in capfd.readouterr().err
+    assert blocked.read_text() == "in the way"
+
+
+def test_a_program_is_never_written_over_itself(
+    tmp_path: Path, capfd: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "a.mpf"
+    program.write_bytes(HUB.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    for output in ([], ["--output", "a.mpf"], ["--output", "."]):
+        assert main(["convert", "a.mpf", "--machine", "yl569", "--to-machine", "yl569", *output]) == 2
+        assert "is the program itself" in capfd.readouterr().err
+    assert program.read_bytes() == HUB.read_bytes()
+
+
+def test_unknown_words_are_refused_with_their_block(tmp_path: Path, capfd: Capture) -> None:
+    program = tmp_path / "a.mpf"
+    program.write_bytes(HUB.read_bytes().replace(b"N500 X48.39629", b"N500 WOBBLE=3 X48.39629"))
+    arguments = [str(program), "--machine", "yl569", "--to-cl"]
+    err = failed(tmp_path, capfd, *arguments, code=1)
+    assert "a.mpf:50: error:" in err
+    assert "WOBBLE" in err
+    assert "--force" in err
+    assert main(["convert", *arguments, "--force", "--output", str(tmp_path / "forced.cls")]) == 0
+    assert "a.mpf:50: error:" in capfd.readouterr().err
+
+
+def test_a_program_without_motion_is_an_error(tmp_path: Path, capfd: Capture) -> None:
+    program = tmp_path / "a.mpf"
+    program.write_text("SUPA G0 X0 Y0 Z0\nM30\n")
+    assert "no motion at the part" in failed(tmp_path, capfd, str(program), "--machine", "yl569", "--to-cl")
+
+
+@pytest.mark.parametrize(
+    ("setting", "word"), [("titel=x", "titel is no setting"), ("units=mm", "units"), ("zero=1,2", "zero is '1,2'")]
+)
+def test_a_setting_that_makes_no_sense_is_named(setting: str, word: str, tmp_path: Path, capfd: Capture) -> None:
+    assert word in failed(tmp_path, capfd, str(HUB), "--machine", "yl569", "--to-cl", "--set", setting)

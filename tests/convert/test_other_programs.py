@@ -1,0 +1,169 @@
+"""Programs that we did not write: what becomes of their words."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.paths import SHARED
+from trunnion.control import load_control
+from trunnion.convert import Converted, convert
+from trunnion.machine import load_machine
+from trunnion.reader import run_program
+from trunnion.toolpath import (
+    Coolant,
+    CutterComp,
+    Dwell,
+    Insert,
+    Kind,
+    LoadTool,
+    Message,
+    Operation,
+    Phase,
+    SelectTool,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+    Stop,
+)
+
+MACHINE = load_machine("yl569")
+CONTROL = load_control(MACHINE.control)
+
+
+class Programs:
+    """Converts text."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def all(self, *lines: str) -> Converted:
+        """The program as a whole."""
+        (self.folder / "part.mpf").write_text("\n".join(lines) + "\nM30\n", encoding="utf-8")
+        return convert(run_program(self.folder / "part.mpf", MACHINE), CONTROL)
+
+    def one(self, *lines: str) -> Operation:
+        """Its only operation."""
+        (operation,) = self.all(*lines).toolpath.operations
+        return operation
+
+
+@pytest.fixture
+def programs(tmp_path: Path) -> Programs:
+    """For the text of programs."""
+    return Programs(tmp_path)
+
+
+def test_without_heads_operations_begin_at_tool_changes(programs: Programs) -> None:
+    found = programs.all(
+        'T="ROUGHER"', "M6", "S1000 M3", "G0 X0 Y0 Z10", "G1 Z0 F100", "T2", "M6", "G0 X5 Y5 Z10", "G1 Z1 F50"
+    ).toolpath.operations
+    assert [operation.name for operation in found] == ["TOOL_ROUGHER", "TOOL_2"]
+    assert [len(operation.moves) for operation in found] == [2, 2]
+    assert found[0].events == (SpindleOn(0, 3, 1000.0, Sense.CLW),)
+    assert found[1].events == (LoadTool(0, 7, 2),)
+
+
+def test_a_program_without_tool_changes_is_one_operation_of_its_name(programs: Programs) -> None:
+    operation = programs.one("G0 X1 Y2 Z3", "G1 X2 F100")
+    assert (operation.name, operation.line) == ("part", 1)
+    assert operation.moves.line.tolist() == [1, 2]
+    assert operation.moves.phase.tolist() == [Phase.RAPID, Phase.CUT]
+
+
+def test_feeds_are_those_in_force_and_none_before_the_first_cut(programs: Programs) -> None:
+    moves = programs.one("F100", "G0 X1 Y2 Z3", "G1 X2", "G0 X3", "G95 G1 X4 F0.5", "G0 X5", "G94 G1 X6 F80").moves
+    np.testing.assert_array_equal(moves.feed, [np.nan, 100, 100, 0.5, 0.5, 80])
+    assert moves.per_rev.tolist() == [False, False, False, True, True, False]
+
+
+def test_inverse_time_becomes_mm_per_minute(programs: Programs) -> None:
+    moves = programs.one("G0 X0 Y0 Z0", "G93 G1 X10 F2", "G3 X10 Y20 I0 J10 F1").moves
+    np.testing.assert_allclose(moves.feed[1:], [20.0, 10 * np.pi])
+
+
+def test_events_are_told_by_their_words(programs: Programs) -> None:
+    operation = programs.one(
+        "T3", "G0 X0 Y0 Z5 S500 M3", "; look", "M8", "G1 Z0 F10", "M26", "G4 F2", "G4 S3", "X1", "M61 M1", 'MSG("Hi")',
+        "X2", "H5", "X3 M9", "M0", "X4 M5",
+    )  # fmt: skip
+    assert operation.events == (
+        SelectTool(0, 1, 3),
+        SpindleOn(0, 2, 500.0, Sense.CLW),
+        Message(1, 3, "look"),
+        Coolant(1, 4, "ON"),
+        Coolant(2, 6, "THRU"),
+        Dwell(2, 7, 2.0),
+        Dwell(2, 8, 3.0, True),
+        Insert(3, 10, "M61"),
+        Stop(3, 10, True),
+        Message(3, 11, "Hi", True),
+        Insert(4, 13, "H5"),
+        Coolant(4, 14, "OFF"),
+        Stop(5, 15, False),
+        SpindleOff(5, 16),
+    )
+
+
+def test_compensation_comes_back_with_its_plane(programs: Programs) -> None:
+    operation = programs.one("G0 X0 Y0 Z5", "G41 G18 G1 X1 F10", "G17 X2", "G40 X3", "G42 X4", "X5")
+    assert operation.events == (CutterComp(1, 2, "LEFT", "ZXPLAN"), CutterComp(3, 4, "OFF"), CutterComp(4, 5, "RIGHT"))
+
+
+def test_machine_positions_and_the_placing_of_rotary_axes_are_no_motion_of_the_part(programs: Programs) -> None:
+    operation = programs.one("SUPA G0 Z0", "G0 B30 C60", "TRAORI", "G54", "G0 X1 Y2 Z3", "G1 X2 F10", "SUPA G0 Z0")
+    assert operation.moves.tip.tolist() == [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
+    half = np.sqrt(0.75) / 2
+    np.testing.assert_allclose(operation.moves.axis, [[0.25, half, np.sqrt(0.75)]] * 2)
+
+
+def test_machine_positions_on_the_way_are_remarked_upon(programs: Programs) -> None:
+    converted = programs.all("G0 X1 Y2 Z3", "SUPA Z0", "G0 X2 Y2 Z3")
+    assert [len(operation.moves) for operation in converted.toolpath.operations] == [2]
+    assert [(remark.line, remark.what) for remark in converted.remarks] == [
+        (2, "moves to machine positions within an operation are left out")
+    ]
+
+
+def test_frames_and_cycles_come_back_as_the_motion_that_they_make(programs: Programs) -> None:
+    operation = programs.one("TRANS X10", "G0 X0 Y0 Z5 F100", "MCALL CYCLE81(5,0,2,-3)", "X1", "X2", "MCALL")
+    assert set(operation.moves.tip[:, 0].tolist()) == {10.0, 11.0, 12.0}
+    assert operation.moves.tip[:, 2].min() == -3.0
+
+
+def test_an_arc_keeps_the_point_where_it_begins(programs: Programs) -> None:
+    operation = programs.one("SUPA G0 X0 Y0 Z0", "G2 X10 Y0 Z0 I5 J0 F100")
+    assert operation.moves.kind.tolist() == [Kind.RAPID, Kind.ARC]
+    assert operation.arcs.row.tolist() == [1]
+
+
+def test_words_that_only_drive_the_machine_are_remarked_upon(programs: Programs) -> None:
+    remarks = programs.all("G0 X0 Y0 Z0", "G64 SOFT", "G1 X1 F1", "COMPCAD", "X2").remarks
+    assert [(remark.line, remark.what) for remark in remarks] == [
+        (2, "G64 SOFT is not carried over"),
+        (4, "COMPCAD is not carried over"),
+    ]
+
+
+def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> None:
+    remarks = programs.all("TRAORI", "G0 X0 Y0 Z0 B0 C0", "G1 X1 C90 F1", "X2").remarks
+    assert [(remark.line, remark.what) for remark in remarks] == [
+        (3, "C turns at 1 points where the tool stands along it, which no tool axis says")
+    ]
+
+
+def test_jumps_and_subprograms_are_followed(programs: Programs) -> None:
+    (programs.folder / "HOLE.SPF").write_text("; hole\nG1 Z0 F10\nG0 Z5\nM17\n")
+    operation = programs.one("G0 X0 Y0 Z5 M8", "R1=0", "AGAIN:", "HOLE", "R1=R1+1", "G0 X=R1", "IF R1<3 GOTOB AGAIN")
+    assert len(operation.moves) == 10
+    assert [event.row for event in operation.events if isinstance(event, Message)] == [1, 4, 7]
+
+
+def test_files_of_others_convert(tmp_path: Path) -> None:
+    files = sorted((SHARED / "data" / "sinumerik").glob("*.mpf"))
+    if not files:
+        pytest.skip("no files of others here")
+    for file in files:
+        run = run_program(file, MACHINE)
+        converted = convert(run, CONTROL)
+        assert sum(len(operation.moves) for operation in converted.toolpath.operations) > 0

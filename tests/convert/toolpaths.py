@@ -1,0 +1,172 @@
+"""Toolpaths with everything in them, for Hypothesis."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+from trunnion.arrays import Codes, Floats
+from trunnion.cl.assemble import COLOURS, fill_phases
+from trunnion.toolpath import (
+    Arcs,
+    BlockSkip,
+    Coolant,
+    CutterComp,
+    CycleOff,
+    CycleOn,
+    Dwell,
+    Event,
+    Frame,
+    From,
+    GoHome,
+    Insert,
+    Kind,
+    LoadTool,
+    Message,
+    Mode,
+    Moves,
+    Operation,
+    SelectTool,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+    Stop,
+    Tool,
+    Toolpath,
+    Unknown,
+)
+
+TEXT = st.text(
+    st.characters(min_codepoint=33, max_codepoint=0x9FFF, categories=("L", "N", "P")), min_size=1, max_size=12
+)
+NAME = st.text("ABCabc019_-.刀", min_size=1, max_size=8)
+LENGTH = st.one_of(st.integers(-(10**9), 10**9).map(lambda n: n / 1e6), st.floats(-1e4, 1e4))
+UNIT = st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1)).filter(lambda v: np.linalg.norm(v) > 0.1)
+DECIMAL = st.integers(1, 99999).map(lambda n: n / 1000)
+
+Where = tuple[int, int]
+
+
+def _unit(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+    i, j, k = (np.array(vector) / np.linalg.norm(vector)).tolist()
+    return i, j, k
+
+
+#: Events that a program of ours can carry: what is said of them comes back from it.
+SAYABLE: dict[str, st.SearchStrategy[Any]] = {
+    "spindle": st.builds(
+        lambda rpm, sense: SpindleOn(0, 0, float(rpm), sense), st.integers(1, 99999), st.sampled_from(Sense)
+    ),
+    "coolant": st.sampled_from(["ON", "MIST", "THRU", "OFF"]).map(lambda kind: Coolant(0, 0, kind)),
+    "dwell": st.builds(lambda amount, each: Dwell(0, 0, amount, each), DECIMAL, st.booleans()),
+    "stop": st.builds(lambda optional: Stop(0, 0, optional), st.booleans()),
+    "message": st.builds(lambda text, display: Message(0, 0, text, display), TEXT, st.booleans()),
+    "skip": st.booleans().map(lambda on: BlockSkip(0, 0, on)),
+    "comp": st.sampled_from(["LEFT", "RIGHT", "OFF"]).map(lambda side: CutterComp(0, 0, side)),
+}
+
+#: Events that only a CL file holds.
+OTHERS: dict[str, st.SearchStrategy[Any]] = {
+    "spindle off": st.just(SpindleOff(0, 0)),
+    "select": st.integers(0, 999).map(lambda n: SelectTool(0, 0, n)),
+    "load": st.builds(lambda n, h: LoadTool(0, 0, n, h), st.integers(0, 999), st.integers(0, 99)),
+    "text stop": TEXT.map(lambda text: Stop(0, 0, True, text)),
+    "insert": TEXT.map(lambda text: Insert(0, 0, f"  {text}")),
+    "comp plane": st.integers(0, 99).map(lambda n: CutterComp(0, 0, "ON", "ZXPLAN", n)),
+    "cycle": st.builds(
+        lambda depth, feed, dwell: CycleOn(
+            0,
+            0,
+            ("DRILL", "DEEP"),
+            (("STEP", (depth, 1.5)), ("FEDTO", (depth,)), ("MMPM", (feed,)), ("DWELL", (dwell,))),
+            (("RTRCTO", "AUTO"), ("DWELL", "REV"), ("OPTION", "")),
+        ),
+        LENGTH,
+        DECIMAL,
+        DECIMAL,
+    ),
+    "tapping": DECIMAL.map(lambda f: CycleOn(0, 0, ("TAP",), (("MMPR", (f,)), ("RAPTO", (3.0,))))),
+    "cycle off": st.just(CycleOff(0, 0)),
+    "home": st.just(GoHome(0, 0)),
+    "mode": st.just(Mode(0, 0, ("SET", "MODE", "ABSOL"))),
+    "unknown": st.just(Unknown(0, 0, "AUXFUN/27")),
+    "from": st.builds(lambda tip, axis: From(0, 0, tip, _unit(axis)), st.tuples(LENGTH, LENGTH, LENGTH), UNIT),
+}
+
+
+@st.composite
+def events(draw: st.DrawFn, rows: int, kinds: dict[str, st.SearchStrategy[Any]]) -> tuple[Event, ...]:
+    """A few events in the order of their rows."""
+    found = draw(st.lists(st.tuples(st.integers(0, rows), st.one_of(*kinds.values())), max_size=8))
+    # a start anywhere but at the beginning would tear arcs apart
+    placed = [(0 if isinstance(event, From) else row, event) for row, event in found]
+    return tuple(replace(event, row=row) for row, event in sorted(placed, key=lambda pair: pair[0]))
+
+
+@st.composite
+def phases(draw: st.DrawFn, rows: int, rapids: list[int]) -> Codes:
+    """Phases that colours can say, by the colours that say them."""
+    colours = draw(st.lists(st.tuples(st.integers(0, rows - 1), st.sampled_from(list(COLOURS))), max_size=6))
+    phase = np.empty(rows, np.uint8)
+    fill_phases(phase, np.array(rapids, np.int64), sorted(colours, key=lambda pair: pair[0]))
+    return phase
+
+
+@st.composite
+def feeds(draw: st.DrawFn, rows: int, first: int) -> tuple[Floats, np.ndarray[Any, Any]]:
+    """A modal feed from row ``first`` on, now and then changed."""
+    feed, per_rev = np.full(rows, np.nan), np.zeros(rows, bool)
+    for row in sorted({first, *draw(st.lists(st.integers(first, max(rows - 1, first)), max_size=3))}):
+        feed[row:], per_rev[row:] = draw(st.integers(1, 10**6)) / 100, draw(st.booleans())
+    return feed, per_rev
+
+
+@st.composite
+def operations(draw: st.DrawFn, kinds: dict[str, st.SearchStrategy[Any]], axes: st.SearchStrategy[Any]) -> Operation:
+    """One operation; a third of the points are rapid, and some are arcs in the plane XY."""
+    rows = draw(st.integers(1, 20))
+    tip = np.array(draw(st.lists(st.tuples(LENGTH, LENGTH, LENGTH), min_size=rows, max_size=rows)))
+    runs = [_unit(vector) for vector in draw(st.lists(axes, min_size=1, max_size=4))]
+    axis = np.array([runs[min(row * len(runs) // rows, len(runs) - 1)] for row in range(rows)])
+    kind = np.array(draw(st.lists(st.sampled_from([0, 1, 1]), min_size=rows, max_size=rows)), np.uint8)
+    arcs = draw(st.lists(st.integers(1, rows - 1), unique=True, max_size=3)) if rows > 1 else []
+    centre, normal, radius, turns = [], [], [], []
+    for row in sorted(arcs):
+        start, reach = tip[row - 1], draw(st.integers(1, 50000)) / 1000
+        centre.append(start + np.array([reach, 0.0, 0.0]))
+        side, rise = draw(st.sampled_from([-1, 1])), draw(st.sampled_from([0.0, 0.0, 2.5]))
+        tip[row] = start + np.array([reach, reach * side, rise])
+        axis[row] = axis[row - 1]
+        kind[row] = Kind.ARC
+        normal.append((0.0, 0.0, draw(st.sampled_from([-1.0, 1.0]))))
+        radius.append(reach)
+        turns.append(draw(st.integers(0, 3)))
+    rapids = np.flatnonzero(kind == Kind.RAPID).tolist()
+    cutting = np.flatnonzero(kind != Kind.RAPID)
+    feed, per_rev = draw(feeds(rows, int(cutting[0]) if len(cutting) else rows))
+    diameter = draw(DECIMAL)
+    return Operation(
+        name=draw(TEXT.filter(lambda text: ",TOOL," not in text)),
+        tool=Tool("MILL", draw(NAME), diameter, draw(st.sampled_from([diameter / 2, 0.5])), draw(DECIMAL)),
+        frame=Frame(),
+        moves=Moves(tip, axis, kind, draw(phases(rows, rapids)), feed, per_rev, np.arange(1, rows + 1, dtype=np.int32)),
+        arcs=Arcs(
+            np.array(sorted(arcs), np.int64), np.array(centre), np.array(normal), np.array(radius), np.array(turns)
+        )
+        if arcs
+        else Arcs.none(),
+        events=draw(events(rows, kinds)),
+        line=1,
+        intol=draw(st.sampled_from([None, 0.03, 0.0125])),
+        outtol=draw(st.sampled_from([None, 0.03, 0.001])),
+    )
+
+
+def toolpaths(
+    kinds: dict[str, st.SearchStrategy[Any]], axes: st.SearchStrategy[Any] = UNIT
+) -> st.SearchStrategy[Toolpath]:
+    """One or two operations."""
+    return st.lists(operations(kinds, axes), min_size=1, max_size=2).map(
+        lambda found: Toolpath("made.cls", tuple(found), "part.prt")
+    )
