@@ -95,6 +95,12 @@ class Text:
         """Bytes of the file."""
         return os.fstat(self._file.fileno()).st_size
 
+    @property
+    def share(self) -> float:
+        """How much of the file lies before the next line, more than 0 and at most 1."""
+        ahead = len(self.buffer) - self.position + len(self._tail)
+        return min(max(self._file.tell() - ahead, 1) / max(self.size, 1), 1.0)
+
     def fill(self) -> bool:
         """See that the buffer holds a line; False at the end of the program."""
         while self.position >= len(self.buffer):
