@@ -115,6 +115,10 @@ class Steps:
         """The values that rows have, each once, growing."""
         return np.unique(self.values[: np.searchsorted(self.rows, self.n)])
 
+    def begins(self, value: float) -> list[int]:
+        """Rows from which on a value holds that did not hold in the row before."""
+        return [int(self.rows[k]) for k in np.flatnonzero(self.values == value) if self.rows[k] < self.n]
+
     def where(self, value: float) -> Ints:
         """Rows that have a value, growing."""
         ends = np.minimum(np.append(self.rows[1:], self.n), self.n)
