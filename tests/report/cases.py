@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tests.paths import YL569
 from trunnion.arrays import Floats, Lines
 from trunnion.machine import Machine, load_machine
-from trunnion.reader import Run, State, Steps, run_program
+from trunnion.reader import Ramps, Run, State, Steps, run_program
 from trunnion.toolpath import Arcs
 from trunnion.verify.model import Check, Place, Verification
 
@@ -55,8 +55,8 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
     run = Run(
         machine=machine,
         files=("waves.mpf",),
-        block=lines,
-        number=lines * 10,
+        blocks=Ramps(n, np.array([0]), np.array([1]), np.array([1])),
+        numbers=Ramps(n, np.array([0]), np.array([10]), np.array([10])),
         kind=np.ones(n, np.uint8),
         programmed=np.zeros(n, np.uint8),
         place=joints[:, [machine.column(name) for name in "XYZ"]],

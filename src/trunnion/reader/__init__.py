@@ -3,7 +3,7 @@
 This room is written from the language of the controls. It shares nothing with what writes programs but the machine.
 """
 
-from trunnion.reader.columns import Steps
+from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.run import Comment, Finding, Happening, Orientation, Poses, Run, State, Written
 from trunnion.reader.sinumerik import run_program
 from trunnion.reader.subdivide import Samples, subdivide
@@ -14,6 +14,7 @@ __all__ = [
     "Happening",
     "Orientation",
     "Poses",
+    "Ramps",
     "Run",
     "Samples",
     "State",

@@ -11,7 +11,7 @@ from trunnion.arrays import Floats, Ints
 
 T = TypeVar("T", int, float, bool)
 
-#: Rows that may wait to be settled: what only they need is held for so many.
+#: Rows that may wait: what only they need is held for so many.
 PENDING: Final = 16384
 
 
@@ -19,33 +19,43 @@ class Columns:
     """The dense columns of a run while it is being made; ``n`` rows are in use, the first ``settled`` for good.
 
     ``place`` is the tool tip or the values of the slides, as ``Run.place``. The rotary columns of rows that are not
-    settled hold the programmed values or NaN. Of such rows, row ``settled + k`` has its programmed vector (or NaN) in
-    ``vector[k]``, and in ``way[k]`` how its rotary words want to be reached (see ``trunnion.reader.poses``).
+    settled hold the programmed values or NaN. Some columns have only the rows from ``base`` on, that of row
+    ``base + k`` at k: line and number of the block, its programmed vector (or NaN) in ``vector``, and in ``way`` how
+    its rotary words want to be reached (see ``trunnion.reader.poses``). When they are full, ``clear`` takes them away.
     """
 
     def __init__(self, capacity: int = 4096) -> None:
         self.n = 0
         self.settled = 0
-        self.block = np.empty(capacity, np.int32)
-        self.number = np.empty(capacity, np.int32)
+        self.base = 0
         self.kind = np.empty(capacity, np.uint8)
         self.programmed = np.empty(capacity, np.uint8)
         self.place = np.empty((capacity, 3))
         self.rotary = np.empty((capacity, 2))
+        self.block = np.empty(PENDING, np.int64)
+        self.number = np.empty(PENDING, np.int64)
         self.vector = np.empty((PENDING, 3))
         self.way = np.empty(PENDING, np.uint8)
+        self.blocks = Climb()
+        self.numbers = Climb()
 
-    _GROWING = ("block", "number", "kind", "programmed", "place", "rotary")
+    _GROWING = ("kind", "programmed", "place", "rotary")
 
     @property
     def capacity(self) -> int:
         """Rows there is room for."""
-        return len(self.block)
+        return len(self.kind)
 
     @property
-    def pending(self) -> int:
-        """Rows that are not settled."""
-        return self.n - self.settled
+    def full(self) -> bool:
+        """Whether there is room for no more rows before ``clear``."""
+        return self.n - self.base == PENDING
+
+    def clear(self) -> None:
+        """Keep lines and numbers in another form, and begin anew; the rows must be settled."""
+        self.blocks.extend(self.block[: self.n - self.base])
+        self.numbers.extend(self.number[: self.n - self.base])
+        self.base = self.n
 
     def reserve(self, rows: int, expected: int = 0) -> None:
         """Make room for this many rows more, or for ``expected`` rows in all if that is more.
@@ -124,6 +134,64 @@ class Steps:
         ends = np.minimum(np.append(self.rows[1:], self.n), self.n)
         found = [np.arange(self.rows[k], ends[k]) for k in np.flatnonzero(self.values == value).tolist()]
         return np.concatenate((np.zeros(0, np.int64), *found))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ramps:
+    """A column of n whole numbers that grow evenly most of the time, as lines and block numbers do.
+
+    From row ``rows[k]`` on it is ``values[k]``, and ``steps[k]`` more with every row; all (m,) int64.
+    """
+
+    n: int
+    rows: Ints
+    values: Ints
+    steps: Ints
+
+    def __len__(self) -> int:
+        return self.n
+
+    def __getitem__(self, row: int) -> int:
+        row = row if row >= 0 else self.n + row
+        if not 0 <= row < self.n:
+            raise IndexError(row)
+        k = int(np.searchsorted(self.rows, row, "right")) - 1
+        return int(self.values[k] + self.steps[k] * (row - self.rows[k]))
+
+    def column(self, dtype: type[np.generic]) -> NDArray[Any]:
+        """All values, (n,), read-only."""
+        length = np.diff(self.rows, append=self.n)
+        column = np.repeat(self.steps, length)
+        column *= np.arange(self.n) - np.repeat(self.rows, length)
+        column += np.repeat(self.values, length)
+        whole = column.astype(dtype, copy=False)
+        whole.setflags(write=False)
+        return whole
+
+
+class Climb:
+    """A column of ``Ramps`` while it is being made."""
+
+    def __init__(self) -> None:
+        self._n = 0
+        self._ramps: list[Ints] = []
+
+    def extend(self, values: Ints) -> None:
+        """Add rows."""
+        if not len(values):
+            return
+        step = np.diff(values)
+        # A row that does not go on evenly begins a ramp; the row after it says how steep that is, whatever it is.
+        uneven = np.flatnonzero(np.diff(step)) + 2
+        place = np.arange(len(uneven))
+        lead = np.maximum.accumulate(np.where(np.diff(uneven, prepend=-1) > 1, place, 0))
+        begin = np.concatenate(([0], uneven[(place - lead) % 2 == 0]))
+        self._ramps.append(np.stack((self._n + begin, values[begin], np.append(step, 0)[begin])))
+        self._n += len(values)
+
+    def ramps(self) -> Ramps:
+        """The column, with as many rows as were added."""
+        return Ramps(self._n, *np.concatenate((np.zeros((3, 0), np.int64), *self._ramps), axis=1))
 
 
 class Changes(Generic[T]):

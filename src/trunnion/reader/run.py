@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import Severity
 from trunnion.machine import Machine, Packed, forward, pack
-from trunnion.reader.columns import Steps
+from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.poses import joints_of
 from trunnion.toolpath import Arcs
 
 #: Rows that are worked out at a time: what is needed for them stays in the processor's cache.
-CHUNK = 16384
+CHUNK = 8192
 
 
 class Written(IntFlag):
@@ -131,8 +131,8 @@ class Run:
 
     Kept:
 
-    block          (n,)   int32    line of the file, from 1
-    number         (n,)   int32    N number of the block, -1 where it has none that a control takes
+    blocks         (n,)   Ramps    line of the file, from 1
+    numbers        (n,)   Ramps    N number of the block, -1 where it has none
     kind           (n,)   uint8    a ``trunnion.toolpath.Kind``
     programmed     (n,)   uint8    ``Written`` bits
     place          (n, 3) float64  what X Y Z come to, mm: the tool tip, workpiece frame, where ``state.by_tip``; else
@@ -144,6 +144,8 @@ class Run:
 
     tip            (n, 3) float64  tool tip, mm, workpiece frame
     axis           (n, 3) float64  unit vector from tip to holder, workpiece frame
+    block          (n,)   int32    ``blocks`` as a whole column
+    number         (n,)   int64    ``numbers`` as a whole column
     joints         (n, 5) float64  axis values as displayed, mm or deg, machine order; rotary values as they wind
     file           (n,)   uint16   index into ``files``: 0 is the program itself, others are its subprograms
     feed           (n,)   float64  NaN before the first F; rapids carry it on
@@ -161,8 +163,8 @@ class Run:
 
     machine: Machine
     files: tuple[str, ...]
-    block: Lines
-    number: Lines
+    blocks: Ramps
+    numbers: Ramps
     kind: Codes
     programmed: Codes
     place: Floats
@@ -182,7 +184,7 @@ class Run:
                 column.setflags(write=False)
 
     def __len__(self) -> int:
-        return len(self.block)
+        return len(self.kind)
 
     @property
     def errors(self) -> tuple[Finding, ...]:
@@ -236,6 +238,14 @@ class Run:
         return np.where(said == BY_WORDS, vectors, said).astype(np.uint8)
 
     # Whole columns
+
+    @cached_property
+    def block(self) -> Lines:
+        return self.blocks.column(np.int32)
+
+    @cached_property
+    def number(self) -> Ints:
+        return self.numbers.column(np.int64)
 
     @cached_property
     def tip(self) -> Floats:

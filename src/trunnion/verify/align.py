@@ -22,7 +22,7 @@ from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Wanted
 
 #: Rows compared at a time: what is needed for them stays in the processor's cache.
-CHUNK = 16384
+CHUNK = 8192
 
 #: How far ahead the two sides are searched for a place at which they fit again.
 _WINDOWS = (8, 48, 384)

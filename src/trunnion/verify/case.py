@@ -46,7 +46,7 @@ class Case:
         file = run.state.file[row]
         if file:
             text = f"{Path(run.files[file]).name}: {text}"
-        line, number = int(run.block[row]), int(run.number[row])
+        line, number = run.blocks[row], run.numbers[row]
         if cl is None or self.wanted is None:
             return Place(line, number, value, text)
         return Place(line, number, value, text, self.wanted.part_of(cl).file, self.wanted.point(cl).line)
@@ -90,8 +90,8 @@ class Case:
 
     def block(self, row: int) -> str:
         """How a programmer names a row's block: ``N120``, or its line where it has no number."""
-        number = int(self.run.number[row])
-        return f"N{number}" if number >= 0 else f"line {int(self.run.block[row])}"
+        number = self.run.numbers[row]
+        return f"N{number}" if number >= 0 else f"line {self.run.blocks[row]}"
 
 
 def judged(key: str, title: str, places: Sequence[Place], good: str, count: int | None = None) -> Check:

@@ -28,7 +28,7 @@ def modal(case: Case) -> Check:
     places += _low_rapids(case)
     end = next((event for event in run.events if event.kind == "end"), None)
     if end is None and len(run):
-        last = max(case.last_line, int(run.block[-1]))
+        last = max(case.last_line, run.blocks[-1])
         places.append(Place(last, -1, 0.0, "the program has no end (M30 or M2) after this"))
     for event in run.events:
         if event.kind == "tool_change" and 0 < event.before_row <= len(run) and _spindle_at(run, event.before_row):
@@ -90,7 +90,7 @@ def _switched_off(run: Run, row: int, event: Happening) -> bool:
     """Whether TCP is switched off between a motion and what happens after it; rows do not tell, the text does."""
     if run.state.file[row] != event.file:
         return row + 1 < len(run) and not run.state.tcp[row + 1]
-    first, last = int(run.block[row]), event.line
+    first, last = run.blocks[row], event.line
     try:
         with Path(run.files[event.file]).open(encoding="utf-8", errors="replace") as text:
             between = list(islice(text, first - 1, max(last, first)))

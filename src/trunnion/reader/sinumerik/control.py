@@ -18,7 +18,7 @@ from trunnion.errors import Severity
 from trunnion.machine import Machine, Output, forward, inverse
 from trunnion.machine.inverse import pack, solve_slides
 from trunnion.reader import poses
-from trunnion.reader.columns import PENDING, Changes, Columns, affine
+from trunnion.reader.columns import Changes, Columns, affine
 from trunnion.reader.run import BY_WORDS, Happening, Orientation, Value, Written
 from trunnion.reader.sinumerik import arcs
 from trunnion.reader.sinumerik.cycles import Step
@@ -51,7 +51,7 @@ Note = Callable[[str, Severity], None]
 
 
 class Control:
-    """A Sinumerik at work on a machine. ``line`` and ``number`` are those of the block that is being executed."""
+    """A Sinumerik at work on a machine. ``line`` and ``block_number`` are those of the block that is being executed."""
 
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         self.machine = machine
@@ -59,7 +59,7 @@ class Control:
         self.shortest = shortest
         self._file = file
         self.line = 0
-        self.number = -1
+        self.block_number = -1
         self.columns = Columns()
         self.events: list[Happening] = []
 
@@ -128,12 +128,11 @@ class Control:
     def target(self) -> Target:
         """Return the columns, for the scan kernel."""
         c = self.columns
-        return Target(c.block, c.number, c.kind, c.programmed, c.place, c.rotary, c.settled, c.vector, c.way)
+        return Target(c.kind, c.programmed, c.place, c.rotary, c.base, c.block, c.number, c.vector, c.way)
 
     def before_scan(self, position: int, line: int) -> None:
         """Set the shared counters, and see that rows may wait."""
-        if self.columns.pending == PENDING:
-            self.settle()
+        self._clear_if_full()
         self.counts[ROW] = self.columns.n
         self.counts[COMMENTS] = 0
         self.counts[FEEDS] = 0
@@ -160,7 +159,7 @@ class Control:
         """Whether the kernel came back for want of room."""
         return (
             self.columns.n == self.columns.capacity
-            or self.columns.pending == PENDING
+            or self.columns.full
             or _NOTES in (self.counts[COMMENTS], self.counts[FEEDS])
         )
 
@@ -192,9 +191,9 @@ class Control:
     def settle(self) -> None:
         """Work out where the axes are after the rows so far."""
         c = self.columns
-        if not c.pending:
+        if c.settled == c.n:
             return
-        rows, waiting = slice(c.settled, c.n), slice(0, c.pending)
+        rows, waiting = slice(c.settled, c.n), slice(c.settled - c.base, c.n - c.base)
         columns = list(self.machine.rotary)
         place, rotary = c.place[rows], c.rotary[rows]
         status = poses.settle(
@@ -208,12 +207,17 @@ class Control:
             self.tips,
         )
         self.by_tip.set(c.settled, self.tips)
-        self._report(status, c.settled)
+        self._report(status, c.settled - c.base)
         by_tip = np.array([self.tips])
         held = poses.joints_of(self.machine, self._packed, by_tip, place[-1:], rotary[-1:])[0]
         self.held = np.where(np.isfinite(held), held, self.held)
         c.settled = c.n
         self._turned = False
+
+    def _clear_if_full(self) -> None:
+        if self.columns.full:
+            self.settle()
+            self.columns.clear()
 
     def _report(self, status: Codes, first: int) -> None:
         texts = (
@@ -456,12 +460,11 @@ class Control:
             self.note("a position is farther away than any machine reaches: the block is not executed", Severity.ERROR)
             return
         c = self.columns
-        if c.pending == PENDING:
-            self.settle()
+        self._clear_if_full()
         c.reserve(1)
-        row, waits = c.n, c.pending
-        c.block[row] = self.line
-        c.number[row] = self.number
+        row, waits = c.n, c.n - c.base
+        c.block[waits] = self.line
+        c.number[waits] = self.block_number
         c.kind[row] = kind
         c.programmed[row] = bits
         c.place[row] = self.map[:, :3] @ end + self.map[:, 3]

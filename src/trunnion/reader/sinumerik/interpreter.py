@@ -131,7 +131,7 @@ class Interpreter:
                 if not text.fill():
                     continue
             line = text.line
-            control.line, control.number = line, -1
+            control.line, control.block_number = line, -1
             raw = text.next_line()
             self._count(1)
             self._line(call, line, raw)
@@ -226,7 +226,7 @@ class Interpreter:
                 at = 2
         if len(tokens) > at + 1 and tokens[at].text == "N" and tokens[at + 1].text.isdigit():
             number = tokens[at + 1].value
-            control.number = int(number) if number <= scan.LARGEST_NUMBER else -1
+            control.block_number = int(number) if number < 1e15 else -1
             at += 2
         while len(tokens) > at + 1 and tokens[at].sort is Sort.NAME and tokens[at + 1].text == ":":
             at += 2
@@ -558,6 +558,7 @@ class Interpreter:
     def _result(self) -> Run:
         control = self._control
         c = control.columns
+        c.clear()
         n = c.n
         findings = list(self._findings)
         if self._more:
@@ -565,8 +566,8 @@ class Interpreter:
         return Run(
             machine=self._machine,
             files=tuple(self._files),
-            block=c.block[:n],
-            number=c.number[:n],
+            blocks=c.blocks.ramps(),
+            numbers=c.numbers.ramps(),
             kind=c.kind[:n],
             programmed=c.programmed[:n],
             place=c.place[:n],

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numba import njit
 
-from trunnion.arrays import Bytes, Codes, Floats, Ints, Lines
+from trunnion.arrays import Bytes, Codes, Floats, Ints
 
 NUMBER: Final = 1
 PREPARATORY: Final = 2
@@ -30,9 +30,6 @@ COMMENTS: Final = 2
 POSITION: Final = 3
 LINE: Final = 4
 FEEDS: Final = 5
-
-#: Block numbers of controls have eight digits; larger ones are none.
-LARGEST_NUMBER: Final = 2**31 - 1
 
 _POWERS: Final = np.array([10.0**k for k in range(23)])
 
@@ -54,15 +51,15 @@ _EQUALS: Final = 61
 
 
 class Target(NamedTuple):
-    """Columns that rows go to; see ``Columns``. Row r has its place in ``vector`` and ``way`` at r - ``settled``."""
+    """Columns that rows go to; see ``Columns``. In those from ``block`` on, row r is at r - ``base``."""
 
-    block: Lines
-    number: Lines
     kind: Codes
     programmed: Codes
     place: Floats
     rotary: Floats
-    settled: int
+    base: int
+    block: Ints
+    number: Ints
     vector: Floats
     way: Codes
 
@@ -125,7 +122,7 @@ def scan(
     position = counts[POSITION]
     line = counts[LINE]
     comments = notes.comments
-    room = min(target.block.shape[0], target.settled + target.way.shape[0])
+    room = min(target.kind.shape[0], target.base + target.way.shape[0])
     values = np.zeros(12)
     while position < end and row < room and noted < comments.shape[0] and feeds_noted < notes.feeds.shape[0]:
         at = position
@@ -221,8 +218,9 @@ def scan(
             if seen & (1 << (SLIDE + k)):
                 place[k] = values[SLIDE + k] * lengths
         if moves:
-            target.block[row] = line
-            target.number[row] = number if number <= LARGEST_NUMBER else -1
+            waits = row - target.base
+            target.block[waits] = line
+            target.number[waits] = number
             target.kind[row] = kind
             # A feed that is not known (NaN) differs from itself, but is no change.
             if place[3] != place[4] and (place[3] == place[3] or place[4] == place[4]):
@@ -239,7 +237,6 @@ def scan(
                 )
             for k in range(2):
                 target.rotary[row, k] = values[ROTARY + k] if seen & (1 << (ROTARY + k)) else np.nan
-            waits = row - target.settled
             target.vector[waits, 0] = np.nan
             if moves >> 5:
                 bits |= 32

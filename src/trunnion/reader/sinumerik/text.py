@@ -16,7 +16,7 @@ from trunnion.arrays import Bytes, Ints
 from trunnion.errors import InputError, Problem
 
 #: Bytes read at a time.
-CHUNK: Final = 1 << 20
+CHUNK: Final = 1 << 18
 
 #: Longer lines belong to no program.
 LONGEST_LINE: Final = 1 << 16
