@@ -18,10 +18,7 @@ from trunnion.plan import plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
-    from trunnion.verify import Allowed, Settings
-
-#: Points up to which a program is proven as it is written: proving takes some 190 bytes a point beside posting.
-_PROVEN_AT_ONCE = 300_000
+    from trunnion.verify import Allowed, Settings, Verification
 
 #: Settings that say how to read and to place the part rather than what to print.
 _RUN_SETTINGS = ("units", "zero")
@@ -29,6 +26,10 @@ _RUN_SETTINGS = ("units", "zero")
 
 def run(arguments: argparse.Namespace) -> int:
     """Post every CL file."""
+    if arguments.report:
+        from trunnion.cli.verify import check_report
+
+        check_report(arguments.report)
     machine = load_machine(arguments.machine)
     control = load_control(machine.control)
     settings = dict(arguments.settings)
@@ -40,16 +41,18 @@ def run(arguments: argparse.Namespace) -> int:
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
             program = _program(paths, machine, control, printed, arguments.force)
+            operations = len(program.motions)
             rows = sum(len(motion.operation.moves) for motion in program.motions)
             with progress("writing", rows, "points") as advance:
                 write_program(program, sink, advance)
-            if rows <= _PROVEN_AT_ONCE or arguments.report:
-                _prove(program, paths, sink, target, arguments)
-            else:
-                what = f"more than {_PROVEN_AT_ONCE} points: the program is written, but not yet proven"
-                _say([Problem(files[0], 0, what, "trunnion verify proves it", Severity.WARNING)])
+            allowed, asked = _allowed(program), _asked(program)
+            # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
+            again = program if arguments.force else None
+            del program
+            found = _read_back(sink, target, machine, paths, allowed, asked, arguments)
+            _judge(found, paths[0].file, sink, again)
         if target != "-":
-            print(f"{target}: {rows} points, {len(program.motions)} operations", file=sys.stderr)
+            print(f"{target}: {rows} points, {operations} operations", file=sys.stderr)
     return 0
 
 
@@ -87,39 +90,51 @@ def _program(
     return replace(program, notices=notices)
 
 
-def _prove(
-    program: Program, paths: Sequence[Toolpath], sink: BinaryIO, target: str, arguments: argparse.Namespace
-) -> None:
-    """Read the program back, run it and compare it with the CL files; one line a check.
+def _read_back(
+    sink: BinaryIO,
+    target: str,
+    machine: Machine,
+    paths: Sequence[Toolpath],
+    allowed: "list[Allowed]",
+    asked: "Settings",
+    arguments: argparse.Namespace,
+) -> "Verification":
+    """Read the program back, run it and compare it with the CL files; one line a check, and the report."""
+    from trunnion.cli.verify import report
+    from trunnion.reader import run_program
+    from trunnion.verify import check_lines, place_lines, verify
+
+    sink.flush()
+    run = run_program(Path(sink.name), machine)
+    found = verify(run, paths, allowed=allowed, settings=asked, columns=bool(arguments.report))
+    found = replace(found, program="the program" if target == "-" else target)
+    for line in (*check_lines(found), *place_lines(found, failed_only=True)):
+        print(line, file=sys.stderr)
+    if arguments.report:
+        report(found, arguments.report)
+    return found
+
+
+def _judge(found: "Verification", file: str, sink: BinaryIO, again: Program | None) -> None:
+    """Let a program pass, write it ``again`` with a head that says which checks failed, or refuse it.
 
     Raises
     ------
     Refused
-        When a check fails, unless ``--force``: then the head of the program says which.
+        When a check fails and there is no program to write again.
     """
-    from trunnion.cli.verify import check_report, report
-    from trunnion.reader import run_program
-    from trunnion.verify import check_lines, failures, place_lines, verify
+    from trunnion.verify import failures
 
-    if arguments.report:
-        check_report(arguments.report)
-    sink.flush()
-    run = run_program(Path(sink.name), program.machine)
-    found = verify(run, paths, allowed=_allowed(program), settings=_asked(program))
-    found = replace(found, program="the program" if target == "-" else target)
-    for line in (*check_lines(found), *place_lines(found, failed_only=True)):
-        print(line, file=sys.stderr)
     failed = failures(found)
-    if failed and arguments.force:
-        notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
-        sink.seek(0)
-        sink.truncate()
-        write_program(replace(program, notices=[*program.notices, *notices]), sink)
-    if arguments.report:
-        report(found, arguments.report)
-    if failed and not arguments.force:
+    if not failed:
+        return
+    if again is None:
         what = f"the program does not do what the CL file asks for: {', '.join(check.key for check in failed)}"
-        raise Refused(Problem(paths[0].file, 0, what, "no program is written; --force writes it"))
+        raise Refused(Problem(file, 0, what, "no program is written; --force writes it"))
+    notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
+    sink.seek(0)
+    sink.truncate()
+    write_program(replace(again, notices=[*again.notices, *notices]), sink)
 
 
 def _allowed(program: Program) -> "list[Allowed]":

@@ -45,6 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
             edge=1 if arguments.edge is None and paths else arguments.edge,
             span=arguments.span,
         ),
+        columns=bool(arguments.report),
     )
     print(*check_lines(found), *place_lines(found), sep="\n")
     if arguments.report:
