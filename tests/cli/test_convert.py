@@ -181,7 +181,7 @@ def test_a_program_is_never_written_over_itself(
 
 def test_unknown_words_are_refused_with_their_block(tmp_path: Path, capfd: Capture) -> None:
     program = tmp_path / "a.mpf"
-    program.write_bytes(HUB.read_bytes().replace(b"N500 X48.39629", b"N500 WOBBLE=3 X48.39629"))
+    program.write_bytes(HUB.read_bytes().replace(b"N500 X48.39629", b"N500 WOBBLE(3) X48.39629"))
     arguments = [str(program), "--machine", "yl569", "--to-cl"]
     err = failed(tmp_path, capfd, *arguments, code=1)
     assert "a.mpf:50: error:" in err

@@ -148,7 +148,7 @@ def test_words_that_only_drive_the_machine_are_remarked_upon(programs: Programs)
 def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> None:
     remarks = programs.all("TRAORI", "G0 X0 Y0 Z0 B0 C0", "G1 X1 C90 F1", "X2").remarks
     assert [(remark.line, remark.what) for remark in remarks] == [
-        (3, "C turns at 1 points where the tool stands along it, which no tool axis says")
+        (3, "2 points place the rotary axes otherwise than their tool axis says, the first by C")
     ]
 
 

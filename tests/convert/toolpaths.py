@@ -163,6 +163,19 @@ def operations(draw: st.DrawFn, kinds: dict[str, st.SearchStrategy[Any]], axes: 
     )
 
 
+def _is_sensible(operation: Operation) -> bool:
+    """Whether every point prints elsewhere than the one before it, and no two events of a kind stand at one place."""
+    printed = np.round(operation.moves.tip, 3)
+    moved = (np.abs(np.diff(printed, axis=0)) > 0.0015).any(axis=1)
+    places = [(event.row, type(event)) for event in operation.events]
+    return bool(moved.all()) and len(set(places)) == len(places)
+
+
+def sensible(paths: st.SearchStrategy[Toolpath]) -> st.SearchStrategy[Toolpath]:
+    """Those whose program says everything at a point of its own."""
+    return paths.filter(lambda path: all(_is_sensible(operation) for operation in path.operations))
+
+
 def toolpaths(
     kinds: dict[str, st.SearchStrategy[Any]], axes: st.SearchStrategy[Any] = UNIT
 ) -> st.SearchStrategy[Toolpath]:

@@ -13,7 +13,7 @@ from trunnion.cli.post import _check_settings, _point, _program
 from trunnion.cli.progress import progress
 from trunnion.control import Control, load_control, write_program
 from trunnion.convert import Converted, convert
-from trunnion.convert.timeline import COMPENSATION
+from trunnion.convert.said import COMPENSATION
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, load_machine
 from trunnion.reader import run_program
