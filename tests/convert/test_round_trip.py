@@ -80,10 +80,11 @@ def with_tool(given: dict[str, str]) -> dict[str, str]:
 def test_a_program_of_ours_comes_back_with_the_same_bytes(
     tmp_path_factory: pytest.TempPathFactory, toolpath: Toolpath, given: dict[str, str]
 ) -> None:
-    """Where every point prints elsewhere than the point before, and no two events of a kind stand between two points.
+    """If points print elsewhere than those before, and between two of them no kind of event happens twice.
 
-    Heaps of events at one place, and feeds or phases of a tool that rests, print blocks that nothing but the program's
-    text tells apart from others; what they do is held on to by the test below.
+    Besides, block skip goes on and off in turn, and cutter radius compensation changes on a motion. Heaps of events at
+    one place, and feeds or phases of a tool that rests, print blocks that nothing but the program's text tells apart
+    from others; what they do is held on to by the test below.
     """
     first = posted(toolpath, with_tool(given))
     assume(first is not None)

@@ -69,8 +69,8 @@ class Events:
             Line where the operation begins.
         """
         events: list[Event] = []
-        for (row, first, _), block in groupby(said, key=lambda item: (item.row, item.line, item.file)):
-            here, spun = int(np.searchsorted(rows, row)), False
+        for (row, first, file), block in groupby(said, key=lambda item: (item.row, item.line, item.file)):
+            here, spun, before = int(np.searchsorted(rows, row)), False, len(events)
             for item in block:
                 templated = item.file == 0 and item.line in self._known
                 if item.kind == "tool_change":
@@ -84,6 +84,9 @@ class Events:
                     events += self._plain(item, here, len(rows))
             if spun and self._sense is not None:
                 events.append(SpindleOn(here, first, self._rpm, self._sense))
+            if here < len(rows) and (run.block[row], run.file[row]) != (first, file):
+                # M5 and M9 act behind the motion of their block. Said twice they get a block of their own again.
+                events += [event for event in events[before:] if _ends(event)]
         if not any(isinstance(event, LoadTool) for event in events) and self.tool.isdigit():
             events.insert(0, LoadTool(0, line, int(self.tool)))
         return self._phase(said, run, rows), tuple(sorted(events, key=lambda event: event.row))
@@ -167,3 +170,8 @@ class Events:
                     yield Insert(here, line, f"{item.kind.upper()}{value:g}")
             case "cycle832":
                 self._remark(line, "CYCLE832 is not carried over", "see --set cycle832=… and tolerance=…")
+
+
+def _ends(event: Event) -> bool:
+    """Whether spindle or coolant stops."""
+    return isinstance(event, SpindleOff) or (isinstance(event, Coolant) and event.kind == "OFF")
