@@ -32,22 +32,15 @@ def run(arguments: argparse.Namespace) -> int:
     machine = load_machine(arguments.machine)
     control = load_control(machine.control)
     settings = dict(arguments.settings)
-    _check_settings(settings, control)
+    check_settings(settings, control)
     if "zero" in settings:
-        machine = replace(machine, workpiece_zero=_point(settings["zero"]))
+        machine = replace(machine, workpiece_zero=point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
     for target, files in _targets(arguments, control).items():
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
-            program = _program(paths, machine, control, printed, arguments.force)
-            rows = sum(len(motion.operation.moves) for motion in program.motions)
-            with progress("writing", rows, "points") as advance:
-                write_program(program, sink, advance)
-            if rows <= _PROVEN_AT_ONCE or arguments.report:
-                _prove(program, paths, sink, target, arguments)
-            else:
-                what = f"more than {_PROVEN_AT_ONCE} points: the program is written, but not yet proven"
-                _say([Problem(files[0], 0, what, "trunnion verify proves it", Severity.WARNING)])
+            program = planned_program(paths, machine, control, printed, arguments.force)
+            rows = write_proven(program, paths, sink, target, arguments.force, arguments.report)
         if target != "-":
             print(f"{target}: {rows} points, {len(program.motions)} operations", file=sys.stderr)
     return 0
@@ -65,44 +58,79 @@ def _read(file: str, units: str | None, strict: bool) -> Toolpath:
             done = read
 
         toolpath = read_cl(path, units=units, strict=strict, progress=so_far)
-    _say(toolpath.remarks)
+    say(toolpath.remarks)
     return toolpath
 
 
-def _program(
+def planned_program(
     paths: Sequence[Toolpath], machine: Machine, control: Control, settings: Mapping[str, str], force: bool
 ) -> Program:
+    """The program of toolpaths, planned and checked; what speaks against it is said.
+
+    Raises
+    ------
+    InputError, Refused
+        When there can be no program, or when it must not run, unless ``force``: then its head says so.
+    """
     planned = plan(paths, machine, control.chord_tolerance)
     program = Program(machine, control, planned.motions, settings, paths[0].file)
     lacking = check_program(program)
     errors = [problem for problem in lacking if problem.severity is Severity.ERROR]
     if errors:
         raise InputError(lacking)
-    _say(lacking)
+    say(lacking)
     against = [problem for problem in planned.problems if problem.severity is Severity.ERROR]
     if against and not force:
         raise Refused((*planned.problems, Problem(paths[0].file, 0, "no program is written", "--force writes it")))
-    _say(planned.problems)
+    say(planned.problems)
     notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in against]
     return replace(program, notices=notices)
 
 
-def _prove(
-    program: Program, paths: Sequence[Toolpath], sink: BinaryIO, target: str, arguments: argparse.Namespace
-) -> None:
-    """Read the program back, run it and compare it with the CL files; one line a check.
+def write_proven(
+    program: Program, paths: Sequence[Toolpath], sink: BinaryIO, target: str, force: bool, report: str | None = None
+) -> int:
+    """Write a program and prove it, unless it is too long for both; returns how many points it has.
+
+    Parameters
+    ----------
+    program, paths
+        The program, and the toolpaths that it was made from.
+    sink
+        Of ``whole``: what is written can be read back under its name.
+    target
+        What messages call the program.
+    force
+        Write it even if a check fails; then the head of the program says which.
+    report
+        File of the report.
 
     Raises
     ------
     Refused
-        When a check fails, unless ``--force``: then the head of the program says which.
+        When a check fails.
     """
-    from trunnion.cli.verify import check_report, report
+    rows = sum(len(motion.operation.moves) for motion in program.motions)
+    with progress("writing", rows, "points") as advance:
+        write_program(program, sink, advance)
+    if rows <= _PROVEN_AT_ONCE or report:
+        _prove(program, paths, sink, target, force, report)
+    else:
+        what = f"more than {_PROVEN_AT_ONCE} points: the program is written, but not yet proven"
+        say([Problem(paths[0].file, 0, what, "trunnion verify proves it", Severity.WARNING)])
+    return rows
+
+
+def _prove(
+    program: Program, paths: Sequence[Toolpath], sink: BinaryIO, target: str, force: bool, report: str | None
+) -> None:
+    """Read the program back, run it and compare it with the toolpaths; one line a check."""
+    from trunnion.cli import verify as verifying
     from trunnion.reader import run_program
     from trunnion.verify import check_lines, failures, place_lines, verify
 
-    if arguments.report:
-        check_report(arguments.report)
+    if report:
+        verifying.check_report(report)
     sink.flush()
     run = run_program(Path(sink.name), program.machine)
     found = verify(run, paths, allowed=_allowed(program), settings=_asked(program))
@@ -110,15 +138,15 @@ def _prove(
     for line in (*check_lines(found), *place_lines(found, failed_only=True)):
         print(line, file=sys.stderr)
     failed = failures(found)
-    if failed and arguments.force:
+    if failed and force:
         notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
         sink.seek(0)
         sink.truncate()
         write_program(replace(program, notices=[*program.notices, *notices]), sink)
-    if arguments.report:
-        report(found, arguments.report)
-    if failed and not arguments.force:
-        what = f"the program does not do what the CL file asks for: {', '.join(check.key for check in failed)}"
+    if report:
+        verifying.report(found, report)
+    if failed and not force:
+        what = f"the program does not do what this file asks for: {', '.join(check.key for check in failed)}"
         raise Refused(Problem(paths[0].file, 0, what, "no program is written; --force writes it"))
 
 
@@ -150,12 +178,14 @@ def _asked(program: Program) -> "Settings":
     )
 
 
-def _say(problems: Sequence[Problem]) -> None:
+def say(problems: Sequence[Problem]) -> None:
+    """Print problems, one a line."""
     for problem in problems:
         print(problem, file=sys.stderr)
 
 
-def _check_settings(settings: Mapping[str, str], control: Control) -> None:
+def check_settings(settings: Mapping[str, str], control: Control) -> None:
+    """Raise ``InputError`` for settings that the control does not have, or that make no sense."""
     known = (*control.settings, *_RUN_SETTINGS)
     problems = [
         Problem("--set", 0, f"{key} is no setting of {control.name}", f"write one of {', '.join(known)}")
@@ -175,7 +205,8 @@ def _check_settings(settings: Mapping[str, str], control: Control) -> None:
         raise InputError(problems)
 
 
-def _point(text: str) -> tuple[float, float, float]:
+def point(text: str) -> tuple[float, float, float]:
+    """The setting ``zero``, mm."""
     try:
         x, y, z = (float(part) for part in text.split(","))
     except ValueError:
