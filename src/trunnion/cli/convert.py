@@ -37,6 +37,8 @@ def run(arguments: argparse.Namespace) -> int:
     with whole(target) as sink:
         converted = _read(arguments.file, machine, control, arguments.force)
         carried = _carried(converted.settings, target_control, arguments.file) | settings
+        if "tool" in settings and "tool_call" not in settings:
+            carried.pop("tool_call", None)
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
         if arguments.to_cl:

@@ -27,6 +27,7 @@ from trunnion.toolpath import (
     Stop,
 )
 
+_SENSES = {1: Sense.CLW, -1: Sense.CCLW, 0: None}
 _COOLANT_CODE = {"mist": 7, "flood": 8, "off": 9}
 
 
@@ -55,6 +56,7 @@ class Events:
         self._remark = remark
         self._rpm = 0.0
         self._sense: Sense | None = None
+        self._turned = False
 
     def of(self, said: Sequence[Item], run: Run, rows: Ints, line: int) -> tuple[Codes, tuple[Event, ...]]:
         """Phase of each row, and the events between the rows.
@@ -69,6 +71,7 @@ class Events:
             Line where the operation begins.
         """
         events: list[Event] = []
+        turned, self._sense = self._turned, _SENSES[int(run.spindle[rows[0] - 1])] if rows[0] else None
         for (row, first, file), block in groupby(said, key=lambda item: (item.row, item.line, item.file)):
             here, spun, before = int(np.searchsorted(rows, row)), False, len(events)
             for item in block:
@@ -84,9 +87,13 @@ class Events:
                     events += self._plain(item, here, len(rows))
             if spun and self._sense is not None:
                 events.append(SpindleOn(here, first, self._rpm, self._sense))
+                self._turned = True
             if here < len(rows) and (run.block[row], run.file[row]) != (first, file):
                 # M5 and M9 act behind the motion of their block. Said twice they get a block of their own again.
                 events += [event for event in events[before:] if _ends(event)]
+        spindle = any(isinstance(event, SpindleOn | SpindleOff) and event.row == 0 for event in events)
+        if turned and not spindle and run.spindle[rows[0]] == 0:
+            events.insert(0, SpindleOff(0, line))  # without a word it would turn as in the operation before
         if not any(isinstance(event, LoadTool) for event in events) and self.tool.isdigit():
             events.insert(0, LoadTool(0, line, int(self.tool)))
         return self._phase(said, run, rows), tuple(sorted(events, key=lambda event: event.row))

@@ -8,7 +8,7 @@ from trunnion.arrays import Ints
 from trunnion.convert.source import Source
 from trunnion.errors import Problem, Severity
 from trunnion.plan.poses import follow
-from trunnion.reader import Orientation, Run
+from trunnion.reader import Orientation, Run, Written
 from trunnion.reader.sinumerik.words import G_SILENT, SILENT, SILENT_CALLS, SILENT_VALUES
 from trunnion.toolpath import Kind
 
@@ -24,6 +24,7 @@ _LOST = (
 
 #: Rotary axes stand where they stood within this, degrees; programs have at most five decimals.
 _SAME_ANGLE = 1e-4
+_SAME_POSITION = 1e-3
 
 
 class Remarks:
@@ -116,6 +117,18 @@ def remark_registers(run: Run, operations: Iterable[Ints], remark: Remarks) -> N
             if len(others):
                 what = f"{letter}{column[others[0]]} within an operation is not carried over"
                 _at(run, others, what, f"{letter}{column[rows[0]]} holds for all of it", remark)
+
+
+def remark_homes(run: Run, remark: Remarks) -> None:
+    """Say which slides park elsewhere than at their home."""
+    for word in (Written.X, Written.Y, Written.Z):
+        axis = run.machine.axes[run.machine.column(str(word.name))]
+        placed = np.flatnonzero(run.machine_frame & ((run.programmed & word) != 0))
+        places = run.joints[placed, run.machine.column(axis.name)]
+        away = np.flatnonzero(np.abs(places - axis.home) > _SAME_POSITION)
+        if len(away):
+            what = f"{axis.name} goes to the machine position {places[away[0]]:g}, which is not carried over"
+            _at(run, placed[away], what, "the control's templates say where to park", remark)
 
 
 def _at(run: Run, rows: Ints, what: str, cure: str, remark: Remarks) -> None:

@@ -18,7 +18,7 @@ from trunnion.arrays import Ints
 from trunnion.control.definition import Control
 from trunnion.convert.events import Events
 from trunnion.convert.heads import marker, match, patterns
-from trunnion.convert.lost import Remarks, remark_poses, remark_registers, remark_ways, remark_words
+from trunnion.convert.lost import Remarks, remark_homes, remark_poses, remark_registers, remark_ways, remark_words
 from trunnion.convert.moves import arcs_of, moves_of
 from trunnion.convert.said import Item, items
 from trunnion.convert.settings import number, settings_of
@@ -100,6 +100,11 @@ class _Converter:
         axes = run.machine.axes
         self._letters = axes[run.machine.primary].name, axes[run.machine.secondary].name
         self._known: set[int] = set()
+        # M number -> CL word; of words with one number OFF, ON and then the first
+        self._coolants: dict[int, str] = {}
+        for word in ("OFF", "ON", *control.coolant):
+            if word in control.coolant:
+                self._coolants.setdefault(control.coolant[word], word)
 
     def convert(self) -> Converted:
         """The whole program."""
@@ -109,11 +114,12 @@ class _Converter:
         marked = bool(start) and any(item.text == start for item in said)
         parts = self._parts(said, start if marked else "")
         self._match_heads(parts)
-        events = Events(self._phases(), self._coolants(), self._known, marked, self._remark)
+        events = Events(self._phases(), self._coolants, self._known, marked, self._remark)
         owned = self._share(said, parts)
         operations = tuple(self._operation(part, own, events) for part, own in zip(parts, owned, strict=True))
         settings = settings_of(control, [(part.line, part.values) for part in parts], self._remark)
         rows = [part.rows for part in parts]
+        remark_homes(run, self._remark)
         remark_registers(run, rows, self._remark)
         remark_ways(run, rows, self._remark)
         remark_poses(run, rows, self._remark)
@@ -126,14 +132,6 @@ class _Converter:
         for name, phase in _PHASES.items():
             if spoken := self._control.phases.get(name, "").removeprefix(";").strip():
                 found.setdefault(spoken, phase)
-        return found
-
-    def _coolants(self) -> dict[int, str]:
-        """M number -> CL word; of words with one number OFF, ON and then the first."""
-        found: dict[int, str] = {}
-        for word in ("OFF", "ON", *self._control.coolant):
-            if word in self._control.coolant:
-                found.setdefault(self._control.coolant[word], word)
         return found
 
     # Parts
@@ -206,9 +204,22 @@ class _Converter:
         for k, part in enumerate(parts):
             stop = part.end if k + 1 < len(parts) else len(said)
             inside = range(part.begin, part.end)
-            owned.append([said[n] for n in range(at, stop) if n in inside or self._matters(said[n])])
+            own = [said[n] for n in range(at, stop) if n in inside or self._matters(said[n])]
+            row = int(part.rows[0])
+            running = self._running(said[: part.begin])
+            if running and not any(item.row <= row and self._is_coolant(item) for item in own):
+                own.insert(0, running._replace(row=row))
+            owned.append(own)
             at = stop
         return owned
+
+    def _running(self, said: Sequence[Item]) -> Item | None:
+        """What turned the coolant on that runs after all this; every operation of a toolpath asks for its own."""
+        last = next((item for item in reversed(said) if self._is_coolant(item)), None)
+        return None if last is None or last.value == "off" else last
+
+    def _is_coolant(self, item: Item) -> bool:
+        return item.kind == "coolant" or (item.kind == "m" and item.value in self._coolants)
 
     def _matters(self, item: Item) -> bool:
         """Whether an item outside an operation's path has anything to say to another operation."""
