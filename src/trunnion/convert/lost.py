@@ -121,10 +121,11 @@ def remark_registers(run: Run, operations: Iterable[Ints], remark: Remarks) -> N
 
 def remark_homes(run: Run, remark: Remarks) -> None:
     """Say which slides park elsewhere than at their home."""
-    for word in (Written.X, Written.Y, Written.Z):
-        axis = run.machine.axes[run.machine.column(str(word.name))]
+    names = run.machine.names
+    for word in (word for word in (Written.X, Written.Y, Written.Z) if word.name in names):
+        axis = run.machine.axes[names.index(str(word.name))]
         placed = np.flatnonzero(run.machine_frame & ((run.programmed & word) != 0))
-        places = run.joints[placed, run.machine.column(axis.name)]
+        places = run.joints[placed, names.index(axis.name)]
         away = np.flatnonzero(np.abs(places - axis.home) > _SAME_POSITION)
         if len(away):
             what = f"{axis.name} goes to the machine position {places[away[0]]:g}, which is not carried over"
