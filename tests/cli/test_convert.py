@@ -231,7 +231,13 @@ def test_a_program_without_motion_is_an_error(tmp_path: Path, capfd: Capture) ->
 
 
 @pytest.mark.parametrize(
-    ("setting", "word"), [("titel=x", "titel is no setting"), ("units=mm", "units"), ("zero=1,2", "zero is '1,2'")]
+    ("setting", "word"),
+    [("titel=x", "titel is no setting"), ("units=mm", "units has no meaning"), ("zero=1,2,3", "zero has no meaning")],
 )
 def test_a_setting_that_makes_no_sense_is_named(setting: str, word: str, tmp_path: Path, capfd: Capture) -> None:
     assert word in failed(tmp_path, capfd, str(HUB), "--machine", "yl569", "--to-cl", "--set", setting)
+
+
+def test_a_zero_that_is_no_point_is_named(tmp_path: Path, capfd: Capture) -> None:
+    arguments = [str(HUB), "--machine", "yl569", "--to-machine", "yl569", "--set", "zero=1,2"]
+    assert "zero is '1,2'" in failed(tmp_path, capfd, *arguments)

@@ -6,16 +6,16 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from trunnion.cl.write import write_cl
 from trunnion.cli.output import whole
 from trunnion.cli.post import check_settings, planned_program, point, say, write_proven
 from trunnion.control import Control, load_control
-from trunnion.convert import Converted, convert
-from trunnion.convert.said import COMPENSATION
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, load_machine
-from trunnion.reader import run_program
+
+if TYPE_CHECKING:
+    from trunnion.convert import Converted
 
 #: Warnings that are printed one by one.
 _PRINTED = 20
@@ -23,14 +23,14 @@ _PRINTED = 20
 
 def run(arguments: argparse.Namespace) -> int:
     """Convert one program."""
+    from trunnion.cl.write import write_cl
+
     machine = load_machine(arguments.machine)
     control = load_control(machine.control)
     target_machine = load_machine(arguments.to_machine) if arguments.to_machine else machine
     target_control = load_control(target_machine.control) if arguments.to_machine else control
     settings = dict(arguments.settings)
-    check_settings(settings, target_control)
-    if "units" in settings:
-        raise InputError(Problem("--set", 0, "units has no meaning here", "an NC program says its units itself"))
+    _check_settings(settings, target_control, arguments.to_cl)
     if "zero" in settings:
         target_machine = replace(target_machine, workpiece_zero=point(settings.pop("zero")))
     target = _target(arguments, target_control)
@@ -55,8 +55,21 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _read(file: str, machine: Machine, control: Control, force: bool) -> Converted:
+def _check_settings(settings: Mapping[str, str], control: Control, to_cl: bool) -> None:
+    """Raise ``InputError`` for settings that ``post`` would not take, and for those without a meaning here."""
+    check_settings(settings, control)
+    if "units" in settings:
+        raise InputError(Problem("--set", 0, "units has no meaning here", "an NC program says its units itself"))
+    if "zero" in settings and to_cl:
+        raise InputError(Problem("--set", 0, "zero has no meaning in a CL file", "give it to trunnion post"))
+
+
+def _read(file: str, machine: Machine, control: Control, force: bool) -> "Converted":
     """The program as a toolpath; refuses one that was not understood."""
+    from trunnion.convert import convert
+    from trunnion.convert.said import COMPENSATION
+    from trunnion.reader import run_program
+
     run = run_program(Path(file), machine)
     problems = [Problem(finding.file, finding.line, finding.text, "", finding.severity) for finding in run.findings]
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
@@ -73,7 +86,7 @@ def _read(file: str, machine: Machine, control: Control, force: bool) -> Convert
 
 def _carried(settings: Mapping[str, str], control: Control, file: str) -> dict[str, str]:
     """The program's settings that a control has; the others are named."""
-    for key in settings.keys() - control.settings.keys():
+    for key in sorted(settings.keys() - control.settings.keys()):
         what = f"{key} is {settings[key]!r}, which is not carried over"
         say([Problem(file, 0, what, f"{control.name} has no such setting", Severity.WARNING)])
     return {key: value for key, value in settings.items() if key in control.settings}
