@@ -137,6 +137,7 @@ BOUNDED = {
     "a frame smaller than anything": "ROT Y-.25\nASCALE X1EX-320\nX1\nSCALE X0\nX2",
     "angles without end": "ROT X1EX300 Y1EX300 Z1EX300\nX1\nAROT RPL=1EX308\nX2",
     "vectors without length": "TRAORI\nA3=0 B3=0 C3=0\nA3=1EX308 B3=1EX308 C3=1EX308\nA3=1EX-320",
+    "quotients without end": "R1=1EX299 DIV 1EX-20\nR2=1EX299/1EX-20\nR3=1EX299 MOD 1EX-320",
     "a feed without end": "G700\nF=1EX308\nG1 X1",
     "a pitch without end": "S=1EX300\nCYCLE84(50,0,2,-20,,,3,,1EX100)",
     "turns of a rotary axis": "TRAORI\nC=1EX7\nC=DC(-1EX7)\nG91\nC1EX7\nC1EX7",
