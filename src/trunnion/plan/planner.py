@@ -10,8 +10,9 @@ from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
 from trunnion.plan.motion import Motion, Plan
-from trunnion.plan.poses import OUT_OF_REACH, TURNED_OVER, Poses, beyond_fit, follow
-from trunnion.toolpath import Frame, From, Kind, Operation, Toolpath
+from trunnion.plan.optimum import BLOCKED, OUT_OF_REACH, REWIND
+from trunnion.plan.poses import Poses, beyond_fit, choose, take
+from trunnion.toolpath import Frame, From, Operation, Toolpath
 
 #: An operation is three-axis when no component of its tool axis differs from +Z by more than this.
 _UPRIGHT = 1e-7
@@ -50,7 +51,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         operation = into_frame(original, program_frame)
         operation = lines_for_arcs(operation, plain_arcs(operation), chord_tolerance)
         moves = operation.moves
-        poses = follow(machine, moves.tip, moves.axis, keep_slides=machine.workpiece_zero is not None)
+        keep_slides = machine.workpiece_zero is not None
+        poses = take(machine, moves, choose(machine, moves, keep_slides), keep_slides)
         stretches.append(_Stretch(path.file, operation, poses))
         if poses.outcome.any():
             problems += _row_problems(stretches[-1], machine)
@@ -108,8 +110,6 @@ def _row_problems(stretch: _Stretch, machine: Machine) -> Iterable[Problem]:
     moves, outcome = stretch.operation.moves, stretch.poses.outcome
     for code in np.unique(outcome[outcome > 0]).tolist():
         rows = np.flatnonzero(outcome == code)
-        if code == TURNED_OVER:
-            rows = rows[moves.kind[rows] != Kind.RAPID]
         problems += [_row_problem(stretch, machine, code, row) for row in rows[:_NAMED].tolist()]
         if len(rows) > _NAMED:
             more = f"the same at {len(rows) - _NAMED} further points, the last in line {moves.line[rows[-1]]}"
@@ -125,7 +125,7 @@ def _row_problem(stretch: _Stretch, machine: Machine, code: int, row: int) -> Pr
         i, j, k = moves.axis[row]
         what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
         return Problem(*place, what, "tilt the workpiece or use a machine that reaches it")
-    if code == TURNED_OVER:
+    if code in (REWIND, BLOCKED):
         what = "the rotary axes turn over to their other solution while cutting"
         return Problem(*place, what, "split the operation there or tilt the workpiece", Severity.WARNING)
     axis, value = machine.axes[code - 1], float(stretch.poses.beyond[row])
