@@ -9,7 +9,7 @@ from pathlib import Path
 
 from trunnion.cl.write import write_cl
 from trunnion.cli.output import whole
-from trunnion.cli.post import _check_settings, _point, _program
+from trunnion.cli.post import _check_settings, _point, _program, _wishes
 from trunnion.cli.progress import progress
 from trunnion.control import Control, load_control, write_program
 from trunnion.convert import Converted, convert
@@ -34,6 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(Problem("--set", 0, "units has no meaning here", "an NC program says its units itself"))
     if "zero" in settings:
         target_machine = replace(target_machine, workpiece_zero=_point(settings.pop("zero")))
+    wishes = _wishes(settings, explain=False)
+    settings = {key: value for key, value in settings.items() if key not in ("rewind", "clearance")}
     target = _target(arguments, target_control)
     with whole(target) as sink:
         converted = _read(arguments.file, machine, control, arguments.force)
@@ -46,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
             )
             _say(remarks)
         else:
-            program = _program([converted.toolpath], target_machine, target_control, carried, arguments.force)
+            program = _program([converted.toolpath], target_machine, target_control, carried, arguments.force, wishes)
             with progress("writing", rows, "points") as advance:
                 write_program(program, sink, advance)
     if arguments.to_cl and carried:

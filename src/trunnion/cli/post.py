@@ -14,7 +14,7 @@ from trunnion.cli.progress import progress
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import plan
+from trunnion.plan import Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 #: Points up to which a program is proven as it is written: proving takes some 190 bytes a point beside posting.
 _PROVEN_AT_ONCE = 300_000
 
-#: Settings that say how to read and to place the part rather than what to print.
-_RUN_SETTINGS = ("units", "zero")
+#: Settings that say how to read, to place and to plan rather than what to print.
+_RUN_SETTINGS = ("units", "zero", "rewind", "clearance")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -36,10 +36,11 @@ def run(arguments: argparse.Namespace) -> int:
     if "zero" in settings:
         machine = replace(machine, workpiece_zero=_point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
+    wishes = _wishes(settings, arguments.explain)
     for target, files in _targets(arguments, control).items():
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
-            program = _program(paths, machine, control, printed, arguments.force)
+            program = _program(paths, machine, control, printed, arguments.force, wishes)
             rows = sum(len(motion.operation.moves) for motion in program.motions)
             with progress("writing", rows, "points") as advance:
                 write_program(program, sink, advance)
@@ -70,9 +71,16 @@ def _read(file: str, units: str | None, strict: bool) -> Toolpath:
 
 
 def _program(
-    paths: Sequence[Toolpath], machine: Machine, control: Control, settings: Mapping[str, str], force: bool
+    paths: Sequence[Toolpath],
+    machine: Machine,
+    control: Control,
+    settings: Mapping[str, str],
+    force: bool,
+    wishes: Wishes,
 ) -> Program:
-    planned = plan(paths, machine, control.chord_tolerance)
+    planned = plan(paths, machine, control.chord_tolerance, wishes)
+    if wishes.explain:
+        print(*planned.decisions, sep="\n", file=sys.stderr)
     program = Program(machine, control, planned.motions, settings, paths[0].file)
     lacking = check_program(program)
     errors = [problem for problem in lacking if problem.severity is Severity.ERROR]
@@ -167,12 +175,29 @@ def _check_settings(settings: Mapping[str, str], control: Control) -> None:
         for key, value in settings.items()
         if any(ord(character) < 32 for character in value)
     ]
+    if settings.get("rewind", "insert") not in ("insert", "none"):
+        problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
     if settings.get("units", "mm") not in ("mm", "inch"):
         problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
     if not settings.get("edge", "1").isdigit():
         problems.append(Problem("--set", 0, f"edge is {settings['edge']!r}", "write a whole number, such as edge=1"))
     if problems:
         raise InputError(problems)
+
+
+def _wishes(settings: Mapping[str, str], explain: bool) -> Wishes:
+    """What the settings say to the planner."""
+    rewind, text = settings.get("rewind", "insert") == "insert", settings.get("clearance")
+    if text is None:
+        return Wishes(rewind=rewind, explain=explain)
+    try:
+        clearance = float(text)
+    except ValueError:
+        clearance = 0.0
+    if not 0.1 <= clearance <= 10000.0:
+        cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50"
+        raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
+    return Wishes(rewind=rewind, clearance=clearance, explain=explain)
 
 
 def _point(text: str) -> tuple[float, float, float]:

@@ -447,6 +447,7 @@ def place(
     excess: Floats,
     extremes: Floats,
     where: Ints,
+    changes: Ints,
 ) -> None:
     """Fill the columns of ``Poses`` for the states of all rows.
 
@@ -476,9 +477,14 @@ def place(
             cos_1, sin_1 = math.cos(math.radians(first)), packed.sense_1 * math.sin(math.radians(first))
         else:
             held, solid = first, row
-        before = b
+        was_1, was_2 = last_1, last_2
         last_1 = wound(first, states[t, 1], span[1] == 0, last_1)
         last_2 = wound(second, states[t, 2], span[3] == 0, last_2)
+        if row > 0 and (b != before or abs(last_1 - was_1) > POLE_JUMP or abs(last_2 - was_2) > POLE_JUMP):
+            changes[0], changes[1] = changes[0] + 1, row
+            if changes[0] + 1 < len(changes):
+                changes[changes[0] + 1] = row
+        before = b
         joints[columns[0]], joints[columns[1]] = last_1, last_2
         place_slides(packed, cos_1, sin_1, cos_2, sin_2, tip[row, 0], tip[row, 1], tip[row, 2], joints)
         for column in range(5):

@@ -24,6 +24,8 @@ class Poses:
     beyond    (n,) float64    where an axis is beyond its limit: its value, mm or degrees; not written elsewhere
     extremes  (5, 2) float64  least and greatest value of every axis, mm or degrees
     where     (5, 2) int64    the rows where they are
+    changes   (k,) int64      how many rows change the branch or turn an axis by more than ``POLE_JUMP``; the last of
+                              them; the first k - 2 of them
     """
 
     rotary: Floats
@@ -32,6 +34,11 @@ class Poses:
     beyond: Floats
     extremes: Floats
     where: Ints
+    changes: Ints
+
+
+#: Changes that are kept one by one.
+_NAMED = 50
 
 
 def cutting(moves: Moves) -> Codes:
@@ -118,10 +125,12 @@ def take(machine: Machine, moves: Moves, state: Codes, keep_slides: bool) -> Pos
         beyond=np.empty(len(moves)),
         extremes=np.tile([np.inf, -np.inf], (5, 1)),
         where=np.zeros((5, 2), np.int64),
+        changes=np.zeros(2 + _NAMED, np.int64),
     )
     place(
         pack(machine), choice, states.table, np.array([a.display_low for a in machine.axes]),
-        moves.tip, moves.axis, state, poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where,
+        moves.tip, moves.axis, state,
+        poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where, poses.changes,
     )  # fmt: skip
     return poses
 
