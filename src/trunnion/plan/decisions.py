@@ -176,8 +176,12 @@ def _comparison(planned: Planned) -> Decision:
     other = Planned(machine, planned.file, planned.operation, poses.rotary, state, planned.keep_slides)
     mine = int((planned.state & REWOUND != 0).sum())
     text = (
-        f"{mine} rewinds and {travel(machine, planned.rotary):.0f} degrees of rotary travel;"
-        f" from point to point the nearest pose would have had {len(turned_over(other))} rewinds"
+        f"{_rewinds(mine)} and {travel(machine, planned.rotary):.0f} degrees of rotary travel;"
+        f" from point to point the nearest pose would have had {_rewinds(len(turned_over(other)))}"
         f" and {travel(machine, poses.rotary):.0f} degrees"
     )
     return _decision(planned, -1, Why.NEAREST, text)
+
+
+def _rewinds(count: int) -> str:
+    return "1 rewind" if count == 1 else f"{count} rewinds"

@@ -107,7 +107,7 @@ def _rewinds(planned: Planned, poses: Poses) -> tuple[Rewind, ...]:
         before, after = int(planned.branch(row - 1)), int(planned.branch(row))
         end = planned.ahead(row, before, poses.rotary[row - 1])
         moves = planned.operation.moves
-        reason = "the path asks for it" if end is None else f"or {end.words(planned.machine, moves)}"
+        reason = "the path asks for it" if end is None else f"otherwise {end.words(planned.machine, moves)}"
         found = rewind_at(planned.machine, moves, row, after, poses.rotary)
         turn = f"{planned.words(found.before)} to {planned.words(found.after)}, {reason}"
         rewinds.append(replace(found, reason=turn, end=end))
