@@ -212,14 +212,14 @@ def _row_problem(file: str, moves: Moves, poses: Poses, machine: Machine, code: 
     value = float(poses.beyond[row])
     axis = machine.axes[code - 1]
     lacking = axis.low - value if value < axis.low else value - axis.high
-    what = beyond_words(machine, code - 1, value) + _other_pose(machine, moves, poses, row)
+    what, other = beyond_words(machine, code - 1, value), _other_pose(machine, moves, poses, row)
     if axis.is_rotary:
-        return Problem(*place, what, f"tilt the workpiece by {lacking:.3f} degrees, or post for another machine")
-    return Problem(*place, what, f"move the workpiece so that {axis.name} has {lacking:.3f} mm more, or tilt it")
+        return Problem(*place, what, f"tilt the workpiece by {lacking:.3f} degrees{other}, or post for another machine")
+    return Problem(*place, what, f"move the workpiece so that {axis.name} has {lacking:.3f} mm more{other}, or tilt it")
 
 
 def _other_pose(machine: Machine, moves: Moves, poses: Poses, row: int) -> str:
-    """Why the other solution is no way out, as the end of a sentence; empty where there is none."""
+    """Why the other solution is no way out, in brackets; empty where there is none."""
     joints = inverse(machine, moves.tip[row : row + 1], moves.axis[row : row + 1]).joints[:, 0]
     apart = joints[:, list(machine.rotary)] - poses.rotary[row]
     apart -= 360.0 * np.rint(apart / 360.0)
@@ -229,7 +229,7 @@ def _other_pose(machine: Machine, moves: Moves, poses: Poses, row: int) -> str:
     if not len(outside) or np.abs(apart).sum(axis=1).max() < 1e-6:
         return ""
     axis = machine.axes[outside[0]]
-    return f", and in the other pose {axis.name} to {other[outside[0]]:.5f}"
+    return f" (in the other pose {axis.name} would go to {other[outside[0]]:.5f})"
 
 
 def _fit_problems(stretches: Sequence[_Stretch], machine: Machine) -> Iterable[Problem]:
