@@ -11,7 +11,7 @@ from tests.plan.naive import EveryWay, moves_of, nearest_neighbour, rapids_at
 from trunnion.arrays import Floats
 from trunnion.machine import Machine, forward, load_machine, shipped, slide_positions
 from trunnion.plan.optimum import REWIND, REWOUND, STATE
-from trunnion.plan.poses import Poses, choose, choose_nearest, least_cost, take
+from trunnion.plan.poses import Poses, choose, choose_nearest, follow, least_cost, take
 from trunnion.plan.states import MOST_TURNS, states_of
 from trunnion.toolpath import Moves
 
@@ -39,7 +39,7 @@ def winding(tilt: float, first: float, last: float, n: int = 400) -> Moves:
 
 
 def posed(machine: Machine, moves: Moves) -> Poses:
-    return take(machine, moves, choose(machine, moves, False), False)
+    return follow(machine, moves, False)
 
 
 def rewinds(poses: Poses) -> int:

@@ -104,6 +104,11 @@ def choose_nearest(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
     return state
 
 
+def follow(machine: Machine, moves: Moves, keep_slides: bool) -> Poses:
+    """Axis positions for every row, in the states that ``choose`` takes."""
+    return take(machine, moves, choose(machine, moves, keep_slides), keep_slides)
+
+
 def take(machine: Machine, moves: Moves, state: Codes, keep_slides: bool) -> Poses:
     """Axis positions for every row in its state, starting from the home position of the rotary axes.
 

@@ -53,26 +53,30 @@ def retreats(run: Run, extra: Sequence[int], allowed: float) -> list[Retreat]:
 
 def _distance(run: Run, first: int, end: int, allowed: float) -> float | None:
     """How far rows ``first`` to ``end`` draw back, mm; None if they are no retreat from the row before them."""
-    rows = slice(first - 1, end)
-    tip, axis = run.tip[rows], run.axis[rows]
+    poses = run.stretch(first, end)
+    tip, axis = poses.tip, poses.axis
     out = (tip - tip[0]) @ axis[0]
     aside = np.linalg.norm(tip - tip[0] - out[:, None] * axis[0], axis=1)
     near = 4.0 * allowed + 1e-6  # both ends are rounded, in three coordinates
     on_line = bool((aside <= near).all() and (out >= -near).all() and abs(out[-1]) <= near)
     upright = bool((np.abs(axis - axis[0]).max(axis=1) <= 1e-6 + np.radians(_STILL)).all())
-    held = bool(run.tcp[rows].all()) and not bool(run.machine_frame[rows].any())
-    if not (on_line and upright and held and _is_gentle(run, first, end, out, near)):
+    state = run.state
+    held = bool(state.tcp.part(first - 1, end).all()) and not bool(state.machine_frame.part(first - 1, end).any())
+    turns = np.abs(np.diff(poses.joints[:, list(run.machine.rotary)], axis=0)).max(axis=1)
+    if not (on_line and upright and held and _is_gentle(run, first, end, out, turns, near)):
         return None
     return float(out.max())
 
 
-def _is_gentle(run: Run, first: int, end: int, out: Floats, near: float) -> bool:
-    """Whether the axes turn out there only, and the tool goes there and back at a feed, back no faster than on."""
-    rows = slice(first, end)
-    columns = list(run.machine.rotary)
-    turns = np.abs(np.diff(run.joints[first - 1 : end][:, columns], axis=0)).max(axis=1)
+def _is_gentle(run: Run, first: int, end: int, out: Floats, turns: Floats, near: float) -> bool:
+    """Whether the axes turn out there only, and the tool goes there and back at a feed, back no faster than on.
+
+    out    (end - first + 1,)  distance from the part at the row before and at all rows, mm
+    turns  (end - first,)      how far the rotary axes turn in each row, degrees
+    """
     away = (out[1:] >= _OFF) & (np.abs(np.diff(out)) <= near)
-    lines, rapids = run.kind[rows] == Kind.LINEAR, run.kind[rows] == Kind.RAPID
+    lines, rapids = run.kind[first:end] == Kind.LINEAR, run.kind[first:end] == Kind.RAPID
+    feed = run.state.feed.part(first, end + 1)
     turned = bool((turns > _TURNS).any()) and bool((away | (turns <= _STILL)).all())
-    fed = bool((lines | (rapids & away)).all()) and bool((run.feed[rows][lines] > 0.0).all())
-    return turned and fed and bool(run.feed[end - 1] <= run.feed[end])
+    fed = bool((lines | (rapids & away)).all()) and bool((feed[:-1][lines] > 0.0).all())
+    return turned and fed and bool(feed[-2] <= feed[-1])

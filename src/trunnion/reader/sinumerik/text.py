@@ -16,7 +16,7 @@ from trunnion.arrays import Bytes, Ints
 from trunnion.errors import InputError, Problem
 
 #: Bytes read at a time.
-CHUNK: Final = 1 << 20
+CHUNK: Final = 1 << 18
 
 #: Longer lines belong to no program.
 LONGEST_LINE: Final = 1 << 16
@@ -94,6 +94,12 @@ class Text:
     def size(self) -> int:
         """Bytes of the file."""
         return os.fstat(self._file.fileno()).st_size
+
+    @property
+    def share(self) -> float:
+        """How much of the file lies before the next line, more than 0 and at most 1."""
+        ahead = len(self.buffer) - self.position + len(self._tail)
+        return min(max(self._file.tell() - ahead, 1) / max(self.size, 1), 1.0)
 
     def fill(self) -> bool:
         """See that the buffer holds a line; False at the end of the program."""
