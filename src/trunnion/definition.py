@@ -212,8 +212,8 @@ class _Lines:
         self.at += 1
         count = 0
         while self._blank(newlines=True) and self.text[self.at] != close:
-            if self.text[self.at] == ",":
-                self.at += 1
+            if self.text[self.at] in ",]}":
+                self.at += 1  # also a bracket that closes nothing: the parser complains of it
             elif array:
                 self._note((*path, count))
                 self._value((*path, count))

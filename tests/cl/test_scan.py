@@ -91,7 +91,16 @@ PIECES = st.sampled_from(
             "GOTO/1,2",
             "GOTO/1,2,3,4,5,6,7",
         ),
-        *("GOTO/1,2,3 $$ 4,5,6", "GOTO/1,2,3 $", "GOTO/1,$", "GOTO/1E3,2,3", "GODLTA/1,2,3", "GOHOME", "GOHOME/1,2,3"),
+        *(
+            "GOTO/1,2,3 $$ 4,5,6",
+            "GOTO/1,2,3 $",
+            "GOTO/1,$",
+            "GOTO/1,$ $$ X",
+            "GOTO/1E3,2,3",
+            "GODLTA/1,2,3",
+            "GOHOME",
+            "GOHOME/1,2,3",
+        ),
         *(
             "GOHOME/AUTO",
             "G O T O/1,2,3",

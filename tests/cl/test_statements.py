@@ -220,6 +220,8 @@ def test_gohome_with_a_point_is_a_rapid_row(body: Body) -> None:
         "GOTO/1.5,2,3 $$ 9,9,9",
         "GOTO/1.5,$\n2,3",
         "GOTO $\n / 1.5, $ \n 2, $\n 3",
+        "GOTO/1.5,$ $$ X\n2,3",
+        "GOTO/1.5, $\n2, $ $$ Y $\n3 $$ Z",
         "GOTO/1.500000000000000000000000000,2,3",
         "GOTO/+1.5,+2.,3.",
     ],
@@ -387,6 +389,14 @@ def test_a_statement_that_is_not_known_is_kept_with_a_remark_and_an_error_when_s
     assert str(toolpath.remarks[0].severity) == "warning"
     (problem,) = body_fails(text, GO, strict=True)
     assert problem.line == 3
+
+
+def test_a_statement_is_kept_once_however_much_of_it_is_not_known(read: Read) -> None:
+    toolpath = read("TOOL PATH/A,TOOL,T\nCYCLE/DRILL,A,B,C\nGOTO/0,0,0\nEND-OF-PATH\n")
+    assert [event for event in toolpath.operations[0].events if isinstance(event, Unknown)] == [
+        Unknown(0, 2, "CYCLE/DRILL,A,B,C")
+    ]
+    assert len(toolpath.remarks) == 3
 
 
 def test_each_statement_that_is_not_known_is_named_and_the_list_is_capped(read: Read) -> None:

@@ -102,7 +102,11 @@ def test_a_subprogram_may_be_modal(run: Runner) -> None:
 
 
 @pytest.mark.parametrize(
-    "cycle", ["CYCLE81(10,20,3,-6)", "CYCLE81(10,0,3)", "CYCLE81(,0,3,-6)", 'CYCLE81("A",0,3,-6)', "CYCLE81(9,9,0,9)"]
+    "cycle",
+    [
+        *("CYCLE81(10,20,3,-6)", "CYCLE81(10,0,3)", "CYCLE81(,0,3,-6)", 'CYCLE81("A",0,3,-6)', "CYCLE81(9,9,0,9)"),
+        *("CYCLE84(9,0,2,-9,,,3,,1EX300)", "CYCLE84(9,0,2,-9,,,3,,1EX-300,,,,,2)"),
+    ],
 )
 def test_cycles_that_make_no_sense_are_named(run: Runner, cycle: str) -> None:
     result = run(HEAD + cycle)

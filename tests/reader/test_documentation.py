@@ -66,5 +66,7 @@ def test_limits_are_those_of_the_page() -> None:
     assert f"After {interpreter.MOST_FINDINGS} findings" in plain
     assert f"at most {text.DEEPEST} inside" in plain
     assert f"At most {interpreter.DEEPEST_CALL} programs" in plain
+    assert f"calls at most {interpreter.MOST_FILES} files" in plain
+    assert f"for every {interpreter.LONG} characters" in plain
     assert f"at most {expressions.DEEPEST} deep" in plain
     assert f"at most {text.LARGEST_WHOLE >> 20} MiB" in plain

@@ -183,3 +183,50 @@ def test_findings_are_counted_when_they_are_too_many(run: Runner) -> None:
     result = run("Q1\n" * 10_050)
     assert len(result.findings) == 10_001
     assert "50 findings more" in result.findings[-1].text
+
+
+def test_a_block_with_several_subprograms_executes_the_first(run: Runner) -> None:
+    result = run("X1\nL10 OTHER M8\nX5\nQ1", files=SUB)
+    assert xs(result) == [1, 2, 5]
+    assert [(f.line, f.text.split(":")[0]) for f in result.findings] == [
+        (2, "several subprograms in one block"),
+        (4, "unknown word Q=1"),
+    ]
+    assert all(f.file.endswith("MAIN.MPF") for f in result.findings)
+
+
+def test_what_a_block_says_beside_a_call_comes_before_the_subprogram(run: Runner) -> None:
+    result = run("S100 M3\nX1\nL10 M5", files=SUB)
+    assert result.spindle.tolist() == [1, 0]
+    assert xs(run("MCALL OTHER\nX1 M9\nMCALL\nX2", files=SUB)) == [1, 7, 2]
+
+
+def test_findings_after_a_subprogram_are_those_of_its_caller(run: Runner) -> None:
+    result = run("\n\n\nL10\nQ1", files={"L10.SPF": "Q2\nM17"})
+    assert [(f.line, f.file[-8:]) for f in result.findings] == [(1, "/L10.SPF"), (5, "MAIN.MPF")]
+
+
+def test_links_in_circles_lead_nowhere(tmp_path: Path, yl569: Machine) -> None:
+    (tmp_path / "LOOPY.SPF").symlink_to(tmp_path / "LOOPY.SPF")
+    (tmp_path / "MAIN.MPF").write_text("LOOPY\nX1")
+    result = run_program(tmp_path / "MAIN.MPF", yl569)
+    assert "missing subprogram LOOPY" in result.errors[0].text
+
+
+def test_a_loop_over_all_r_parameters_is_none(run: Runner) -> None:
+    result = run("FOR R=0 TO 3\nX1\nENDFOR\nX2")
+    assert xs(result) == [2]
+    assert "R needs a number" in result.errors[0].text
+
+
+def test_long_blocks_count_for_more(run: Runner) -> None:
+    long = "X1 ;" + "-" * 12_800
+    assert len(run("R1=1\n" + f"{long}\n" * 50, step_limit=0)) == 50
+    with pytest.raises(InputError, match="executes more than 1000 blocks"):
+        run(f"FOR R1=1 TO 20\n{long}\nENDFOR", step_limit=1000)
+
+
+def test_comments_and_events_of_loops_are_bounded(run: Runner) -> None:
+    with pytest.raises(InputError, match="makes more than 1000 comments and events") as caught:
+        run("LOOP\n" + "M1" * 200 + "\nENDLOOP", step_limit=1000)
+    assert caught.value.problems[0].line == 2

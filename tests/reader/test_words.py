@@ -122,12 +122,36 @@ def test_circles(run: Runner, text: str, centre: tuple[float, ...], normal: tupl
 
 @pytest.mark.parametrize(
     "text",
-    ["G2 X10 Y0 I4 J0", "G2 X10 Y0 CR=4", "G2 X0 Y0 CR=4", "G2 X10 Y0", "CIP X10 I1=5", "G2 X9 Y0 AR=400", "G2 X5"],
+    [
+        *(
+            "G2 X10 Y0 I4 J0",
+            "G2 X10 Y0 CR=4",
+            "G2 X0 Y0 CR=4",
+            "G2 X10 Y0",
+            "CIP X10 I1=5",
+            "G2 X9 Y0 AR=400",
+            "G2 X5",
+        ),
+        *("G2 X10 I1EX300", "G2 X10 CR=1EX200", "G2 X10 AR=1EX-323", "CIP X10 Y2 I1=1EX200 J1=1EX250"),
+    ],
 )
 def test_circles_that_are_none_are_named_and_go_straight(run: Runner, text: str) -> None:
     result = run(text)
     assert [f.severity for f in result.findings] == [Severity.ERROR]
     assert result.kind[0] == Kind.LINEAR
+
+
+def test_a_circle_that_is_not_executed_leaves_none(run: Runner) -> None:
+    result = run("G2 X10 I5 B=1EX8\nG1 X5")
+    assert result.kind.tolist() == [Kind.LINEAR]
+    assert len(result.arcs.row) == 0
+    assert "farther away" in result.errors[0].text
+
+
+def test_a_feed_is_one_that_a_machine_could_have(run: Runner) -> None:
+    result = run("G700 F=1EX308\nX1")
+    assert np.isnan(result.feed[0])
+    assert "a feed is not from 0 to" in result.errors[0].text
 
 
 def test_an_endless_axis_takes_the_shorter_way_while_tcp_is_on(run: Runner) -> None:

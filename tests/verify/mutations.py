@@ -1,15 +1,21 @@
 """Faults put into programs that ran, one at a time, and whether verification sees them.
 
-A mutation changes the text of a program. It changes nothing if every motion of the program stays what it was: position,
-tool axis, feed, spindle, tool, coolant and all the rest that a CL file can ask for. Otherwise it has to be reported, at
-the block that was changed or at the first one that does something else because of it.
+A mutation changes the text of a program. What it comes to is worked out here from the text and from what the reader
+ran, never from what verification says of it:
+
+- it changes the work: the motions at the part, or any other thing that a CL file can ask for;
+- it changes something beside the work, such as how the control rounds corners (``beside``);
+- it provably changes nothing: every axis goes where it went with every state as it was, every word that drives the
+  control stands where it stood.
+
+What is not nothing has to be reported, at the block that was changed or at the first one that does something else.
 """
 
 import random
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -17,15 +23,20 @@ from pathlib import Path
 import numpy as np
 
 from tests.paths import YL569
+from trunnion.arrays import Flags, Floats
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Severity
 from trunnion.machine import load_machine
 from trunnion.reader import Run, run_program
+from trunnion.reader.sinumerik import words
 from trunnion.toolpath import Kind, Toolpath
-from trunnion.verify import Allowed, Settings, Verification, verify
+from trunnion.verify import Allowed, Check, Settings, Verification, verify
 
 CASES = ("1_contour_rough", "2_hub_rough", "3_blade_finish")
 HALF_DIGIT = {"1_contour_rough": 5e-4, "2_hub_rough": 5e-6, "3_blade_finish": 5e-6}
+
+#: Numbers nearer than this are one number: whole turns and back leave that much rounding, the programs print 1e-5.
+SAME = 1e-9
 
 SETTINGS = Settings(work_offset=54, edge=1)
 MACHINE = load_machine("yl569")
@@ -44,10 +55,18 @@ class Mutation:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a mutation: CAUGHT, SAME (it changes nothing), MISPLACED or MISSED."""
+    """What became of a mutation.
+
+    verdict  CAUGHT; SAME: it provably changes nothing; BESIDE: not reported, but the work stays what it was;
+             MISPLACED: reported at other blocks; MISSED: the work changes and nothing is reported
+    what     if CAUGHT, how near: BLOCK, NEXT or SHOWS (the first motion or change of the tool after it, or the first
+             that differs); if BESIDE, what changed
+    checks   the checks that failed there
+    """
 
     verdict: str
-    checks: tuple[str, ...]
+    what: str = ""
+    checks: tuple[str, ...] = ()
 
 
 @cache
@@ -75,20 +94,30 @@ def judge(name: str, mutation: Mutation, folder: Path) -> Outcome:
     path.write_text("\n".join(mutation.lines) + "\n", encoding="utf-8")
     try:
         run = run_program(path, MACHINE)
-    except InputError:
-        return Outcome("CAUGHT", ("refused",))
+    except InputError as error:
+        near = any(abs(problem.line - mutation.line) <= 1 for problem in error.problems)
+        return Outcome("CAUGHT" if near else "MISPLACED", "BLOCK", ("refused",))
     first = first_difference(untouched(name), run)
-    if first is None:
-        return Outcome("SAME", ())
-    found = checked(name, run)
-    failed = [check for check in found.checks if not check.passed]
+    changed = [what for what, is_ in beside(run, mutation.lines).items() if is_ != _untouched_beside(name)[what]]
+    if first is None and not changed:
+        return Outcome("SAME")
+    failed = [check for check in checked(name, run).checks if not check.passed]
     if not failed:
-        return Outcome("MISSED", ())
-    right = {mutation.line - 1, mutation.line, mutation.line + 1}
-    after = run.block[run.block >= mutation.line]
-    right |= {line + k for line in first | set(after[:1].tolist()) for k in (-1, 0, 1)}
-    near = tuple(c.key for c in failed if any(place.nc_line in right for place in c.places))
-    return Outcome("CAUGHT" if near else "MISPLACED", near or tuple(c.key for c in failed))
+        return Outcome("MISSED") if first is not None else Outcome("BESIDE", changed[0])
+    return _placed(mutation, failed, run, first or set())
+
+
+def _placed(mutation: Mutation, failed: list[Check], run: Run, first: set[int]) -> Outcome:
+    """How near to the fault the failed checks are."""
+    motions = run.block[run.block >= mutation.line][:1].tolist()
+    changes = [e.line for e in run.events if e.kind == "tool_change" and e.line >= mutation.line][:1]
+    shows = {line + k for line in (*first, *motions, *changes) for k in (-1, 0, 1)}
+    right = {"BLOCK": {mutation.line}, "NEXT": {mutation.line - 1, mutation.line + 1}, "SHOWS": shows}
+    for what, lines in right.items():
+        near = tuple(check.key for check in failed if any(place.nc_line in lines for place in check.places))
+        if near:
+            return Outcome("CAUGHT", what, near)
+    return Outcome("MISPLACED", "", tuple(check.key for check in failed))
 
 
 def first_difference(one: Run, two: Run) -> set[int] | None:
@@ -100,31 +129,27 @@ def first_difference(one: Run, two: Run) -> set[int] | None:
         same = np.ones(length, np.bool_)
         for x, y in zip(a[1:], b[1:], strict=True):
             x, y = x[:length], y[:length]
-            equal = (x == y) | ((x != x) & (y != y))
+            equal = (np.abs(x - y) < SAME) | ((x != x) & (y != y))
             same &= equal if equal.ndim == 1 else equal.all(axis=1)
         if not same.all():
             lines.add(int(b[0][int(np.argmin(same))]))
         elif len(a[0]) != len(b[0]):
             lines.add(int(b[0][min(length, len(b[0]) - 1)]) if len(b[0]) else 0)
-    if not lines and _beside(one) != _beside(two):
+    if not lines and _end(one) != _end(two):
         return {0}
     return lines or None
 
 
 def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
     """Lines of the motions, and columns of all that a CL file can ask for; motions that move nothing are left out."""
-    before = np.vstack((run.start[None], run.joints[:-1])) if len(run) else run.joints
-    keep = (np.abs(run.joints - before).max(axis=1, initial=0.0) > 0.0) | (run.kind == Kind.ARC)
+    keep = _moves(run)
     if only_part:
         keep &= ~run.machine_frame
     rapid = run.kind == Kind.RAPID
     home = run.machine_frame
     # Where no slide is named and TCP is off, the length of the tool has no say.
     lengthless = home | (((run.programmed & 7) == 0) & ~run.tcp)
-    coolant = np.zeros(len(run))
-    for event in run.events:
-        if event.kind == "coolant":
-            coolant[event.before_row :] = {"off": 0, "flood": 1, "mist": 2}[str(event.value)]
+    coolant = _coolant(run)
     circle = np.zeros((len(run), 8))
     circle[run.arcs.row] = np.column_stack((run.arcs.centre, run.arcs.normal, run.arcs.radius, run.arcs.turns))
     tools = np.array([int(tool) if tool.isdigit() else 0 for tool in run.tools])[run.tool]
@@ -132,12 +157,12 @@ def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
         run.block, run.kind, run.tip, run.axis, run.joints, np.where(rapid, 0.0, run.feed),
         np.where(rapid, 0, run.feed_mode), np.where(home, 0.0, run.rpm), np.where(home, 0, run.spindle),
         np.where(home, 0, tools), np.where(lengthless, 0, run.edge), run.offset,
-        run.tcp, run.machine_frame, np.where(home, 0.0, coolant), circle,
+        run.tcp, run.machine_frame, run.orientation, np.where(home, 0.0, coolant), circle,
     ]  # fmt: skip
-    return [np.asarray(column)[keep] for column in columns]
+    return [np.asarray(column, np.float64)[keep] for column in columns]
 
 
-def _beside(run: Run) -> tuple[object, ...]:
+def _end(run: Run) -> tuple[object, ...]:
     """What happens besides motion: whether the program ends, and words that are not understood."""
     ends = [event.value for event in run.events if event.kind == "end"]
     unknown = sorted(finding.text for finding in run.findings if finding.severity is Severity.ERROR)
@@ -145,11 +170,106 @@ def _beside(run: Run) -> tuple[object, ...]:
     return bool(ends), tuple(unknown), tuple(compensated)
 
 
+def _moves(run: Run) -> Flags:
+    """Rows in which an axis moves."""
+    before = np.vstack((run.start[None], run.joints[:-1])) if len(run) else run.joints
+    moved: Flags = (np.abs(run.joints - before).max(axis=1, initial=0.0) > 0.0) | (run.kind == Kind.ARC)
+    return moved
+
+
+def _coolant(run: Run) -> Floats:
+    coolant = np.zeros(len(run))
+    for event in run.events:
+        if event.kind == "coolant":
+            coolant[event.before_row :] = {"off": 0, "flood": 1, "mist": 2}[str(event.value)]
+    return coolant
+
+
+# What changes beside the work
+
+#: Words that say how the control drives, and words that say again what it was switched to when the program began.
+_DRIVES = words.SILENT | words.SILENT_VALUES | {"ORIWKS", "ORIMKS"} | {f"G{code}" for code in words.G_SILENT}
+_AGAIN = {"TRAFOOF", "TRAORI", *(f"G{code}" for code in (17, 18, 19, 70, 71, 700, 710, 90, 91, 93, 94, 95))}
+
+_NAME = re.compile(r"[A-Z_$][A-Z_]+\d*|[A-Z]\d+")
+
+DRIVES = "how the control drives between the points"
+SMOOTHING = "tolerance and mode of CYCLE832"
+AGAIN = "words that say what holds anyway"
+START = "the way home that the program begins with"
+HOME = "spindle, tool, edge or coolant away from the part"
+AFTER = "spindle, coolant and tool after the last motion"
+OTHERS = "waits, stops and words of the machine builder"
+
+#: What a mutation may change without being reported, and why.
+REASONS = {
+    DRIVES: "no motion from point to point shows it: G60, G601, COMPOF, FNORM, ORIWKS",
+    SMOOTHING: "no motion from point to point shows it",
+    AGAIN: "the control may be set so that they hold when a program begins, and the reader takes them to",
+    START: "the machine is taken to stand at home when the program begins, so that nothing moves",
+    HOME: "motions home, and of rotary axes alone without TCP: no CL file asks for it, and nothing is cut",
+    AFTER: "nothing moves any more, M30 stops the spindle too, and no CL file says which tool stays in it",
+    OTHERS: "the CL file does not ask for it",
+}
+
+
+def beside(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
+    """What a program does beside the work, by the kind of thing: two programs that agree in all of it do the same."""
+    finds = _finds(run)
+    counts = _moves(run) | np.array(finds, np.bool_)
+    at = run.block[counts]
+    rows = np.concatenate(([0], np.cumsum(counts)))
+    state = np.column_stack((run.rpm, run.spindle, run.tool, run.edge, _coolant(run)))[counts]
+    said = [(int(np.searchsorted(at, k + 1)), _names(line)) for k, line in enumerate(lines)]
+    changes = [event.before_row for event in run.events if event.kind == "tool_change"]
+    found = [(bits, sum(k <= row for k in changes), int(run.kind[row])) for row, bits in enumerate(finds) if bits]
+    cycles = [(int(rows[e.before_row]), e.value) for e in run.events if e.kind == "cycle832"]
+    silent = {"tool", "tool_change", "spindle", "speed", "coolant", "message", "cycle832", "end"}
+    return {
+        START: found,
+        HOME: state.tolist(),
+        DRIVES: _changes((place, names & _DRIVES) for place, names in said),
+        SMOOTHING: _changes(cycles),
+        AGAIN: _changes((place, names & _AGAIN) for place, names in said),
+        AFTER: [[e.value for e in run.events if e.kind == kind][-1:] for kind in ("spindle", "coolant", "tool_change")],
+        OTHERS: [(int(rows[e.before_row]), e.kind, e.value) for e in run.events if e.kind not in silent],
+    }
+
+
+@cache
+def _untouched_beside(name: str) -> dict[str, object]:
+    return beside(untouched(name), golden(name)[0])
+
+
+def _names(line: str) -> frozenset[str]:
+    """Words of a line without its comment and the texts in it."""
+    return frozenset(_NAME.findall(re.sub(r'"[^"]*"', "", line).partition(";")[0]))
+
+
+def _changes(said: Iterable[tuple[int, object]]) -> list[tuple[int, object]]:
+    """What is said and where, without what says again what was said last."""
+    kept: list[tuple[int, object]] = []
+    for place, what in said:
+        if what and (not kept or kept[-1][1] != what):
+            kept.append((place, what))
+    return kept
+
+
+def _finds(run: Run) -> list[int]:
+    """For every row the axes of which nobody knew the place before, as bits of ``Run.programmed``."""
+    known = 0
+    finds = []
+    for bits in (run.programmed & 31).tolist():
+        finds.append(bits & ~known)
+        known |= bits
+    return finds
+
+
 # The faults
 
 
-def mutations(name: str, digits: int, rng: random.Random) -> Iterator[Mutation]:
-    """All structural faults in a golden program, and ``digits`` changed digits."""
+def mutations(name: str, digits: int | None, rng: random.Random) -> Iterator[Mutation]:
+    """All structural faults in a golden program, and ``digits`` changed digits; None: each digit to each other one."""
     lines = golden(name)[0]
     yield from _digits(lines, digits, rng)
     for k, line in enumerate(lines):
@@ -164,6 +284,14 @@ def mutations(name: str, digits: int, rng: random.Random) -> Iterator[Mutation]:
     yield from _particular(lines)
 
 
+def sample(name: str, most: int, rng: random.Random) -> list[Mutation]:
+    """At most so many mutations of each kind."""
+    by_kind: dict[str, list[Mutation]] = {}
+    for mutation in mutations(name, most, rng):
+        by_kind.setdefault(mutation.kind, []).append(mutation)
+    return [mutation for some in by_kind.values() for mutation in rng.sample(some, min(most, len(some)))]
+
+
 def _is_comment(line: str) -> bool:
     return re.match(r"N\d+ ;", line) is not None
 
@@ -172,7 +300,7 @@ def _changed(kind: str, lines: tuple[str, ...], k: int, new: list[str]) -> Mutat
     return Mutation(kind, k + 1, (*lines[:k], *new, *lines[k + 1 :]))
 
 
-def _digits(lines: tuple[str, ...], count: int, rng: random.Random) -> Iterator[Mutation]:
+def _digits(lines: tuple[str, ...], count: int | None, rng: random.Random) -> Iterator[Mutation]:
     """Digits that become others, block numbers and comments left alone."""
     places = [
         (k, at)
@@ -181,9 +309,10 @@ def _digits(lines: tuple[str, ...], count: int, rng: random.Random) -> Iterator[
         for at, char in enumerate(line)
         if char.isdigit() and at >= line.index(" ")
     ]
-    for k, at in rng.sample(places, min(count, len(places))):
-        digit = rng.choice([d for d in "0123456789" if d != lines[k][at]])
-        yield _changed("change a digit", lines, k, [lines[k][:at] + digit + lines[k][at + 1 :]])
+    for k, at in places if count is None else rng.sample(places, min(count, len(places))):
+        others = [digit for digit in "0123456789" if digit != lines[k][at]]
+        for digit in others if count is None else [rng.choice(others)]:
+            yield _changed("change a digit", lines, k, [lines[k][:at] + digit + lines[k][at + 1 :]])
 
 
 def _words(lines: tuple[str, ...], k: int) -> Iterator[Mutation]:
@@ -219,6 +348,7 @@ def _particular(lines: tuple[str, ...]) -> Iterator[Mutation]:
         ("another feed", r"\bF\d+\.", "F77."),
         ("no feed", r" F\d+\.", ""),
         ("another work offset", r"\bG54\b", "G55"),
+        ("no work offset", r"\bG54\b", "G500"),
         ("inches", r"\bG710\b", "G700"),
         ("inches", r"\bG710\b", "G70"),
         ("incremental", r"\bG90\b", "G91"),
@@ -248,13 +378,31 @@ def _particular(lines: tuple[str, ...]) -> Iterator[Mutation]:
                     break
 
 
-def sweep(name: str, digits: int, folder: Path, say: Callable[[str], None] = lambda _: None) -> dict[str, Counter[str]]:
-    """Judge all mutations of a program: by kind, how many had which outcome. ``say`` hears of what was not caught."""
-    table: dict[str, Counter[str]] = {}
-    for mutation in mutations(name, digits, random.Random(569)):
-        outcome = judge(name, mutation, folder)
-        table.setdefault(mutation.kind, Counter())[outcome.verdict] += 1
-        if outcome.verdict in ("MISSED", "MISPLACED"):
-            text = mutation.lines[min(mutation.line, len(mutation.lines)) - 1]
-            say(f"{name}:{mutation.line}: {mutation.kind}: {outcome.verdict} {','.join(outcome.checks)}: {text}")
+@dataclass
+class Tally:
+    """How many mutations of a kind had which outcome, and the texts of those that were not caught."""
+
+    outcomes: Counter[str] = field(default_factory=Counter)
+    near: Counter[str] = field(default_factory=Counter)
+    beside: Counter[str] = field(default_factory=Counter)
+    not_caught: dict[str, list[str]] = field(default_factory=dict)
+
+    def add(self, name: str, mutation: Mutation, outcome: Outcome) -> None:
+        """Count one."""
+        self.outcomes[outcome.verdict] += 1
+        if outcome.verdict == "CAUGHT":
+            self.near[outcome.what] += 1
+        elif outcome.verdict != "SAME":
+            what = outcome.what or outcome.verdict
+            self.beside[what] += 1
+            lines = golden(name)[0]
+            text = lines[min(mutation.line, len(lines)) - 1]
+            self.not_caught.setdefault(what, []).append(f"{name}:{mutation.line}: {mutation.kind}: {text}")
+
+
+def sweep(name: str, faults: Iterable[Mutation], folder: Path) -> dict[str, Tally]:
+    """Judge mutations of a program, by kind."""
+    table: dict[str, Tally] = {}
+    for mutation in faults:
+        table.setdefault(mutation.kind, Tally()).add(name, mutation, judge(name, mutation, folder))
     return table

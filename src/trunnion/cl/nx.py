@@ -188,8 +188,10 @@ class Interpreter:
         self._unsure(statement, f"{statement.major or 'a statement without a word'} is not known")
 
     def _unsure(self, statement: Statement, what: str) -> None:
-        """Keep a statement as it stands."""
-        self._add(Unknown(self._here, self._line, statement.source))
+        """Keep a statement as it stands, once however much of it is not known."""
+        last = self._draft.events[-1] if self._draft.events else None
+        if not isinstance(last, Unknown) or last.line != self._line:
+            self._add(Unknown(self._here, self._line, statement.source))
         if self._strict:
             self._findings.error(self._line, what, "take the statement out, or read without strict")
         else:

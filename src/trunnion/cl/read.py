@@ -25,6 +25,8 @@ CHUNK = 4 << 20
 #: Statements that one walk of the scan writes down before it hands over.
 _SPANS = 1 << 15
 _SURVEY = 1 << 20
+#: No statement that makes a row is shorter.
+_SHORTEST = len("GOTO/\n")
 _BOM = b"\xef\xbb\xbf"
 
 _PLAIN_TEXT = "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)"
@@ -32,10 +34,10 @@ _PLAIN_TEXT = "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)"
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """What the first pass found: bytes to skip, about how many lines, encoding, whether the last line ends."""
+    """What the first pass found: bytes to skip, about how many rows, encoding, whether the last line ends."""
 
     skip: int
-    lines: int
+    rows: int
     encoding: str
     whole: bool
 
@@ -91,7 +93,7 @@ def read_in_chunks(
             raise findings.fatal(0, what, "give a CL file")
         with path.open("rb", buffering=0) as file:
             survey = _survey(file, findings)
-            columns = Columns.room_for(survey.lines)
+            columns = Columns.room_for(survey.rows)
             interpreter = Interpreter(columns, findings, survey.encoding, strict)
             file.seek(survey.skip)
             rows, line = _scan_file(file, survey, chunk, columns, interpreter, findings, progress)
@@ -134,7 +136,8 @@ def _survey(file: BinaryIO, findings: Findings) -> Survey:
             )
     if size == skip:
         raise findings.fatal(0, "the file is empty", "write the tool path out of the CAM system again")
-    return Survey(skip, int(1.02 * per_byte * size) + 16, guess.name(), whole)
+    rows = min(1.02 * per_byte * size, size / _SHORTEST)
+    return Survey(skip, int(rows) + 16, guess.name(), whole)
 
 
 def _line_at(file: BinaryIO, offset: int) -> int:

@@ -206,9 +206,10 @@ def _statement(data: Bytes, at: int, stop: int) -> tuple[int, int, int, int]:
             signed = False
         if not signed:
             return begin, max(content, begin), lines, 0
-        if end + 1 >= stop:
+        # What stands between the sign and the end of its line is a comment.
+        at = _next_line(data, end)
+        if at >= stop:
             return begin, content, lines, OPEN
-        at = end + 1
         lines += 1
 
 

@@ -11,7 +11,7 @@ _TEXT = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 _TEXT_BEGINS = frozenset(b"TPIDSOtpidso")
-_CONTINUED = re.compile(r"\$[ \t]*\r?\n")
+_CONTINUED = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n")
 _CONTROL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _NUMERIC = frozenset("+-.0123456789")
 _ENDS = frozenset(".0123456789")

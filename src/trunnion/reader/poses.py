@@ -108,6 +108,10 @@ def joints_of(machine: Machine, packed: Packed, by_tip: Flags, place: Floats, ro
     """
     joints = np.empty((len(place), 5))
     x, y, z = xyz(machine)
+    # Numba compiles once more for what may be written to: columns that still grow are the same as those of a run here.
+    place, rotary = place.view(), rotary.view()
+    place.setflags(write=False)
+    rotary.setflags(write=False)
     joint_rows(packed, (x, y, z), machine.rotary, by_tip, place, rotary, joints)
     return joints
 

@@ -118,11 +118,15 @@ class State:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Poses:
-    """Where axes and tool are, in k rows: ``joints`` (k, 5), ``tip`` (k, 3), ``axis`` (k, 3), as in ``Run``."""
+    """Where axes and tool are, in k rows: ``joints`` (k, 5), ``tip`` (k, 3), ``axis`` (k, 3), as in ``Run``; read-only."""
 
     joints: Floats
     tip: Floats
     axis: Floats
+
+    def __post_init__(self) -> None:
+        for column in (self.joints, self.tip, self.axis):
+            column.setflags(write=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,6 +225,8 @@ class Run:
         if first == 0:
             joints = np.concatenate((self.start[None], joints))
         tip, axis = forward(self.machine, joints)
+        if first and by_tip.all():
+            return Poses(joints, place, axis)
         reached = tip[1:] if first == 0 else tip
         reached[by_tip] = place[by_tip]
         return Poses(joints, tip, axis)

@@ -171,12 +171,12 @@ def _bend_axis(machine: Machine, worst: Worst, first: int, poses: Poses, most: F
 
 def _off_axis(machine: Machine, poses: Poses, rows: Ints) -> Floats:
     """Degrees between the tool axis half-way through rows and the great circle from end to end, (k,)."""
-    axis = forward(machine, 0.5 * (poses.joints[rows] + poses.joints[rows + 1]))[1]
-    middle = poses.axis[rows] + poses.axis[rows + 1]
-    middle /= np.sqrt(np.einsum("ij,ij->i", middle, middle))[:, None]
-    axis -= middle
-    chord = np.sqrt(np.einsum("ij,ij->i", axis, axis))
-    return np.asarray(np.nan_to_num(np.degrees(2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0)))))
+    joints = poses.joints[rows]
+    joints += poses.joints[rows + 1]
+    joints *= 0.5
+    off = np.empty(len(rows))
+    beside_rows(poses.axis, rows, forward(machine, joints)[1], off)
+    return off
 
 
 def _off_tip(machine: Machine, poses: Poses, rows: Ints, count: int) -> Floats:
@@ -186,6 +186,22 @@ def _off_tip(machine: Machine, poses: Poses, rows: Ints, count: int) -> Floats:
     off = np.zeros(count)
     off[rows] = np.nan_to_num(np.sqrt(np.einsum("ij,ij->i", away, away)))
     return off
+
+
+@njit(cache=True)
+def beside_rows(axis: Floats, rows: Ints, half_way: Floats, off: Floats) -> None:
+    """Write ``off`` (k,): degrees from ``half_way`` (k, 3) to the middle of the great circle between two axes.
+
+    They are ``axis`` (n + 1, 3) at ``rows`` (k,) and at the rows after them. Opposite ones have no middle: 0.
+    """
+    for k in range(rows.shape[0]):
+        row = rows[k]
+        x, y, z = axis[row, 0] + axis[row + 1, 0], axis[row, 1] + axis[row + 1, 1], axis[row, 2] + axis[row + 1, 2]
+        length = math.sqrt(x * x + y * y + z * z)
+        off[k] = 0.0
+        if length > 0.0:
+            x, y, z = half_way[k, 0] - x / length, half_way[k, 1] - y / length, half_way[k, 2] - z / length
+            off[k] = math.degrees(2.0 * math.asin(min(1.0, 0.5 * math.sqrt(x * x + y * y + z * z))))
 
 
 @njit(cache=True)

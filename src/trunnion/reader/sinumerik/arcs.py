@@ -20,6 +20,9 @@ RADIUS_PART: Final = 0.001
 #: Points nearer than this are one point, mm.
 SAME: Final = 1e-9
 
+#: No machine makes circles with a larger radius, mm.
+LARGEST_RADIUS: Final = 1e7
+
 
 class ArcError(Exception):
     """Why there is no such circle, in words."""
@@ -78,6 +81,8 @@ def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bo
     if length < SAME or not 0.0 < angle < 360.0:
         raise ArcError(f"AR={angle:g} makes no circle here")
     half = math.radians(0.5 * angle)
+    if length > 2.0 * LARGEST_RADIUS * math.sin(half):
+        raise ArcError(f"AR={angle:g} needs a radius that no machine has")
     height = 0.5 * length * math.cos(half) / math.sin(half)
     return _beside_chord(start, end, chord, height, plane, clockwise, turns)
 
@@ -103,7 +108,10 @@ def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
     if size < SAME * max(float(a @ a), float(b @ b), SAME):
         raise ArcError("the three points of CIP lie on a line")
     centre = start + (np.cross(normal, a) * float(b @ b) + np.cross(b, normal) * float(a @ a)) / (2.0 * size)
-    return Arc(end, centre, normal / math.sqrt(size), float(np.linalg.norm(start - centre)), turns)
+    radius = float(np.linalg.norm(start - centre))
+    if not SAME < radius < LARGEST_RADIUS:
+        raise ArcError("the three points of CIP make no circle that a machine has")
+    return Arc(end, centre, normal / math.sqrt(size), radius, turns)
 
 
 def _chord(start: Floats, end: Floats, plane: int) -> Floats:

@@ -24,6 +24,9 @@ from trunnion.reader.sinumerik.words import (
 
 Note = Callable[[str, Severity], None]
 
+#: Larger feeds, in any unit, are slips of the program.
+FASTEST: Final = 1e9
+
 #: Names that stand alone and are handed to the interpreter.
 _MODES: Final = FRAMES | ORIENTATION | SILENT | frozenset({"SUPA", "CIP", "TRAFOOF", "TRAORI"})
 
@@ -184,8 +187,8 @@ class BlockReader:
                 else:
                     self._note(f"S{extension}= speaks to another spindle: not followed", Severity.WARNING)
             case "F", "":
-                if number < 0.0:
-                    raise ExpressionError("a feed cannot be negative")
+                if not 0.0 <= number <= FASTEST:
+                    raise ExpressionError(f"a feed is not from 0 to {FASTEST:g}")
                 block.feed = number
             case "D", "":
                 block.edge = _code(number, "D")

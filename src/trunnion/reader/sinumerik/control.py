@@ -280,7 +280,8 @@ class Control:
     def set_program_frame(self, frame: Frame) -> None:
         """Put a programmable frame in place of the one in force."""
         total = self._swivel.then(frame)
-        if not np.all(np.isfinite(total.linear)) or abs(np.linalg.det(total.linear)) < 1e-9:
+        x, y, z = total.linear
+        if not abs(float(np.cross(x, y) @ z)) >= 1e-9:
             self.note("the frame would flatten space: it is not used", Severity.ERROR)
             return
         if float(np.abs(total.linear).max()) > 1e6 or float(np.abs(total.shift).max()) > FARTHEST:
@@ -383,7 +384,7 @@ class Control:
                 bits |= 1 << axis
         arc = None
         kind = Kind.RAPID if self.kind == RAPID else Kind.LINEAR
-        if self.kind in (CLOCKWISE, COUNTER, THROUGH):
+        if self.kind in (CLOCKWISE, COUNTER, THROUGH) and _reachable(end):
             arc = self._arc(start, end, params, bits)
             if arc is not None:
                 end = arc.end
@@ -393,13 +394,11 @@ class Control:
             rotary, turned = [math.nan, math.nan], 0
         if vector:
             turned = int(Written.VECTOR)
-        if arc is not None:
-            spun = turned if not self.tips else 0
-            placed = self._place_arc(arc, spun)
-            if placed is not None:
-                kind = Kind.ARC
-                self._arcs.append((self.row, *placed, arc.turns))
-        self._emit(kind, end, bits | turned, rotary, way, vector)
+        placed = None if arc is None else self._place_arc(arc, turned if not self.tips else 0)
+        row = self.row
+        self._emit(kind if placed is None else Kind.ARC, end, bits | turned, rotary, way, vector)
+        if arc is not None and placed is not None and self.row > row:
+            self._arcs.append((row, *placed, arc.turns))
 
     def _rotary(self, axes: Mapping[str, Word]) -> tuple[list[float], int, int]:
         """Return values (NaN without a word), way and bits of the rotary words of a block."""
@@ -456,7 +455,7 @@ class Control:
     def _emit(
         self, kind: Kind, end: Floats, bits: int, rotary: list[float], way: int, vector: Mapping[str, float]
     ) -> None:
-        if not float(np.abs(end).max()) < FARTHEST or any(abs(value) > FARTHEST for value in rotary):
+        if not _reachable(end) or any(abs(value) > FARTHEST for value in rotary):
             self.note("a position is farther away than any machine reaches: the block is not executed", Severity.ERROR)
             return
         c = self.columns
@@ -485,6 +484,9 @@ class Control:
         turns = int(params.get("TURN", (0.0, ""))[0])
         if not 0 <= turns < 1000:
             self.note(f"TURN={turns} is not from 0 to 999", Severity.ERROR)
+            return None
+        if any(abs(value) * self.lengths > FARTHEST for value, _ in params.values()):
+            self.note("a circle with numbers that no machine has: taken as a straight line", Severity.ERROR)
             return None
         try:
             if self.kind == THROUGH:
@@ -579,7 +581,7 @@ class Control:
     def drill(self, steps: list[Step]) -> None:
         """Make the motions of a drilling cycle where the tool is."""
         hole = self.place[:3].copy()
-        kind, feed = self.kind, float(self.place[3])
+        kind, feed, first_row = self.kind, float(self.place[3]), self.row
         first, second = (self.plane + 1) % 3, (self.plane + 2) % 3
         still = [math.nan, math.nan]
         for step in steps:
@@ -595,7 +597,7 @@ class Control:
             if step.dwell:
                 self.event("dwell", step.dwell)
         self.kind = kind
-        self._check_askew(len(steps))
+        self._check_askew(self.row - first_row)
 
     def _check_askew(self, rows: int) -> None:
         """Say so if the tool does not stand along the drilling axis."""
@@ -605,7 +607,7 @@ class Control:
         if not self.tips:
             return
         axis = forward(self.machine, self.held[None])[1][0]
-        if float(np.linalg.norm(axis - along)) > ASKEW and rows:
+        if rows and float(np.linalg.norm(axis - along)) > ASKEW:
             self.note("the cycle drills along the axis of the frame, which is not the tool axis", Severity.WARNING)
 
     def unswivel(self) -> None:
@@ -682,6 +684,11 @@ class Control:
         return Arcs(
             np.array(rows, np.int64), np.array(centres), np.array(normals), np.array(radii), np.array(turns, np.int64)
         )
+
+
+def _reachable(point: Floats) -> bool:
+    """Whether a machine could be so large, NaN being nowhere."""
+    return float(np.abs(point).max()) < FARTHEST
 
 
 class _Change:

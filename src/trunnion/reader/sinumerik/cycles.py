@@ -9,6 +9,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+#: Faster feeds, mm/min, are none that a cycle means.
+FASTEST: Final = 1e9
+
 #: More pecks than this at one hole are a mistake.
 MOST_PECKS: Final = 1000
 
@@ -69,7 +72,10 @@ def steps(name: str, arguments: Arguments, rpm: float) -> list[Step]:
         Spindle speed in force, for taps that do not state their own.
     """
     heights = _heights(arguments)
-    return [Step(True, heights.start), *CYCLES[name](arguments, heights, rpm), Step(True, heights.retract)]
+    made = CYCLES[name](arguments, heights, rpm)
+    if any(step.feed is not None and abs(step.feed) > FASTEST for step in made):
+        raise CycleError("has a feed that no machine has")
+    return [Step(True, heights.start), *made, Step(True, heights.retract)]
 
 
 def _get(arguments: Arguments, place: int) -> float | None:

@@ -303,4 +303,4 @@ def _divide(operator: str, a: float, b: float) -> float:
         raise ExpressionError("divides by zero")
     if operator == "/":
         return a / b
-    return float(math.trunc(a / b)) if operator == "DIV" else math.fmod(a, b)
+    return float(math.trunc(_sound(a / b))) if operator == "DIV" else math.fmod(a, b)

@@ -160,7 +160,10 @@ class Flow:
         if name == "R" and token is not None and token.sort is Sort.NUMBER:
             reader.at += 1
             return name, (int(min(token.value, 1e6)),)
-        return name, reader.index()
+        index = reader.index()
+        if name == "R" and len(index) != 1:
+            raise ExpressionError("R needs a number")
+        return name, index
 
     def _get(self, call: Activation, name: str, index: tuple[int, ...]) -> float:
         if name == "R":
@@ -171,7 +174,7 @@ class Flow:
         return value
 
     def _set(self, call: Activation, name: str, index: tuple[int, ...], value: float) -> None:
-        if name == "R" and index:
+        if name == "R":
             call.variables.set_parameter(index[0], value)
         elif not call.variables.assign(name, index, value):
             self._note(f"{name} is not defined in the program: taken as a global variable", Severity.WARNING)

@@ -5,6 +5,7 @@ that needs it makes the whole text be held. Everything that a program could do w
 """
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -17,7 +18,7 @@ from trunnion.reader.columns import Changes
 from trunnion.reader.run import Comment, Finding, Orientation, Run, State
 from trunnion.reader.sinumerik import cycles, scan
 from trunnion.reader.sinumerik.block import Block, BlockReader, Call, read_call
-from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, LINEAR, RAPID, THROUGH, Control
+from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, FARTHEST, LINEAR, RAPID, THROUGH, Control
 from trunnion.reader.sinumerik.expressions import ExpressionError, Reader, Value
 from trunnion.reader.sinumerik.flow import Activation, End, Flow
 from trunnion.reader.sinumerik.frames import Frame, statement, turn
@@ -50,8 +51,17 @@ STEPS: Final = 2_000_000
 #: Findings that are kept one by one; the rest is counted.
 MOST_FINDINGS: Final = 10_000
 
+#: So many characters of a block, or of a text that is kept, count as one more: real ones are shorter.
+LONG: Final = 128
+
+#: Subprograms that one program may call.
+MOST_FILES: Final = 1000
+
 #: Subprograms inside subprograms, as deep as the control itself allows.
 DEEPEST_CALL: Final = 16
+
+#: Names with arguments that the interpreter knows; all others are subprograms.
+_BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SETAL"})
 
 #: Rows there is room for when the kernel starts, and fewer than which are too few.
 _ROOM: Final = 65536
@@ -76,6 +86,8 @@ class Interpreter:
         self._skip = skip
         self._limit = step_limit
         self._steps = 0
+        self._kept = 0
+        self._events = 0
         self._findings: list[Finding] = []
         self._more = 0
         self._comments: list[Comment] = []
@@ -133,8 +145,9 @@ class Interpreter:
             line = text.line
             control.line, control.block_number = line, -1
             raw = text.next_line()
-            self._count(1)
+            self._count(1 + len(raw) // LONG)
             self._line(call, line, raw)
+            self._keep_events()
 
     def _count(self, blocks: int) -> None:
         """Count executed blocks. Going once through each file is free."""
@@ -142,13 +155,29 @@ class Interpreter:
         if self._steps <= self._limit:
             return
         main = self._stack[0].text
-        allowed = self._limit + (main.lines if main.whole else main.line)
-        allowed += sum(text.lines for text, _ in self._texts.values())
+        texts = [text for text, _ in self._texts.values()]
+        allowed = self._limit + (main.lines if main.whole else main.line) + sum(text.lines for text in texts)
+        allowed += sum(text.size // LONG for text in (main, *texts))
         if self._steps > allowed:
-            text = self._stack[-1].text
-            raise text.problem(
-                self._control.line, f"the program executes more than {self._limit} blocks", "does it end?"
-            )
+            raise self._endless(f"executes more than {self._limit} blocks")
+
+    def _keep(self, texts: int, characters: int) -> None:
+        """Count comments and events, which are kept. What each file says once is free."""
+        self._kept += texts + characters // LONG
+        if self._kept <= self._limit:
+            return
+        files = (self._stack[0].text, *(text for text, _ in self._texts.values()))
+        if self._kept > self._limit + sum(text.size for text in files):
+            raise self._endless(f"makes more than {self._limit} comments and events")
+
+    def _keep_events(self) -> None:
+        new = self._control.events[self._events :]
+        if new:
+            self._events += len(new)
+            self._keep(len(new), sum(len(event.value) for event in new if isinstance(event.value, str | tuple)))
+
+    def _endless(self, what: str) -> InputError:
+        return self._stack[-1].text.problem(self._control.line, f"the program {what}", "does it end?")
 
     def _may_be_plain(self, text: Text) -> bool:
         call = self._stack[-1]
@@ -185,14 +214,16 @@ class Interpreter:
             self._take_comments(text, control.notes.comments[: control.counts[scan.COMMENTS]])
             line = int(control.counts[scan.LINE])
             taken = line - text.line
+            size = int(control.counts[scan.POSITION]) - text.position
             text.position, text.line = int(control.counts[scan.POSITION]), line
             control.line = line
-            self._count(taken)
+            self._count(taken + max(size - LONG * taken, 0) // LONG)
             if text.position < len(text.buffer) and not control.full:
                 return
 
     def _take_comments(self, text: Text, table: Ints) -> None:
         file = self._file.now
+        self._keep(len(table), int((table[:, 3] - table[:, 2]).sum()))
         for line, row, start, end in table.tolist():
             words = decode(text.buffer[start:end].tobytes()).strip("\r")
             self._comments.append(Comment(line, row, words, file))
@@ -238,6 +269,7 @@ class Interpreter:
 
     def _comment(self, line: int, comment: str | None) -> None:
         if comment is not None:
+            self._keep(1, len(comment))
             self._comments.append(Comment(line, self._control.row, comment, self._file.now))
 
     def _statement(self, call: Activation, line: int, tokens: tuple[Token, ...], at: int) -> None:
@@ -286,6 +318,7 @@ class Interpreter:
                 self._m(code)
         for value in block.h:
             control.event("h", value)
+        calls = block.calls
         if frame:
             self._frame(frame, block)
         elif silent:
@@ -302,11 +335,13 @@ class Interpreter:
                 machine_frame=machine_frame,
                 feed_written=block.feed is not None,
             )
-            self._at_position(call)
-        for made in block.calls:
-            self._call(call, made)
+            calls = [*([call.modal] if call.modal else []), *calls]
+        for made in calls:
+            if made.name in _BUILT_IN:
+                self._call(made)
         for code in late:
             self._m(code)
+        self._enter_one([made for made in calls if made.name not in _BUILT_IN])
 
     def _g(self, code: int) -> None:
         control = self._control
@@ -389,6 +424,9 @@ class Interpreter:
         base = word.removeprefix("A")
         values: dict[str, float] = {}
         for name, (value, _) in {**block.axes, **block.params}.items():
+            if abs(value) * control.lengths > FARTHEST:
+                self._note(f"{word}: {name} is larger than any machine: the frame is not used", Severity.ERROR)
+                return
             if name in ("X", "Y", "Z"):
                 values[name] = value * control.lengths if base == "TRANS" else value
             elif name == "RPL":
@@ -400,12 +438,8 @@ class Interpreter:
 
     # Cycles and calls
 
-    def _at_position(self, call: Activation) -> None:
-        """Execute the modal cycle, if there is one, at the position just reached."""
-        if call.modal is not None:
-            self._call(call, call.modal)
-
-    def _call(self, call: Activation, made: Call) -> None:
+    def _call(self, made: Call) -> None:
+        """Carry out a cycle or a message."""
         control = self._control
         name = made.name
         if name in cycles.CYCLES:
@@ -420,10 +454,16 @@ class Interpreter:
         elif name == "MSG":
             first = made.arguments[0] if made.arguments else ""
             control.event("message", first if isinstance(first, str) else f"{first or 0:g}")
-        elif name == "SETAL":
-            control.event("message", f"SETAL({', '.join(made.written)})")
         else:
-            self._enter(name, made)
+            assert name == "SETAL"
+            control.event("message", f"SETAL({', '.join(made.written)})")
+
+    def _enter_one(self, calls: Sequence[Call]) -> None:
+        """Call the subprogram of a block, which goes on only after all that the block says."""
+        if len(calls) > 1:
+            self._note("several subprograms in one block: only the first is executed", Severity.ERROR)
+        for made in calls[:1]:
+            self._enter(made.name, made)
 
     def _drill(self, made: Call) -> None:
         control = self._control
@@ -500,6 +540,8 @@ class Interpreter:
 
     def _activation(self, path: Path, variables: Variables, repeats: int) -> Activation:
         if path not in self._texts:
+            if len(self._texts) >= MOST_FILES:
+                raise self._endless(f"calls more than {MOST_FILES} subprograms")
             self._files.append(str(path))
             self._texts[path] = Text(path, whole=True), len(self._files) - 1
         text, file = self._texts[path]
@@ -523,6 +565,7 @@ class Interpreter:
         if not self._stack:
             raise End
         self._file.set(self._control.row, self._stack[-1].file)
+        self._control.line = self._stack[-1].text.line - 1
 
     def _return(self, reader: Reader, call: Activation, line: int) -> None:
         self._leave()

@@ -7,6 +7,7 @@ import os
 import re
 from bisect import bisect_left, bisect_right
 from copy import copy
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -45,6 +46,15 @@ _ENDS: Final = {"ENDIF": "IF", "ENDFOR": "FOR", "ENDWHILE": "WHILE", "ENDLOOP": 
 DEEPEST: Final = 64
 
 
+@dataclass(slots=True)
+class _Places:
+    """Where the labels, block numbers and control words of a text stand, each found out when it is first asked for."""
+
+    labels: dict[str, list[int]] | None = None
+    numbers: dict[int, list[int]] | None = None
+    partners: dict[int, tuple[int, int]] | None = None
+
+
 class Text:
     """A program file, the place where it is being read, and where its jumps lead.
 
@@ -70,9 +80,7 @@ class Text:
         self.position = 0
         self.line = 1
         self._starts: Ints | None = None
-        self._labels: dict[str, list[int]] | None = None
-        self._numbers: dict[int, list[int]] | None = None
-        self._partners: dict[int, tuple[int, int]] | None = None
+        self._places = _Places()
         if whole:
             self.load()
 
@@ -93,13 +101,15 @@ class Text:
     @property
     def size(self) -> int:
         """Bytes of the file."""
-        return os.fstat(self._file.fileno()).st_size
+        return len(self.buffer) if self.whole else os.fstat(self._file.fileno()).st_size
 
     @property
     def share(self) -> float:
         """How much of the file lies before the next line, more than 0 and at most 1."""
-        ahead = len(self.buffer) - self.position + len(self._tail)
-        return min(max(self._file.tell() - ahead, 1) / max(self.size, 1), 1.0)
+        behind = self.position
+        if not self.whole:
+            behind += self._file.tell() - len(self.buffer) - len(self._tail)
+        return min(max(behind, 1) / max(self.size, 1), 1.0)
 
     def fill(self) -> bool:
         """See that the buffer holds a line; False at the end of the program."""
@@ -145,11 +155,13 @@ class Text:
         """Hold the whole program, at the same line: from now on it may jump."""
         if self.whole:
             return
-        if self.size > LARGEST_WHOLE:
-            what = f"has {self.size} bytes, more than the {LARGEST_WHOLE} that a program with jumps may have"
+        size = self.size
+        if size > LARGEST_WHOLE:
+            what = f"has {size} bytes, more than the {LARGEST_WHOLE} that a program with jumps may have"
             raise self.problem(0, what)
         self._file.seek(0)
-        data = self._file.read(LARGEST_WHOLE + 1)
+        data = self._file.read(size)
+        self._file.close()
         if not data.endswith(b"\n"):
             data += b"\n"
         self.whole = True
@@ -186,26 +198,28 @@ class Text:
 
     def label(self, name: str, here: int, *, forward: bool, backward: bool) -> int | None:
         """Line of a label: the next one after ``here`` if ``forward``, else the last one before it."""
-        if self._labels is None:
-            self._labels = {}
+        labels = self._places.labels
+        if labels is None:
+            labels = self._places.labels = {}
             for match in _LABEL.finditer(self._all):
-                self._labels.setdefault(match.group(1).decode().upper(), []).append(self._line_of(match.start(1)))
-        return _pick(self._labels.get(name, []), here, forward=forward, backward=backward)
+                labels.setdefault(match.group(1).decode().upper(), []).append(self._line_of(match.start(1)))
+        return _pick(labels.get(name, []), here, forward=forward, backward=backward)
 
     def number(self, number: int, here: int, *, forward: bool, backward: bool) -> int | None:
         """Line of a block number, found like a label."""
-        if self._numbers is None:
-            self._numbers = {}
+        numbers = self._places.numbers
+        if numbers is None:
+            numbers = self._places.numbers = {}
             for match in _NUMBER.finditer(self._all):
-                self._numbers.setdefault(int(match.group(1)), []).append(self._line_of(match.start(1)))
-        return _pick(self._numbers.get(number, []), here, forward=forward, backward=backward)
+                numbers.setdefault(int(match.group(1)), []).append(self._line_of(match.start(1)))
+        return _pick(numbers.get(number, []), here, forward=forward, backward=backward)
 
     def partner(self, line: int) -> tuple[int, int]:
         """Return the lines that belong to a control word: (ELSE or 0, end) of a beginning, (0, beginning) of an end."""
-        if self._partners is None:
-            self._partners = self._match_structures()
+        if self._places.partners is None:
+            self._places.partners = self._match_structures()
         try:
-            return self._partners[line]
+            return self._places.partners[line]
         except KeyError:
             raise self.problem(line, "has a control word that begins or ends nothing") from None
 
@@ -282,10 +296,14 @@ class Folder:
         if self._files is None:
             self._files = self._list()
         path = self._files.get(stem)
-        if path is None:
-            return None
-        home = self._folder.resolve()
-        return path if path.resolve().parent == home and path.is_file() else None
+        return path if path is not None and self._is_inside(path) else None
+
+    def _is_inside(self, path: Path) -> bool:
+        """Whether a file of the folder really lies in it; links that go in circles lie nowhere."""
+        try:
+            return path.resolve().parent == self._folder.resolve() and path.is_file()
+        except (OSError, RuntimeError):
+            return False
 
     def _list(self) -> dict[str, Path]:
         """Programs of the folder by stem; a subprogram goes before a main program."""

@@ -9,6 +9,9 @@ from typing import Final, NamedTuple
 #: The longest statement that is looked at; the control itself stops at 512 characters.
 LONGEST: Final = 4096
 
+#: Only statements as short as most are remembered with their tokens: long ones would fill the memory.
+_REMEMBERED: Final = 128
+
 #: More digits than any word has.
 _MOST_DIGITS: Final = 40
 
@@ -64,9 +67,12 @@ def split_comment(line: str) -> tuple[str, str | None]:
     return line, None
 
 
-@lru_cache(maxsize=4096)
 def tokenize(statement: str) -> tuple[Token, ...]:
     """Cut a statement into tokens; what is no token becomes one of sort BAD and ends the list."""
+    return _remembered(statement) if len(statement) <= _REMEMBERED else _tokens(statement)
+
+
+def _tokens(statement: str) -> tuple[Token, ...]:
     tokens: list[Token] = []
     at = 0
     while at < len(statement):
@@ -79,6 +85,9 @@ def tokenize(statement: str) -> tuple[Token, ...]:
             tokens.append(_token(str(kind), match.group(), at, match.end()))
         at = match.end()
     return tuple(tokens)
+
+
+_remembered = lru_cache(maxsize=4096)(_tokens)
 
 
 def _token(kind: str, text: str, start: int, end: int) -> Token:
