@@ -52,10 +52,11 @@ def _post(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",
-        help="what templates print (title, part, date, method, …), units, zero; may be repeated",
+        help="what templates print (title, part, date, method, …), units, zero, rewind, clearance; may be repeated",
     )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
+    parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
     parser.set_defaults(run=run)
 

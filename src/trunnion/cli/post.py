@@ -14,14 +14,14 @@ from trunnion.cli.progress import progress
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import plan
+from trunnion.plan import Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
-#: Settings that say how to read and to place the part rather than what to print.
-_RUN_SETTINGS = ("units", "zero")
+#: Settings that say how to read, to place and to plan rather than what to print.
+_RUN_SETTINGS = ("units", "zero", "rewind", "clearance")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -37,6 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     if "zero" in settings:
         machine = replace(machine, workpiece_zero=point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
+    wishes = wishes_of(settings, arguments.explain)
     targets = _targets(arguments, control)
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
@@ -44,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     for target, files in targets.items():
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
-            program = planned_program(paths, machine, control, printed, arguments.force)
+            program = planned_program(paths, machine, control, printed, arguments.force, wishes)
             claim = write(program, sink)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
@@ -72,7 +73,12 @@ def _read(file: str, units: str | None, strict: bool) -> Toolpath:
 
 
 def planned_program(
-    paths: Sequence[Toolpath], machine: Machine, control: Control, settings: Mapping[str, str], force: bool
+    paths: Sequence[Toolpath],
+    machine: Machine,
+    control: Control,
+    settings: Mapping[str, str],
+    force: bool,
+    wishes: Wishes,
 ) -> Program:
     """The program of toolpaths, planned and checked; what speaks against it is said.
 
@@ -81,7 +87,9 @@ def planned_program(
     InputError, Refused
         When there can be no program, or when it must not run, unless ``force``: then its head says so.
     """
-    planned = plan(paths, machine, control.chord_tolerance)
+    planned = plan(paths, machine, control.chord_tolerance, wishes)
+    if wishes.explain:
+        print(*planned.decisions, sep="\n", file=sys.stderr)
     program = Program(machine, control, planned.motions, settings, paths[0].file)
     lacking = check_program(program)
     errors = [problem for problem in lacking if problem.severity is Severity.ERROR]
@@ -220,12 +228,29 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         for key, value in settings.items()
         if any(ord(character) < 32 for character in value)
     ]
+    if settings.get("rewind", "insert") not in ("insert", "none"):
+        problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
     if settings.get("units", "mm") not in ("mm", "inch"):
         problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
     if not settings.get("edge", "1").isdigit():
         problems.append(Problem("--set", 0, f"edge is {settings['edge']!r}", "write a whole number, such as edge=1"))
     if problems:
         raise InputError(problems)
+
+
+def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
+    """What the settings say to the planner."""
+    rewind, text = settings.get("rewind", "insert") == "insert", settings.get("clearance")
+    if text is None:
+        return Wishes(rewind=rewind, explain=explain)
+    try:
+        clearance = float(text)
+    except ValueError:
+        clearance = 0.0
+    if not 0.1 <= clearance <= 10000.0:
+        cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50"
+        raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
+    return Wishes(rewind=rewind, clearance=clearance, explain=explain)
 
 
 def point(text: str) -> tuple[float, float, float]:

@@ -10,7 +10,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.plan.poses import follow
 from trunnion.reader import Orientation, Run, Written
 from trunnion.reader.sinumerik.words import G_SILENT, SILENT, SILENT_CALLS, SILENT_VALUES
-from trunnion.toolpath import Kind
+from trunnion.toolpath import Kind, Moves
 
 #: Remarks of one kind that are made one by one.
 _NAMED = 5
@@ -69,16 +69,15 @@ def remark_words(files: Sequence[str], known: Collection[int], remark: Remarks) 
         remark(0, f"and {told - _NAMED} more lines with words that are not carried over")
 
 
-def remark_poses(run: Run, operations: Iterable[Ints], remark: Remarks) -> None:
+def remark_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], remark: Remarks) -> None:
     """Say where the rotary axes stand otherwise than posting from the tool axis alone will place them.
 
-    operations   the rows (n,) of each operation
+    operations   the rows (n,) of each operation, and what became of them
     """
     machine = run.machine
     whole = np.array([np.isfinite(machine.axes[column].display_low) for column in machine.rotary])
-    for rows in operations:
-        tip, axis = np.ascontiguousarray(run.tip[rows]), np.ascontiguousarray(run.axis[rows])
-        expected = follow(machine, tip, axis, keep_slides=machine.workpiece_zero is not None).rotary
+    for rows, moves in operations:
+        expected = follow(machine, moves, keep_slides=machine.workpiece_zero is not None).rotary
         off = run.joints[rows][:, list(machine.rotary)] - expected
         off = np.where(whole, (off + 180.0) % 360.0 - 180.0, off)
         places, columns = np.nonzero(np.abs(off) > _SAME_ANGLE)

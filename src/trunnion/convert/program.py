@@ -122,7 +122,7 @@ class _Converter:
         remark_homes(run, self._remark)
         remark_registers(run, rows, self._remark)
         remark_ways(run, rows, self._remark)
-        remark_poses(run, rows, self._remark)
+        remark_poses(run, zip(rows, (operation.moves for operation in operations), strict=True), self._remark)
         remark_words(run.files, self._known, self._remark)
         return Converted(Toolpath(run.files[0], operations, settings.get("part", "")), settings, self._remark.problems)
 

@@ -7,7 +7,7 @@ other rooms use ``trunnion.machine.inverse.pack`` with ``solve_point`` and ``sol
 from trunnion.machine.chain import forward
 from trunnion.machine.inverse import Packed, Solutions, inverse, pack, slide_positions
 from trunnion.machine.load import load_machine, shipped
-from trunnion.machine.model import Axis, AxisKind, Carries, Facts, Machine, Output, Positive
+from trunnion.machine.model import Axis, AxisKind, Carries, Facts, Machine, Output, Positive, Prefer
 
 __all__ = [
     "Axis",
@@ -18,6 +18,7 @@ __all__ = [
     "Output",
     "Packed",
     "Positive",
+    "Prefer",
     "Solutions",
     "forward",
     "inverse",

@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.definition import Table, load_table, names_in
-from trunnion.machine.model import Axis, AxisKind, Carries, Facts, Machine, Output, Positive, Vector
+from trunnion.machine.model import Axis, AxisKind, Carries, Facts, Machine, Output, Positive, Prefer, Vector
 
 #: The version of the schema of machine definitions; it changes when old files need changing.
 SCHEMA: Final = 1
@@ -109,12 +109,13 @@ def _axis(entry: Table) -> Axis:
         return Axis(name, AxisKind.LINEAR, Carries(carries or Carries.PART), direction)
     kind = AxisKind(word)
     unit = "mm" if kind is AxisKind.LINEAR else "deg"
-    endless, output, point = False, Output.NONE, (0.0, 0.0, 0.0)
+    endless, output, point, prefer = False, Output.NONE, (0.0, 0.0, 0.0), Prefer.EITHER
     limits = entry.interval(f"limits_{unit}", None)
     if kind is AxisKind.ROTARY:
         point = _vector(entry.vector("point_mm", 3))
         endless = entry.flag("endless", False)
         output = Output(entry.text("output", Output.NONE, one_of=tuple(Output)))
+        prefer = Prefer(entry.text("prefer", Prefer.EITHER, one_of=tuple(Prefer)))
         _check_winding(entry, endless, output)
     low, high = limits or (-math.inf, math.inf)
     home = entry.number(f"home_{unit}", 0.0)
@@ -141,6 +142,7 @@ def _axis(entry: Table) -> Axis:
         acceleration=acceleration,
         home=home,
         positive=Positive(positive),
+        prefer=prefer,
     )
 
 

@@ -41,6 +41,14 @@ class Positive(StrEnum):
     REVERSED = "reversed"
 
 
+class Prefer(StrEnum):
+    """The sign of a rotary axis in the pose that a machine usually works in."""
+
+    POSITIVE = "positive"
+    NEGATIVE = "negative"
+    EITHER = "either"
+
+
 class Output(StrEnum):
     """How the values of an endless axis are written: folded into one turn, or as they wind (NONE)."""
 
@@ -74,6 +82,7 @@ class Axis:
     acceleration: float | None = None
     home: float = 0.0
     positive: Positive = Positive.STANDARD
+    prefer: Prefer = Prefer.EITHER
 
     @property
     def is_rotary(self) -> bool:
@@ -84,6 +93,11 @@ class Axis:
     def sense(self) -> float:
         """1.0 for standard, -1.0 for reversed."""
         return 1.0 if self.positive is Positive.STANDARD else -1.0
+
+    @property
+    def preferred_sign(self) -> float:
+        """1.0 or -1.0: the sign of the axis in the preferred pose; 0.0 for either."""
+        return {Prefer.POSITIVE: 1.0, Prefer.NEGATIVE: -1.0, Prefer.EITHER: 0.0}[self.prefer]
 
     @property
     def display_low(self) -> float:

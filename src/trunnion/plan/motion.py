@@ -1,6 +1,7 @@
 """What the planner hands on."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
@@ -26,12 +27,44 @@ class Motion:
         self.rotary.setflags(write=False)
 
 
+class Why(StrEnum):
+    """What a decision was about."""
+
+    START = "start"
+    POLE = "pole"
+    CHANGE = "change"
+    REWIND = "rewind"
+    MORE = "more"
+    NEAREST = "nearest"
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What was decided before a row, and the reason for it, in words.
+
+    row   row of the operation as the CL file has it, arcs that became lines counted; -1: about all of it
+    line  line of the CL file
+    """
+
+    file: str
+    operation: str
+    line: int
+    row: int
+    why: Why
+    text: str
+
+    def __str__(self) -> str:
+        """Return ``file:line: operation: text``."""
+        return f"{self.file}:{self.line}: {self.operation}: {self.text}"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """All operations of one program, and what speaks against running them.
+    """All operations of one program, what speaks against running them, and why they are planned as they are.
 
     ``problems`` with severity error mean that the program must not run as it is.
     """
 
     motions: tuple[Motion, ...]
     problems: tuple[Problem, ...]
+    decisions: tuple[Decision, ...] = ()

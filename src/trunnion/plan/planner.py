@@ -7,11 +7,17 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.machine import Machine
+from trunnion.machine import Machine, inverse
+from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
-from trunnion.plan.motion import Motion, Plan
-from trunnion.plan.poses import OUT_OF_REACH, TURNED_OVER, Poses, beyond_fit, follow
-from trunnion.toolpath import Frame, From, Kind, Operation, Toolpath
+from trunnion.plan.decisions import Planned, decisions, pose_words
+from trunnion.plan.motion import Decision, Motion, Plan
+from trunnion.plan.optimum import BLOCKED, OUT_OF_REACH, REWIND
+from trunnion.plan.poses import Poses, beyond_fit, choose, take
+from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
+from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
+from trunnion.plan.wishes import Wishes
+from trunnion.toolpath import Frame, From, Moves, Operation, Toolpath
 
 #: An operation is three-axis when no component of its tool axis differs from +Z by more than this.
 _UPRIGHT = 1e-7
@@ -20,7 +26,7 @@ _UPRIGHT = 1e-7
 _NAMED = 5
 
 
-def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float) -> Plan:
+def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float, wishes: Wishes | None = None) -> Plan:
     """Plan all operations of one program.
 
     Parameters
@@ -32,6 +38,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         With a known workpiece zero the slides keep their limits; without, they must have room enough somewhere.
     chord_tolerance
         For arcs that become lines, mm.
+    wishes
+        How to rewind, and whether to explain.
 
     Raises
     ------
@@ -40,35 +48,109 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     Refused
         When no position of the machine gives a tool axis; of that no program can be made at all.
     """
+    wishes = wishes or Wishes()
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
     program_frame = pairs[0][1].frame
     stretches: list[_Stretch] = []
-    problems: list[Problem] = []
     for path, original in pairs:
         operation = into_frame(original, program_frame)
         operation = lines_for_arcs(operation, plain_arcs(operation), chord_tolerance)
-        moves = operation.moves
-        poses = follow(machine, moves.tip, moves.axis, keep_slides=machine.workpiece_zero is not None)
-        stretches.append(_Stretch(path.file, operation, poses))
-        if poses.outcome.any():
-            problems += _row_problems(stretches[-1], machine)
+        stretches.append(_stretch(path.file, operation, machine, wishes))
+    problems = [problem for stretch in stretches for problem in stretch.problems]
     if any((stretch.poses.outcome == OUT_OF_REACH).any() for stretch in stretches):
         raise Refused(problems)
     if machine.workpiece_zero is None:
         problems += _fit_problems(stretches, machine)
-    motions = tuple(Motion(s.operation, s.poses.rotary, _is_upright(s.operation.moves.axis)) for s in stretches)
-    return Plan(motions, tuple(problems))
+    log = [decision for stretch in stretches for decision in stretch.log]
+    return Plan(tuple(stretch.motion(wishes) for stretch in stretches), tuple(problems), tuple(log))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stretch:
-    """An operation with its poses, and the file that it came from."""
+    """An operation with its poses, as it is before rewinds are put in, and the file that it came from."""
 
     file: str
     operation: Operation
     poses: Poses
+    rewinds: tuple[Rewind, ...]
+    problems: tuple[Problem, ...]
+    log: tuple[Decision, ...]
+
+    def motion(self, wishes: Wishes) -> Motion:
+        """What is to be written."""
+        operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
+        return Motion(operation, rotary, _is_upright(self.operation.moves.axis))
+
+
+def _stretch(file: str, operation: Operation, machine: Machine, wishes: Wishes) -> _Stretch:
+    """Plan one operation in the program's coordinate system."""
+    moves, keep_slides = operation.moves, machine.workpiece_zero is not None
+    state = choose(machine, moves, keep_slides)
+    poses = take(machine, moves, state, keep_slides)
+    if (poses.outcome == OUT_OF_REACH).any():
+        return _Stretch(file, operation, poses, (), tuple(_row_problems(file, moves, poses, machine)), ())
+    planned = Planned(machine, file, operation, poses.rotary, state, keep_slides)
+    needed = _rewinds(planned, poses)
+    problems = [*_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes)]
+    if wishes.rewind:
+        _widen(poses, machine, moves, needed, wishes.clearance)
+    log = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
+    return _Stretch(file, operation, poses, needed if wishes.rewind else (), tuple(problems), tuple(log))
+
+
+def _rewinds(planned: Planned, poses: Poses) -> tuple[Rewind, ...]:
+    """All rewinds of an operation, with the limit that asks for each."""
+    rewinds = []
+    for row in np.flatnonzero(poses.outcome == REWIND).tolist():
+        before, after = int(planned.branch(row - 1)), int(planned.branch(row))
+        end = planned.ahead(row, before, poses.rotary[row - 1])
+        moves = planned.operation.moves
+        reason = "the path asks for it" if end is None else f"otherwise {end.words(planned.machine, moves)}"
+        found = rewind_at(planned.machine, moves, row, after, poses.rotary)
+        turn = f"{planned.words(found.before)} to {planned.words(found.after)}, {reason}"
+        rewinds.append(replace(found, reason=turn, end=end))
+    return tuple(rewinds)
+
+
+def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes) -> Iterable[Problem]:
+    """What there is to say about each rewind."""
+    machine, operation = planned.machine, planned.operation
+    for rewind in rewinds:
+        line = int(operation.moves.line[rewind.row])
+        if not wishes.rewind:
+            at = line if rewind.end is None else int(operation.moves.line[rewind.end.row])
+            what = "the rotary axes would have to rewind in the cut"
+            if rewind.end is not None:
+                what = f"{beyond_words(machine, rewind.end.column, rewind.end.value)} in the cut"
+            cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
+            yield Problem(planned.file, at, what, cure)
+            continue
+        what = f"the tool draws back {wishes.clearance:g} mm in the cut to rewind, {rewind.reason}"
+        yield Problem(planned.file, line, what, "--set rewind=none refuses it", Severity.WARNING)
+        if compensated(operation, rewind.row):
+            what = "a rewind within cutter radius compensation"
+            yield Problem(planned.file, line, what, "output the path without CUTCOM, or split the operation")
+        joints = joints_of(machine, operation.moves, rewind, wishes.clearance)
+        column = lacks_room(machine, joints) if planned.keep_slides else None
+        if column is not None:
+            values = joints[:, column]
+            value = values.max() if values.max() > machine.axes[column].high else values.min()
+            what = f"on the retreat for a rewind {beyond_words(machine, column, float(value))}"
+            yield Problem(planned.file, line, what, "--set clearance=MM draws back less; or move the workpiece")
+
+
+def _widen(poses: Poses, machine: Machine, moves: Moves, rewinds: Sequence[Rewind], clearance: float) -> None:
+    """Take the retreats into the extremes of the slides, at the rows where they begin."""
+    for rewind in rewinds:
+        joints = joints_of(machine, moves, rewind, clearance)
+        for column in machine.linear:
+            least, most = float(joints[:, column].min()), float(joints[:, column].max())
+            if least < poses.extremes[column, 0]:
+                poses.extremes[column, 0], poses.where[column, 0] = least, rewind.row - 1
+            if most > poses.extremes[column, 1]:
+                poses.extremes[column, 1], poses.where[column, 1] = most, rewind.row - 1
 
 
 def _is_upright(axis: Floats) -> bool:
@@ -102,37 +184,52 @@ def into_frame(operation: Operation, frame: Frame) -> Operation:
     )
 
 
-def _row_problems(stretch: _Stretch, machine: Machine) -> Iterable[Problem]:
+def _row_problems(file: str, moves: Moves, poses: Poses, machine: Machine) -> Iterable[Problem]:
     """Say what is wrong with which rows: each kind of trouble at its first few places, then how many there are."""
     problems: list[Problem] = []
-    moves, outcome = stretch.operation.moves, stretch.poses.outcome
-    for code in np.unique(outcome[outcome > 0]).tolist():
+    outcome = poses.outcome
+    for code in np.unique(outcome[outcome > 0]).tolist() if outcome.any() else []:
+        if code == REWIND:
+            continue
         rows = np.flatnonzero(outcome == code)
-        if code == TURNED_OVER:
-            rows = rows[moves.kind[rows] != Kind.RAPID]
-        problems += [_row_problem(stretch, machine, code, row) for row in rows[:_NAMED].tolist()]
+        problems += [_row_problem(file, moves, poses, machine, code, row) for row in rows[:_NAMED].tolist()]
         if len(rows) > _NAMED:
             more = f"the same at {len(rows) - _NAMED} further points, the last in line {moves.line[rows[-1]]}"
-            line = int(moves.line[rows[_NAMED]])
-            problems.append(Problem(stretch.file, line, more, severity=problems[-1].severity))
+            problems.append(Problem(file, int(moves.line[rows[_NAMED]]), more))
     return problems
 
 
-def _row_problem(stretch: _Stretch, machine: Machine, code: int, row: int) -> Problem:
-    moves = stretch.operation.moves
-    place = stretch.file, int(moves.line[row])
+def _row_problem(file: str, moves: Moves, poses: Poses, machine: Machine, code: int, row: int) -> Problem:
+    place = file, int(moves.line[row])
     if code == OUT_OF_REACH:
         i, j, k = moves.axis[row]
         what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
         return Problem(*place, what, "tilt the workpiece or use a machine that reaches it")
-    if code == TURNED_OVER:
-        what = "the rotary axes turn over to their other solution while cutting"
-        return Problem(*place, what, "split the operation there or tilt the workpiece", Severity.WARNING)
-    axis, value = machine.axes[code - 1], float(stretch.poses.beyond[row])
-    limit, word = (axis.low, "below") if value < axis.low else (axis.high, "above")
-    unit = "degrees" if axis.is_rotary else "mm"
-    what = f"axis {axis.name} would go to {value:.5f}, {word} its limit {limit:g} {unit}"
-    return Problem(*place, what, "move or tilt the workpiece, or post for another machine")
+    if code == BLOCKED:
+        ways = f"{pose_words(machine, poses.rotary[row - 1])} to {pose_words(machine, poses.rotary[row])}"
+        what = f"the rotary axes must turn over within one step of the cut, {ways}, and no pose serves both its ends"
+        return Problem(*place, what, "output the toolpath with points nearer to each other, or tilt the workpiece")
+    value = float(poses.beyond[row])
+    axis = machine.axes[code - 1]
+    lacking = axis.low - value if value < axis.low else value - axis.high
+    what, other = beyond_words(machine, code - 1, value), _other_pose(machine, moves, poses, row)
+    if axis.is_rotary:
+        return Problem(*place, what, f"tilt the workpiece by {lacking:.3f} degrees{other}, or post for another machine")
+    return Problem(*place, what, f"move the workpiece so that {axis.name} has {lacking:.3f} mm more{other}, or tilt it")
+
+
+def _other_pose(machine: Machine, moves: Moves, poses: Poses, row: int) -> str:
+    """Why the other solution is no way out, in brackets; empty where there is none."""
+    joints = inverse(machine, moves.tip[row : row + 1], moves.axis[row : row + 1]).joints[:, 0]
+    apart = joints[:, list(machine.rotary)] - poses.rotary[row]
+    apart -= 360.0 * np.rint(apart / 360.0)
+    other = joints[int(np.argmax(np.abs(apart).sum(axis=1)))]
+    low, high = limits_of(machine, machine.workpiece_zero is not None)
+    outside = np.flatnonzero((other < low - LIMIT_TOLERANCE) | (other > high + LIMIT_TOLERANCE))
+    if not len(outside) or np.abs(apart).sum(axis=1).max() < 1e-6:
+        return ""
+    axis = machine.axes[outside[0]]
+    return f" (in the other pose {axis.name} would go to {other[outside[0]]:.5f})"
 
 
 def _fit_problems(stretches: Sequence[_Stretch], machine: Machine) -> Iterable[Problem]:

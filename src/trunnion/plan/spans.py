@@ -24,8 +24,8 @@ from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, solve_sli
 #: Share of a tolerance that is used: the samples within a span miss the worst place by less than the rest.
 _USED: Final = 0.97
 
-#: Where a span is looked at, as fractions of it.
-_LOOKS: Final = 5
+#: At how many places a span is looked at: closer together towards its ends, where a pole nearby bends it most.
+_LOOKS: Final = 11
 
 #: A span shorter than this fraction of the way between two CL points turns in its place.
 _SHORT: Final = 1e-7
@@ -125,7 +125,9 @@ def _divide(
         if among[row] and row > 0 and (not fill or counts[row] > 1):
             branch = _branch_of(packed, axis[row - 1], rotary[row - 1])
             other = _branch_of(packed, axis[row], rotary[row])
-            if branch != other:
+            if branch < 0:
+                branch = other  # from a pole on, the solution is that of the end
+            elif other >= 0 and branch != other:
                 branch = -1
             _place(packed, columns, tip[row - 1], rotary[row - 1], begin)
             _place(packed, columns, tip[row], rotary[row], end)
@@ -133,13 +135,13 @@ def _divide(
             at[0, :], at[1, :] = tip[row - 1], tip[row]
             done = 0.0
             while _error(chain, begin, end, done, 1.0, at, look, allowed) > 1.0:
-                step = _farthest(chain, packed, columns, at, look, done, branch, begin, allowed, here)
+                step = _farthest(chain, packed, columns, at, look, done, branch, begin, end, allowed, here)
                 pieces = 1
                 if step == 0.0:  # nothing but a turn in its place is left: over it, and on
                     step = min(_SHORT, 1.0 - done)
                     here[:] = end
                     if done + step < 1.0:
-                        _between(packed, columns, at, look, done + step, branch, begin, here)
+                        _between(packed, columns, at, look, done + step, branch, begin, end, here)
                     pieces = _turn_pieces(chain, packed, columns, begin, here, done + step, at, look, allowed)
                 done += step
                 for piece in range(1, pieces + 1 if done < 1.0 else pieces):
@@ -234,9 +236,20 @@ def _branch_of(packed: Packed, axis: Floats, rotary: Floats) -> int:
 
 @njit(cache=True)
 def _between(
-    packed: Packed, columns: Ints, at: Floats, look: Floats, part: float, only: int, before: Floats, out: Floats
+    packed: Packed,
+    columns: Ints,
+    at: Floats,
+    look: Floats,
+    part: float,
+    only: int,
+    before: Floats,
+    goal: Floats,
+    out: Floats,
 ) -> None:
-    """Write all five axis values at a part of the way: of one solution, or of the one nearest to the values before."""
+    """Write all five axis values at a part of the way: of one solution, or of the one nearest to the values before.
+
+    Where the first axis turns half-way round, as it does across the pole, it goes the way round that leads to ``goal``.
+    """
     axis = np.empty(3)
     _slerp(look, part, axis)
     status, u0, u1, cos, sin = solve_tilt(packed, axis[0], axis[1], axis[2])
@@ -247,6 +260,8 @@ def _between(
             continue
         found = branch_angles(packed, u0, u1, cos, sin if branch == 0 else -sin, status)
         one = before[columns[0]] if status & POLE else _wound(found[0], before[columns[0]])
+        if abs(one - before[columns[0]]) > 90.0:
+            one = _wound(found[0], goal[columns[0]])
         two = _wound(found[1], before[columns[1]])
         away = abs(one - before[columns[0]]) + abs(two - before[columns[1]])
         if away < best:
@@ -280,7 +295,7 @@ def _error(
         ways += (at[1, k] - at[0, k]) ** 2
     worst = 0.0
     for look_at in range(1, _LOOKS + 1):
-        share = look_at / (_LOOKS + 1.0)
+        share = 0.5 - 0.5 * math.cos(math.pi * look_at / (_LOOKS + 1.0))
         for k in range(5):
             joints[k] = begin[k] + share * (end[k] - begin[k])
         chain_row(chain, joints, tip, axis)
@@ -310,6 +325,7 @@ def _farthest(
     done: float,
     branch: int,
     begin: Floats,
+    end: Floats,
     allowed: Floats,
     here: Floats,
 ) -> float:
@@ -319,19 +335,19 @@ def _farthest(
         step = 0.25 * high
         if step < _SHORT:
             return 0.0
-        _between(packed, columns, at, look, done + step, branch, begin, here)
+        _between(packed, columns, at, look, done + step, branch, begin, end, here)
         if _error(chain, begin, here, done, done + step, at, look, allowed) > 1.0:
             high = step
         else:
             low = step
     for _ in range(_HALVINGS):
         step = 0.5 * (low + high)
-        _between(packed, columns, at, look, done + step, branch, begin, here)
+        _between(packed, columns, at, look, done + step, branch, begin, end, here)
         if _error(chain, begin, here, done, done + step, at, look, allowed) > 1.0:
             high = step
         else:
             low = step
-    _between(packed, columns, at, look, done + low, branch, begin, here)
+    _between(packed, columns, at, look, done + low, branch, begin, end, here)
     return low
 
 

@@ -12,6 +12,7 @@ from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.model import Check, Place
+from trunnion.verify.retreats import retreats
 from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Call, Spindle, Stretch
 
@@ -36,7 +37,14 @@ def order(case: Case) -> Check:
     places = [case.missing(cl, "no block goes to this CL point") for cl in pairs.missing[:NAMED]]
     told: list[Place] = []
     count = len(pairs.missing)
+    back = retreats(case.run, pairs.extra, max(part.allowed.tip for part in wanted.parts))
+    lawful = {row for retreat in back for row in range(retreat.first, retreat.end)}
+    for retreat in back:
+        text = f"draws back {retreat.distance:.3f} mm along the tool axis, turns, and comes back"
+        told.append(case.place(retreat.first, retreat.distance, text))
     for row in pairs.extra:
+        if row in lawful:
+            continue
         if _stands_still(case.run, row):
             told.append(case.place(row, 0.0, "repeats the position before it: nothing moves"))
             continue
@@ -50,8 +58,10 @@ def order(case: Case) -> Check:
     summary = f"{len(pairs.cl)} points in their order"
     if left_out:
         summary += f", {left_out} repeated ones left out"
-    if told:
-        summary += f", {len(told)} blocks that move nothing"
+    if back:
+        summary += f", {len(back)} {'retreat' if len(back) == 1 else 'retreats'} along the tool axis to turn"
+    if len(told) > len(back):
+        summary += f", {len(told) - len(back)} blocks that move nothing"
     return Check("order", title, True, summary, places=tuple(told[:NAMED]))
 
 

@@ -1,0 +1,151 @@
+"""The optimum against the nearest neighbour: ``python benchmarks/planning.py``.
+
+Four paths on five machines: how often each of the two must rewind in the cut, how far it turns the rotary axes, and how
+long it takes; then how many points a second are planned. Prints the tables of docs/planning.md.
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from make_cls import path
+from trunnion.arrays import Codes
+from trunnion.machine import Machine, load_machine
+from trunnion.plan.decisions import Planned, travel, turned_over
+from trunnion.plan.poses import choose, choose_nearest, take
+from trunnion.plan.states import states_of
+from trunnion.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool
+
+Floats = NDArray[np.float64]
+Choose = Callable[[Machine, Moves, bool], Codes]
+
+LIMITED = {"name": "Generic B head, C table ±360", "axis": [{"name": "C", "endless": False, "limits_deg": [-360, 360]}]}
+
+
+def machines() -> dict[str, Machine]:
+    """Endless and limited, tables and heads, one pose for most tool axes and two."""
+    names = ("yl569", "hs664rt", "generic_head_head_ca", "generic_nutated_b45_c")
+    found = {name: load_machine(name) for name in names}
+    return found | {"generic_head_table_bc, C ±360": load_machine("generic_head_table_bc", LIMITED)}
+
+
+def directions(tilt: Floats, azimuth: Floats) -> Floats:
+    """(n, 3) tool axes by their angle from Z and about it, degrees."""
+    t, a = np.radians(tilt), np.radians(azimuth)
+    return np.column_stack((np.sin(t) * np.cos(a), np.sin(t) * np.sin(a), np.cos(t)))
+
+
+def moves_of(axis: Floats, rapid: NDArray[np.bool_]) -> Moves:
+    """A ball of 30 mm radius, touched where the tool axis points."""
+    n = len(axis)
+    return Moves(
+        30.0 * axis,
+        axis,
+        np.where(rapid, Kind.RAPID, Kind.LINEAR).astype(np.uint8),
+        np.where(rapid, Phase.RAPID, Phase.CUT).astype(np.uint8),
+        np.full(n, 500.0),
+        np.zeros(n, bool),
+        np.arange(1, n + 1, dtype=np.int32),
+    )
+
+
+def passes(parts: list[Floats]) -> Moves:
+    """Cuts, each after a rapid to its start."""
+    rapid = np.concatenate([np.arange(len(part)) == 0 for part in parts])
+    return moves_of(np.concatenate(parts), rapid)
+
+
+def near_pole_spiral() -> Moves:
+    """Twenty turns about a direction 1.5 degrees off the pole, inwards from 25 degrees."""
+    axis = directions(np.linspace(25.0, 0.2, 6000), np.linspace(0.0, 7200.0, 6000))
+    c, s = np.cos(np.radians(1.5)), np.sin(np.radians(1.5))
+    return passes([axis @ np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])])
+
+
+def impeller() -> Moves:
+    """A hub that winds 700 degrees, then nine blades to and fro, 140 degrees each."""
+    parts = [directions(np.linspace(30.0, 55.0, 3000), np.linspace(10.0, 710.0, 3000))]
+    for blade in range(9):
+        start = 40.0 * blade + 80.0
+        for k in range(6):
+            swing = np.linspace(start, start + 140.0, 250)
+            tilt = np.linspace(35.0 + k, 65.0 + k, 250)
+            parts.append(directions(tilt, swing) if k % 2 == 0 else directions(tilt, swing)[::-1])
+    return passes(parts)
+
+
+def sphere() -> Moves:
+    """Parallel passes over the top of a ball, one way, 60 degrees to either side."""
+    parts = []
+    for across in np.radians(np.linspace(-40.0, 40.0, 41)):
+        along = np.radians(np.linspace(-60.0, 60.0, 240))
+        parts.append(
+            np.column_stack(
+                (np.sin(along) * np.cos(across), np.full(240, np.sin(across)), np.cos(along) * np.cos(across))
+            )
+        )
+    return passes(parts)
+
+
+def drilling() -> Moves:
+    """Twelve holes in each of five planes, gone through twice."""
+    parts = []
+    for azimuth, tilt in ((0.0, 0.0), (20.0, 55.0), (200.0, 55.0), (110.0, 55.0), (290.0, 55.0)) * 2:
+        parts += [directions(np.full(3, tilt), np.full(3, azimuth))] * 12
+    return passes(parts)
+
+
+PATHS = {
+    "near-pole spiral": near_pole_spiral,
+    "impeller over the C limit": impeller,
+    "sphere, both poses": sphere,
+    "drilling in five planes": drilling,
+}
+
+
+def measured(machine: Machine, moves: Moves, choice: Choose) -> str:
+    """Cells of the table: rewinds, degrees, milliseconds."""
+    seconds = []
+    for _ in range(3):
+        begin = time.perf_counter()
+        state = choice(machine, moves, False)
+        poses = take(machine, moves, state, False)
+        seconds.append(time.perf_counter() - begin)
+    operation = Operation("", Tool(), Frame(), moves, Arcs.none(), (), 1)
+    planned = Planned(machine, "", operation, poses.rotary, state, False)
+    beyond = int(((poses.outcome > 0) & (poses.outcome <= 5)).sum())
+    note = f" and {beyond} over-travels" if beyond else ""
+    turned = travel(machine, poses.rotary)
+    return f"{len(turned_over(planned))}{note} | {turned:.0f} | {1e3 * min(seconds):.1f}"
+
+
+def main() -> None:
+    """Print both tables."""
+    parser = argparse.ArgumentParser(description="Plan with the optimum and with the nearest neighbour.")
+    parser.add_argument("--points", type=int, default=1_000_000, help="points of the second table")
+    points = parser.parse_args().points
+    print("| path | machine | nearest: rewinds | degrees | ms | optimum: rewinds | degrees | ms |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for title, make in PATHS.items():
+        moves = make()
+        for name, machine in machines().items():
+            cells = [measured(machine, moves, choice) for choice in (choose_nearest, choose)]
+            print(f"| {title} ({len(moves)}) | {name} | {' | '.join(cells)} |")
+    print("\n| machine | states | points/s |\n| --- | --- | --- |")
+    rows = path(0, points)
+    moves = moves_of(np.ascontiguousarray(rows[:, 3:]), np.zeros(points, bool))
+    for name, machine in machines().items():
+        best = float("inf")
+        for _ in range(3):
+            begin = time.perf_counter()
+            state = choose(machine, moves, False)
+            take(machine, moves, state, False)
+            best = min(best, time.perf_counter() - begin)
+        print(f"| {name} | {len(states_of(machine))} | {points / best:,.0f} |")
+
+
+if __name__ == "__main__":
+    main()

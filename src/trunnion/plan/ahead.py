@@ -1,0 +1,71 @@
+"""Where a pose leads to if nothing is changed: the limit that it runs into.
+
+Decisions are explained by this, they are not made by it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.machine import Machine, inverse, slide_positions
+from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
+from trunnion.toolpath import Moves
+
+#: Rows looked at together.
+_CHUNK = 4096
+
+
+@dataclass(frozen=True, slots=True)
+class DeadEnd:
+    """The first row at which an axis would leave its limits, the column of the axis, and where it would go."""
+
+    row: int
+    column: int
+    value: float
+
+    def words(self, machine: Machine, moves: Moves) -> str:
+        """Axis, value, limit and line, as the end of a sentence."""
+        return f"{beyond_words(machine, self.column, self.value)} in line {int(moves.line[self.row])}"
+
+
+def beyond_words(machine: Machine, column: int, value: float) -> str:
+    """``axis B would go to 110.00000, above its limit 100 degrees``."""
+    axis = machine.axes[column]
+    limit, word = (axis.low, "below") if value < axis.low else (axis.high, "above")
+    unit = "degrees" if axis.is_rotary else "mm"
+    return f"axis {axis.name} would go to {value:.5f}, {word} its limit {limit:g} {unit}"
+
+
+def dead_end(
+    machine: Machine, moves: Moves, row: int, end: int, branch: int, pose: Floats, keep_slides: bool
+) -> DeadEnd | None:
+    """Follow one branch from ``pose`` (2,), degrees, into rows ``row`` to ``end``, until a limit is left."""
+    low, high = limits_of(machine, keep_slides)
+    last = pose
+    for first in range(row, end, _CHUNK):
+        part = slice(first, min(first + _CHUNK, end))
+        values = continued(machine, moves, part, branch, last)
+        joints = slide_positions(machine, moves.tip[part], values)
+        joints[:, list(machine.rotary)] = values
+        outside = (joints < low - LIMIT_TOLERANCE) | (joints > high + LIMIT_TOLERANCE)
+        if outside.any():
+            k = int(np.argmax(outside.any(axis=1)))
+            column = int(np.argmax(outside[k]))
+            return DeadEnd(first + k, column, float(joints[k, column]))
+        last = values[-1]
+    return None
+
+
+def continued(machine: Machine, moves: Moves, rows: slice | Ints, branch: int, last: Floats) -> Floats:
+    """Rotary values, degrees, (k, 2), of consecutive rows in one branch, each the nearer way from the one before.
+
+    last : (2,) float64
+        Where the axes stand before.
+    """
+    solutions = inverse(machine, moves.tip[rows], moves.axis[rows])
+    values = solutions.joints[branch][:, list(machine.rotary)]
+    if solutions.pole.any():  # the free angle holds
+        source = np.maximum.accumulate(np.where(solutions.pole, -1, np.arange(len(values))))
+        values[:, 0] = np.where(source < 0, last[0], values[np.maximum(source, 0), 0])
+    return np.asarray(np.unwrap(np.vstack((last[None], values)), period=360.0, axis=0)[1:])

@@ -1,0 +1,19 @@
+"""What whoever asks for a program may wish of its planning."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """Wishes with their defaults.
+
+    rewind     insert retreats where an axis must wind back in the cut; False: refuse the program
+    clearance  how far the tool draws back along its axis for that, mm
+    engage     share of the feed with which it comes back
+    explain    compare with what the nearest neighbour would have done
+    """
+
+    rewind: bool = True
+    clearance: float = 50.0
+    engage: float = 0.5
+    explain: bool = False

@@ -1,0 +1,231 @@
+"""The optimum is the optimum, and the nearest neighbour where that one will do."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from tests.plan.naive import EveryWay, moves_of, nearest_neighbour, rapids_at
+from trunnion.arrays import Floats
+from trunnion.machine import Machine, forward, load_machine, shipped, slide_positions
+from trunnion.plan.optimum import REWIND, REWOUND, STATE
+from trunnion.plan.poses import Poses, choose, choose_nearest, follow, least_cost, take
+from trunnion.plan.states import MOST_TURNS, states_of
+from trunnion.toolpath import Moves
+
+
+def with_limits(machine: Machine, **limits: tuple[float, float]) -> Machine:
+    """The machine with other limits of its rotary axes, degrees."""
+    axes = tuple(
+        replace(axis, low=limits[axis.name][0], high=limits[axis.name][1], endless=False)
+        if axis.name in limits
+        else axis
+        for axis in machine.axes
+    )
+    return replace(machine, axes=axes)
+
+
+def directions(tilt: Floats, azimuth: Floats) -> Floats:
+    """(n, 3) tool axes by their angle from Z and about it, degrees."""
+    t, a = np.radians(tilt), np.radians(azimuth)
+    return np.column_stack((np.sin(t) * np.cos(a), np.sin(t) * np.sin(a), np.cos(t)))
+
+
+def winding(tilt: float, first: float, last: float, n: int = 400) -> Moves:
+    """A cut whose tool axis turns about Z from one azimuth to another."""
+    return moves_of(np.zeros((n, 3)), directions(np.full(n, tilt), np.linspace(first, last, n)))
+
+
+def posed(machine: Machine, moves: Moves) -> Poses:
+    return follow(machine, moves, False)
+
+
+def rewinds(poses: Poses) -> int:
+    return int((poses.outcome == REWIND).sum())
+
+
+BC = load_machine("generic_head_table_bc")
+CA = load_machine("generic_head_head_ca")
+SMALL = {
+    "endless C, B with both signs": with_limits(BC, B=(-110, 110)),
+    "endless C, B little below zero": with_limits(BC, B=(-15, 110)),
+    "C limited to a turn and a half": with_limits(BC, B=(-5, 110), C=(-270, 270)),
+    "fork head": CA,
+    "nutated head": load_machine("generic_nutated_b45_c"),
+    "nutated, C limited": with_limits(load_machine("generic_nutated_b45_c"), C=(-200, 200)),
+}
+
+
+@st.composite
+def short_paths(draw: st.DrawFn, rows: int = 6) -> Moves:
+    """Few rows, smooth or rough, often near the pole or on it, some of them rapids."""
+    n = draw(st.integers(1, rows))
+    rough = draw(st.booleans())
+    tilts = st.sampled_from([0.0, 0.3, 3.0, 12.0]) | st.floats(0.0, 80.0)
+    if rough:
+        tilt = np.array([draw(tilts) for _ in range(n)])
+        azimuth = np.array([draw(st.floats(-180.0, 180.0)) for _ in range(n)])
+    else:
+        tilt = np.linspace(draw(tilts), draw(tilts), n)
+        azimuth = draw(st.floats(-180.0, 180.0)) + np.linspace(0.0, draw(st.floats(-500.0, 500.0)), n)
+    moves = moves_of(np.zeros((n, 3)), directions(tilt, azimuth))
+    return rapids_at(moves, [row for row in range(n) if draw(st.integers(0, 3)) == 0])
+
+
+@settings(deadline=None, max_examples=150)
+@given(st.sampled_from(sorted(SMALL)), short_paths(), st.sampled_from([-1, 0, 1]))
+def test_no_way_through_the_states_is_cheaper(name: str, moves: Moves, prefer: int) -> None:
+    machine = SMALL[name]
+    states = states_of(machine).table
+    assume(len(states) ** len(moves) < 300_000)
+    every = EveryWay(machine, moves, prefer)
+    assert [tuple(row) for row in states.tolist()] == every.states
+    state = least_cost(machine, moves, False, prefer)
+    fewest, least = every.least()
+    found = every.cost_of([int(s) & STATE for s in state])
+    assert found[0] == fewest
+    assert found[1] == pytest.approx(least, abs=1e-6)
+    assert int((state & REWOUND != 0).sum()) == fewest % (1 << 20)
+
+
+def test_eight_rows_of_six_states() -> None:
+    machine = CA
+    azimuth = np.array([0.0, 70.0, 140.0, 210.0, 280.0, 350.0, 420.0, 490.0])
+    moves = moves_of(np.zeros((8, 3)), directions(np.full(8, 30.0), azimuth))
+    assert len(states_of(machine)) == 6
+    every = EveryWay(machine, moves)
+    state = [int(s) & STATE for s in choose(machine, moves, False)]
+    assert every.cost_of(state) == pytest.approx(every.least(), abs=1e-6)
+
+
+@st.composite
+def smooth_paths(draw: st.DrawFn, most: float = 80.0) -> Moves:
+    """A tool axis that goes evenly through a few directions, with rapids here and there."""
+    corners = draw(st.integers(1, 4))
+    n = draw(st.integers(2, 80))
+    at = np.linspace(0.0, corners, n)
+    tilt = np.interp(at, range(corners + 1), [draw(st.floats(0.0, most)) for _ in range(corners + 1)])
+    azimuth = np.interp(at, range(corners + 1), [draw(st.floats(-720.0, 720.0)) for _ in range(corners + 1)])
+    tips = np.column_stack((np.linspace(-40.0, 40.0, n), np.zeros(n), np.linspace(0.0, 5.0, n)))
+    moves = moves_of(tips, directions(tilt, azimuth))
+    return rapids_at(moves, [0, *draw(st.lists(st.integers(0, n - 1), max_size=3))])
+
+
+@settings(deadline=None, max_examples=120)
+@given(smooth_paths(100.0))
+def test_on_the_yl569_the_optimum_is_the_nearest_neighbour_where_that_will_do(moves: Moves) -> None:
+    machine = load_machine("yl569")
+    naive = nearest_neighbour(machine, moves)
+    assume(not naive.beyond and not naive.changes and len(set(naive.branch)) == 1)
+    wound = naive.rotary[:, 0] - 360.0 * np.floor(naive.rotary[:, 0] / 360.0)
+    assert np.array_equal(posed(machine, moves).rotary, np.column_stack((wound, naive.rotary[:, 1])))
+
+
+@settings(deadline=None, max_examples=120)
+@given(st.sampled_from(shipped()), smooth_paths(30.0))
+def test_on_every_machine_it_is_the_nearest_neighbour_or_cheaper(name: str, moves: Moves) -> None:
+    machine = load_machine(name)
+    naive = nearest_neighbour(machine, moves)
+    assume(not naive.beyond and not naive.changes)
+    every = EveryWay(machine, moves)
+    state = [int(s) & STATE for s in least_cost(machine, moves, False)]
+    turns = np.rint((naive.rotary - every.angles[naive.branch, range(len(moves))]) / 360.0)
+    turns[:, every.endless] = 0
+    its = [every.states.index((b, int(one), int(two))) for b, (one, two) in zip(naive.branch, turns, strict=True)]
+    assert state == its or every.cost_of(state)[0] <= every.cost_of(its)[0]
+    if state != its:
+        assert every.cost_of(state) < (every.cost_of(its)[0], every.cost_of(its)[1] + 1e-6)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.sampled_from(shipped()), smooth_paths(30.0))
+def test_the_nearest_neighbour_of_the_planner_is_that_of_the_tests(name: str, moves: Moves) -> None:
+    machine = load_machine(name)
+    naive = nearest_neighbour(machine, moves)
+    found = take(machine, moves, choose_nearest(machine, moves, False), False).rotary
+    apart = found - naive.rotary
+    assert np.abs(apart - 360.0 * np.rint(apart / 360.0)).max() < 1e-9
+
+
+@settings(deadline=None, max_examples=80)
+@given(st.sampled_from(shipped()), st.one_of(smooth_paths(35.0), short_paths(30)))
+def test_limits_hold_and_the_tool_points_where_it_should(name: str, moves: Moves) -> None:
+    machine = load_machine(name)
+    poses = posed(machine, moves)
+    low, high = machine.limits[list(machine.rotary)].T
+    fine = (poses.outcome == 0) | (poses.outcome >= REWIND)
+    assert ((poses.rotary >= low) & (poses.rotary <= high))[fine].all()
+    tip, axis = forward(machine, slide_positions(machine, moves.tip, poses.rotary))
+    assert np.abs(axis - moves.axis).max() < 1e-7
+    assert np.abs(tip - moves.tip).max() < 1e-4
+    naive = nearest_neighbour(machine, moves)
+    if not naive.beyond:
+        assert fine.all(), "where the nearest neighbour keeps the limits, the optimum does"
+
+
+# Cases in which the nearest neighbour fails.
+
+
+def test_a_pass_that_winds_700_degrees_starts_on_the_turn_where_it_fits() -> None:
+    moves = winding(40.0, 100.0, 800.0)
+    assert nearest_neighbour(CA, moves).changes, "from 10 degrees it meets the limit of 360 half-way"
+    poses = posed(CA, moves)
+    assert not poses.outcome.any()
+    c = poses.rotary[:, 0]
+    assert np.ptp(c) == pytest.approx(700.0)
+    assert c.min() >= -360.0
+    assert c.max() <= 360.0
+
+
+def test_one_that_winds_1000_degrees_rewinds_once() -> None:
+    poses = posed(CA, winding(40.0, 100.0, 1100.0))
+    assert rewinds(poses) == 1
+    assert np.abs(np.diff(poses.rotary[:, 0])).max() == pytest.approx(360.0, abs=3.0)
+
+
+def test_a_limit_crossed_on_one_side_is_seen_from_the_start() -> None:
+    machine = load_machine("yl569")
+    moves = moves_of(np.zeros((60, 3)), directions(np.linspace(5.0, 40.0, 60), np.full(60, 190.0)))
+    assert nearest_neighbour(machine, moves).changes, "B -5 is nearer, but ends at -11"
+    poses = posed(machine, moves)
+    assert not poses.outcome.any()
+    assert (poses.rotary[:, 1] > 0).all()
+    assert poses.rotary[:, 0] == pytest.approx(190.0)
+
+
+def test_a_path_through_the_pole_goes_on_where_the_limits_let_it() -> None:
+    tilt = np.linspace(-60.0, 60.0, 121)
+    moves = moves_of(np.zeros((121, 3)), directions(tilt, np.full(121, 30.0)))
+    wide = posed(with_limits(BC, B=(-110, 110)), moves)
+    assert np.ptp(wide.rotary[:, 0]) < 1e-9, "C stands still"
+    narrow = posed(with_limits(BC, B=(-11, 110)), moves)
+    assert not narrow.outcome.any()
+    turn = np.flatnonzero(np.abs(np.diff(narrow.rotary[:, 0])) > 1.0)
+    assert len(turn) == 1
+    assert abs(narrow.rotary[turn[0] + 1, 1]) <= 1.0, "C turns over at the pole, where that tilts nothing"
+
+
+def test_equal_tool_axes_have_equal_poses_in_every_pass() -> None:
+    machine = with_limits(BC, B=(-110, 110))
+    azimuths = [0.0, 170.0, -20.0, 100.0, 260.0, 0.0, 170.0, -20.0, 100.0, 260.0]
+    rows = [directions(np.full(20, 30.0), np.linspace(a, a + 30.0, 20)) for a in azimuths]
+    moves = moves_of(np.zeros((200, 3)), np.concatenate(rows))
+    moves = rapids_at(moves, list(range(0, 200, 20)))
+    b = posed(machine, moves).rotary[:, 1]
+    assert len(np.unique(np.sign(b))) == 1
+    assert len(np.unique(np.sign(nearest_neighbour(machine, moves).rotary[:, 1]))) == 2
+
+
+@pytest.mark.parametrize(("prefer", "sign"), [("positive", 1.0), ("negative", -1.0)])
+def test_a_definition_says_which_side_the_machine_works_on(prefer: str, sign: float) -> None:
+    machine = load_machine("generic_head_head_ca", {"axis": [{"name": "A", "prefer": prefer}]})
+    poses = posed(machine, rapids_at(winding(40.0, 30.0, 60.0), [0]))
+    assert (np.sign(poses.rotary[:, 1]) == sign).all()
+
+
+def test_an_axis_with_very_many_turns_is_planned_around_its_home() -> None:
+    machine = with_limits(BC, C=(-36000, 36000), B=(-110, 500))
+    assert len(states_of(machine)) <= 2 * MOST_TURNS
+    assert not posed(machine, winding(40.0, 0.0, 2000.0, 2000)).outcome.any()
