@@ -71,7 +71,7 @@ def off(model: Machine, tip: Floats, axis: Floats, spans: Spans, tcp: bool) -> t
         first, last = ((spans.tip[k - 1 : k + 1] - p) @ (q - p) / ((q - p) @ (q - p))).tolist()
         part = np.clip((now - p) @ (q - p) / ((q - p) @ (q - p)), max(first, 0.0), last)
         worst_tip = max(worst_tip, float(np.linalg.norm(now - p - part[:, None] * (q - p), axis=1).max()))
-        wanted = great_circle(axis[row - 1], axis[row], part)
+        wanted = great_circle(axis[row - 1], axis[row], first + share[:, 0] * (last - first))
         worst_axis = max(worst_axis, float(np.degrees(2 * np.arcsin(np.linalg.norm(look - wanted, axis=1) / 2)).max()))
     return worst_tip, worst_axis
 

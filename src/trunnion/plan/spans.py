@@ -25,7 +25,8 @@ from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, solve_sli
 _USED: Final = 0.97
 
 #: At how many places a span is looked at: closer together towards its ends, where a pole nearby bends it most.
-_LOOKS: Final = 11
+_LOOKS: Final = 5
+_CLOSE_LOOKS: Final = 31
 
 #: A span shorter than this fraction of the way between two CL points turns in its place.
 _SHORT: Final = 1e-7
@@ -134,7 +135,7 @@ def _divide(
             look[0, :], look[1, :], look[2, 0] = axis[row - 1], axis[row], _angle_between(axis[row - 1], axis[row])
             at[0, :], at[1, :] = tip[row - 1], tip[row]
             done = 0.0
-            while _error(chain, begin, end, done, 1.0, at, look, allowed) > 1.0:
+            while _error(chain, begin, end, done, 1.0, at, look, allowed, _CLOSE_LOOKS) > 1.0:
                 step = _farthest(chain, packed, columns, at, look, done, branch, begin, end, allowed, here)
                 pieces = 1
                 if step == 0.0:  # nothing but a turn in its place is left: over it, and on
@@ -282,33 +283,39 @@ def _wound(angle: float, near: float) -> float:
 
 @njit(cache=True)
 def _error(
-    chain: Chain, begin: Floats, end: Floats, first: float, last: float, at: Floats, look: Floats, allowed: Floats
+    chain: Chain,
+    begin: Floats,
+    end: Floats,
+    first: float,
+    last: float,
+    at: Floats,
+    look: Floats,
+    allowed: Floats,
+    looks: int,
 ) -> float:
     """How far the tool is off between two axis positions, as a share of what is allowed.
 
-    The positions stand at the parts ``first`` and ``last`` of the way. The tool axis is held against the one that
-    belongs to where the tip is on its line; a tip at rest, against the one in step.
+    The positions stand at the parts ``first`` and ``last`` of the way. The tip is held against its line, the tool axis
+    against the one that the great circle has at the same share of the span.
     """
     joints, tip, axis, wanted = np.empty(5), np.empty(3), np.empty(3), np.empty(3)
     ways = 0.0
     for k in range(3):
         ways += (at[1, k] - at[0, k]) ** 2
     worst = 0.0
-    for look_at in range(1, _LOOKS + 1):
-        share = 0.5 - 0.5 * math.cos(math.pi * look_at / (_LOOKS + 1.0))
+    for look_at in range(1, looks + 1):
+        share = 0.5 - 0.5 * math.cos(math.pi * look_at / (looks + 1.0))
         for k in range(5):
             joints[k] = begin[k] + share * (end[k] - begin[k])
         chain_row(chain, joints, tip, axis)
         part = first + share * (last - first)
         if allowed[0] < math.inf:
-            along = 0.0
+            along, off = 0.0, 0.0
             for k in range(3):
                 along += (tip[k] - at[0, k]) * (at[1, k] - at[0, k])
-            if ways > 1e-12:
-                part = min(max(along / ways, first), last)
-            off = 0.0
+            along = min(max(along / ways, first), last) if ways > 1e-12 else part
             for k in range(3):
-                off += (tip[k] - at[0, k] - part * (at[1, k] - at[0, k])) ** 2
+                off += (tip[k] - at[0, k] - along * (at[1, k] - at[0, k])) ** 2
             worst = max(worst, math.sqrt(off) / allowed[0])
         _slerp(look, part, wanted)
         worst = max(worst, _angle_between(axis, wanted) / allowed[1])
@@ -336,18 +343,22 @@ def _farthest(
         if step < _SHORT:
             return 0.0
         _between(packed, columns, at, look, done + step, branch, begin, end, here)
-        if _error(chain, begin, here, done, done + step, at, look, allowed) > 1.0:
+        if _error(chain, begin, here, done, done + step, at, look, allowed, _LOOKS) > 1.0:
             high = step
         else:
             low = step
     for _ in range(_HALVINGS):
         step = 0.5 * (low + high)
         _between(packed, columns, at, look, done + step, branch, begin, end, here)
-        if _error(chain, begin, here, done, done + step, at, look, allowed) > 1.0:
+        if _error(chain, begin, here, done, done + step, at, look, allowed, _LOOKS) > 1.0:
             high = step
         else:
             low = step
-    _between(packed, columns, at, look, done + low, branch, begin, end, here)
+    for _ in range(_HALVINGS):  # what those looks missed near a pole, closer ones see
+        _between(packed, columns, at, look, done + low, branch, begin, end, here)
+        if _error(chain, begin, here, done, done + low, at, look, allowed, _CLOSE_LOOKS) <= 1.0:
+            break
+        low *= 0.9
     return low
 
 
@@ -372,7 +383,7 @@ def _turn_pieces(
         for k in range(2):
             rotary[k] = begin[columns[k]] + (end[columns[k]] - begin[columns[k]]) / pieces
         _place(packed, columns, tip, rotary, joints)
-        error = _error(chain, begin, joints, part, part, at, look, allowed)
+        error = _error(chain, begin, joints, part, part, at, look, allowed, _LOOKS)
         if not error > 1.0:
             break
         # what a piece is off by shrinks with the square of its length
