@@ -20,7 +20,7 @@ why they are handed all that they work with: calls and counting took longer than
 """
 
 import math
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 from numba import njit
@@ -68,13 +68,19 @@ REWIND: Final = 100
 BLOCKED: Final = 101
 OUT_OF_REACH: Final = 200
 
-#: Options of kernels that count no references: an option of Numba's that its type hints do not know.
-_BARE: Final[Any] = {"cache": True, "_nrt": False}
+Kernel = TypeVar("Kernel")
 
 #: What ``solve_tilt`` returns.
 Tilt: TypeAlias = tuple[int, float, float, float, float]
 
 _COS_BEND: Final = math.cos(math.radians(BEND))
+
+
+def _without_counting(kernel: Kernel) -> Kernel:
+    """Compile a kernel that counts no references: by an option of Numba's that its type hints do not know."""
+    options: dict[str, Any] = {"cache": True, "_nrt": False}
+    compiled: Kernel = njit(**options)(kernel)
+    return compiled
 
 
 @njit(cache=True)
@@ -409,7 +415,7 @@ def workspace(states: int) -> tuple[Floats, Ints, Floats, Floats, Ints, Ints, Fl
     )  # fmt: skip
 
 
-@njit(**_BARE)
+@_without_counting
 def cheapest(
     packed: Packed,
     choice: Choice,
@@ -484,7 +490,7 @@ def cheapest(
     return end
 
 
-@njit(**_BARE)
+@_without_counting
 def nearest(
     packed: Packed,
     choice: Choice,
