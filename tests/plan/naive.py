@@ -145,9 +145,14 @@ class EveryWay:
         asked = self.moves.axis[row - 1] + self.moves.axis[row]
         return bool(middle @ asked < math.cos(math.radians(1.0)) * np.linalg.norm(asked))
 
+    def _alive(self, row: int, branch: int) -> bool:
+        return any(is_open and s[0] == branch for s, is_open in zip(self.states, self.open[row], strict=True))
+
     def _heading(self, row: int, branch: int, r: int) -> float:
-        """The last step of a branch before a row that moved an axis."""
+        """The last step of a branch before a row that moved an axis, since it was last closed."""
         for k in range(row - 1, 0, -1):
+            if not (self._alive(k, branch) and self._alive(k - 1, branch)):
+                return 0.0
             move = wrapped(self.angles[branch, k, r] - self.angles[branch, k - 1, r])
             if abs(move) > 1e-3:
                 return move
@@ -160,7 +165,7 @@ class EveryWay:
         travel = cost = float(np.abs(move).sum())
         other = before[0] != state[0]
         natural = near and (not other or bool(self.pole[row - 1]))
-        alive = any(is_open and s[0] == before[0] for s, is_open in zip(self.states, self.open[row], strict=True))
+        alive = self._alive(row, before[0])
         small = other and travel < 90.0 and alive
         bent = self._bends(row, before, move)
         rewinds = 0

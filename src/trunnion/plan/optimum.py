@@ -15,12 +15,12 @@ the step is blocked.
 
 Memory: one byte a state and row, and one more a row.
 
-Small kernels are inlined into the big one here rather than by the compiler, which would count references to arrays at
-every call: that took as long as all the rest.
+Small kernels are inlined into the big ones, and these work without counting references to arrays (``_nrt``), which is
+why they are handed all that they work with: calls and counting took longer than all the rest.
 """
 
 import math
-from typing import Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 from numba import njit
@@ -56,6 +56,9 @@ _BLOCKED: Final = 1 << 20
 #: Two costs nearer than this, degrees, are equal.
 _EQUAL: Final = 1e-9
 
+#: Beyond a limit by more than this, degrees, however it was worked out.
+_CLEARLY: Final = 1e-3
+
 #: Motion below this, degrees, has no direction: vectors of CL files are rounded.
 _STILL: Final = 1e-3
 
@@ -65,10 +68,19 @@ REWIND: Final = 100
 BLOCKED: Final = 101
 OUT_OF_REACH: Final = 200
 
+Kernel = TypeVar("Kernel")
+
 #: What ``solve_tilt`` returns.
 Tilt: TypeAlias = tuple[int, float, float, float, float]
 
 _COS_BEND: Final = math.cos(math.radians(BEND))
+
+
+def _without_counting(kernel: Kernel) -> Kernel:
+    """Compile a kernel that counts no references: by an option of Numba's that its type hints do not know."""
+    options: dict[str, Any] = {"cache": True, "_nrt": False}
+    compiled: Kernel = njit(**options)(kernel)
+    return compiled
 
 
 @njit(cache=True)
@@ -103,6 +115,7 @@ class Choice(NamedTuple):
     span       (4,) int    ``States.span``
     start      (2,) float  rotary positions before the first row, degrees
     side       (2,) float  the sign that each rotary axis is to have, 0: either
+    both       float       sum of the second angles of both branches, degrees, whole turns left out
     """
 
     low: Numbers
@@ -111,6 +124,7 @@ class Choice(NamedTuple):
     span: tuple[int, ...]
     start: Numbers
     side: Numbers
+    both: float
 
 
 # What the forward pass works with besides; ``WAS`` is the last row, ``NOW`` this one.
@@ -121,7 +135,8 @@ class Choice(NamedTuple):
 # angle   (3, 2, 2) float64  of both branches (-180, 180] degrees, and HEADING: their last steps that moved the axes
 # step    (2, 2, 2) float64  from branch to branch, the nearer way of each axis, degrees
 # around  (2, 2, 2) int64    turns by which its angle jumps on that way
-# side    (2, 2) int64       slides of a branch beyond their limits; whether the branch has an open state
+# side    (2, 3) int64       of each branch: slides beyond limits; whether it has an open state in this row; in the
+#                            last row
 WAS: Final = 0
 NOW: Final = 1
 HEADING: Final = 2
@@ -129,27 +144,69 @@ FAULTS: Final = 0
 OPEN: Final = 1
 OUTSIDE: Final = 0
 ALIVE: Final = 1
+WAS_ALIVE: Final = 2
+
+#: Slides beyond their limits in a branch that was not worked out.
+_SKIPPED: Final = 50
 
 
 @njit(cache=True, inline="always")
 def _turn_to(
-    packed: Packed, choice: Choice, angle: Floats, side: Ints, tilt: Tilt, x: float, y: float, z: float, joints: Floats
+    packed: Packed,
+    choice: Choice,
+    states: Ints,
+    angle: Floats,
+    side: Ints,
+    tilt: Tilt,
+    x: float,
+    y: float,
+    z: float,
+    joints: Floats,
+    skip: bool,
 ) -> None:
-    """Angles of both branches in this row, and how many slides they put beyond their limits."""
+    """Angles of both branches in this row, and how many slides they put beyond their limits.
+
+    With ``skip`` a branch 1 that is surely closed is left out, which saves half the work on many a machine: its first
+    angle stays what it was.
+    """
     status, u0, u1, cos, sin = tilt
     for b in range(2):
+        if b == 1 and skip and _is_closed(packed, choice, states, angle, side):
+            side[1, OUTSIDE] = _SKIPPED
+            break
         first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(packed, u0, u1, cos, sin if b == 0 else -sin, status)
         if status & POLE:
             first = angle[WAS, b, 0]
         angle[NOW, b, 0], angle[NOW, b, 1] = first, second
+        side[b, OUTSIDE] = 0
         if choice.slides:
             if status & POLE:
                 cos_1, sin_1 = math.cos(math.radians(first)), packed.sense_1 * math.sin(math.radians(first))
             place_slides(packed, cos_1, sin_1, cos_2, sin_2, x, y, z, joints)
-            side[b, OUTSIDE] = 0
             for slide in range(3):
                 column = packed.columns[2 + slide]
                 side[b, OUTSIDE] += beyond(joints[column], choice.low[column], choice.high[column])
+
+
+@njit(cache=True, inline="always")
+def _is_closed(packed: Packed, choice: Choice, states: Ints, angle: Floats, side: Ints) -> bool:
+    """Whether branch 1 is closed because branch 0 keeps all limits and the second axis of branch 1 does not.
+
+    The second angles of both branches add up to a constant of the machine.
+    """
+    one, two = packed.columns[0], packed.columns[1]
+    low_1, high_1, low_2, high_2 = choice.low[one], choice.high[one], choice.low[two], choice.high[two]
+    first, second = angle[NOW, 0, 0], angle[NOW, 0, 1]
+    other = _folded(choice.both - second)
+    inside, surely = False, True
+    for t in range(len(states)):
+        if states[t, 0] == 0:
+            wrong = beyond(first + 360.0 * states[t, 1], low_1, high_1)
+            inside |= not (wrong or beyond(second + 360.0 * states[t, 2], low_2, high_2))
+        else:
+            value = other + 360.0 * states[t, 2]
+            surely &= value < low_2 - _CLEARLY or value > high_2 + _CLEARLY
+    return inside and surely and side[0, OUTSIDE] == 0
 
 
 @njit(cache=True, inline="always")
@@ -172,10 +229,12 @@ def _open_states(packed: Packed, choice: Choice, states: Ints, count: Ints, angl
 
 
 @njit(cache=True, inline="always")
-def _step(angle: Floats, step: Floats, around: Ints) -> None:
-    """The steps between the branches the nearer way."""
+def _step(angle: Floats, step: Floats, around: Ints, side: Ints) -> None:
+    """The steps between the branches the nearer way, where they have open states."""
     for a in range(2):
         for b in range(2):
+            if not (side[a, WAS_ALIVE] and side[b, ALIVE]):
+                continue
             for r in range(2):
                 move = angle[NOW, b, r] - angle[WAS, a, r]
                 whole = np.rint(move / 360.0)
@@ -211,9 +270,11 @@ def _moves(choice: Choice, states: Ints, step: Floats, around: Ints, s: int, t: 
 
 
 @njit(cache=True, inline="always")
-def _was_open(choice: Choice, states: Ints, count: Ints, around: Ints, t: int) -> bool:
+def _was_open(choice: Choice, states: Ints, count: Ints, around: Ints, side: Ints, t: int) -> bool:
     """Whether the state from which one gets to ``t`` naturally was open in the last row."""
     b = states[t, 0]
+    if not side[b, WAS_ALIVE]:
+        return False
     index = b
     for r in range(2):
         low, most = choice.span[2 * r], choice.span[2 * r + 1]
@@ -269,7 +330,7 @@ def _arrive(
         if cut != IDLE and bent and not natural:
             mark, faults = REWOUND, faults + 1
             total += IN_CUT if cut == CUTS else 0.0
-            if not _was_open(choice, states, count, around, t):
+            if not _was_open(choice, states, count, around, side, t):
                 mark, faults = mark | STUCK_FAST, faults + _BLOCKED
         elif a != b:
             total += POLE_PASS if small and not bent else SIDE_CHANGE
@@ -307,7 +368,7 @@ def _at_limits(packed: Packed, choice: Choice, states: Ints, angle: Floats, t: i
 
 
 @njit(cache=True, inline="always")
-def _go_on(cost: Floats, count: Ints, angle: Floats, step: Floats, begun: bool) -> None:
+def _go_on(cost: Floats, count: Ints, angle: Floats, step: Floats, side: Ints) -> None:
     """This row becomes the last one. Costs count from the cheapest on: small numbers keep their digits."""
     base = np.inf
     for t in range(cost.shape[1]):
@@ -318,9 +379,12 @@ def _go_on(cost: Floats, count: Ints, angle: Floats, step: Floats, begun: bool) 
         count[WAS, OPEN, t] = count[NOW, OPEN, t]
     for b in range(2):
         for r in range(2):
-            if begun and abs(step[b, b, r]) > _STILL:
+            if not (side[b, ALIVE] and side[b, WAS_ALIVE]):
+                angle[HEADING, b, r] = 0.0
+            elif abs(step[b, b, r]) > _STILL:
                 angle[HEADING, b, r] = step[b, b, r]
             angle[WAS, b, r] = angle[NOW, b, r]
+        side[b, WAS_ALIVE] = side[b, ALIVE]
 
 
 @njit(cache=True, inline="always")
@@ -337,29 +401,54 @@ def _folded(value: float) -> float:
 
 
 @njit(cache=True)
+def _first_of(packed: Packed, i: float, j: float, k: float, branch: int) -> float:
+    """Angle of the first rotary axis under a tool axis off the pole, in a branch, degrees."""
+    status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
+    return branch_angles(packed, u0, u1, cos, sin if branch == 0 else -sin, status)[0]
+
+
+def workspace(states: int) -> tuple[Floats, Ints, Floats, Floats, Ints, Ints, Floats]:
+    """What the forward pass works with, empty: cost, count, angle, step, around, side, and five joints."""
+    return (
+        np.full((2, states), np.inf), np.zeros((2, 2, states), np.int64), np.zeros((3, 2, 2)),
+        np.zeros((2, 2, 2)), np.zeros((2, 2, 2), np.int64), np.zeros((2, 3), np.int64), np.empty(5),
+    )  # fmt: skip
+
+
+@_without_counting
 def cheapest(
-    packed: Packed, choice: Choice, states: Ints, tip: Floats, axis: Floats, cuts: Codes, prefer: int, back: Codes
+    packed: Packed,
+    choice: Choice,
+    states: Ints,
+    tip: Floats,
+    axis: Floats,
+    cuts: Codes,
+    prefer: int,
+    back: Codes,
+    cost: Floats,
+    count: Ints,
+    angle: Floats,
+    step: Floats,
+    around: Ints,
+    side: Ints,
+    joints: Floats,
 ) -> int:
     """Fill the backpointers ``back`` (n, s); return the state in which the cheapest way ends.
 
     cuts    (n,) uint8  IDLE, TOUCHES or CUTS
     prefer              the preferred branch; -1: none
+    cost, count, angle, step, around, side, joints    of ``workspace``
     """
-    cost, count, side = (
-        np.full((2, len(states)), np.inf),
-        np.zeros((2, 2, len(states)), np.int64),
-        np.zeros((2, 2), np.int64),
-    )
-    angle, step, around, joints = np.zeros((3, 2, 2)), np.zeros((2, 2, 2)), np.zeros((2, 2, 2), np.int64), np.empty(5)
-    angle[WAS, :, 0], angle[WAS, :, 1] = _folded(choice.start[0]), _folded(choice.start[1])
+    for b in range(2):
+        angle[WAS, b, 0], angle[WAS, b, 1] = _folded(choice.start[0]), _folded(choice.start[1])
     per_row = AT_LIMITS / max(len(tip), 1)
     begun, was_pole, cut_before = False, False, False
-    tilt = 0, 0.0, 0.0, 0.0, 0.0
+    tilt, solid = (0, 0.0, 0.0, 0.0, 0.0), -1
     i, j, k = np.nan, np.nan, np.nan
     for row in range(len(tip)):
-        x, y, z = i, j, k
+        i_0, j_0, k_0 = i, j, k
         i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
-        fresh = i != x or j != y or k != z
+        fresh = i != i_0 or j != j_0 or k != k_0
         if fresh:
             tilt = solve_tilt(packed, i, j, k)
         if tilt[0] & UNREACHABLE:
@@ -367,9 +456,15 @@ def cheapest(
                 back[row, t] = t
             continue
         if fresh or choice.slides:
-            _turn_to(packed, choice, angle, side, tilt, tip[row, 0], tip[row, 1], tip[row, 2], joints)
+            pole = tilt[0] & POLE != 0
+            if pole and side[1, OUTSIDE] == _SKIPPED and solid >= 0:
+                angle[WAS, 1, 0] = _first_of(packed, axis[solid, 0], axis[solid, 1], axis[solid, 2], 1)
+            if not pole:
+                solid = row
+            x, y, z = tip[row, 0], tip[row, 1], tip[row, 2]
+            _turn_to(packed, choice, states, angle, side, tilt, x, y, z, joints, not pole)
             _open_states(packed, choice, states, count, angle, side)
-        _step(angle, step, around)
+        _step(angle, step, around, side)
         begins = cuts[row] != IDLE and not cut_before
         for t in range(len(states)):
             cost[NOW, t], count[NOW, FAULTS, t], back[row, t] = np.inf, 0, t
@@ -378,14 +473,14 @@ def cheapest(
             if begun:
                 back[row, t] = _arrive(
                     packed, choice, states, cost, count, angle, step, around, side,
-                    t, cuts[row], was_pole, i + x, j + y, k + z,
+                    t, cuts[row], was_pole, i + i_0, j + j_0, k + k_0,
                 )  # fmt: skip
             else:
                 cost[NOW, t] = _from_start(choice, states, angle, t)
             cost[NOW, t] += per_row * _at_limits(packed, choice, states, angle, t)
             if begins and _is_other_side(choice, states, angle, prefer, t):
                 cost[NOW, t] += OTHER_SIDE
-        _go_on(cost, count, angle, step, begun)
+        _go_on(cost, count, angle, step, side)
         begun, was_pole, cut_before = True, tilt[0] & POLE != 0, cuts[row] != IDLE
     end, fewest, least = 0, 1 << 60, np.inf
     for t in range(len(states)):
@@ -395,21 +490,36 @@ def cheapest(
     return end
 
 
-@njit(cache=True)
-def nearest(packed: Packed, choice: Choice, states: Ints, tip: Floats, axis: Floats, back: Codes) -> int:
+@_without_counting
+def nearest(
+    packed: Packed,
+    choice: Choice,
+    states: Ints,
+    tip: Floats,
+    axis: Floats,
+    back: Codes,
+    cost: Floats,
+    count: Ints,
+    angle: Floats,
+    step: Floats,
+    around: Ints,
+    side: Ints,
+    joints: Floats,
+) -> int:
     """As ``cheapest``, but from row to row the state with the least travel, whatever comes after."""
-    count, side, joints = np.zeros((2, 2, len(states)), np.int64), np.zeros((2, 2), np.int64), np.empty(5)
-    angle, step, around = np.zeros((3, 2, 2)), np.zeros((2, 2, 2)), np.zeros((2, 2, 2), np.int64)
-    angle[WAS, :, 0], angle[WAS, :, 1] = _folded(choice.start[0]), _folded(choice.start[1])
-    cost, now, begun = np.zeros((2, len(states))), 0, False
+    for b in range(2):
+        angle[WAS, b, 0], angle[WAS, b, 1] = _folded(choice.start[0]), _folded(choice.start[1])
+    now, begun = 0, False
     for row in range(len(tip)):
         tilt = solve_tilt(packed, axis[row, 0], axis[row, 1], axis[row, 2])
-        back[row, :] = now
+        for t in range(len(states)):
+            back[row, t] = now
         if tilt[0] & UNREACHABLE:
             continue
-        _turn_to(packed, choice, angle, side, tilt, tip[row, 0], tip[row, 1], tip[row, 2], joints)
+        x, y, z = tip[row, 0], tip[row, 1], tip[row, 2]
+        _turn_to(packed, choice, states, angle, side, tilt, x, y, z, joints, False)
         _open_states(packed, choice, states, count, angle, side)
-        _step(angle, step, around)
+        _step(angle, step, around, side)
         best, last = np.inf, now
         for offset in range(len(states)):
             t = (last + offset) % len(states)
@@ -418,7 +528,7 @@ def nearest(packed: Packed, choice: Choice, states: Ints, tip: Floats, axis: Flo
                 travel = abs(one) + abs(two) if begun else _from_start(choice, states, angle, t)
                 if travel < best - _EQUAL:
                     best, now = travel, t
-        _go_on(cost, count, angle, step, begun)
+        _go_on(cost, count, angle, step, side)
         begun = True
     return now
 
@@ -471,8 +581,7 @@ def place(
         first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(packed, u0, u1, cos, sin if b == 0 else -sin, status)
         if status & POLE:
             if b != before and solid >= 0:
-                _, v0, v1, c, s = solve_tilt(packed, axis[solid, 0], axis[solid, 1], axis[solid, 2])
-                held = branch_angles(packed, v0, v1, c, s if b == 0 else -s, 0)[0]
+                held = _first_of(packed, axis[solid, 0], axis[solid, 1], axis[solid, 2], b)
             first = held
             cos_1, sin_1 = math.cos(math.radians(first)), packed.sense_1 * math.sin(math.radians(first))
         else:

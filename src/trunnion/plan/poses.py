@@ -3,13 +3,14 @@
 The choice is the optimum of ``trunnion.plan.optimum`` over the states and costs of ``trunnion.plan.states``.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
-from trunnion.machine import Machine, pack
-from trunnion.plan.optimum import CUTS, IDLE, STATE, TOUCHES, Choice, cheapest, nearest, place, trace
+from trunnion.machine import Machine, Packed, pack
+from trunnion.plan.optimum import CUTS, IDLE, STATE, TOUCHES, Choice, cheapest, nearest, place, trace, workspace
 from trunnion.plan.states import LIMIT_TOLERANCE, States, limits_of, states_of
 from trunnion.toolpath import Kind, Moves, Phase
 
@@ -49,14 +50,15 @@ def cutting(moves: Moves) -> Codes:
     return np.where(moves.kind == Kind.RAPID, np.uint8(IDLE), code[moves.phase])
 
 
-def choice_of(machine: Machine, states: States, keep_slides: bool) -> Choice:
+def choice_of(machine: Machine, packed: Packed, states: States, keep_slides: bool) -> Choice:
     """What there is to choose from on a machine; limits of slides count only with ``keep_slides``."""
     low, high = limits_of(machine, keep_slides)
     slides = list(machine.linear)
     kept = bool(np.isfinite(low[slides]).any() or np.isfinite(high[slides]).any())
     first, second = (machine.axes[column] for column in machine.rotary)
     start, side = (first.home, second.home), (first.preferred_sign, second.preferred_sign)
-    return Choice(tuple(low.tolist()), tuple(high.tolist()), kept, states.span, start, side)
+    both = -2.0 * math.degrees(math.atan2(packed.phase[1], packed.phase[0]))
+    return Choice(tuple(low.tolist()), tuple(high.tolist()), kept, states.span, start, side, both)
 
 
 def choose(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
@@ -85,22 +87,24 @@ def choose(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
 
 def least_cost(machine: Machine, moves: Moves, keep_slides: bool, prefer: int = -1) -> Codes:
     """(n,) uint8: the states that cost least when branch ``prefer`` is preferred; -1: none."""
-    states = states_of(machine)
-    choice = choice_of(machine, states, keep_slides)
+    states, packed = states_of(machine), pack(machine)
+    choice = choice_of(machine, packed, states, keep_slides)
     back = np.empty((len(moves), len(states)), np.uint8)
     state = np.empty(len(moves), np.uint8)
-    end = cheapest(pack(machine), choice, states.table, moves.tip, moves.axis, cutting(moves), prefer, back)
+    work = workspace(len(states))
+    end = cheapest(packed, choice, states.table, moves.tip, moves.axis, cutting(moves), prefer, back, *work)
     trace(back, end, state)
     return state
 
 
 def choose_nearest(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
     """As ``choose``, but from row to row the nearest state whatever comes after: something to compare with."""
-    states = states_of(machine)
+    states, packed = states_of(machine), pack(machine)
     back = np.empty((len(moves), len(states)), np.uint8)
     state = np.empty(len(moves), np.uint8)
-    choice = choice_of(machine, states, keep_slides)
-    trace(back, nearest(pack(machine), choice, states.table, moves.tip, moves.axis, back), state)
+    choice = choice_of(machine, packed, states, keep_slides)
+    end = nearest(packed, choice, states.table, moves.tip, moves.axis, back, *workspace(len(states)))
+    trace(back, end, state)
     return state
 
 
@@ -121,8 +125,8 @@ def take(machine: Machine, moves: Moves, state: Codes, keep_slides: bool) -> Pos
     state : (n,) uint8
         From ``choose``.
     """
-    states = states_of(machine)
-    choice = choice_of(machine, states, keep_slides)
+    states, packed = states_of(machine), pack(machine)
+    choice = choice_of(machine, packed, states, keep_slides)
     poses = Poses(
         rotary=np.empty((len(moves), 2)),
         state=state,
@@ -133,7 +137,7 @@ def take(machine: Machine, moves: Moves, state: Codes, keep_slides: bool) -> Pos
         changes=np.zeros(2 + _NAMED, np.int64),
     )
     place(
-        pack(machine), choice, states.table, np.array([a.display_low for a in machine.axes]),
+        packed, choice, states.table, np.array([a.display_low for a in machine.axes]),
         moves.tip, moves.axis, state,
         poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where, poses.changes,
     )  # fmt: skip

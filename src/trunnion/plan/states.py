@@ -3,6 +3,9 @@
 A state is a branch of the inverse calculation and, for each rotary axis with limits, the whole turns that it is wound
 up by: its value is the angle of the branch in (-180, 180] plus 360 degrees times its turn. An endless axis has one turn
 state only, and goes the shorter way.
+
+The constants are compiled into kernels. ``trunnion.compiled`` keeps these by what the files hold in which the word njit
+stands, and so it does when one of the constants changes.
 """
 
 import math
