@@ -139,6 +139,12 @@ def test_the_head_has_comments_and_the_part(body: Body, tmp_path: Path) -> None:
     assert read_cl(tmp_path / "a.cls").part == "C:\\零件.prt"
 
 
+def test_a_name_that_looks_like_another_encoding_gets_a_byte_order_mark(body: Body, tmp_path: Path) -> None:
+    operation = replace(body("GOTO/1,2,3"), name="յ")
+    assert written(Toolpath("a", (operation,))).startswith(b"\xef\xbb\xbf")
+    assert again(Toolpath("a", (operation,)), tmp_path).operations[0].name == "յ"
+
+
 def test_unknown_tools_stay_unknown(read: Read, tmp_path: Path) -> None:
     toolpath = read("TOOL PATH/OP,TOOL,T1\nTLDATA/PROBE,1,2\nGOTO/1,2,3\nEND-OF-PATH\n")
     back = again(toolpath, tmp_path)

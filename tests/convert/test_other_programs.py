@@ -105,6 +105,34 @@ def test_events_are_told_by_their_words(programs: Programs) -> None:
     )
 
 
+def test_what_ends_in_a_block_of_its_own_is_said_twice_to_get_one_again(programs: Programs) -> None:
+    operation = programs.one("G0 X0 Y0 Z5 S500 M3 M8", "M9", "G1 X1 F10", "X2 M5")
+    assert [event for event in operation.events if event.row > 0] == [
+        Coolant(1, 2, "OFF"),
+        Coolant(1, 2, "OFF"),
+        SpindleOff(2, 4),
+    ]
+
+
+def test_coolant_runs_on_into_the_next_operation_and_a_spindle_that_stands_stays(programs: Programs) -> None:
+    cut = "G0 X0 Y0 Z5", "G1 X1 F10"
+    operations = programs.all("T1 M6", "S500 M3 M8", *cut, "T2 M6", *cut, "M5", "T3 M6", *cut, "M9 M5", "T4 M6", *cut)
+    found = [[e for e in operation.events if e.row == 0] for operation in operations.toolpath.operations]
+    assert found[1] == [Coolant(0, 2, "ON"), LoadTool(0, 5, 2)]
+    assert found[2] == [SpindleOff(0, 9), Coolant(0, 2, "ON"), LoadTool(0, 9, 3)]
+    assert found[3] == [SpindleOff(0, 13), LoadTool(0, 13, 4)]
+
+
+def test_tools_are_preselected_and_changes_without_motion_are_remarked_upon(programs: Programs) -> None:
+    converted = programs.all("T1 M6", "M0", "T2", "M6", "T3", "G0 X0 Y0 Z5", "G1 X1 F10", "M6", "M5")
+    (operation,) = converted.toolpath.operations
+    assert operation.events[:3] == (Stop(0, 2, False), LoadTool(0, 4, 2), SelectTool(0, 5, 3))
+    assert [(remark.line, remark.what) for remark in converted.remarks] == [
+        (1, "no motion follows the change to tool 1: not carried over"),
+        (8, "no motion follows the change to tool 3: not carried over"),
+    ]
+
+
 def test_compensation_comes_back_with_its_plane(programs: Programs) -> None:
     operation = programs.one("G0 X0 Y0 Z5", "G41 G18 G1 X1 F10", "G17 X2", "G40 X3", "G42 X4", "X5")
     assert operation.events == (CutterComp(1, 2, "LEFT", "ZXPLAN"), CutterComp(3, 4, "OFF"), CutterComp(4, 5, "RIGHT"))
@@ -148,7 +176,69 @@ def test_words_that_only_drive_the_machine_are_remarked_upon(programs: Programs)
 def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> None:
     remarks = programs.all("TRAORI", "G0 X0 Y0 Z0 B0 C0", "G1 X1 C90 F1", "X2").remarks
     assert [(remark.line, remark.what) for remark in remarks] == [
-        (3, "C turns at 1 points where the tool stands along it, which no tool axis says")
+        (3, "2 points place the rotary axes otherwise than their tool axis says, the first by C")
+    ]
+
+
+def remarks_on(programs: Programs, *lines: str) -> list[tuple[int, str]]:
+    """Line and text of what is remarked upon."""
+    return [(remark.line, remark.what) for remark in programs.all(*lines).remarks]
+
+
+@pytest.mark.parametrize(
+    ("lines", "line", "what"),
+    [
+        (["G0 X0 Y0 Z0", "N20 G1 G64 X1 F1"], 2, "G64 is not carried over"),
+        (["DYNFINISH", "G0 X0 Y0 Z0", "G1 X1 F1"], 1, "DYNFINISH is not carried over"),
+        (["G0 X0 Y0 Z0", "FGROUP(X,Y)", "G1 X1 F1"], 2, "FGROUP is not carried over"),
+        (["G0 X0 Y0 Z0", "G96 S100 M3", "G1 X1 F1"], 2, "G96 is not carried over"),
+        (["G0 X0 Y0 Z0", "SPOS=90", "G1 X1 F1"], 2, "SPOS is not carried over"),
+        (["G0 X0 Y0 Z0", "CYCLE832(0.1,_FINISH,1)", "G1 X1 F1"], 2, "CYCLE832 is not carried over"),
+        (["G0 X0 Y0 Z0 D1", "G1 X1 F1", "D2", "X2"], 4, "D2 within an operation is not carried over"),
+        (["G54", "G0 X0 Y0 Z0", "G55 G1 X1 F1"], 3, "G55 within an operation is not carried over"),
+        (
+            ["SUPA G0 Z300", "G0 X0 Y0 Z0", "G1 X1 F1"],
+            1,
+            "Z goes to the machine position 300, which is not carried over",
+        ),
+        (
+            ["TRAORI", "ORIWKS", "ORIVECT", "G0 X0 Y0 Z0 A3=0 B3=0 C3=1", "G1 X1 A3=1 B3=0 C3=1 F1"],
+            5,
+            "1 points turn the tool on a great circle, which is not carried over",
+        ),
+        (["G0 X0 Y0 Z0", "G1 X1 B30 F1"], 2, "1 points turn the tool without TRAORI, which is not carried over"),
+    ],
+)
+def test_what_a_toolpath_has_no_place_for_is_remarked_upon(
+    lines: list[str], line: int, what: str, programs: Programs
+) -> None:
+    assert remarks_on(programs, *lines) == [(line, what)]
+
+
+@pytest.mark.parametrize("harmless", ["; G64 SOFT", 'MSG("G64 SOFT")', "G17 G90 G40", "MSG()"])
+def test_words_in_texts_and_those_said_anyhow_are_not_remarked_upon(harmless: str, programs: Programs) -> None:
+    assert remarks_on(programs, "G0 X0 Y0 Z0", harmless, "G1 X1 F1") == []
+
+
+def test_a_phase_without_motion_is_remarked_upon(programs: Programs) -> None:
+    lines = [";Start of Path", "G0 X0 Y0 Z0", ";Engage Move", ";Cutting", "G1 X1 F1", ";Retract Move", ";End of Path"]
+    assert remarks_on(programs, *lines) == [
+        (3, "no motion follows 'Engage Move', which is not carried over"),
+        (6, "no motion follows 'Retract Move', which is not carried over"),
+    ]
+    assert programs.one(*lines).moves.phase.tolist() == [Phase.INITIAL, Phase.CUT]
+
+
+def test_words_of_a_subprogram_are_remarked_upon_in_its_file(programs: Programs) -> None:
+    (programs.folder / "HOLE.SPF").write_text("G1 Z0 F10\nSOFT\nG0 Z5\nM17\n")
+    (remark,) = programs.all("G0 X0 Y0 Z5", "HOLE").remarks
+    assert (Path(remark.file).name, remark.line, remark.what) == ("HOLE.SPF", 2, "SOFT is not carried over")
+
+
+def test_signs_that_have_no_place_in_a_program_with_jumps_are_remarked_upon(programs: Programs) -> None:
+    lines = "R1=0", "AGAIN:", "G41 G0 X=R1 Y0 Z0", "/G1 X9 F1", "R1=R1+1", "IF R1<2 GOTOB AGAIN"
+    assert remarks_on(programs, *lines) == [
+        (0, "block skip signs and cutter radius compensation in a program with jumps or subprograms: not carried over")
     ]
 
 

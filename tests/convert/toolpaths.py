@@ -163,6 +163,28 @@ def operations(draw: st.DrawFn, kinds: dict[str, st.SearchStrategy[Any]], axes: 
     )
 
 
+def _is_sensible(operation: Operation) -> bool:
+    """Whether a program says everything of an operation at a point of its own, and nothing twice.
+
+    Points print elsewhere than those before, events of a kind stand apart, and cutter radius compensation changes on a
+    motion.
+    """
+    moved = (np.abs(np.diff(np.round(operation.moves.tip, 3), axis=0)) > 0.0015).any(axis=1)
+    places = [(event.row, type(event)) for event in operation.events]
+    moving = all(e.row < len(operation.moves) for e in operation.events if isinstance(e, CutterComp))
+    return bool(moved.all()) and len(set(places)) == len(places) and moving
+
+
+def sensible(paths: st.SearchStrategy[Toolpath]) -> st.SearchStrategy[Toolpath]:
+    """Those of sensible operations, in which block skip goes on and off in turn."""
+    return paths.filter(lambda path: all(map(_is_sensible, path.operations)) and _skips_alternate(path))
+
+
+def _skips_alternate(path: Toolpath) -> bool:
+    skips = [event.on for operation in path.operations for event in operation.events if isinstance(event, BlockSkip)]
+    return all(on is (k % 2 == 0) for k, on in enumerate(skips))
+
+
 def toolpaths(
     kinds: dict[str, st.SearchStrategy[Any]], axes: st.SearchStrategy[Any] = UNIT
 ) -> st.SearchStrategy[Toolpath]:

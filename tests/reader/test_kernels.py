@@ -113,10 +113,11 @@ def test_vectors_are_followed_on_the_near_branch(b: list[float], c: list[float])
     joints = np.zeros((len(b), 5))
     joints[:, YL569.column("B")], joints[:, YL569.column("C")] = b, np.cumsum(c[: len(b)])
     axis = forward(YL569, joints)[1]
-    got = np.full((len(b), 5), np.nan)
+    rotary = np.full((len(b), 2), np.nan)
     status = np.zeros(len(b), np.uint8)
-    poses.angles(YL569, got, np.zeros(len(b), np.uint8), axis, np.zeros(5), status)
-    got[:, list(YL569.linear)] = 0.0
+    poses.angles(YL569, rotary, np.zeros(len(b), np.uint8), axis, np.zeros(2), status)
+    got = np.zeros((len(b), 5))
+    got[:, list(YL569.rotary)] = rotary
     np.testing.assert_allclose(forward(YL569, got)[1], axis, atol=1e-9)
     assert not status.any()
     # B cannot go below -11, so from 11 on there is one branch; C is then never more than half a turn away.

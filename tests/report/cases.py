@@ -5,11 +5,12 @@ from html.parser import HTMLParser
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tests.paths import YL569
 from trunnion.arrays import Floats, Lines
 from trunnion.machine import Machine, load_machine
-from trunnion.reader import Run, run_program
+from trunnion.reader import Ramps, Run, State, Steps, run_program
 from trunnion.toolpath import Arcs
 from trunnion.verify.model import Check, Place, Verification
 
@@ -47,32 +48,34 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
     along = np.linspace(0.0, 200.0, n)
     joints = np.stack([along, 40 + 40 * np.sin(along), 90 * np.cos(along), along / 2, -along / 3], axis=1)
 
-    def same(value: float, kind: type) -> Any:
-        return np.broadcast_to(np.array(value, kind), (n,))
+    def same(value: float, kind: type[np.generic]) -> Steps:
+        return Steps.always(n, value, kind)
 
     lines: Lines = np.arange(1, n + 1, dtype=np.int32)
     run = Run(
         machine=machine,
         files=("waves.mpf",),
-        block=lines,
-        file=same(0, np.uint16),
-        number=np.arange(n, dtype=np.int64) * 10,
-        kind=same(1, np.uint8),
-        programmed=same(0, np.uint8),
-        tip=joints[:, 2:].copy(),
-        axis=np.broadcast_to(np.array([0.0, 0.0, 1.0]), (n, 3)),
-        joints=joints,
-        feed=same(1000.0, np.float64),
-        feed_mode=same(94, np.uint8),
-        rpm=same(5000.0, np.float64),
-        spindle=same(1, np.int8),
-        tool=same(len(tools) - 1, np.int32),
-        edge=same(1, np.int32),
-        offset=same(54, np.uint16),
-        tcp=same(1, np.bool_),
-        machine_frame=same(0, np.bool_),
-        inches=same(0, np.bool_),
-        orientation=same(0, np.uint8),
+        blocks=Ramps(n, np.array([0]), np.array([1]), np.array([1])),
+        numbers=Ramps(n, np.array([0]), np.array([10]), np.array([10])),
+        kind=np.ones(n, np.uint8),
+        programmed=np.zeros(n, np.uint8),
+        place=joints[:, [machine.column(name) for name in "XYZ"]],
+        rotary=joints[:, list(machine.rotary)],
+        state=State(
+            file=same(0, np.uint16),
+            feed=same(1000.0, np.float64),
+            feed_mode=same(94, np.uint8),
+            rpm=same(5000.0, np.float64),
+            spindle=same(1, np.int8),
+            tool=same(len(tools) - 1, np.int32),
+            edge=same(1, np.int32),
+            offset=same(54, np.uint16),
+            tcp=same(1, np.bool_),
+            machine_frame=same(0, np.bool_),
+            inches=same(0, np.bool_),
+            orientation=same(0, np.uint8),
+            by_tip=same(0, np.bool_),
+        ),
         start=np.zeros(5),
         arcs=Arcs.none(),
         tools=tools,
@@ -84,6 +87,13 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
 def with_seconds(verification: Verification, seconds: Floats) -> Verification:
     """Return the verification with other times."""
     return replace(verification, seconds=seconds)
+
+
+def with_columns(verification: Verification, **columns: NDArray[Any]) -> Verification:
+    """Return the verification with other whole columns than its run would work out."""
+    run = replace(verification.run)
+    vars(run).update(columns)
+    return replace(verification, run=run)
 
 
 class Page(HTMLParser):

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.report.cases import CHECKS, PLACES, blade, waves
+from tests.report.cases import CHECKS, PLACES, blade, waves, with_columns
 from trunnion.report import data, write_report
 from trunnion.verify.model import Check, Verification
 
@@ -76,7 +76,7 @@ def test_values_without_a_number_are_null(tmp_path: Path) -> None:
     tip = verification.run.tip.copy()
     tip[:, 0] = np.nan
     feed = np.full(len(tip), np.nan)
-    said = data_of(replace(verification, run=replace(verification.run, tip=tip), tip_feed=feed), tmp_path)
+    said = data_of(replace(with_columns(verification, tip=tip), tip_feed=feed), tmp_path)
     assert (said["checks"][0]["worst"], said["checks"][0]["limit"]) == (None, None)
     assert set(said["checks"][0]["places"][0].values()) == {50, None, "the tip is 0 off"}
     assert said["extents"]["tip"][0]["whole"] is None

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.report.cases import CHECKS, PLACES, Page, blade, waves, with_seconds
+from tests.report.cases import CHECKS, PLACES, Page, blade, waves, with_columns, with_seconds
+from trunnion.reader import Steps
 from trunnion.report import write_report
 from trunnion.report.pack import unpack
 from trunnion.report.page import clock, short
@@ -79,7 +80,7 @@ def test_an_axis_beyond_its_travel_has_a_negative_margin(tmp_path: Path) -> None
     verification = blade()
     joints = verification.run.joints.copy()
     joints[10, 1] = 104.5
-    page = page_of(replace(verification, run=replace(verification.run, joints=joints)), tmp_path)
+    page = page_of(with_columns(verification, joints=joints), tmp_path)
     assert "−4.500" in page.text
 
 
@@ -87,7 +88,8 @@ def test_names_and_texts_cannot_leave_their_place(tmp_path: Path) -> None:
     check = Check(HOSTILE, HOSTILE, False, HOSTILE, 1.0, 2.0, HOSTILE, (replace(PLACES[0], text=HOSTILE),))
     plain = page_of(blade(), tmp_path)
     verification = blade(HOSTILE, (check,))
-    run = replace(verification.run, tools=("", HOSTILE), files=(HOSTILE, HOSTILE), file=verification.run.file + 1)
+    state = replace(verification.run.state, file=Steps.always(len(verification.run), 1, np.uint16))
+    run = replace(verification.run, tools=("", HOSTILE), files=(HOSTILE, HOSTILE), state=state)
     machine = replace(verification.machine, name=HOSTILE)
     page = page_of(replace(verification, run=run, machine=machine), tmp_path)
     assert page.running == plain.running

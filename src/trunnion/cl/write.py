@@ -8,6 +8,7 @@ decimals, and 17 where it stands within a twentieth of a degree of X, Y or Z: th
 tool leans hangs on the last of them.
 """
 
+import codecs
 from collections.abc import Iterable, Iterator, Sequence
 from typing import BinaryIO
 
@@ -16,6 +17,7 @@ from numba import njit
 
 from trunnion.arrays import Bytes, Floats
 from trunnion.cl.assemble import COLOURS, RADIUS_TOLERANCE, fill_phases
+from trunnion.cl.encoding import Guess
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.toolpath import (
     BlockSkip,
@@ -96,6 +98,8 @@ def write_cl(toolpath: Toolpath, sink: BinaryIO, *, comments: Iterable[str] = ()
         problems.append(Problem(toolpath.file, 0, "there is no operation in it", "give a toolpath with motion"))
     if problems:
         raise InputError(problems)
+    if not _is_told_by_itself([*texts.values(), *(text for o in toolpath.operations for _, _, text in _texts(o))]):
+        sink.write(codecs.BOM_UTF8)
     head = [f"$$ {text}" for text in comments]
     if toolpath.part:
         head.append(f"PARTNO/{toolpath.part}")
@@ -112,13 +116,7 @@ def write_cl(toolpath: Toolpath, sink: BinaryIO, *, comments: Iterable[str] = ()
 def _unsayable(toolpath: Toolpath, operation: Operation) -> Iterator[Problem]:
     """What no CLSF can hold of an operation."""
     file = toolpath.file
-    texts = [(operation.line, "operation name", operation.name), (operation.line, "tool name", operation.tool.name)]
-    for event in operation.events:
-        if isinstance(event, Stop | Message | Insert):
-            texts.append((event.line, f"text of {type(event).__name__}", event.text))
-        elif isinstance(event, Mode | CycleOn):
-            texts += [(event.line, "word", word) for word in (event.words if isinstance(event, Mode) else event.mode)]
-    yield from (_bad_text(file, line, what) for line, what, text in texts if not _is_one_line(text))
+    yield from (_bad_text(file, line, what) for line, what, text in _texts(operation) if not _is_one_line(text))
     if ",TOOL," in operation.name:
         what = f"operation name {operation.name!r} has ',TOOL,' in it, which ends the name in a CL file"
         yield Problem(file, operation.line, what, "rename the operation")
@@ -137,6 +135,25 @@ def _unsayable(toolpath: Toolpath, operation: Operation) -> Iterator[Problem]:
         if off > RADIUS_TOLERANCE:
             what = f"an end of the arc lies {off:.3f} mm off its radius, of which a CL file allows {RADIUS_TOLERANCE}"
             yield Problem(file, int(moves.line[row]), what, "make it a line, or correct its centre")
+
+
+def _texts(operation: Operation) -> Iterator[tuple[int, str, str]]:
+    """Line, meaning and text of what people have named or written."""
+    yield operation.line, "operation name", operation.name
+    yield operation.line, "tool name", operation.tool.name
+    for event in operation.events:
+        if isinstance(event, Stop | Message | Insert | Unknown):
+            yield event.line, f"text of {type(event).__name__}", event.text
+        elif isinstance(event, Mode | CycleOn):
+            for word in event.words if isinstance(event, Mode) else event.mode:
+                yield event.line, "word", word
+
+
+def _is_told_by_itself(texts: Iterable[str]) -> bool:
+    """Whether a reader sees that the texts are UTF-8; a few letters of some alphabets look like Chinese in GBK."""
+    guess = Guess()
+    guess.add("\n".join(texts).encode())
+    return guess.name() == "utf-8"
 
 
 def _from_line(offset: Floats, normal: Floats) -> float:

@@ -6,17 +6,16 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from trunnion.cl.write import write_cl
 from trunnion.cli.output import whole
-from trunnion.cli.post import _check_settings, _point, _program
-from trunnion.cli.progress import progress
-from trunnion.control import Control, load_control, write_program
-from trunnion.convert import Converted, convert
-from trunnion.convert.timeline import COMPENSATION
+from trunnion.cli.post import check_settings, planned_program, point, prove, say, write
+from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, load_machine
-from trunnion.reader import run_program
+
+if TYPE_CHECKING:
+    from trunnion.convert import Converted
 
 #: Warnings that are printed one by one.
 _PRINTED = 20
@@ -24,31 +23,31 @@ _PRINTED = 20
 
 def run(arguments: argparse.Namespace) -> int:
     """Convert one program."""
+    from trunnion.cl.write import write_cl
+
     machine = load_machine(arguments.machine)
     control = load_control(machine.control)
     target_machine = load_machine(arguments.to_machine) if arguments.to_machine else machine
     target_control = load_control(target_machine.control) if arguments.to_machine else control
     settings = dict(arguments.settings)
-    _check_settings(settings, target_control)
-    if "units" in settings:
-        raise InputError(Problem("--set", 0, "units has no meaning here", "an NC program says its units itself"))
+    _check_settings(settings, target_control, arguments.to_cl)
     if "zero" in settings:
-        target_machine = replace(target_machine, workpiece_zero=_point(settings.pop("zero")))
+        target_machine = replace(target_machine, workpiece_zero=point(settings.pop("zero")))
     target = _target(arguments, target_control)
     with whole(target) as sink:
         converted = _read(arguments.file, machine, control, arguments.force)
-        carried = {k: v for k, v in converted.settings.items() if k in target_control.settings} | settings
+        carried = _carried(converted.settings, target_control, arguments.file) | settings
+        if "tool" in settings and "tool_call" not in settings:
+            carried.pop("tool_call", None)
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
         if arguments.to_cl:
-            remarks = write_cl(
-                converted.toolpath, sink, comments=[f"--set {key}={value}" for key, value in carried.items()]
-            )
-            _say(remarks)
+            comments = [f"--set {key}={value}" for key, value in carried.items()]
+            _say_some(write_cl(converted.toolpath, sink, comments=comments))
         else:
-            program = _program([converted.toolpath], target_machine, target_control, carried, arguments.force)
-            with progress("writing", rows, "points") as advance:
-                write_program(program, sink, advance)
+            paths = [converted.toolpath]
+            program = planned_program(paths, target_machine, target_control, carried, arguments.force)
+            prove(write(program, sink), paths, sink, target, program if arguments.force else None)
     if arguments.to_cl and carried:
         print(_hint(target, arguments.machine, carried), file=sys.stderr)
     if target != "-":
@@ -56,24 +55,45 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _read(file: str, machine: Machine, control: Control, force: bool) -> Converted:
+def _check_settings(settings: Mapping[str, str], control: Control, to_cl: bool) -> None:
+    """Raise ``InputError`` for settings that ``post`` would not take, and for those without a meaning here."""
+    check_settings(settings, control)
+    if "units" in settings:
+        raise InputError(Problem("--set", 0, "units has no meaning here", "an NC program says its units itself"))
+    if "zero" in settings and to_cl:
+        raise InputError(Problem("--set", 0, "zero has no meaning in a CL file", "give it to trunnion post"))
+
+
+def _read(file: str, machine: Machine, control: Control, force: bool) -> "Converted":
     """The program as a toolpath; refuses one that was not understood."""
+    from trunnion.convert import convert
+    from trunnion.convert.said import COMPENSATION
+    from trunnion.reader import run_program
+
     run = run_program(Path(file), machine)
     problems = [Problem(finding.file, finding.line, finding.text, "", finding.severity) for finding in run.findings]
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     if errors and not force:
-        raise Refused((*errors, Problem(file, 0, "nothing is written", "--force converts what was understood")))
-    _say([problem for problem in problems if not problem.what.startswith(COMPENSATION)])
+        count = f"{len(errors)} places are not understood, and nothing is written"
+        raise Refused((*errors[:_PRINTED], Problem(file, 0, count, "--force converts what was understood")))
+    _say_some([problem for problem in problems if not problem.what.startswith(COMPENSATION)])
     converted = convert(run, control)
     if not converted.toolpath.operations:
         raise InputError(Problem(file, 0, "there is no motion at the part in it", "give a program that cuts"))
-    _say(converted.remarks)
+    _say_some(converted.remarks)
     return converted
 
 
-def _say(problems: Sequence[Problem]) -> None:
-    for problem in problems[:_PRINTED]:
-        print(problem, file=sys.stderr)
+def _carried(settings: Mapping[str, str], control: Control, file: str) -> dict[str, str]:
+    """The program's settings that a control has; the others are named."""
+    for key in sorted(settings.keys() - control.settings.keys()):
+        what = f"{key} is {settings[key]!r}, which is not carried over"
+        say([Problem(file, 0, what, f"{control.name} has no such setting", Severity.WARNING)])
+    return {key: value for key, value in settings.items() if key in control.settings}
+
+
+def _say_some(problems: Sequence[Problem]) -> None:
+    say(problems[:_PRINTED])
     if len(problems) > _PRINTED:
         print(f"and {len(problems) - _PRINTED} more", file=sys.stderr)
 

@@ -4,7 +4,7 @@ import argparse
 import os
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -20,36 +20,34 @@ from trunnion.toolpath import Toolpath
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
-#: Points up to which a program is proven as it is written: proving takes some 190 bytes a point beside posting.
-_PROVEN_AT_ONCE = 300_000
-
 #: Settings that say how to read and to place the part rather than what to print.
 _RUN_SETTINGS = ("units", "zero")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Post every CL file."""
+    if arguments.report:
+        from trunnion.cli.verify import check_report
+
+        check_report(arguments.report)
     machine = load_machine(arguments.machine)
     control = load_control(machine.control)
     settings = dict(arguments.settings)
-    _check_settings(settings, control)
+    check_settings(settings, control)
     if "zero" in settings:
-        machine = replace(machine, workpiece_zero=_point(settings["zero"]))
+        machine = replace(machine, workpiece_zero=point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
     for target, files in _targets(arguments, control).items():
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
-            program = _program(paths, machine, control, printed, arguments.force)
-            rows = sum(len(motion.operation.moves) for motion in program.motions)
-            with progress("writing", rows, "points") as advance:
-                write_program(program, sink, advance)
-            if rows <= _PROVEN_AT_ONCE or arguments.report:
-                _prove(program, paths, sink, target, arguments)
-            else:
-                what = f"more than {_PROVEN_AT_ONCE} points: the program is written, but not yet proven"
-                _say([Problem(files[0], 0, what, "trunnion verify proves it", Severity.WARNING)])
+            program = planned_program(paths, machine, control, printed, arguments.force)
+            claim = write(program, sink)
+            # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
+            again = program if arguments.force else None
+            del program
+            prove(claim, paths, sink, target, again, arguments.report)
         if target != "-":
-            print(f"{target}: {rows} points, {len(program.motions)} operations", file=sys.stderr)
+            print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
     return 0
 
 
@@ -65,61 +63,110 @@ def _read(file: str, units: str | None, strict: bool) -> Toolpath:
             done = read
 
         toolpath = read_cl(path, units=units, strict=strict, progress=so_far)
-    _say(toolpath.remarks)
+    say(toolpath.remarks)
     return toolpath
 
 
-def _program(
+def planned_program(
     paths: Sequence[Toolpath], machine: Machine, control: Control, settings: Mapping[str, str], force: bool
 ) -> Program:
+    """The program of toolpaths, planned and checked; what speaks against it is said.
+
+    Raises
+    ------
+    InputError, Refused
+        When there can be no program, or when it must not run, unless ``force``: then its head says so.
+    """
     planned = plan(paths, machine, control.chord_tolerance)
     program = Program(machine, control, planned.motions, settings, paths[0].file)
     lacking = check_program(program)
     errors = [problem for problem in lacking if problem.severity is Severity.ERROR]
     if errors:
         raise InputError(lacking)
-    _say(lacking)
+    say(lacking)
     against = [problem for problem in planned.problems if problem.severity is Severity.ERROR]
     if against and not force:
         raise Refused((*planned.problems, Problem(paths[0].file, 0, "no program is written", "--force writes it")))
-    _say(planned.problems)
+    say(planned.problems)
     notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in against]
     return replace(program, notices=notices)
 
 
-def _prove(
-    program: Program, paths: Sequence[Toolpath], sink: BinaryIO, target: str, arguments: argparse.Namespace
+@dataclass(frozen=True, slots=True, eq=False)
+class Claim:
+    """What a written program says of itself, and what its proof holds against it.
+
+    rows, operations  how many points and operations it has
+    allowed           half the last digit that each operation prints
+    settings          what was asked for besides the CL files
+    """
+
+    machine: Machine
+    rows: int
+    operations: int
+    allowed: "list[Allowed]"
+    settings: "Settings"
+
+
+def write(program: Program, sink: BinaryIO) -> Claim:
+    """Write a program; what comes back is all that its proof needs."""
+    rows = sum(len(motion.operation.moves) for motion in program.motions)
+    with progress("writing", rows, "points") as advance:
+        write_program(program, sink, advance)
+    return Claim(program.machine, rows, len(program.motions), _allowed(program), _asked(program))
+
+
+def prove(
+    claim: Claim,
+    paths: Sequence[Toolpath],
+    sink: BinaryIO,
+    target: str,
+    again: Program | None = None,
+    report: str | None = None,
 ) -> None:
-    """Read the program back, run it and compare it with the CL files; one line a check.
+    """Read a program back, run it and compare it with its toolpaths; one line a check.
+
+    Parameters
+    ----------
+    claim
+        Of ``write``.
+    paths
+        What the program was made from.
+    sink
+        Of ``whole``: what is written can be read back under its name.
+    target
+        What messages call the program.
+    again
+        The program, if it is to be written though a check fails: then its head says which.
+    report
+        File of the report.
 
     Raises
     ------
     Refused
-        When a check fails, unless ``--force``: then the head of the program says which.
+        When a check fails and there is no program to write again.
     """
-    from trunnion.cli.verify import check_report, report
+    from trunnion.cli.verify import report as write_report
     from trunnion.reader import run_program
     from trunnion.verify import check_lines, failures, place_lines, verify
 
-    if arguments.report:
-        check_report(arguments.report)
     sink.flush()
-    run = run_program(Path(sink.name), program.machine)
-    found = verify(run, paths, allowed=_allowed(program), settings=_asked(program))
+    run = run_program(Path(sink.name), claim.machine)
+    found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
     found = replace(found, program="the program" if target == "-" else target)
     for line in (*check_lines(found), *place_lines(found, failed_only=True)):
         print(line, file=sys.stderr)
+    if report:
+        write_report(found, report)
     failed = failures(found)
-    if failed and arguments.force:
+    if failed and again is None:
+        what = f"the program does not do what this file asks for: {', '.join(check.key for check in failed)}"
+        raise Refused(Problem(paths[0].file, 0, what, "no program is written; --force writes it"))
+    if failed and again is not None:
         notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
         sink.seek(0)
         sink.truncate()
-        write_program(replace(program, notices=[*program.notices, *notices]), sink)
-    if arguments.report:
-        report(found, arguments.report)
-    if failed and not arguments.force:
-        what = f"the program does not do what the CL file asks for: {', '.join(check.key for check in failed)}"
-        raise Refused(Problem(paths[0].file, 0, what, "no program is written; --force writes it"))
+        write_program(replace(again, notices=[*again.notices, *notices]), sink)
 
 
 def _allowed(program: Program) -> "list[Allowed]":
@@ -150,12 +197,14 @@ def _asked(program: Program) -> "Settings":
     )
 
 
-def _say(problems: Sequence[Problem]) -> None:
+def say(problems: Sequence[Problem]) -> None:
+    """Print problems, one a line."""
     for problem in problems:
         print(problem, file=sys.stderr)
 
 
-def _check_settings(settings: Mapping[str, str], control: Control) -> None:
+def check_settings(settings: Mapping[str, str], control: Control) -> None:
+    """Raise ``InputError`` for settings that the control does not have, or that make no sense."""
     known = (*control.settings, *_RUN_SETTINGS)
     problems = [
         Problem("--set", 0, f"{key} is no setting of {control.name}", f"write one of {', '.join(known)}")
@@ -175,7 +224,8 @@ def _check_settings(settings: Mapping[str, str], control: Control) -> None:
         raise InputError(problems)
 
 
-def _point(text: str) -> tuple[float, float, float]:
+def point(text: str) -> tuple[float, float, float]:
+    """The setting ``zero``, mm."""
     try:
         x, y, z = (float(part) for part in text.split(","))
     except ValueError:

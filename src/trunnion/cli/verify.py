@@ -23,7 +23,7 @@ _REPORTS = (".html", ".json")
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
-    from trunnion.cli.post import _point
+    from trunnion.cli.post import point
     from trunnion.reader import run_program
     from trunnion.verify import Allowed, Settings, check_lines, place_lines, verify
 
@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     machine = load_machine(arguments.machine)
     check_reader(machine)
     if arguments.zero:
-        machine = replace(machine, workpiece_zero=_point(arguments.zero))
+        machine = replace(machine, workpiece_zero=point(arguments.zero))
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
     done = run_program(Path(arguments.file), machine)
     found = verify(
@@ -45,6 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
             edge=1 if arguments.edge is None and paths else arguments.edge,
             span=arguments.span,
         ),
+        columns=bool(arguments.report),
     )
     print(*check_lines(found), *place_lines(found), sep="\n")
     if arguments.report:

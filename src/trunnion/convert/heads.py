@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from trunnion.control.template import Template
@@ -42,33 +41,23 @@ def _pattern(line: str, primary: str, secondary: str) -> Pattern:
 def marker(template: Template) -> str:
     """The first line of a template if it is a comment without values, bare of its semicolon; else nothing."""
     line = template.lines[0] if template.lines else ""
-    return line[1:] if line.startswith(";") and line != ";" and not _FIELD.search(line) else ""
+    return line[1:].strip() if line.startswith(";") and not _FIELD.search(line) else ""
 
 
-@dataclass(slots=True)
-class Head:
-    """What template lines said: values by name, and the lines of the program that they were."""
+def match(lines: Sequence[tuple[int, str]], patterns: Sequence[Pattern], values: dict[str, str]) -> set[int]:
+    """Find the templates' lines among the program's: in their order, where some may lack on either side.
 
-    values: dict[str, str] = field(default_factory=dict)
-    lines: set[int] = field(default_factory=set)
-
-
-def match(lines: Sequence[tuple[int, str]], patterns: Sequence[Pattern], head: Head) -> None:
-    """Find the template's lines among the program's: in their order, where some may lack on either side."""
+    Returns the lines that were found; ``values`` takes what they say, what it has already stays.
+    """
     at = 0
+    known: set[int] = set()
     for number, line in lines:
-        for bare in (False, True):
-            found = next(
-                (
-                    (k, match)
-                    for k in range(at, len(patterns))
-                    if patterns[k].bare == bare and (match := patterns[k].expression.fullmatch(line))
-                ),
-                None,
-            )
-            if found:
-                at = found[0] + 1
-                head.lines.add(number)
-                for name, value in found[1].groupdict().items():
-                    head.values.setdefault(name, value)
-                break
+        fits = [(k, found) for k in range(at, len(patterns)) if (found := patterns[k].expression.fullmatch(line))]
+        if not fits:
+            continue
+        at, found = min(fits, key=lambda fit: (patterns[fit[0]].bare, fit[0]))
+        at += 1
+        known.add(number)
+        for name, value in found.groupdict().items():
+            values.setdefault(name, value)
+    return known

@@ -1,46 +1,36 @@
-"""The text of a program beside its run: lines by number, and where in the run they stand."""
+"""The text of a program: what the reader's columns do not hold, by line."""
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from trunnion.arrays import Ints
-from trunnion.reader import Run
-
 _PREFIX = re.compile(r"\s*/?\d?\s*(?:N\d+)?\s*")
 
-#: A word of a block without its value's sign and form: enough to tell what is said.
-_WORD = re.compile(r"[GMSFDXYZABCIJKNT][-+.]?\d[\d.]*|[A-Z_][A-Z_0-9]*")
+#: Comments and texts, which are passed over, and words of more letters than one and G words besides G0 to G3: what
+#: dense motion does not say in every block.
+_WORDS = re.compile(rb';[^\n]*|"[^"\n]*"|(?<![A-Z_])(?:[A-Z_]{2}[A-Z_0-9]*|G(?!0?[0-3](?!\d))\d+)', re.IGNORECASE)
+_SLASH, _NEWLINE, _RETURN = b"/\n\r"
 
 
 class Source:
-    """The main program of a run.
+    """One file of a program; lines count from 1."""
 
-    ``in_order`` says that its lines were executed from the first to the last, and no other file was: only then has a
-    line one place in the run.
-    """
-
-    def __init__(self, run: Run) -> None:
-        data = Path(run.files[0]).read_bytes()
+    def __init__(self, file: str) -> None:
+        self._data = Path(file).read_bytes()
         try:
-            data.decode("utf-8")
+            self._data.decode("utf-8")
             self._encoding = "utf-8"
         except UnicodeDecodeError:
             self._encoding = "latin-1"
-        self._lines = data.split(b"\n")
-        self._block = run.block.astype(np.int64)
-        self.in_order = len(run.files) == 1 and bool((np.diff(self._block) >= 0).all())
-        self.count = len(self._lines)
-
-    def line(self, number: int) -> str:
-        """A line as it stands, from 1; beyond the last one nothing."""
-        return self._lines[number - 1].decode(self._encoding).rstrip("\r") if number <= self.count else ""
+        ends = np.flatnonzero(np.frombuffer(self._data, np.uint8) == _NEWLINE)
+        self._starts = np.concatenate(([0], ends + 1, [len(self._data) + 1]))
+        self.count = len(self._starts) - 1
 
     def text(self, number: int) -> str:
         """A line without block skip sign and block number."""
-        line = self.line(number)
+        line = self._data[self._starts[number - 1] : self._starts[number] - 1].decode(self._encoding).rstrip("\r")
         prefix = _PREFIX.match(line) if line[:1] in ("N", "/") else None
         return line[prefix.end() :] if prefix else line
 
@@ -48,30 +38,25 @@ class Source:
         """Numbers and texts of the lines from ``first`` up to ``stop``."""
         return [(number, self.text(number)) for number in range(first, min(stop, self.count + 1))]
 
-    def words(self, number: int) -> list[str]:
-        """The words of a line, in capitals, without its number and its comment."""
-        return _WORD.findall(self.text(number).partition(";")[0].upper())
-
-    def row_of(self, number: int) -> int:
-        """The row before which a line stands."""
-        return int(np.searchsorted(self._block, number))
-
-    def resting(self, first: int, stop: int, rows: Ints, others: Collection[int]) -> list[int]:
-        """Lines from ``first`` up to ``stop`` that are neither those of ``rows`` nor ``others``."""
-        free = np.ones(max(min(stop, self.count + 1) - first, 0), bool)
-        for taken in (self._block[rows], np.array(list(others), np.int64)):
-            inside = taken[(taken >= first) & (taken < first + len(free))]
-            free[inside - first] = False
-        return [int(number) for number in np.flatnonzero(free) + first]
-
     def skips(self) -> Iterator[tuple[int, bool]]:
         """Lines that begin with the block skip sign after one that did not, and the reverse."""
-        skipped = False
-        for number, line in enumerate(self._lines, 1):
-            if line.startswith(b"/") != skipped and line.strip():
-                skipped = not skipped
-                yield number, skipped
+        begins = np.frombuffer(self._data + b"\n", np.uint8)[self._starts[:-1]]
+        filled = np.flatnonzero((begins != _NEWLINE) & (begins != _RETURN))
+        skipped = begins[filled] == _SLASH
+        for place in np.flatnonzero(np.diff(skipped, prepend=False)).tolist():
+            yield int(filled[place]) + 1, bool(skipped[place])
 
-    def numbers_with(self, word: bytes) -> list[int]:
-        """Lines in which some bytes occur."""
-        return [number for number, line in enumerate(self._lines, 1) if word in line]
+    def words(self) -> Iterator[tuple[int, list[str]]]:
+        """The lines with words that dense motion does not have, and these words in capitals."""
+        line, words = 0, list[str]()
+        for match in _WORDS.finditer(self._data):
+            if match[0][:1] in b';"':
+                continue
+            number = int(np.searchsorted(self._starts, match.start(), "right"))
+            if number != line and words:
+                yield line, words
+                words = []
+            line = number
+            words.append(match[0].decode("ascii").upper())
+        if words:
+            yield line, words

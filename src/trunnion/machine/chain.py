@@ -9,6 +9,7 @@ by another derivation, and neither imports the other: that they agree says somet
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -44,31 +45,14 @@ def forward(machine: Machine, joints: Floats, tool_length: float = 0.0) -> tuple
     rows = np.ascontiguousarray(joints, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] != 5:
         raise ValueError(f"joints must have shape (n, 5), not {rows.shape}")
-    rotary = np.array([axis.is_rotary for axis in machine.axes])
-    direction = np.array([[axis.sense * d for d in axis.direction] for axis in machine.axes])
-    point = np.array([axis.point for axis in machine.axes])
-    spindle = np.array(machine.spindle_direction)
-    tip_at_zero = np.array(machine.spindle_point) - tool_length * spindle
-    zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
     tip = np.empty((len(rows), 3))
     axis = np.empty((len(rows), 3))
-    chain_rows(rotary, direction, point, tip_at_zero, spindle, zero, rows, tip, axis)
+    chain_rows(pack_chain(machine, tool_length), rows, tip, axis)
     return tip, axis
 
 
-@njit(cache=True)
-def chain_rows(
-    rotary: Flags,
-    direction: Floats,
-    point: Floats,
-    tip_at_zero: Floats,
-    spindle: Floats,
-    zero: Floats,
-    joints: Floats,
-    tip: Floats,
-    axis: Floats,
-) -> None:
-    """Write tip and tool axis of each row of ``joints``.
+class Chain(NamedTuple):
+    """A chain as kernels take it.
 
     rotary       (5,) bool      the joint turns
     direction    (5, 3) float64 the way that growing values move the tool, machine frame, all axes at zero
@@ -76,35 +60,64 @@ def chain_rows(
     tip_at_zero  (3,) float64   tool tip, mm, machine frame, all axes at zero
     spindle      (3,) float64   tool axis, machine frame, all axes at zero
     zero         (3,) float64   workpiece zero, mm, machine frame, all axes at zero
-    joints       (n, 5) float64 displayed values, mm or deg
-    tip, axis    (n, 3) float64 written
     """
+
+    rotary: Flags
+    direction: Floats
+    point: Floats
+    tip_at_zero: Floats
+    spindle: Floats
+    zero: Floats
+
+
+def pack_chain(machine: Machine, tool_length: float = 0.0) -> Chain:
+    """A machine's chain for kernels; tool length from the gauge point to the tip, mm."""
+    spindle = np.array(machine.spindle_direction)
+    return Chain(
+        rotary=np.array([axis.is_rotary for axis in machine.axes]),
+        direction=np.array([[axis.sense * d for d in axis.direction] for axis in machine.axes]),
+        point=np.array([axis.point for axis in machine.axes]),
+        tip_at_zero=np.array(machine.spindle_point) - tool_length * spindle,
+        spindle=spindle,
+        zero=np.array(machine.workpiece_zero or (0.0, 0.0, 0.0)),
+    )
+
+
+@njit(cache=True)
+def chain_rows(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
+    """Write tip and tool axis (n, 3) of each row of ``joints`` (n, 5)."""
     for row in range(joints.shape[0]):
-        x, y, z = tip_at_zero[0], tip_at_zero[1], tip_at_zero[2]
-        i, j, k = spindle[0], spindle[1], spindle[2]
-        for joint in range(joints.shape[1] - 1, -1, -1):
-            q = joints[row, joint]
-            a, b, c = direction[joint, 0], direction[joint, 1], direction[joint, 2]
-            if not rotary[joint]:
-                x, y, z = x + a * q, y + b * q, z + c * q
-                continue
-            # Whole turns drop out exactly, so that a wound-up axis costs no digits.
-            angle = math.radians(q - 360.0 * math.floor(q / 360.0 + 0.5))
-            cos, sin = math.cos(angle), math.sin(angle)
-            ox, oy, oz = point[joint, 0], point[joint, 1], point[joint, 2]
-            x, y, z = x - ox, y - oy, z - oz
-            # Rodrigues: v cos + (w x v) sin + w (w.v)(1 - cos)
-            along = (a * x + b * y + c * z) * (1.0 - cos)
-            x, y, z = (
-                x * cos + (b * z - c * y) * sin + a * along + ox,
-                y * cos + (c * x - a * z) * sin + b * along + oy,
-                z * cos + (a * y - b * x) * sin + c * along + oz,
-            )
-            along = (a * i + b * j + c * k) * (1.0 - cos)
-            i, j, k = (
-                i * cos + (b * k - c * j) * sin + a * along,
-                j * cos + (c * i - a * k) * sin + b * along,
-                k * cos + (a * j - b * i) * sin + c * along,
-            )
-        tip[row, 0], tip[row, 1], tip[row, 2] = x - zero[0], y - zero[1], z - zero[2]
-        axis[row, 0], axis[row, 1], axis[row, 2] = i, j, k
+        chain_row(chain, joints[row], tip[row], axis[row])
+
+
+@njit(cache=True)
+def chain_row(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
+    """Write tip and tool axis (3,) of displayed values (5,), mm or deg."""
+    x, y, z = chain.tip_at_zero[0], chain.tip_at_zero[1], chain.tip_at_zero[2]
+    i, j, k = chain.spindle[0], chain.spindle[1], chain.spindle[2]
+    for joint in range(4, -1, -1):
+        q = joints[joint]
+        a, b, c = chain.direction[joint, 0], chain.direction[joint, 1], chain.direction[joint, 2]
+        if not chain.rotary[joint]:
+            x, y, z = x + a * q, y + b * q, z + c * q
+            continue
+        # Whole turns drop out exactly, so that a wound-up axis costs no digits.
+        angle = math.radians(q - 360.0 * math.floor(q / 360.0 + 0.5))
+        cos, sin = math.cos(angle), math.sin(angle)
+        ox, oy, oz = chain.point[joint, 0], chain.point[joint, 1], chain.point[joint, 2]
+        x, y, z = x - ox, y - oy, z - oz
+        # Rodrigues: v cos + (w x v) sin + w (w.v)(1 - cos)
+        along = (a * x + b * y + c * z) * (1.0 - cos)
+        x, y, z = (
+            x * cos + (b * z - c * y) * sin + a * along + ox,
+            y * cos + (c * x - a * z) * sin + b * along + oy,
+            z * cos + (a * y - b * x) * sin + c * along + oz,
+        )
+        along = (a * i + b * j + c * k) * (1.0 - cos)
+        i, j, k = (
+            i * cos + (b * k - c * j) * sin + a * along,
+            j * cos + (c * i - a * k) * sin + b * along,
+            k * cos + (a * j - b * i) * sin + c * along,
+        )
+    tip[0], tip[1], tip[2] = x - chain.zero[0], y - chain.zero[1], z - chain.zero[2]
+    axis[0], axis[1], axis[2] = i, j, k

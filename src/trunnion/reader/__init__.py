@@ -3,8 +3,23 @@
 This room is written from the language of the controls. It shares nothing with what writes programs but the machine.
 """
 
-from trunnion.reader.run import Comment, Finding, Happening, Orientation, Run, Written
+from trunnion.reader.columns import Ramps, Steps
+from trunnion.reader.run import Comment, Finding, Happening, Orientation, Poses, Run, State, Written
 from trunnion.reader.sinumerik import run_program
 from trunnion.reader.subdivide import Samples, subdivide
 
-__all__ = ["Comment", "Finding", "Happening", "Orientation", "Run", "Samples", "Written", "run_program", "subdivide"]
+__all__ = [
+    "Comment",
+    "Finding",
+    "Happening",
+    "Orientation",
+    "Poses",
+    "Ramps",
+    "Run",
+    "Samples",
+    "State",
+    "Steps",
+    "Written",
+    "run_program",
+    "subdivide",
+]

@@ -1,7 +1,7 @@
 """From what blocks say to where the five axes are.
 
 In:     per row the tip or the slide values, and a vector or rotary values, or neither: then the angles stay.
-Out:    five joints a row, rotary values as they wind from row to row, and tip and tool axis.
+Out:    rotary values as they wind from row to row, and with them five joints a row.
 Units:  mm and degrees.
 
 How a rotary word is reached (``way``): the first rotary axis in the low four bits, the second in the high four.
@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats
-from trunnion.machine import Machine, forward, inverse
+from trunnion.machine import Machine, inverse
 from trunnion.machine.inverse import Packed, solve_slides
 
 #: The number itself, as an axis with an end takes it.
@@ -33,58 +33,54 @@ OUT_OF_TRAVEL: Final = 1
 UNREACHABLE: Final = 2
 STUCK: Final = 4
 
-#: Rows settled at a time: bounds what the two branches need besides the columns.
-PIECE: Final = 65536
-
 #: How far past its travel a rotary axis may stand before a branch is refused, degrees.
 SLACK: Final = 1e-6
 
 
 def settle(
-    machine: Machine, packed: Packed, joints: Floats, way: Codes, tip: Floats, axis: Floats, held: Floats, tips: bool
+    machine: Machine,
+    packed: Packed,
+    place: Floats,
+    rotary: Floats,
+    way: Codes,
+    vector: Floats,
+    held: Floats,
+    tips: bool,
 ) -> Codes:
-    """Work out the joints of consecutive rows; ``tip`` and ``axis`` are overwritten with where the tool really is.
+    """Work out where the rotary axes stand after consecutive rows.
 
     Parameters
     ----------
-    joints : (n, 5) float64, mm or deg
-        In: the rotary columns hold programmed values, NaN where the block has none. Out: everything.
+    place : (n, 3) float64, mm
+        Tool tips in the workpiece frame if ``tips``, else slide values in the order X, Y, Z.
+    rotary : (n, 2) float64, deg
+        In: programmed values, NaN where the block has none. Out: positions as they wind.
     way : (n,) uint8
         See the module.
-    tip : (n, 3) float64, mm
-        In: tool tips in the workpiece frame if ``tips``, else slide values in the order X, Y, Z.
-    axis : (n, 3) float64
-        In: programmed vectors of any length, workpiece frame; NaN where the block has none.
-    held : (5,) float64
-        Joints before the first row.
+    vector : (n, 3) float64
+        Programmed vectors of any length, workpiece frame; NaN where the block has none.
+    held : (2,) float64
+        Rotary axes before the first row.
 
     Returns
     -------
     (n,) uint8
         Bits OUT_OF_TRAVEL, UNREACHABLE (the angles stayed) and STUCK.
     """
-    n = len(tip)
-    status = np.zeros(n, np.uint8)
-    slides = xyz(machine)
-    first, second = machine.rotary
-    for start in range(0, n, PIECE):
-        rows = slice(start, min(start + PIECE, n))
-        angles(machine, joints[rows], way[rows], axis[rows], held, status[rows])
-        if tips:
-            slide_rows(packed, first, second, tip[rows], joints[rows], status[rows])
-            axis[rows] = forward(machine, joints[rows])[1]
-        else:
-            joints[rows, slides] = tip[rows]
-            tip[rows], axis[rows] = forward(machine, joints[rows])
-        held = joints[rows.stop - 1].copy()
+    status = np.zeros(len(place), np.uint8)
+    angles(machine, rotary, way, vector, held, status)
+    # Slides get stuck only where a rotary axis turns one of them against another.
+    if tips and len(set(packed.inside)) > 1:
+        joints = joints_of(machine, packed, np.ones(len(place), np.bool_), place, rotary)
+        status[np.isnan(joints).any(axis=1)] |= STUCK
     return status
 
 
-def angles(machine: Machine, joints: Floats, way: Codes, axis: Floats, held: Floats, status: Codes) -> None:
-    """Write the rotary columns of ``joints`` (n, 5), which hold programmed values or NaN, winding on from ``held``."""
+def angles(machine: Machine, rotary: Floats, way: Codes, axis: Floats, held: Floats, status: Codes) -> None:
+    """Turn ``rotary`` (n, 2) from programmed values or NaN to positions, winding on from ``held`` (2,)."""
     vector = ~np.isnan(axis[:, 0])
-    branches = np.full((2, len(joints), 2), np.nan) if vector.any() else np.empty((2, 0, 2))
-    pole = np.zeros(len(joints), np.bool_)
+    branches = np.full((2, len(rotary), 2), np.nan) if vector.any() else np.empty((2, 0, 2))
+    pole = np.zeros(len(rotary), np.bool_)
     columns = list(machine.rotary)
     if vector.any():
         solved = inverse(machine, np.zeros((int(vector.sum()), 3)), axis[vector])
@@ -92,19 +88,32 @@ def angles(machine: Machine, joints: Floats, way: Codes, axis: Floats, held: Flo
         pole[vector] = solved.pole
     axes = [machine.axes[column] for column in columns]
     wind(
-        joints,
-        columns[0],
-        columns[1],
+        rotary,
         way,
         vector,
         branches,
         pole,
-        held[columns],
+        held,
         np.array([a.endless for a in axes]),
         np.array([[a.low, a.high] for a in axes]),
         np.array([-180.0 if a.output == "-180..180" else 0.0 for a in axes]),
         status,
     )
+
+
+def joints_of(machine: Machine, packed: Packed, by_tip: Flags, place: Floats, rotary: Floats) -> Floats:
+    """All five axis values, (n, 5), of rows whose ``place`` is the tip where ``by_tip``, else the slides X, Y, Z.
+
+    Slides that cannot bring the tip there are NaN.
+    """
+    joints = np.empty((len(place), 5))
+    x, y, z = xyz(machine)
+    # Numba compiles once more for what may be written to: columns that still grow are the same as those of a run here.
+    place, rotary = place.view(), rotary.view()
+    place.setflags(write=False)
+    rotary.setflags(write=False)
+    joint_rows(packed, (x, y, z), machine.rotary, by_tip, place, rotary, joints)
+    return joints
 
 
 def xyz(machine: Machine) -> list[int]:
@@ -114,9 +123,7 @@ def xyz(machine: Machine) -> list[int]:
 
 @njit(cache=True)
 def wind(
-    joints: Floats,
-    first: int,
-    second: int,
+    rotary: Floats,
     way: Codes,
     vector: Flags,
     branches: Floats,
@@ -127,7 +134,7 @@ def wind(
     lowest: Floats,
     status: Codes,
 ) -> None:
-    """Take the rotary columns ``first`` and ``second`` of ``joints`` (n, 5) to the turns that the control takes.
+    """Take the values of ``rotary`` (n, 2), NaN where nothing was programmed, to the turns that the control takes.
 
     branches  (2, n, 2) float64  both solutions of rows with a vector, in (-180, 180]; may be empty if there are none
     pole      (n,) bool          the first angle is free: it stays
@@ -137,10 +144,10 @@ def wind(
     lowest    (2,) float64       where the turn that the axis displays begins, 0 or -180
     """
     a, b = held[0], held[1]
-    for row in range(joints.shape[0]):
+    for row in range(rotary.shape[0]):
         if not vector[row]:
-            a = reach(a, joints[row, first], way[row] & 15, lowest[0])
-            b = reach(b, joints[row, second], way[row] >> 4, lowest[1])
+            a = reach(a, rotary[row, 0], way[row] & 15, lowest[0])
+            b = reach(b, rotary[row, 1], way[row] >> 4, lowest[1])
         else:
             best = np.inf
             one, two = a, b
@@ -163,8 +170,8 @@ def wind(
             elif not inside:
                 status[row] |= OUT_OF_TRAVEL
             a, b = one, two
-        joints[row, first] = a
-        joints[row, second] = b
+        rotary[row, 0] = a
+        rotary[row, 1] = b
 
 
 @njit(cache=True)
@@ -201,9 +208,26 @@ def nearest(held: float, value: float, endless: bool, low: float, high: float) -
 
 
 @njit(cache=True)
-def slide_rows(packed: Packed, first: int, second: int, tip: Floats, joints: Floats, status: Codes) -> None:
-    """Write the slide columns of ``joints`` (n, 5): the tip is to be at ``tip`` (n, 3) with the angles there are."""
-    for row in range(tip.shape[0]):
-        a, b = joints[row, first], joints[row, second]
-        if solve_slides(packed, a, b, tip[row, 0], tip[row, 1], tip[row, 2], joints[row]) != 0:
-            status[row] |= STUCK
+def joint_rows(
+    packed: Packed,
+    slides: tuple[int, int, int],
+    turning: tuple[int, int],
+    by_tip: Flags,
+    place: Floats,
+    rotary: Floats,
+    joints: Floats,
+) -> None:
+    """Write ``joints`` (n, 5) of rows, as ``joints_of`` says.
+
+    slides    columns of X, Y and Z in ``joints``
+    turning   columns of the rotary axes
+    """
+    for row in range(place.shape[0]):
+        a, b = rotary[row, 0], rotary[row, 1]
+        if by_tip[row]:
+            solve_slides(packed, a, b, place[row, 0], place[row, 1], place[row, 2], joints[row])
+        else:
+            joints[row, turning[0]] = a
+            joints[row, turning[1]] = b
+            for k in range(3):
+                joints[row, slides[k]] = place[row, k]

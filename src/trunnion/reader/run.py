@@ -1,20 +1,31 @@
 """What a control did with a program: one row a motion, in columns, and what happened between the rows.
 
+A run keeps what its blocks say and what cannot be worked out from a row alone. State that changes seldom is kept by its
+changes (``State``); slides, tips and tool axes come from the machine. ``poses`` and ``stretch`` work them out for some
+rows; as whole columns they are made when they are first asked for, and then kept.
+
 Units: mm, degrees, unit vectors, rev/min; feeds in mm/min, mm/rev or 1/min as ``feed_mode`` says.
 Frame: the workpiece frame of the machine, that is the zero point set by the work offset; programmable frames and
 swivelled planes are already resolved to it.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
 from enum import IntEnum, IntFlag
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.arrays import Codes, Flags, Floats, Lines
+from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import Severity
-from trunnion.machine import Machine
+from trunnion.machine import Machine, Packed, forward, pack
+from trunnion.reader.columns import Ramps, Steps
+from trunnion.reader.poses import joints_of
 from trunnion.toolpath import Arcs
+
+#: Rows that are worked out at a time: what is needed for them stays in the processor's cache.
+CHUNK = 8192
 
 
 class Written(IntFlag):
@@ -79,18 +90,68 @@ class Happening:
     file: int = 0
 
 
+#: ``State.orientation`` before the first word of an ``Orientation``: as the words of each block have it.
+BY_WORDS = 2
+
+
 @dataclass(frozen=True, slots=True, eq=False)
+class State:
+    """What changes seldom, as columns that are kept by their changes. The same names in ``Run`` are the whole columns.
+
+    by_tip   ``Run.place`` is the tool tip, not the slides
+    """
+
+    file: Steps
+    feed: Steps
+    feed_mode: Steps
+    rpm: Steps
+    spindle: Steps
+    tool: Steps
+    edge: Steps
+    offset: Steps
+    tcp: Steps
+    machine_frame: Steps
+    inches: Steps
+    orientation: Steps
+    by_tip: Steps
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Poses:
+    """Where axes and tool are, in k rows: ``joints`` (k, 5), ``tip`` (k, 3), ``axis`` (k, 3), as in ``Run``; read-only."""
+
+    joints: Floats
+    tip: Floats
+    axis: Floats
+
+    def __post_init__(self) -> None:
+        for column in (self.joints, self.tip, self.axis):
+            column.setflags(write=False)
+
+
+@dataclass(frozen=True, eq=False)
 class Run:
     """A program as a machine's control ran it; columns have n rows and are read-only.
 
-    block          (n,)   int32    line of the file, from 1
-    file           (n,)   uint16   index into ``files``: 0 is the program itself, others are its subprograms
-    number         (n,)   int64    N number of the block, -1 where it has none
+    Kept:
+
+    blocks         (n,)   Ramps    line of the file, from 1
+    numbers        (n,)   Ramps    N number of the block, -1 where it has none
     kind           (n,)   uint8    a ``trunnion.toolpath.Kind``
     programmed     (n,)   uint8    ``Written`` bits
+    place          (n, 3) float64  what X Y Z come to, mm: the tool tip, workpiece frame, where ``state.by_tip``; else
+                                   the values of the slides X, Y and Z
+    rotary         (n, 2) float64  positions of the rotary axes as they wind, deg, as in ``machine.rotary``
+    start          (5,)   float64  axis values before row 0
+
+    Worked out of these when asked for:
+
     tip            (n, 3) float64  tool tip, mm, workpiece frame
     axis           (n, 3) float64  unit vector from tip to holder, workpiece frame
+    block          (n,)   int32    ``blocks`` as a whole column
+    number         (n,)   int64    ``numbers`` as a whole column
     joints         (n, 5) float64  axis values as displayed, mm or deg, machine order; rotary values as they wind
+    file           (n,)   uint16   index into ``files``: 0 is the program itself, others are its subprograms
     feed           (n,)   float64  NaN before the first F; rapids carry it on
     feed_mode      (n,)   uint8    94 mm/min, 95 mm/rev, 93 inverse time (1/min)
     rpm            (n,)   float64  programmed spindle speed, 0 before the first S
@@ -102,30 +163,17 @@ class Run:
     machine_frame  (n,)   bool     a SUPA, G53 or G153 block: positions of machine axes
     inches         (n,)   bool     lengths were programmed in inches (the columns are in mm)
     orientation    (n,)   uint8    an ``Orientation``: how the tool axis got here from the row before
-    start          (5,)   float64  axis values before row 0
     """
 
     machine: Machine
     files: tuple[str, ...]
-    block: Lines
-    file: NDArray[np.uint16]
-    number: NDArray[np.int64]
+    blocks: Ramps
+    numbers: Ramps
     kind: Codes
     programmed: Codes
-    tip: Floats
-    axis: Floats
-    joints: Floats
-    feed: Floats
-    feed_mode: Codes
-    rpm: Floats
-    spindle: NDArray[np.int8]
-    tool: Lines
-    edge: Lines
-    offset: NDArray[np.uint16]
-    tcp: Flags
-    machine_frame: Flags
-    inches: Flags
-    orientation: Codes
+    place: Floats
+    rotary: Floats
+    state: State
     start: Floats
     arcs: Arcs
     tools: tuple[str, ...] = ("",)
@@ -134,15 +182,142 @@ class Run:
     findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in self.__slots__:
-            column = getattr(self, name)
+        for each in fields(self):
+            column = getattr(self, each.name)
             if isinstance(column, np.ndarray):
                 column.setflags(write=False)
 
     def __len__(self) -> int:
-        return len(self.block)
+        return len(self.kind)
 
     @property
     def errors(self) -> tuple[Finding, ...]:
         """Findings that make the columns doubtful: words unknown or not acted upon."""
         return tuple(finding for finding in self.findings if finding.severity is Severity.ERROR)
+
+    # Some rows
+
+    @cached_property
+    def _packed(self) -> Packed:
+        return pack(self.machine)
+
+    def poses(self, rows: Ints) -> Poses:
+        """Where axes and tool are at the end of rows, in any order; row -1 is the place before the first one."""
+        if not len(self) or not len(rows):
+            joints = np.tile(self.start, (len(rows), 1))
+            return Poses(joints, *forward(self.machine, joints))
+        by_tip = self.state.by_tip.at(rows)
+        place = self.place[rows]
+        joints = joints_of(self.machine, self._packed, by_tip, place, self.rotary[rows])
+        first = rows < 0
+        joints[first] = self.start
+        tip, axis = forward(self.machine, joints)
+        by_tip &= ~first
+        tip[by_tip] = place[by_tip]
+        return Poses(joints, tip, axis)
+
+    def stretch(self, first: int, end: int) -> Poses:
+        """Where axes and tool are in consecutive rows, led by the place before them: (end - first + 1) rows."""
+        rows = slice(max(first - 1, 0), end)
+        by_tip = self.state.by_tip.part(rows.start, end)
+        place = self.place[rows]
+        joints = joints_of(self.machine, self._packed, by_tip, place, self.rotary[rows])
+        if first == 0:
+            joints = np.concatenate((self.start[None], joints))
+        tip, axis = forward(self.machine, joints)
+        if first and by_tip.all():
+            return Poses(joints, place, axis)
+        reached = tip[1:] if first == 0 else tip
+        reached[by_tip] = place[by_tip]
+        return Poses(joints, tip, axis)
+
+    def stretches(self) -> Iterator[tuple[int, int, Poses]]:
+        """All rows, ``CHUNK`` at a time: first row, the row after the last, and ``stretch`` of them."""
+        for first in range(0, len(self), CHUNK):
+            end = min(first + CHUNK, len(self))
+            yield first, end, self.stretch(first, end)
+
+    def oriented(self, first: int, end: int) -> Codes:
+        """Column ``orientation`` of consecutive rows."""
+        said = self.state.orientation.part(first, end)
+        vectors = (self.programmed[first:end] & int(Written.VECTOR)) != 0
+        return np.where(said == BY_WORDS, vectors, said).astype(np.uint8)
+
+    # Whole columns
+
+    @cached_property
+    def block(self) -> Lines:
+        return self.blocks.column(np.int32)
+
+    @cached_property
+    def number(self) -> Ints:
+        return self.numbers.column(np.int64)
+
+    @cached_property
+    def tip(self) -> Floats:
+        return self._worked_out("tip", 3)
+
+    @cached_property
+    def axis(self) -> Floats:
+        return self._worked_out("axis", 3)
+
+    @cached_property
+    def joints(self) -> Floats:
+        return self._worked_out("joints", 5)
+
+    def _worked_out(self, name: str, width: int) -> Floats:
+        column = np.empty((len(self), width))
+        for first, end, poses in self.stretches():
+            column[first:end] = getattr(poses, name)[1:]
+        column.setflags(write=False)
+        return column
+
+    @cached_property
+    def orientation(self) -> Codes:
+        column = self.oriented(0, len(self))
+        column.setflags(write=False)
+        return column
+
+    @cached_property
+    def file(self) -> NDArray[np.uint16]:
+        return self.state.file.column()
+
+    @cached_property
+    def feed(self) -> Floats:
+        return self.state.feed.column()
+
+    @cached_property
+    def feed_mode(self) -> Codes:
+        return self.state.feed_mode.column()
+
+    @cached_property
+    def rpm(self) -> Floats:
+        return self.state.rpm.column()
+
+    @cached_property
+    def spindle(self) -> NDArray[np.int8]:
+        return self.state.spindle.column()
+
+    @cached_property
+    def tool(self) -> Lines:
+        return self.state.tool.column()
+
+    @cached_property
+    def edge(self) -> Lines:
+        return self.state.edge.column()
+
+    @cached_property
+    def offset(self) -> NDArray[np.uint16]:
+        return self.state.offset.column()
+
+    @cached_property
+    def tcp(self) -> Flags:
+        return self.state.tcp.column()
+
+    @cached_property
+    def machine_frame(self) -> Flags:
+        return self.state.machine_frame.column()
+
+    @cached_property
+    def inches(self) -> Flags:
+        return self.state.inches.column()

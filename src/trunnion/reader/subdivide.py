@@ -77,10 +77,9 @@ def subdivide(run: Run, pieces: int | Ints, rows: slice = slice(None)) -> Sample
     if great.any():
         _great_circle(run, row, fraction, before, first, great, joints)
     if by_tip.any():
-        slid = joints[by_tip]
-        status = np.zeros(len(slid), np.uint8)
-        poses.slide_rows(pack(run.machine), *run.machine.rotary, tip[by_tip], slid, status)
-        joints[by_tip] = slid
+        turned = joints[np.ix_(by_tip, run.machine.rotary)]
+        every = np.ones(len(turned), np.bool_)
+        joints[by_tip] = poses.joints_of(run.machine, pack(run.machine), every, tip[by_tip], turned)
     reached, axis = forward(run.machine, joints)
     tip[~by_tip] = reached[~by_tip]
     ends = fraction == 1.0
@@ -148,9 +147,8 @@ def _great_circle(
     # Each unbroken stretch of rows winds from where the row before it ended.
     for stretch in np.split(np.arange(len(places)), np.flatnonzero(np.diff(places) > 1) + 1):
         at = places[stretch]
-        part = joints[at]
-        held = before[row[at[0]] - first].copy()
+        columns = np.array(run.machine.rotary)
+        rotary = np.empty((len(at), 2))
         zero = np.zeros(len(at), np.uint8)
-        poses.angles(run.machine, part, zero, vector[stretch], held, zero.copy())
-        for column in run.machine.rotary:
-            joints[at, column] = part[:, column]
+        poses.angles(run.machine, rotary, zero, vector[stretch], before[row[at[0]] - first, columns], zero.copy())
+        joints[np.ix_(at, columns)] = rotary

@@ -9,7 +9,7 @@ programs; otherwise both sides are walked along together, and where they part th
 at which two motions in a row fit again.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,10 +18,11 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.reader import Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.arcs import Arc, arc_of
+from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Wanted
 
-#: Rows compared at a time.
-CHUNK = 65536
+#: Rows compared at a time: what is needed for them stays in the processor's cache.
+CHUNK = 8192
 
 #: How far ahead the two sides are searched for a place at which they fit again.
 _WINDOWS = (8, 48, 384)
@@ -51,47 +52,54 @@ class Pairs:
     extra     motions that answer to no CL row
     """
 
-    nc: Ints
-    cl: Ints
+    nc: Rows
+    cl: Rows
     missing: tuple[int, ...] = ()
     extra: tuple[int, ...] = ()
     pieces: tuple[Pieces, ...] = ()
 
+    def chunks(self, first: int = 0, end: int | None = None) -> Iterator[tuple[Ints, Ints]]:
+        """Partners ``CHUNK`` at a time, from pair ``first`` to the one before ``end``: rows of run and CL files."""
+        end = len(self.nc) if end is None else end
+        for start in range(first, end, CHUNK):
+            stop = min(start + CHUNK, end)
+            yield self.nc.part(start, stop), self.cl.part(start, stop)
 
-def answers(run: Run) -> Ints:
+
+def answers(run: Run) -> Rows:
     """Rows of a run that ought to answer to CL points."""
-    mask = np.empty(len(run), np.bool_)
-    for start in range(0, len(run), CHUNK):
-        part = slice(start, start + CHUNK)
-        placing = (run.programmed[part] & int(PLACES)) == 0
-        placing &= (run.programmed[part] & int(_TURNS)) != 0
-        placing &= ~run.tcp[part] & (run.kind[part] == Kind.RAPID)
-        mask[part] = ~(placing | run.machine_frame[part])
-    return np.flatnonzero(mask)
+    return Rows.where((start, _answer(run, start, min(start + CHUNK, len(run)))) for start in range(0, len(run), CHUNK))
+
+
+def _answer(run: Run, start: int, end: int) -> Flags:
+    """Which of consecutive rows ought to answer to CL points."""
+    state, programmed = run.state, run.programmed[start:end]
+    placing = (programmed & int(PLACES)) == 0
+    placing &= (programmed & int(_TURNS)) != 0
+    placing &= ~state.tcp.part(start, end) & (run.kind[start:end] == Kind.RAPID)
+    return np.asarray(~(placing | state.machine_frame.part(start, end)))
 
 
 def in_order(run: Run, wanted: Wanted) -> Pairs | None:
     """Pairs by counting alone, if there are as many motions as points; whether they fit is not looked at."""
     rows = answers(run)
     if len(rows) == len(wanted):
-        return Pairs(rows, np.arange(len(wanted)))
-    fresh = ~_repeats(wanted)
-    if len(rows) == int(fresh.sum()):
-        return Pairs(rows, np.flatnonzero(fresh))
-    return None
+        return Pairs(rows, Rows.of([(0, len(wanted))]))
+    fresh = Rows.where(_fresh(wanted))
+    return Pairs(rows, fresh) if len(rows) == len(fresh) else None
 
 
-def _repeats(wanted: Wanted) -> Flags:
-    """CL rows that say the point before once more, within an operation."""
-    same = np.zeros(len(wanted), np.bool_)
-    for start in range(1, len(wanted), CHUNK):
-        end = min(start + CHUNK, len(wanted))
-        now, before = slice(start, end), slice(start - 1, end - 1)
-        same[now] = (wanted.tip[now] == wanted.tip[before]).all(axis=1)
-        same[now] &= (wanted.axis[now] == wanted.axis[before]).all(axis=1)
-    same &= wanted.kind != Kind.ARC
-    same[wanted.firsts] = False
-    return same
+def _fresh(wanted: Wanted) -> Iterator[tuple[int, Flags]]:
+    """CL rows that do not say the point before once more, within an operation; as ``Rows.where`` takes them."""
+    for part in wanted.parts:
+        moves = part.operation.moves
+        for start in range(0, len(moves), CHUNK):
+            now, before = slice(max(start, 1), start + CHUNK), slice(max(start - 1, 0), start + CHUNK - 1)
+            tip, axis = moves.tip[now], moves.axis[now]
+            same = (tip == moves.tip[before][: len(tip)]).all(axis=1)
+            same &= (axis == moves.axis[before][: len(tip)]).all(axis=1)
+            fresh = ~same | (moves.kind[now] == Kind.ARC)
+            yield part.first + start, fresh if start else np.concatenate(([True], fresh))
 
 
 def matched(run: Run, wanted: Wanted) -> Pairs:
@@ -106,8 +114,8 @@ class _Matcher:
         self._run, self._wanted = run, wanted
         self._rows = answers(run)
         self._n, self._m = len(self._rows), len(wanted)
-        self._nc: list[Ints] = []
-        self._cl: list[Ints] = []
+        self._nc: list[tuple[int, int]] = []
+        self._cl: list[tuple[int, int]] = []
         self._missing: list[int] = []
         self._extra: list[int] = []
         self._pieces: list[Pieces] = []
@@ -138,21 +146,19 @@ class _Matcher:
             a, b = self._meeting(i, j) if partings <= _PARTINGS else (self._n - i, self._m - j)
             self._part(i, j, a, b)
             i, j = i + a, j + b
-        self._extra += self._rows[i:].tolist()
+        self._extra += self._rows.part(i, self._n).tolist()
         self._missing += [row for row in range(j, self._m) if not self._repeats(row)]
-        none = np.zeros(0, np.int64)
         return Pairs(
-            np.concatenate((none, *self._nc)),
-            np.concatenate((none, *self._cl)),
+            Rows.of(self._nc),
+            Rows.of(self._cl),
             tuple(self._missing),
             tuple(self._extra),
             tuple(self._pieces),
         )
 
     def _pair(self, i: int, j: int, count: int) -> None:
-        if count:
-            self._nc.append(self._rows[i : i + count])
-            self._cl.append(np.arange(j, j + count))
+        self._nc += self._rows.stretches(i, i + count)
+        self._cl.append((j, count))
 
     def _limits(self, j: int) -> tuple[float, float]:
         """How far apart partners may be, mm and as the length of a vector; the exact limits are judged later."""
@@ -162,20 +168,21 @@ class _Matcher:
     def _fits(self, i: int, j: int, count: int) -> Flags:
         """Which of ``count`` motions from the i-th on are where the points from row j on want them, (count,) bool."""
         tip, axis = self._limits(j)
-        rows = self._rows[i : i + count]
-        fits = (np.abs(self._run.tip[rows] - self._wanted.tip[j : j + count]) <= tip).all(axis=1)
-        fits &= (np.abs(self._run.axis[rows] - self._wanted.axis[j : j + count]) <= axis).all(axis=1)
+        is_, points = self._run.poses(self._rows.part(i, i + count)), np.arange(j, j + count)
+        fits = (np.abs(is_.tip - self._wanted.tip(points)) <= tip).all(axis=1)
+        fits &= (np.abs(is_.axis - self._wanted.axis(points)) <= axis).all(axis=1)
         return np.asarray(fits)
 
     def _repeats(self, j: int) -> bool:
         """Whether a point may print as the one before it."""
-        if j == 0 or self._wanted.kind[j] == Kind.ARC or j in self._wanted.firsts:
+        point = self._wanted.point(j)
+        if point.kind is Kind.ARC or j in self._wanted.firsts:
             return False
         tip, axis = self._limits(j)
-        wanted = self._wanted
+        before = self._wanted.point(j - 1)
         return bool(
-            (np.abs(wanted.tip[j] - wanted.tip[j - 1]) <= 2.0 * tip).all()
-            and (np.abs(wanted.axis[j] - wanted.axis[j - 1]) <= 2.0 * axis).all()
+            (np.abs(point.tip - before.tip) <= 2.0 * tip).all()
+            and (np.abs(point.axis - before.axis) <= 2.0 * axis).all()
         )
 
     def _skip_repeats(self, i: int, j: int) -> int:
@@ -183,25 +190,26 @@ class _Matcher:
         skipped = 0
         while j + skipped + 1 < self._m and skipped < 1000 and self._repeats(j + skipped):
             skipped += 1
-            if self._fits(i, j + skipped, 1)[0] or self._wanted.kind[j + skipped] == Kind.ARC:
+            if self._fits(i, j + skipped, 1)[0] or self._wanted.point(j + skipped).kind is Kind.ARC:
                 return skipped
         return 0
 
     def _take_arc(self, i: int, j: int) -> int:
         """How many lines from the i-th on lie on the arc of CL row j, and lead to its end."""
-        if self._wanted.kind[j] != Kind.ARC or j == 0:
+        if self._wanted.point(j).kind is not Kind.ARC or j == 0:
             return 0
         arc = arc_of(self._wanted, j)
         tip, _ = self._limits(j)
         for ahead in (64, 1024, 16384):
-            rows = self._rows[i : i + ahead]
+            rows = self._rows.part(i, i + ahead)
             turns_off = np.flatnonzero(self._run.kind[rows] != Kind.LINEAR)
             if len(turns_off):
                 rows = rows[: turns_off[0]]
-            there = np.flatnonzero((np.abs(self._run.tip[rows] - arc.end) <= tip).all(axis=1))
+            tips = self._run.poses(rows).tip
+            there = np.flatnonzero((np.abs(tips - arc.end) <= tip).all(axis=1))
             if len(there):
                 pieces = rows[: there[0]]
-                off = np.abs(arc.deviation(self._run.tip[pieces])).max(axis=1, initial=0.0)
+                off = np.abs(arc.deviation(tips[: there[0]])).max(axis=1, initial=0.0)
                 if (off > 100.0 * tip + 0.1).any():  # these lines are about something else
                     return 0
                 self._pieces.append(Pieces(pieces, j, arc))
@@ -214,14 +222,13 @@ class _Matcher:
         """How many motions and points to go until two in a row fit again; all of them if they never do."""
         for window in _WINDOWS:
             a, b = min(window, self._n - i), min(window, self._m - j)
-            rows = self._rows[i : i + a]
+            is_, points = self._run.poses(self._rows.part(i, i + a)), np.arange(j, j + b)
+            want_tip, want_axis = self._wanted.tip(points), self._wanted.axis(points)
             tip, axis = self._limits(j)
             fits = np.ones((a, b), np.bool_)
             for column in range(3):
-                one, two = self._run.tip[rows, column], self._wanted.tip[j : j + b, column]
-                fits &= np.abs(one[:, None] - two) <= tip
-                one, two = self._run.axis[rows, column], self._wanted.axis[j : j + b, column]
-                fits &= np.abs(one[:, None] - two) <= axis
+                fits &= np.abs(is_.tip[:, column, None] - want_tip[:, column]) <= tip
+                fits &= np.abs(is_.axis[:, column, None] - want_axis[:, column]) <= axis
             ends = i + a == self._n, j + b == self._m
             found = first_meeting(fits, ends)
             if found is not None:
@@ -235,26 +242,27 @@ class _Matcher:
             self._pair(i, j, less)
             place = less
         else:
-            apart = np.array([self._apart(i, j, a, b, k) for k in range(less + 1)])
-            place = int(np.argmin(apart))
+            place = self._gap(i, j, a, b)
             self._pair(i, j, place)
             self._pair(i + place + max(a - b, 0), j + place + max(b - a, 0), less - place)
         if a > b:
             allowed = self._wanted.inserts.get(j + place, 0)
-            self._extra += self._rows[i + place : i + place + gap].tolist()[allowed:]
+            self._extra += self._rows.part(i + place, i + place + gap).tolist()[allowed:]
         elif b > a:
             self._missing += [row for row in range(j + place, j + place + gap) if not self._repeats(row)]
 
-    def _apart(self, i: int, j: int, a: int, b: int, gap: int) -> float:
-        """Sum of distances if the longer side leaves out its rows from ``gap`` on."""
-        rows, points = self._rows[i : i + a], np.arange(j, j + b)
-        if a > b:
-            rows = np.delete(rows, slice(gap, gap + a - b))
-        else:
-            points = np.delete(points, slice(gap, gap + b - a))
-        tip = np.abs(self._run.tip[rows] - self._wanted.tip[points]).sum(axis=1)
-        axis = np.abs(self._run.axis[rows] - self._wanted.axis[points]).sum(axis=1)
-        return float(np.minimum(tip + 50.0 * axis, 1e6).sum())
+    def _gap(self, i: int, j: int, a: int, b: int) -> int:
+        """From which row on the longer of two sides, ``a`` motions and ``b`` points, leaves out what it has more."""
+        is_, points = self._run.poses(self._rows.part(i, i + a)), np.arange(j, j + b)
+        want_tip, want_axis = self._wanted.tip(points), self._wanted.axis(points)
+        apart = np.empty(min(a, b) + 1)
+        for gap in range(len(apart)):
+            rows = np.delete(np.arange(a), slice(gap, gap + max(a - b, 0)))
+            points = np.delete(np.arange(b), slice(gap, gap + max(b - a, 0)))
+            tip = np.abs(is_.tip[rows] - want_tip[points]).sum(axis=1)
+            axis = np.abs(is_.axis[rows] - want_axis[points]).sum(axis=1)
+            apart[gap] = np.minimum(tip + 50.0 * axis, 1e6).sum()
+        return int(np.argmin(apart))
 
 
 def first_meeting(fits: Flags, ends: Sequence[bool]) -> tuple[int, int] | None:

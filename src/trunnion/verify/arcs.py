@@ -59,7 +59,7 @@ def arc_of(wanted: Wanted, row: int) -> Arc:
     """The circle that ends at a row."""
     arcs = wanted.arcs
     k = int(np.searchsorted(arcs.row, row))
-    start, end = wanted.tip[row - 1], wanted.tip[row]
+    start, end = wanted.point(row - 1).tip, wanted.point(row).tip
     centre, normal = arcs.centre[k], arcs.normal[k]
     a, b = start - centre, end - centre
     angle = float(np.arctan2(np.cross(a, b) @ normal, a @ b - (a @ normal) * (b @ normal))) % (2.0 * np.pi)

@@ -43,20 +43,21 @@ class Case:
     def place(self, row: int, value: float, text: str, cl: int | None = None) -> Place:
         """A place by its row of the run, and of the CL files if there is one."""
         run = self.run
-        if run.file[row]:
-            text = f"{Path(run.files[run.file[row]]).name}: {text}"
-        line, number = int(run.block[row]), int(run.number[row])
+        file = run.state.file[row]
+        if file:
+            text = f"{Path(run.files[file]).name}: {text}"
+        line, number = run.blocks[row], run.numbers[row]
         if cl is None or self.wanted is None:
             return Place(line, number, value, text)
-        return Place(line, number, value, text, self.wanted.part_of(cl).file, int(self.wanted.line[cl]))
+        return Place(line, number, value, text, self.wanted.part_of(cl).file, self.wanted.point(cl).line)
 
     def missing(self, cl: int, text: str) -> Place:
         """A place by its row of the CL files, where no motion answers to it: the block before which it should stand."""
         assert self.pairs is not None
-        k = int(np.searchsorted(self.pairs.cl, cl))
+        k = self.pairs.cl.before(cl)
         if not len(self.run):
             return Place(0, -1, 0.0, text)
-        row = int(self.pairs.nc[k]) if k < len(self.pairs.nc) else self.after(int(self.pairs.nc[-1]) if k else 0)
+        row = self.pairs.nc[k] if k < len(self.pairs.nc) else self.after(self.pairs.nc[-1] if k else 0)
         return self.place(row, 0.0, text, cl)
 
     def after(self, row: int) -> int:
@@ -83,14 +84,14 @@ class Case:
         if not len(written):
             return None
         by = max(row - 64, 0) + int(written[-1])
-        if by == row or self.pairs is None or by in self.pairs.nc[max(0, np.searchsorted(self.pairs.nc, by)) :][:1]:
+        if by == row or self.pairs is None or by in self.pairs.nc:
             return None
         return self.place(by, 0.0, f"this is where the rotary axes were put for {self.block(row)}")
 
     def block(self, row: int) -> str:
         """How a programmer names a row's block: ``N120``, or its line where it has no number."""
-        number = int(self.run.number[row])
-        return f"N{number}" if number >= 0 else f"line {int(self.run.block[row])}"
+        number = self.run.numbers[row]
+        return f"N{number}" if number >= 0 else f"line {self.run.blocks[row]}"
 
 
 def judged(key: str, title: str, places: Sequence[Place], good: str, count: int | None = None) -> Check:

@@ -92,9 +92,10 @@ class _Side:
 
     def __init__(self, run: Run, with_machine_frame: bool, coolants: dict[str, int], tools: dict[str, int]) -> None:
         self.run = run
-        rows = answers(run)
+        answering = answers(run)
+        rows = answering.part(0, len(answering))
         if with_machine_frame:
-            rows = np.union1d(rows, np.flatnonzero(run.machine_frame))
+            rows = np.union1d(rows, run.state.machine_frame.where(True))
         self.coolant = _coolant(run, coolants)
         numbers = [tools.setdefault(_tool_name(name), len(tools)) for name in run.tools]
         self.tool = np.array(numbers, np.int64)[run.tool]

@@ -1,16 +1,18 @@
 """The words of a program against what the CL file asks for: how to move, feed, spindle, tool, coolant, offset, home."""
 
-from collections.abc import Iterator
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
-from trunnion.verify.align import CHUNK
+from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.model import Check, Place
+from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Call, Spindle, Stretch
 
 _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
@@ -54,16 +56,9 @@ def order(case: Case) -> Check:
 
 
 def _stands_still(run: Run, row: int) -> bool:
-    before = run.joints[row - 1] if row else run.start
-    still = bool((np.abs(run.joints[row] - before) < 1e-9).all())
+    before, after = run.poses(np.array([row - 1, row])).joints
+    still = bool((np.abs(after - before) < 1e-9).all())
     return still and int(run.kind[row]) != Kind.ARC
-
-
-def _chunks(case: Case) -> Iterator[tuple[Ints, Ints, int]]:
-    """Rows of run and CL file that are partners, a chunk at a time, and the index of the first pair."""
-    assert case.pairs is not None
-    for start in range(0, len(case.pairs.nc), CHUNK):
-        yield case.pairs.nc[start : start + CHUNK], case.pairs.cl[start : start + CHUNK], start
 
 
 def kind(case: Case) -> Check:
@@ -75,10 +70,10 @@ def kind(case: Case) -> Check:
     by_lines = {pieces.cl for pieces in pairs.pieces}
     places: list[Place] = []
     count = 0
-    for nc, cl, _ in _chunks(case):
-        for k in np.flatnonzero(run.kind[nc] != wanted.kind[cl]).tolist():
+    for nc, cl in pairs.chunks():
+        for k in np.flatnonzero(run.kind[nc] != wanted.kind(cl)).tolist():
             row, point = int(nc[k]), int(cl[k])
-            is_, want = Kind(int(run.kind[row])), Kind(int(wanted.kind[point]))
+            is_, want = Kind(int(run.kind[row])), wanted.point(point).kind
             if want is Kind.ARC and is_ is Kind.LINEAR and (point in by_lines or _is_flat(case, point)):
                 continue
             count += 1
@@ -91,8 +86,7 @@ def kind(case: Case) -> Check:
             places.append(case.place(row, 0.0, "moves at rapid along an arc that is to be cut", pieces.cl))
     circles = _circles(case)
     count += len(circles)
-    rapids = int((wanted.kind == Kind.RAPID).sum())
-    good = f"{rapids} rapids, {len(wanted.arcs.row)} circles, the rest lines"
+    good = f"{wanted.rapids} rapids, {len(wanted.arcs.row)} circles, the rest lines"
     return judged("kind", title, sorted(places + circles, key=lambda p: p.nc_line), good, count)
 
 
@@ -112,11 +106,10 @@ def _circles(case: Case) -> list[Place]:
     places: list[Place] = []
     if not len(run.arcs.row) or not len(wanted.arcs.row):
         return places
-    at = np.searchsorted(pairs.cl, wanted.arcs.row)
-    for k, (row, pair) in enumerate(zip(wanted.arcs.row.tolist(), at.tolist(), strict=True)):
-        if pair >= len(pairs.cl) or pairs.cl[pair] != row:
+    for k, row in enumerate(wanted.arcs.row.tolist()):
+        if row not in pairs.cl:
             continue
-        motion = int(pairs.nc[pair])
+        motion = pairs.nc[pairs.cl.before(row)]
         if run.kind[motion] != Kind.ARC or motion == 0:
             continue
         m = int(np.searchsorted(run.arcs.row, motion))
@@ -127,7 +120,8 @@ def _circles(case: Case) -> list[Place]:
         if run.arcs.turns[m] != wanted.arcs.turns[k]:
             text = f"makes {run.arcs.turns[m]} whole turns besides; the CL file wants {wanted.arcs.turns[k]}"
             places.append(case.place(motion, 0.0, text, row))
-        arm = run.arcs.centre[m] - run.tip[motion - 1] - (wanted.arcs.centre[k] - wanted.tip[row - 1])
+        start = run.poses(np.array([motion - 1])).tip[0]
+        arm = run.arcs.centre[m] - start - (wanted.arcs.centre[k] - wanted.point(row - 1).tip)
         arm = arm - (arm @ normal) * normal
         off = float(np.abs(arm).max())
         allowed = wanted.part_of(row).allowed.tip
@@ -145,12 +139,12 @@ def feed(case: Case) -> Check:
     places: list[Place] = []
     count = 0
     seen: tuple[float, float] = (np.inf, -np.inf)
-    for nc, cl, _ in _chunks(case):
-        cuts = (run.kind[nc] != Kind.RAPID) & (wanted.kind[cl] != Kind.RAPID)
-        rate, per_rev = run.feed[nc], wanted.per_rev[cl]
-        asked = wanted.feed[cl]
+    for nc, cl in pairs.chunks():
+        cuts = (run.kind[nc] != Kind.RAPID) & (wanted.kind(cl) != Kind.RAPID)
+        rate, per_rev = run.state.feed.at(nc), wanted.per_rev(cl)
+        asked = wanted.feed(cl)
         allowed: float | Floats = max(part.allowed.feed for part in wanted.parts) + 1e-9
-        mode = run.feed_mode[nc]
+        mode = run.state.feed_mode.at(nc)
         if (mode == 93).any():
             rate, allowed = _inverse_time(run, nc, mode, rate), np.where(mode == 93, 1e-3 * asked, allowed)
         wrong = cuts & ((mode == 95) != per_rev)
@@ -169,32 +163,37 @@ def feed(case: Case) -> Check:
             text = f"moves with {has}; the CL file wants {asked[k]:g} {want}"
             places.append(case.place(int(nc[k]), float(rate[k]), text, int(cl[k])))
     for pieces in pairs.pieces:
-        asked_here = float(wanted.feed[pieces.cl])
-        off = np.abs(run.feed[pieces.nc] - asked_here) > wanted.part_of(pieces.cl).allowed.feed + 1e-9
-        for row in pieces.nc[off & (run.feed_mode[pieces.nc] != 93)].tolist():
+        asked_here = wanted.point(pieces.cl).feed
+        off = np.abs(run.state.feed.at(pieces.nc) - asked_here) > wanted.part_of(pieces.cl).allowed.feed + 1e-9
+        for row in pieces.nc[off & (run.state.feed_mode.at(pieces.nc) != 93)].tolist():
             count += 1
-            text = f"moves with F{run.feed[row]:g}; the CL file wants {asked_here:g}"
-            places.append(case.place(int(row), float(run.feed[row]), text, pieces.cl))
+            has_here = run.state.feed[row]
+            text = f"moves with F{has_here:g}; the CL file wants {asked_here:g}"
+            places.append(case.place(row, has_here, text, pieces.cl))
     good = "nothing is cut" if seen[0] > seen[1] else f"{seen[0]:g} to {seen[1]:g}, as the CL file says"
     return judged("feed", "feeds as the CL file says", places, good, count)
 
 
 def _inverse_time(run: Run, nc: Ints, mode: Codes, rate: Floats) -> Floats:
     """Feeds in mm/min, where they are said as blocks a minute."""
-    before = run.tip[np.maximum(nc - 1, 0)]
-    length = np.sqrt(((run.tip[nc] - before) ** 2).sum(axis=1))
+    length = np.sqrt(((run.poses(nc).tip - run.poses(nc - 1).tip) ** 2).sum(axis=1))
     return np.asarray(np.where(mode == 93, rate * length, rate))
 
 
 def _part(case: Case, stretch: Stretch) -> tuple[int, int]:
     """Which pairs belong to a stretch of CL rows."""
     assert case.pairs is not None
-    first, end = np.searchsorted(case.pairs.cl, [stretch.first, stretch.end])
-    return int(first), int(end)
+    return case.pairs.cl.before(stretch.first), case.pairs.cl.before(stretch.end)
 
 
-def _first_wrong(wrong: Flags, first: int) -> int | None:
-    return first + int(np.argmax(wrong)) if len(wrong) and wrong.any() else None
+def _first_wrong(pairs: Pairs, first: int, end: int, wrong: Callable[[Ints], Flags]) -> tuple[int, int] | None:
+    """The first pair of some, as rows of run and CL files, whose rows of the run are wrong."""
+    for nc, cl in pairs.chunks(first, end):
+        found = wrong(nc)
+        if found.any():
+            k = int(np.argmax(found))
+            return int(nc[k]), int(cl[k])
+    return None
 
 
 def spindle(case: Case) -> Check:
@@ -210,20 +209,14 @@ def spindle(case: Case) -> Check:
         if not isinstance(want, Spindle) or first == end:
             continue
         asked.add(want)
-        nc = pairs.nc[first:end]
-        turns = run.spindle[nc].astype(np.int64)
-        wrong = turns != want.sense
-        if want.sense == 0 and case.after(int(nc[0])) != nc[0]:
-            wrong[0] &= run.spindle[case.after(int(nc[0]))] != 0  # M5 acts after the motion of its block
-        if want.sense:
-            wrong |= np.abs(run.rpm[nc] - want.rpm) > _RPM
-        bad = _first_wrong(wrong, first)
+        if want.sense == 0 and _stops_after(case, pairs.nc[first]):
+            first += 1
+        bad = _first_wrong(pairs, first, end, partial(_turns_otherwise, run, want))
         if bad is not None:
-            row = int(pairs.nc[bad])
-            has, should = _turning(float(run.rpm[row]), int(run.spindle[row])), _turning(want.rpm, want.sense)
-            places.append(
-                case.place(row, float(run.rpm[row]), f"{has}; the CL file wants {should}", int(pairs.cl[bad]))
-            )
+            row, cl = bad
+            rpm = run.state.rpm[row]
+            has, should = _turning(rpm, run.state.spindle[row]), _turning(want.rpm, want.sense)
+            places.append(case.place(row, rpm, f"{has}; the CL file wants {should}", cl))
     senses = {"clockwise": 1, "counter-clockwise": -1}
     for event in run.events if asked else ():
         if event.kind == "spindle":
@@ -237,6 +230,19 @@ def spindle(case: Case) -> Check:
     good = ", ".join(_turning(want.rpm, want.sense) for want in sorted(asked, key=lambda w: (w.rpm, w.sense)))
     places.sort(key=lambda place: place.nc_line)
     return judged("spindle", "spindle as the CL file says", places, good or "the CL file says nothing of a spindle")
+
+
+def _stops_after(case: Case, row: int) -> bool:
+    """Whether the spindle stands after a row: M5 acts after the motion of its block."""
+    after = case.after(row)
+    return after != row and case.run.state.spindle[after] == 0
+
+
+def _turns_otherwise(run: Run, want: Spindle, nc: Ints) -> Flags:
+    wrong = run.state.spindle.at(nc) != want.sense
+    if want.sense:
+        wrong |= np.abs(run.state.rpm.at(nc) - want.rpm) > _RPM
+    return np.asarray(wrong)
 
 
 def _turning(rpm: float, sense: int) -> str:
@@ -261,26 +267,17 @@ def tool(case: Case) -> Check:
             continue
         known.append(names)
         right = [k for k, text in enumerate(run.tools) if _is_tool(text, names)]
-        bad = _first_wrong(~np.isin(run.tool[pairs.nc[first:end]], right), first)
+        bad = _first_wrong(pairs, first, end, partial(_holds_another, run, right))
         if bad is not None:
-            row = int(pairs.nc[bad])
-            has = run.tools[run.tool[row]] or "no tool"
+            row, cl = bad
+            has = run.tools[run.state.tool[row]] or "no tool"
             text = f"tool {has} is in the spindle; the CL file wants {names[0]}"
-            places.append(case.place(row, 0.0, text, int(pairs.cl[bad])))
+            places.append(case.place(row, 0.0, text, cl))
             calls = [e for e in run.events if e.kind in ("tool", "tool_change") and e.before_row <= row]
             if calls:
                 places.append(case.at(calls[-1], 0.0, f"{text}: this is the last word on it"))
     if settings.edge is not None:
-        for nc, cl, _ in _chunks(case):
-            bad = _first_wrong(run.edge[nc] != settings.edge, 0)
-            if bad is not None:
-                text = f"works with D{run.edge[nc[bad]]}, not with D{settings.edge}"
-                places.append(case.place(int(nc[bad]), 0.0, text, int(cl[bad])))
-                break
-        strange = (run.edge > 0) & (run.edge != settings.edge) & run.machine_frame
-        if strange.any():
-            row = int(np.argmax(strange))
-            places.append(case.place(row, 0.0, f"D{run.edge[row]} is not the edge of this tool, D{settings.edge}"))
+        places += _edges(case, pairs, settings.edge)
     for event in run.events if known else ():
         if event.kind == "tool_change":
             text = str(event.value or "")
@@ -288,6 +285,27 @@ def tool(case: Case) -> Check:
                 places.append(case.at(event, 0.0, f"changes to tool {text}, which the CL file never asks for"))
     good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in known)) or "the CL file names no tool"
     return judged("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
+
+
+def _holds_another(run: Run, right: list[int], nc: Ints) -> Flags:
+    return ~np.isin(run.state.tool.at(nc), right)
+
+
+def _edges(case: Case, pairs: Pairs, asked: int) -> list[Place]:
+    """The first motion under another cutting edge, and the first one home under one that is neither none nor it."""
+    used = case.run.state.edge
+    places: list[Place] = []
+    bad = _first_wrong(pairs, 0, len(pairs.nc), lambda nc: used.at(nc) != asked)
+    if bad is not None:
+        row, cl = bad
+        places.append(case.place(row, 0.0, f"works with D{used[row]}, not with D{asked}", cl))
+    rows = case.run.state.machine_frame.where(True)
+    edges = used.at(rows)
+    strange = rows[(edges > 0) & (edges != asked)]
+    if len(strange):
+        row = int(strange[0])
+        places.append(case.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{asked}"))
+    return places
 
 
 def _is_tool(text: str, names: tuple[str, ...]) -> bool:
@@ -314,7 +332,7 @@ def coolant(case: Case) -> Check:
             unread.add(word)
             continue
         asked.add(want)
-        begin, stop = int(pairs.nc[first]), int(pairs.nc[end - 1])
+        begin, stop = pairs.nc[first], pairs.nc[end - 1]
         if want == "off":
             begin += 1  # M9 acts after the motion of its block
         k = int(np.searchsorted(rows, begin, "right"))
@@ -324,7 +342,7 @@ def coolant(case: Case) -> Check:
             continue
         if _differs(now, want, unread):
             text = f"coolant is {now}; the CL file wants {want}"
-            places.append(case.place(begin, 0.0, text, int(pairs.cl[first])))
+            places.append(case.place(begin, 0.0, text, pairs.cl[first]))
         elif any(_differs(state, want, unread) for state in inside):
             row = next(r for r, state, _ in changes[k:] if r <= stop and _differs(state, want, unread))
             text = f"coolant changes; the CL file wants {want}"
@@ -344,31 +362,39 @@ def _differs(state: str, want: str, unread: set[str]) -> bool:
 def offset(case: Case) -> Check:
     """One work offset wherever the tool works, and the one that was asked for."""
     run, settings = case.run, case.settings
-    rows = case.pairs.nc if case.pairs is not None else np.flatnonzero(~run.machine_frame)
+    used, tcp = run.state.offset, run.state.tcp
+    rows = case.pairs.nc if case.pairs is not None else _at_the_part(run)
     title = "one work offset throughout"
     if not len(rows):
         return Check("offset", title, True, "nothing moves")
     want = settings.work_offset
     if want is None:
-        want = int(run.offset[rows[-1]]) if case.pairs is None else int(run.offset[rows[0]])
+        want = used[rows[-1]] if case.pairs is None else used[rows[0]]
     places: list[Place] = []
     count = 0
     for start in range(0, len(rows), CHUNK):
-        part = rows[start : start + CHUNK]
-        used = run.offset[part]
-        wrong = (used != want) & ~((used == 0) & ~run.tcp[part] & (case.pairs is None))
+        part = rows.part(start, start + CHUNK)
+        here = used.at(part)
+        wrong = (here != want) & ~((here == 0) & ~tcp.at(part) & (case.pairs is None))
         if wrong.any():
             bad = part[wrong]
             count += len(bad)
             places += [
-                case.place(int(row), 0.0, f"works in {_offset(int(run.offset[row]))}, not in {_offset(want)}")
-                for row in bad[: max(NAMED - len(places), 0)]
+                case.place(row, 0.0, f"works in {_offset(used[row])}, not in {_offset(want)}")
+                for row in bad[: max(NAMED - len(places), 0)].tolist()
             ]
-    used_at_all = {int(event) for event in np.unique(run.offset).tolist()} - {0, want}
-    if used_at_all and not places:
-        row = int(np.argmax(np.isin(run.offset, list(used_at_all))))
-        places.append(case.place(row, 0.0, f"{_offset(int(run.offset[row]))} is not the offset of this program"))
+    others = set(used.used().tolist()) - {0, want}
+    if others and not places:
+        row = min(int(used.where(code)[0]) for code in others)
+        places.append(case.place(row, 0.0, f"{_offset(used[row])} is not the offset of this program"))
     return judged("offset", title, places, f"{_offset(want)} throughout", count or None)
+
+
+def _at_the_part(run: Run) -> Rows:
+    """Rows that are not in the machine's frame."""
+    frame = run.state.machine_frame
+    pieces = range(0, len(run), CHUNK)
+    return Rows.where((start, ~frame.part(start, min(start + CHUNK, len(run)))) for start in pieces)
 
 
 def _offset(code: int) -> str:
@@ -382,10 +408,11 @@ def home(case: Case) -> Check:
     """
     run, machine = case.run, case.run.machine
     title = "retreats to the machine's home"
-    rows = np.flatnonzero(run.machine_frame)
+    rows = run.state.machine_frame.where(True)
     if not len(rows):
         return Check("home", title, True, "the program does not go home")
-    apart = run.joints[rows] - machine.home
+    joints, before = run.poses(rows).joints, run.poses(rows - 1).joints
+    apart = joints - machine.home
     for k, axis in enumerate(machine.axes):
         if axis.endless:
             apart[:, k] -= 360.0 * np.rint(apart[:, k] / 360.0)
@@ -412,7 +439,7 @@ def home(case: Case) -> Check:
             places.append(case.place(row, 0.0, "moves home at feed, not at rapid"))
         if row != last + 1:
             before_retreat = True
-        moved = np.abs(run.joints[row] - (run.joints[row - 1] if row else run.start)) > _HOME
+        moved = np.abs(joints[k] - before[k]) > _HOME
         if before_retreat and len(axes) > 1 and (moved.any() or row == 0):
             text = f"moves {' and '.join(axes)} home before the tool has been drawn back along one slide"
             places.append(case.place(row, 0.0, text))

@@ -28,7 +28,7 @@ def modal(case: Case) -> Check:
     places += _low_rapids(case)
     end = next((event for event in run.events if event.kind == "end"), None)
     if end is None and len(run):
-        last = max(case.last_line, int(run.block[-1]))
+        last = max(case.last_line, run.blocks[-1])
         places.append(Place(last, -1, 0.0, "the program has no end (M30 or M2) after this"))
     for event in run.events:
         if event.kind == "tool_change" and 0 < event.before_row <= len(run) and _spindle_at(run, event.before_row):
@@ -54,14 +54,13 @@ def _without_feed_or_spindle(case: Case) -> list[Place]:
     places: list[Place] = []
     found = {"no feed": False, "spindle off": False}
     for start in range(0, len(run), CHUNK):
-        part = slice(start, start + CHUNK)
-        cuts = run.kind[part] != Kind.RAPID
-        faults = {"no feed": cuts & ~(run.feed[part] > 0.0)}
+        end = min(start + CHUNK, len(run))
+        cuts = run.kind[start:end] != Kind.RAPID
+        faults = {"no feed": cuts & ~(run.state.feed.part(start, end) > 0.0)}
         # With a CL file it says where the spindle turns; some tools do not.
         if case.wanted is None:
-            faults["spindle off"] = (
-                cuts & ((run.spindle[part] == 0) | (run.rpm[part] <= 0.0)) & ~run.machine_frame[part]
-            )
+            off = (run.state.spindle.part(start, end) == 0) | (run.state.rpm.part(start, end) <= 0.0)
+            faults["spindle off"] = cuts & off & ~run.state.machine_frame.part(start, end)
         for what, rows in faults.items():
             if not found[what] and rows.any():
                 found[what] = True
@@ -73,14 +72,15 @@ def _without_feed_or_spindle(case: Case) -> list[Place]:
 def _tcp_left_on(case: Case) -> list[Place]:
     run = case.run
     places = []
-    wrong = run.tcp & run.machine_frame
-    if wrong.any():
-        places.append(case.place(int(np.argmax(wrong)), 0.0, "moves in the machine's frame with TCP on"))
+    frame = run.state.machine_frame.where(True)
+    wrong = frame[run.state.tcp.at(frame)]
+    if len(wrong):
+        places.append(case.place(int(wrong[0]), 0.0, "moves in the machine's frame with TCP on"))
     for event in run.events:
         if event.kind not in ("tool_change", "end"):
             continue
         row = event.before_row - 1
-        if 0 <= row < len(run) and run.tcp[row] and not _switched_off(run, row, event):
+        if 0 <= row < len(run) and run.state.tcp[row] and not _switched_off(run, row, event):
             what = "changes the tool" if event.kind == "tool_change" else "ends the program"
             places.append(case.at(event, 0.0, f"{what} with TCP on"))
     return places
@@ -88,30 +88,29 @@ def _tcp_left_on(case: Case) -> list[Place]:
 
 def _switched_off(run: Run, row: int, event: Happening) -> bool:
     """Whether TCP is switched off between a motion and what happens after it; rows do not tell, the text does."""
-    if run.file[row] != event.file:
-        return row + 1 < len(run) and not run.tcp[row + 1]
-    first, last = int(run.block[row]), event.line
+    if run.state.file[row] != event.file:
+        return row + 1 < len(run) and not run.state.tcp[row + 1]
+    first, last = run.blocks[row], event.line
     try:
         with Path(run.files[event.file]).open(encoding="utf-8", errors="replace") as text:
             between = list(islice(text, first - 1, max(last, first)))
     except OSError:
-        return row + 1 < len(run) and not run.tcp[row + 1]
+        return row + 1 < len(run) and not run.state.tcp[row + 1]
     return any("TRAFOOF" in line.partition(";")[0].upper() for line in between)
 
 
 def _turned_under_tcp(case: Case) -> list[Place]:
     """Rapids that swing rotary axes although TCP has only just been switched on: they were not placed before it."""
     run = case.run
-    on = np.flatnonzero(run.tcp & ~np.concatenate(([False], run.tcp[:-1])))
     places = []
-    for first in on.tolist():
+    for first in run.state.tcp.begins(True):
         end = min(first + 16, len(run))
+        turns = np.abs(np.diff(run.stretch(first, end).joints[:, list(run.machine.rotary)], axis=0)).max(axis=1)
         for row in range(first, end):
-            if run.kind[row] != Kind.RAPID or not run.tcp[row]:
+            if run.kind[row] != Kind.RAPID or not run.state.tcp[row]:
                 break
-            before = run.joints[row - 1] if row else run.start
-            turned = max(abs(float(run.joints[row, c] - before[c])) for c in run.machine.rotary)
-            if turned > _TURNED and not run.machine_frame[row]:
+            turned = float(turns[row - first])
+            if turned > _TURNED and not run.state.machine_frame[row]:
                 text = f"swings a rotary axis by {turned:.3f} degrees at rapid with TCP on: place it before TRAORI"
                 places.append(case.place(row, turned, text))
             if run.programmed[row] & int(PLACES):
@@ -122,29 +121,31 @@ def _turned_under_tcp(case: Case) -> list[Place]:
 def _low_rapids(case: Case) -> list[Place]:
     """Rapids that go sideways below the height to which the tool was last drawn back, and that no CL file asks for."""
     run = case.run
-    rapid = (run.kind == Kind.RAPID) & ~run.machine_frame
+    rapids = np.flatnonzero(run.kind == Kind.RAPID)
+    rapids = rapids[~run.state.machine_frame.at(rapids)]
+    suspect = np.zeros(len(run), np.bool_)
+    suspect[rapids] = True
     if case.pairs is not None:
         assert case.wanted is not None
-        asked = case.wanted.kind[case.pairs.cl] == Kind.RAPID
-        rapid[case.pairs.nc[asked]] = False
-    rows = np.flatnonzero(rapid)
-    if not len(rows):
+        for nc, cl in case.pairs.chunks():
+            suspect[nc[case.wanted.kind(cl) == Kind.RAPID]] = False
+    if not suspect.any():
         return []
-    every = np.flatnonzero((run.kind == Kind.RAPID) & ~run.machine_frame & ((run.programmed & int(PLACES)) != 0))
+    every = rapids[(run.programmed[rapids] & int(PLACES)) != 0]
+    before, after, tools = run.poses(np.maximum(every - 1, 0)), run.poses(every), run.state.tool.at(every)
     places: list[Place] = []
     height: float | None = None
-    suspects = set(rows.tolist())
     axis = np.zeros(3)
     tool = -1
-    for row in every.tolist():
-        if np.abs(run.axis[row] - axis).max() > 1e-6 or run.tool[row] != tool:
-            height, axis, tool = None, run.axis[row], int(run.tool[row])
-        here, there = run.tip[row - 1] if row else run.tip[row], run.tip[row]
+    for k, row in enumerate(every.tolist()):
+        if np.abs(after.axis[k] - axis).max() > 1e-6 or tools[k] != tool:
+            height, axis, tool = None, after.axis[k], int(tools[k])
+        here, there = before.tip[k], after.tip[k]
         way = there - here
         up = float(way @ axis)
         aside = float(np.linalg.norm(way - up * axis))
         high = max(float(here @ axis), float(there @ axis))
-        if row in suspects and height is not None and aside > _MOVED and high < height - _MOVED:
+        if suspect[row] and height is not None and aside > _MOVED and high < height - _MOVED:
             text = f"rapid goes sideways {height - high:.3f} mm below the retract height"
             places.append(case.place(row, height - high, text))
             if len(places) >= NAMED:

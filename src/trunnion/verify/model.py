@@ -47,7 +47,9 @@ class Check:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verification:
-    """Everything that was found out about one program; columns have one row a motion of ``run``.
+    """Everything that was found out about one program.
+
+    Columns have one row a motion of ``run``, or none at all if nobody asked for them.
 
     seconds   (n,)   float64   time that the row takes: its length at its feed, or the slowest axis at its rapid speed
     tip_feed  (n,)   float64   speed of the tip over the part, mm/min

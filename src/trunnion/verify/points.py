@@ -9,7 +9,7 @@ stands. That says what each rotary axis is off by, with the forward map alone, a
 """
 
 import math
-from collections.abc import Iterator
+from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Final
 
@@ -18,9 +18,9 @@ from numba import njit
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machine import Machine
-from trunnion.reader import Run
-from trunnion.verify.align import CHUNK, Pairs
-from trunnion.verify.wanted import Wanted
+from trunnion.reader import Poses
+from trunnion.verify.align import Pairs
+from trunnion.verify.wanted import Part, Wanted
 
 #: What the two maps, there and back, may differ by, rad.
 _NOISE: Final = 1e-11
@@ -46,31 +46,40 @@ class Off:
     count: int
 
 
-def deviations(run: Run, wanted: Wanted, pairs: Pairs, named: int) -> tuple[Off, Off]:
-    """Tip and tool axis; of what is off, ``named`` pairs are named."""
-    tip, axis = _Gatherer(named), _Gatherer(named)
-    frame = Tilt.of(run.machine)
-    off_tip, off_axis = np.empty(CHUNK), np.empty(CHUNK)
-    for start, end, tip_limit, angle_limit in _chunks(wanted, pairs):
-        nc, cl = pairs.nc[start:end], pairs.cl[start:end]
-        count = end - start
+class Deviations:
+    """Tip and tool axis of all pairs, gathered as a run goes by; of what is off, ``named`` pairs are named."""
+
+    def __init__(self, machine: Machine, wanted: Wanted, pairs: Pairs, named: int) -> None:
+        self._wanted, self._pairs = wanted, pairs
+        self._tip, self._axis = _Gatherer(named), _Gatherer(named)
+        self._frame = Tilt.of(machine)
+        self._ends = [pairs.cl.before(part.end) for part in wanted.parts]
+
+    def take(self, first: int, end: int, poses: Poses) -> None:
+        """Add the pairs of the rows from ``first`` on, in order; ``poses`` is the ``Run.stretch`` of them."""
+        start, stop = self._pairs.nc.before(first), self._pairs.nc.before(end)
+        while start < stop:
+            k = bisect_right(self._ends, start)
+            count = min(stop, self._ends[k]) - start
+            self._compare(start, count, first, poses, self._wanted.parts[k])
+            start += count
+
+    def _compare(self, start: int, count: int, first: int, poses: Poses, part: Part) -> None:
+        """Pairs of one operation."""
+        frame, moves = self._frame, part.operation.moves
+        nc = self._pairs.nc.part(start, start + count) - (first - 1)
+        cl = self._pairs.cl.part(start, start + count) - part.first
+        off_tip, off_axis = np.empty(count), np.empty(count)
         squares = compare_rows(
-            run.tip, run.axis, run.joints, wanted.tip, wanted.axis, nc, cl, frame.column, frame.sense, frame.first,
+            poses.tip, poses.axis, poses.joints, moves.tip, moves.axis, nc, cl, frame.column, frame.sense, frame.first,
             frame.second, _NOISE, _OPEN, off_tip, off_axis,
         )  # fmt: skip
-        tip.take(start, off_tip[:count], squares[0], tip_limit)
-        axis.take(start, off_axis[:count], squares[1], angle_limit)
-    return tip.off(), axis.off()
+        self._tip.take(start, off_tip, squares[0], part.allowed.tip)
+        self._axis.take(start, off_axis, squares[1], part.allowed.angle)
 
-
-def _chunks(wanted: Wanted, pairs: Pairs) -> Iterator[tuple[int, int, float, float]]:
-    """Pairs of one operation, a chunk at a time, with what is allowed there."""
-    ends = np.searchsorted(pairs.cl, [part.end for part in wanted.parts])
-    first = 0
-    for part, end in zip(wanted.parts, ends.tolist(), strict=True):
-        for start in range(first, end, CHUNK):
-            yield start, min(start + CHUNK, end), part.allowed.tip, part.allowed.angle
-        first = end
+    def found(self) -> tuple[Off, Off]:
+        """Tip and tool axis, when all rows have gone by."""
+        return self._tip.off(), self._axis.off()
 
 
 class _Gatherer:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from trunnion.arrays import Lines
 from trunnion.reader import Run
 from trunnion.toolpath import Toolpath
 from trunnion.verify import demands, modal
@@ -12,8 +13,8 @@ from trunnion.verify.align import Pairs, in_order, matched
 from trunnion.verify.arcs import Arc, turned
 from trunnion.verify.case import NAMED, Case, Settings
 from trunnion.verify.model import Check, Place, Verification
-from trunnion.verify.points import Off, deviations
-from trunnion.verify.walk import Walk, Worst, walk
+from trunnion.verify.points import Deviations, Off
+from trunnion.verify.walk import Walk, Walker, Worst
 from trunnion.verify.wanted import Allowed, Wanted
 
 #: Three coordinates off by one each are a point off by this.
@@ -26,6 +27,7 @@ def verify(
     *,
     allowed: Allowed | Sequence[Allowed] | None = None,
     settings: Settings | None = None,
+    columns: bool = True,
 ) -> Verification:
     """Put every question to a program.
 
@@ -39,6 +41,9 @@ def verify(
         How far it may be from its CL points: one for all, or one for each operation that moves.
     settings
         What the CL files do not say.
+    columns
+        Whether the columns of the result are wanted, as a report needs them. The checks do not: without, programs of
+        any length take the memory of the run and a few chunks.
 
     Raises
     ------
@@ -48,36 +53,54 @@ def verify(
     settings = settings or Settings()
     checks: list[Check] = []
     wanted = Wanted(toolpaths, allowed or Allowed()) if toolpaths else None
+    walker = Walker(run, NAMED, math.inf if settings.span is None else settings.span, times=columns)
     pairs = None
     if wanted is not None:
-        pairs, off_tip, off_axis = _paired(run, wanted)
+        pairs, off_tip, off_axis = _paired(run, wanted, walker)
         case = Case(run, wanted, pairs, settings)
         checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis)]
         checks += [demands.kind(case), demands.feed(case), demands.spindle(case), demands.tool(case)]
         checks += [demands.coolant(case), demands.offset(case), demands.home(case)]
     else:
+        _go_by(run, walker)
         case = Case(run, None, None, settings)
         checks.append(demands.offset(case))
-    way = walk(run, NAMED, math.inf if settings.span is None else settings.span)
+    way = walker.walked()
     checks += [_span(case, way), _travel(case, way), _speed(case, way), _acceleration(case, way)]
     checks += [modal.modal(case), modal.words(case)]
-    cl_line = np.zeros(len(run), np.int32)
-    if wanted is not None and pairs is not None:
-        cl_line[pairs.nc] = wanted.line[pairs.cl]
-        for pieces in pairs.pieces:
-            cl_line[pieces.nc] = wanted.line[pieces.cl]
+    cl_line = _cl_lines(case) if columns else np.zeros(0, np.int32)
     return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line)
 
 
-def _paired(run: Run, wanted: Wanted) -> tuple[Pairs, Off, Off]:
-    """Partners and how far they are apart: by counting if that fits, else by position."""
-    pairs = in_order(run, wanted)
-    if pairs is not None:
-        tip, axis = deviations(run, wanted, pairs, NAMED)
-        if not tip.count and not axis.count:
-            return pairs, tip, axis
-    pairs = matched(run, wanted)
-    return pairs, *deviations(run, wanted, pairs, NAMED)
+def _cl_lines(case: Case) -> Lines:
+    """Line of the CL file that each row answers to, (n,), 0 where there is none."""
+    lines = np.zeros(len(case.run), np.int32)
+    if case.wanted is not None and case.pairs is not None:
+        for nc, cl in case.pairs.chunks():
+            lines[nc] = case.wanted.line(cl)
+        for pieces in case.pairs.pieces:
+            lines[pieces.nc] = case.wanted.point(pieces.cl).line
+    return lines
+
+
+def _go_by(run: Run, *each: Walker | Deviations) -> None:
+    """Show all rows of a run to whoever looks at them, a chunk at a time, while it is in the processor's cache."""
+    for first, end, poses in run.stretches():
+        for one in each:
+            one.take(first, end, poses)
+
+
+def _paired(run: Run, wanted: Wanted, walker: Walker) -> tuple[Pairs, Off, Off]:
+    """Partners and how far they are apart: by counting if that fits, else by position. The walker goes along."""
+    counted = in_order(run, wanted)
+    pairs = counted or matched(run, wanted)
+    off = Deviations(run.machine, wanted, pairs, NAMED)
+    _go_by(run, walker, off)
+    if counted and any(one.count for one in off.found()):
+        pairs = matched(run, wanted)
+        off = Deviations(run.machine, wanted, pairs, NAMED)
+        _go_by(run, off)
+    return pairs, *off.found()
 
 
 def _tip(case: Case, off: Off) -> Check:
@@ -86,23 +109,23 @@ def _tip(case: Case, off: Off) -> Check:
     assert pairs is not None
     places = []
     for k, value in off.bad:
-        row, cl = int(pairs.nc[k]), int(pairs.cl[k])
-        is_, want = case.run.tip[row], wanted.tip[cl]
+        row, cl = pairs.nc[k], pairs.cl[k]
+        is_, want = case.run.poses(np.array([row])).tip[0], wanted.point(cl).tip
         axes = [
             f"{name}{now:.5f} for {then:.5f}"
             for name, now, then in zip("XYZ", is_, want, strict=True)
             if not abs(now - then) <= off.limit
         ]
-        inches = " (the program counts in inches here)" if case.run.inches[row] else ""
+        inches = " (the program counts in inches here)" if case.run.state.inches[row] else ""
         places.append(case.place(row, value, f"the tip is {value:.6f} mm off: {', '.join(axes)}{inches}", cl))
     count = off.count
     if places:
-        first = min(int(pairs.nc[k]) for k, _ in off.bad)
-        by = None if case.run.tcp[first] else case.turned_by(first)
+        first = min(pairs.nc[k] for k, _ in off.bad)
+        by = None if case.run.state.tcp[first] else case.turned_by(first)
         places += [by] if by is not None else []
     for pieces in pairs.pieces:
         part = wanted.part_of(pieces.cl)
-        away = np.sqrt((pieces.arc.deviation(case.run.tip[pieces.nc]) ** 2).sum(axis=1))
+        away = np.sqrt((pieces.arc.deviation(case.run.poses(pieces.nc).tip) ** 2).sum(axis=1))
         for k in np.flatnonzero(away > _DIAGONAL * part.allowed.tip + 1e-6 + _ragged(pieces.arc)).tolist():
             count += 1
             text = f"the tip is {away[k]:.6f} mm off the arc that the CL file asks for"
@@ -122,22 +145,20 @@ def _axis(case: Case, off: Off) -> Check:
     assert pairs is not None
     places = []
     for k, value in off.bad:
-        row = int(pairs.nc[k])
         text = f"the tool axis is off, a rotary axis by {value:.6f} degrees"
-        places.append(case.place(row, value, text, int(pairs.cl[k])))
+        places.append(case.place(pairs.nc[k], value, text, pairs.cl[k]))
     count = off.count
     if places:
-        by = case.turned_by(min(int(pairs.nc[k]) for k, _ in off.bad))
+        by = case.turned_by(min(pairs.nc[k] for k, _ in off.bad))
         places += [by] if by is not None else []
     assert case.wanted is not None
     for pieces in pairs.pieces:
         arc, part = pieces.arc, case.wanted.part_of(pieces.cl)
-        begin, end = case.wanted.axis[pieces.cl - 1], case.wanted.axis[pieces.cl]
-        fraction = arc.fractions(case.run.tip[pieces.nc])
+        begin, end = case.wanted.point(pieces.cl - 1).axis, case.wanted.point(pieces.cl).axis
+        is_ = case.run.poses(pieces.nc)
+        fraction = arc.fractions(is_.tip)
         total = 2.0 * float(np.arcsin(min(0.5 * float(np.linalg.norm(end - begin)), 1.0)))
-        away = 2.0 * np.arcsin(
-            np.minimum(0.5 * np.linalg.norm(case.run.axis[pieces.nc] - turned(begin, end, fraction), axis=1), 1.0)
-        )
+        away = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(is_.axis - turned(begin, end, fraction), axis=1), 1.0))
         # Where on the arc a rounded point is, is known no better than this.
         unsure = total * _DIAGONAL * part.allowed.tip / max(arc.radius * arc.sweep, 1e-9)
         limit = _DIAGONAL * part.allowed.angle + np.degrees(unsure) + 1e-6
@@ -171,7 +192,8 @@ def _span(case: Case, way: Walk) -> Check:
     chord, row_of_chord = 0.0, -1
     if case.pairs is not None:
         for pieces in case.pairs.pieces:
-            fraction = np.diff(np.concatenate(([0.0], pieces.arc.fractions(case.run.tip[pieces.nc]), [1.0])))
+            tips = case.run.poses(pieces.nc).tip
+            fraction = np.diff(np.concatenate(([0.0], pieces.arc.fractions(tips), [1.0])))
             sag = pieces.arc.radius * (1.0 - np.cos(0.5 * np.abs(fraction) * pieces.arc.sweep))
             if len(sag) and sag.max() > chord:
                 chord, row_of_chord = float(sag.max()), int(pieces.nc[min(int(np.argmax(sag)), len(pieces.nc) - 1)])

@@ -18,10 +18,9 @@ import numpy as np
 from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
-from trunnion.machine import forward
-from trunnion.reader import Orientation, Run
+from trunnion.machine import Machine, forward
+from trunnion.reader import Orientation, Poses, Run
 from trunnion.toolpath import Kind
-from trunnion.verify.align import CHUNK
 
 #: Rotary motion below this, degrees, bends nothing.
 _STILL = 1e-9
@@ -62,8 +61,8 @@ class Worst:
 class Walk:
     """What a program makes the axes do.
 
-    seconds       (n,) float64
-    tip_feed      (n,) float64, mm/min
+    seconds       (n,) float64; no rows where times were not asked for
+    tip_feed      (n,) float64, mm/min; the same
     speed         share of an axis' rapid speed that a row at feed asks for, by axis; 1 is all of it
     acceleration  the same of its acceleration
     bend_axis     degrees between the tool axis half-way and the great circle, rows that cut
@@ -82,40 +81,60 @@ class Walk:
     places: Ints
 
 
-def walk(run: Run, named: int, span_limit: float = math.inf) -> Walk:
-    """Go through all rows of a run; of what is beyond a limit, ``named`` rows are named."""
-    machine = run.machine
-    n = len(run)
-    rapid = np.array([math.inf if axis.rapid is None else axis.rapid for axis in machine.axes])
-    acceleration = np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in machine.axes])
-    seconds, tip_feed = np.zeros(n), np.zeros(n)
-    speed, more = np.empty((5, min(n, CHUNK))), np.empty((5, min(n, CHUNK)))
-    bend = np.empty(min(n, CHUNK))
-    angles = run.orientation == Orientation.ANGLES
-    state = np.zeros(12)
-    state[:5] = run.start
-    state[6:9] = forward(machine, run.start[None])[0][0]
-    extremes = np.column_stack((np.full(5, math.inf), np.full(5, -math.inf)))
-    places = np.full((5, 2), -1, np.int64)
-    rotary = np.array([axis.is_rotary for axis in machine.axes])
-    arc_length = _arc_lengths(run)
-    speeds = tuple(Worst(1.0 + 1e-9, named) for _ in range(5))
-    accelerations = tuple(Worst(1.0 + 1e-9, named) for _ in range(5))
-    bend_axis, bend_tip = Worst(span_limit, named), Worst(math.inf, named)
-    for start in range(0, n, CHUNK):
-        end = min(start + CHUNK, n)
+class Walker:
+    """Goes through the rows of a run, stretch by stretch; of what is beyond a limit, ``named`` rows are named.
+
+    ``times``: whether the time of each row is wanted.
+    """
+
+    def __init__(self, run: Run, named: int, span_limit: float = math.inf, *, times: bool = True) -> None:
+        self._run = run
+        axes = run.machine.axes
+        self._rotary = np.array([axis.is_rotary for axis in axes])
+        self._rapid = np.array([math.inf if axis.rapid is None else axis.rapid for axis in axes])
+        self._acceleration = np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in axes])
+        self._arc_length = _arc_lengths(run)
+        self._state = np.zeros(7)
+        self._times = times
+        n = len(run) if times else 0
+        self._walk = Walk(
+            np.empty(n),
+            np.empty(n),
+            tuple(Worst(1.0 + 1e-9, named) for _ in axes),
+            tuple(Worst(1.0 + 1e-9, named) for _ in axes),
+            Worst(span_limit, named),
+            Worst(math.inf, named),
+            np.column_stack((np.full(5, math.inf), np.full(5, -math.inf))),
+            np.full((5, 2), -1, np.int64),
+        )
+
+    def take(self, first: int, end: int, poses: Poses) -> None:
+        """Add rows, in order; ``poses`` is the ``Run.stretch`` of them."""
+        run, walk, count = self._run, self._walk, end - first
+        state, kind, programmed = run.state, run.kind[first:end], run.programmed[first:end]
+        tcp, machine_frame = state.tcp.part(first, end), state.machine_frame.part(first, end)
+        angles = run.oriented(first, end) == Orientation.ANGLES
+        times, shares, bend = np.empty((2, count)), np.empty((2, 5, count)), np.empty(count)
         walk_rows(
-            start, end, run.joints, run.tip, run.kind, run.programmed, run.tcp, run.machine_frame, run.feed,
-            run.feed_mode, run.rpm, run.arcs.row, arc_length, rotary, rapid, acceleration, state, extremes, places,
-            seconds, tip_feed, speed, more, angles, bend,
+            first, poses.joints, poses.tip, kind, programmed, tcp, machine_frame, state.feed.part(first, end),
+            state.feed_mode.part(first, end), state.rpm.part(first, end), run.arcs.row, self._arc_length, self._rotary,
+            self._rapid, self._acceleration, self._state, walk.extremes, walk.places, times, shares, angles, bend,
         )  # fmt: skip
-        for k, axis in enumerate(machine.axes):
+        if self._times:
+            walk.seconds[first:end], walk.tip_feed[first:end] = times
+        for k, axis in enumerate(run.machine.axes):
             if axis.rapid is not None:
-                speeds[k].take(start, speed[k, : end - start])
+                walk.speed[k].take(first, shares[0, k])
             if axis.acceleration is not None:
-                accelerations[k].take(start, more[k, : end - start])
-        _bend(run, start, bend[: end - start], bend_axis, bend_tip)
-    return Walk(seconds, tip_feed, speeds, accelerations, bend_axis, bend_tip, extremes, places)
+                walk.acceleration[k].take(first, shares[1, k])
+        _bend_axis(run.machine, walk.bend_axis, first, poses, bend)
+        free = np.flatnonzero((bend > _STILL) & ~tcp & (kind == Kind.LINEAR))
+        if len(free):
+            walk.bend_tip.take(first, _off_tip(run.machine, poses, free, count))
+
+    def walked(self) -> Walk:
+        """Everything, when all rows have gone by."""
+        return self._walk
 
 
 def _arc_lengths(run: Run) -> Floats:
@@ -123,9 +142,8 @@ def _arc_lengths(run: Run) -> Floats:
     rows = run.arcs.row
     if not len(rows):
         return np.zeros(0)
-    first = forward(run.machine, run.start[None])[0]
-    start = np.where((rows > 0)[:, None], run.tip[rows - 1], first)
-    end, centre, normal = run.tip[rows], run.arcs.centre, run.arcs.normal
+    start, end = run.poses(rows - 1).tip, run.poses(rows).tip
+    centre, normal = run.arcs.centre, run.arcs.normal
     rise = np.einsum("ij,ij->i", end - start, normal)
     a, b = start - centre, end - centre
     across = np.einsum("ij,ij->i", np.cross(a, b), normal)
@@ -135,59 +153,60 @@ def _arc_lengths(run: Run) -> Floats:
     return np.asarray(np.hypot((angle + 2.0 * np.pi * run.arcs.turns) * run.arcs.radius, rise))
 
 
-def _bend(run: Run, start: int, most: Floats, bend_axis: Worst, bend_tip: Worst) -> None:
-    """How far the tool is off half-way through rows that cut and turn a rotary axis.
+def _bend_axis(machine: Machine, worst: Worst, first: int, poses: Poses, most: Floats) -> None:
+    """How far the tool axis is off half-way through rows that cut and turn a rotary axis.
 
     ``most`` (k,) is more than the tool axis can be off, degrees: rows that cannot be the worst are not worked out.
     """
-    needed = min(bend_axis.limit, bend_axis.value)
+    needed = min(worst.limit, worst.value)
     if len(most) > _FIRST:
         # The likeliest ones first: they raise what is needed.
         likely = np.argpartition(most, -_FIRST)[-_FIRST:]
-        off = _off_axis(run, start + likely)
-        needed = min(bend_axis.limit, max(bend_axis.value, float(off.max())))
+        needed = min(worst.limit, max(worst.value, float(_off_axis(machine, poses, likely).max())))
     rows = np.flatnonzero(most >= max(needed, _STILL))
     off = np.zeros(len(most))
-    off[rows] = _off_axis(run, start + rows)
-    bend_axis.take(start, off)
-    part = slice(start, start + len(most))
-    free = np.flatnonzero((most > _STILL) & ~run.tcp[part] & (run.kind[part] == Kind.LINEAR))
-    if len(free):
-        before = _before(run, start + free)
-        middle = forward(run.machine, 0.5 * (before + run.joints[start + free]))[0]
-        away = middle - 0.5 * (forward(run.machine, before)[0] + run.tip[start + free])
-        off[:] = 0.0
-        off[free] = np.nan_to_num(np.sqrt(np.einsum("ij,ij->i", away, away)))
-        bend_tip.take(start, off)
+    off[rows] = _off_axis(machine, poses, rows)
+    worst.take(first, off)
 
 
-def _before(run: Run, rows: Ints) -> Floats:
-    """Joints before rows, (k, 5)."""
-    before = run.joints[np.maximum(rows - 1, 0)]
-    before[rows == 0] = run.start
-    return before
-
-
-def _off_axis(run: Run, rows: Ints) -> Floats:
+def _off_axis(machine: Machine, poses: Poses, rows: Ints) -> Floats:
     """Degrees between the tool axis half-way through rows and the great circle from end to end, (k,)."""
-    if not len(rows):
-        return np.zeros(0)
-    begin = _before(run, rows)
-    axis = forward(run.machine, 0.5 * (begin + run.joints[rows]))[1]
-    middle = run.axis[np.maximum(rows - 1, 0)] + run.axis[rows]
-    first = np.flatnonzero(rows == 0)
-    if len(first):
-        middle[first] = forward(run.machine, begin[first])[1] + run.axis[0]
-    middle /= np.sqrt(np.einsum("ij,ij->i", middle, middle))[:, None]
-    axis -= middle
-    chord = np.sqrt(np.einsum("ij,ij->i", axis, axis))
-    return np.asarray(np.nan_to_num(np.degrees(2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0)))))
+    joints = poses.joints[rows]
+    joints += poses.joints[rows + 1]
+    joints *= 0.5
+    off = np.empty(len(rows))
+    beside_rows(poses.axis, rows, forward(machine, joints)[1], off)
+    return off
+
+
+def _off_tip(machine: Machine, poses: Poses, rows: Ints, count: int) -> Floats:
+    """Mm between the tip half-way through ``rows`` and its straight line; of all ``count`` rows, 0 in the others."""
+    middle = forward(machine, 0.5 * (poses.joints[rows] + poses.joints[rows + 1]))[0]
+    away = middle - 0.5 * (forward(machine, poses.joints[rows])[0] + poses.tip[rows + 1])
+    off = np.zeros(count)
+    off[rows] = np.nan_to_num(np.sqrt(np.einsum("ij,ij->i", away, away)))
+    return off
+
+
+@njit(cache=True)
+def beside_rows(axis: Floats, rows: Ints, half_way: Floats, off: Floats) -> None:
+    """Write ``off`` (k,): degrees from ``half_way`` (k, 3) to the middle of the great circle between two axes.
+
+    They are ``axis`` (n + 1, 3) at ``rows`` (k,) and at the rows after them. Opposite ones have no middle: 0.
+    """
+    for k in range(rows.shape[0]):
+        row = rows[k]
+        x, y, z = axis[row, 0] + axis[row + 1, 0], axis[row, 1] + axis[row + 1, 1], axis[row, 2] + axis[row + 1, 2]
+        length = math.sqrt(x * x + y * y + z * z)
+        off[k] = 0.0
+        if length > 0.0:
+            x, y, z = half_way[k, 0] - x / length, half_way[k, 1] - y / length, half_way[k, 2] - z / length
+            off[k] = math.degrees(2.0 * math.asin(min(1.0, 0.5 * math.sqrt(x * x + y * y + z * z))))
 
 
 @njit(cache=True)
 def walk_rows(
-    start: int,
-    end: int,
+    first: int,
     joints: Floats,
     tip: Floats,
     kind: Codes,
@@ -205,57 +224,51 @@ def walk_rows(
     state: Floats,
     extremes: Floats,
     places: Ints,
-    seconds: Floats,
-    tip_feed: Floats,
-    speed: Floats,
-    acceleration: Floats,
+    times: Floats,
+    shares: Floats,
     angles: Flags,
     bend: Floats,
 ) -> None:
-    """Go through rows ``start`` to ``end``.
+    """Go through k rows from row ``first`` on.
 
+    joints, tip   (k + 1, …)     with the place before the rows in front; all other columns have k rows
     rapid, most   (5,) float64   mm/min or deg/min, mm/s^2 or deg/s^2; infinite where not stated
-    state         (12,) float64  joints (5), minutes of the row before if it was at feed (else 0), tip (3), next arc
-    speed, acceleration  (5, k) float64  written: shares of ``rapid`` and ``most``, 0 for rapids
-    angles        (n,) bool      rotary axes go linearly, not the tool axis on a great circle
+    state         (7,) float64   minutes of the row before if it was at feed (else 0), next arc, speeds of that row (5)
+    times         (2, k) float64 written: seconds, and speed of the tip, mm/min
+    shares        (2, 5, k) float64  written: shares of ``rapid`` and ``most``, 0 for rapids
+    angles        (k,) bool      rotary axes go linearly, not the tool axis on a great circle
     bend          (k,) float64   written: more than the tool axis can be off half-way, degrees
 
     A curve whose second derivative is at most s is off its chord by at most s/8 half-way; here s is the square of the
     angles turned together, in radians. A little more allows for the chord's middle being nearer than the circle's.
     """
-    velocity = np.zeros(5)
-    minutes_before = state[5]
-    arc = int(state[9])
-    for k in range(5):
-        velocity[k] = 0.0
-    if minutes_before > 0.0 and start > 1:
-        for k in range(5):
-            velocity[k] = (joints[start - 1, k] - joints[start - 2, k]) / minutes_before
-    x, y, z = state[6], state[7], state[8]
-    for row in range(start, end):
+    velocity = state[2:]
+    minutes_before = state[0]
+    arc = int(state[1])
+    for at in range(kind.shape[0]):
+        row = first + at
         slowest = 0.0
         slides = 0.0
         turned = 0.0
         both = 0.0
+        placed = not machine_frame[at] and (tcp[at] or programmed[at] & 7)
         for k in range(5):
-            before = joints[row - 1, k] if row > 0 else state[k]
-            moved = abs(joints[row, k] - before)
+            value = joints[at + 1, k]
+            moved = abs(value - joints[at, k])
             slowest = max(slowest, moved / rapid[k])
             if rotary[k]:
                 turned = max(turned, moved)
                 both += moved
             else:
                 slides += moved * moved
-            if rotary[k] or (not machine_frame[row] and (tcp[row] or programmed[row] & 7)):
-                value = joints[row, k]
+            if rotary[k] or placed:
                 if value < extremes[k, 0]:
                     extremes[k, 0] = value
                     places[k, 0] = row
                 if value > extremes[k, 1]:
                     extremes[k, 1] = value
                     places[k, 1] = row
-        dx, dy, dz = tip[row, 0] - x, tip[row, 1] - y, tip[row, 2] - z
-        x, y, z = tip[row, 0], tip[row, 1], tip[row, 2]
+        dx, dy, dz = tip[at + 1, 0] - tip[at, 0], tip[at + 1, 1] - tip[at, 1], tip[at + 1, 2] - tip[at, 2]
         way = math.sqrt(dx * dx + dy * dy + dz * dz)
         while arc < arc_row.shape[0] and arc_row[arc] < row:
             arc += 1
@@ -263,37 +276,34 @@ def walk_rows(
         if on_arc:
             way = arc_length[arc]
         minutes = 0.0
-        if kind[row] != 0:
-            length = way if tcp[row] or on_arc else math.sqrt(slides)
+        if kind[at] != 0:
+            length = way if tcp[at] or on_arc else math.sqrt(slides)
             if length < 1e-9:
                 length = turned
-            rate = feed[row]
-            if feed_mode[row] == 95:
-                rate *= rpm[row]
-            elif feed_mode[row] == 93:
+            rate = feed[at]
+            if feed_mode[at] == 95:
+                rate *= rpm[at]
+            elif feed_mode[at] == 93:
                 rate *= length
             if rate > 0.0:
                 minutes = length / rate
         took = max(minutes, slowest)
-        seconds[row] = 60.0 * took
-        tip_feed[row] = way / took if took > 0.0 else 0.0
-        at = row - start
+        times[0, at] = 60.0 * took
+        times[1, at] = way / took if took > 0.0 else 0.0
         bend[at] = 0.0
-        if kind[row] != 0 and not machine_frame[row] and (angles[row] or not tcp[row]):
+        if kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
             bend[at] = both * both * (math.pi / 180.0) / 6.0 if both < 60.0 else 180.0
         for k in range(5):
-            speed[k, at] = 0.0
-            acceleration[k, at] = 0.0
+            shares[0, k, at] = 0.0
+            shares[1, k, at] = 0.0
             if minutes <= 0.0:
                 continue
-            before = joints[row - 1, k] if row > 0 else state[k]
-            now = (joints[row, k] - before) / minutes
-            speed[k, at] = abs(now) / rapid[k]
+            now = (joints[at + 1, k] - joints[at, k]) / minutes
+            shares[0, k, at] = abs(now) / rapid[k]
             if minutes_before > 0.0:
                 change = 2.0 * abs(now - velocity[k]) / (minutes + minutes_before)
-                acceleration[k, at] = change / 3600.0 / most[k]
+                shares[1, k, at] = change / 3600.0 / most[k]
             velocity[k] = now
         minutes_before = minutes
-    state[5] = minutes_before
-    state[6], state[7], state[8] = x, y, z
-    state[9] = arc
+    state[0] = minutes_before
+    state[1] = arc

@@ -1,15 +1,17 @@
 """What the CL files ask for, in one row of columns: all operations, seen from the coordinate system of the program.
 
 In:     toolpaths, in the order in which they are cut.
-Out:    the columns of all operations one after the other, and from which row on which spindle, tool and coolant hold.
+Out:    the rows of all operations one after the other, and from which row on which spindle, tool and coolant hold.
 Frame:  the coordinate system of the first operation that moves: it is the program's.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import InputError, Problem
@@ -19,6 +21,7 @@ from trunnion.toolpath import (
     CutterComp,
     Frame,
     Insert,
+    Kind,
     LoadTool,
     Moves,
     Operation,
@@ -88,8 +91,19 @@ class Stretch:
     value: object
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Point:
+    """One CL point; fields as the columns of ``trunnion.toolpath.Moves``."""
+
+    tip: Floats
+    axis: Floats
+    kind: Kind
+    feed: float
+    line: int
+
+
 class Wanted:
-    """All operations of a program. With one operation the columns are its own, otherwise copies end to end."""
+    """All operations of a program, end to end. Their columns stay where they are."""
 
     def __init__(self, toolpaths: Sequence[Toolpath], allowed: Allowed | Sequence[Allowed]) -> None:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
@@ -111,41 +125,48 @@ class Wanted:
     def __len__(self) -> int:
         return self.parts[-1].end
 
-    @cached_property
-    def tip(self) -> Floats:
-        """(n, 3) float64, mm."""
-        return self._joined("tip")
+    def tip(self, rows: Ints) -> Floats:
+        """Tips at growing rows, (k, 3), mm."""
+        return self._taken("tip", rows)
 
-    @cached_property
-    def axis(self) -> Floats:
-        """(n, 3) float64, unit vectors."""
-        return self._joined("axis")
+    def axis(self, rows: Ints) -> Floats:
+        """Tool axes at growing rows, (k, 3), unit vectors."""
+        return self._taken("axis", rows)
 
-    @cached_property
-    def kind(self) -> Codes:
-        """(n,) uint8, a ``Kind``."""
-        return self._joined("kind")  # type: ignore[return-value]
+    def kind(self, rows: Ints) -> Codes:
+        """Kinds at growing rows, (k,) uint8, a ``Kind``."""
+        return self._taken("kind", rows)
 
-    @cached_property
-    def feed(self) -> Floats:
-        """(n,) float64, mm/min or mm/rev."""
-        return self._joined("feed")
+    def feed(self, rows: Ints) -> Floats:
+        """Feeds at growing rows, (k,), mm/min or mm/rev."""
+        return self._taken("feed", rows)
 
-    @cached_property
-    def per_rev(self) -> Flags:
-        """(n,) bool."""
-        return self._joined("per_rev")  # type: ignore[return-value]
+    def per_rev(self, rows: Ints) -> Flags:
+        """Whether the feeds at growing rows are per turn, (k,)."""
+        return self._taken("per_rev", rows)
 
-    @cached_property
-    def line(self) -> Lines:
-        """(n,) int32, line of the CL file."""
-        return self._joined("line")  # type: ignore[return-value]
+    def line(self, rows: Ints) -> Lines:
+        """Lines of the CL file at growing rows, (k,) int32."""
+        return self._taken("line", rows)
 
-    def _joined(self, name: str) -> Floats:
-        columns = [getattr(part.operation.moves, name) for part in self.parts]
-        joined: Floats = columns[0] if len(columns) == 1 else np.concatenate(columns)
-        joined.setflags(write=False)
-        return joined
+    def _taken(self, name: str, rows: Ints) -> NDArray[Any]:
+        if len(rows) and rows[-1] < (part := self.part_of(int(rows[0]))).end:
+            column: NDArray[Any] = getattr(part.operation.moves, name)
+            return column[rows - part.first]
+        pieces = np.split(rows, np.searchsorted(rows, self.firsts[1:]))
+        taken = zip(self.parts, pieces, strict=True)
+        return np.concatenate([getattr(part.operation.moves, name)[piece - part.first] for part, piece in taken])
+
+    def point(self, row: int) -> Point:
+        """One row."""
+        part = self.part_of(row)
+        moves, k = part.operation.moves, row - part.first
+        return Point(moves.tip[k], moves.axis[k], Kind(int(moves.kind[k])), float(moves.feed[k]), int(moves.line[k]))
+
+    @property
+    def rapids(self) -> int:
+        """How many rows are rapids."""
+        return sum(int(np.count_nonzero(part.operation.moves.kind == Kind.RAPID)) for part in self.parts)
 
     @cached_property
     def arcs(self) -> Arcs:

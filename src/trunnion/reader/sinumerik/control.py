@@ -19,11 +19,11 @@ from trunnion.machine import Machine, Output, forward, inverse
 from trunnion.machine.inverse import pack, solve_slides
 from trunnion.reader import poses
 from trunnion.reader.columns import Changes, Columns, affine
-from trunnion.reader.run import Happening, Orientation, Value, Written
+from trunnion.reader.run import BY_WORDS, Happening, Orientation, Value, Written
 from trunnion.reader.sinumerik import arcs
 from trunnion.reader.sinumerik.cycles import Step
 from trunnion.reader.sinumerik.frames import Frame, about
-from trunnion.reader.sinumerik.scan import COMMENTS, KIND, LINE, POSITION, ROW, Target, letters
+from trunnion.reader.sinumerik.scan import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, Notes, Target, letters
 from trunnion.toolpath import Arcs, Kind
 
 #: Motion words of group 1: G0, G1, G2, G3 and CIP.
@@ -44,14 +44,14 @@ Word = tuple[float, str]
 #: How far tool and drilling axis may lie apart before it is worth a word, as the length of their difference.
 ASKEW: Final = 2e-4
 
-#: Orientation words as they stand before the first one.
-_BY_WORDS: Final = 2
+#: Comments and feeds that the kernel may note before it comes back.
+_NOTES: Final = 4096
 
 Note = Callable[[str, Severity], None]
 
 
 class Control:
-    """A Sinumerik at work on a machine. ``line`` and ``number`` are those of the block that is being executed."""
+    """A Sinumerik at work on a machine. ``line`` and ``block_number`` are those of the block that is being executed."""
 
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         self.machine = machine
@@ -59,14 +59,13 @@ class Control:
         self.shortest = shortest
         self._file = file
         self.line = 0
-        self.number = -1
+        self.block_number = -1
         self.columns = Columns()
         self.events: list[Happening] = []
 
         self._packed = pack(machine)
         self._slides = poses.xyz(machine)
         self._names = tuple(machine.axes[column].name.upper() for column in machine.rotary)
-        self._settled = 0
         self.start = machine.home.copy()
         self.held = machine.home.copy()
         self._origin_slides, self._origin_tip = self._origins()
@@ -85,6 +84,7 @@ class Control:
         self._rigid: tuple[float, float, Floats] | None = None
         self._image: tuple[Floats, Floats, Floats, float, bool] | None = None
 
+        self.feed = Changes(math.nan)
         self.feed_mode = Changes(94)
         self.rpm = Changes(0.0)
         self.spindle = Changes(0)
@@ -98,13 +98,15 @@ class Control:
         self.tcp_rows = Changes(False)
         self.machine_rows = Changes(False)
         self.inch_rows = Changes(False)
-        self.orientation = Changes(_BY_WORDS)
+        self.orientation = Changes(BY_WORDS)
+        self.by_tip = Changes(False)
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
 
         #: What the scan kernel shares with this class: see ``scan``.
-        self.counts = np.zeros(5, np.int64)
+        self.counts = np.zeros(6, np.int64)
         self.counts[KIND] = LINEAR
-        self.place = np.zeros(4)
+        self.notes = Notes(np.empty((_NOTES, 4), np.int64), np.empty(_NOTES, np.int64), np.empty(_NOTES))
+        self.place = np.zeros(5)
         self.place[3] = math.nan
         self.table = letters((self._names[0], self._names[1]))
         self.map = affine(np.eye(3), np.zeros(3))
@@ -126,12 +128,15 @@ class Control:
     def target(self) -> Target:
         """Return the columns, for the scan kernel."""
         c = self.columns
-        return Target(c.block, c.number, c.kind, c.programmed, c.way, c.feed, c.tip, c.axis, c.joints)
+        return Target(c.kind, c.programmed, c.place, c.rotary, c.base, c.block, c.number, c.vector, c.way)
 
     def before_scan(self, position: int, line: int) -> None:
-        """Set the shared counters."""
+        """Set the shared counters, and see that rows may wait."""
+        self._clear_if_full()
         self.counts[ROW] = self.columns.n
         self.counts[COMMENTS] = 0
+        self.counts[FEEDS] = 0
+        self.place[4] = self.feed.now
         self.counts[POSITION] = position
         self.counts[LINE] = line
 
@@ -145,7 +150,18 @@ class Control:
         for axis in range(3):
             if bits >> axis & 1:
                 self._old.pop(axis, None)
+        noted = int(self.counts[FEEDS])
+        self.feed.extend(self.notes.feed_rows[:noted], self.notes.feeds[:noted])
         self.columns.n = new
+
+    @property
+    def full(self) -> bool:
+        """Whether the kernel came back for want of room."""
+        return (
+            self.columns.n == self.columns.capacity
+            or self.columns.full
+            or _NOTES in (self.counts[COMMENTS], self.counts[FEEDS])
+        )
 
     @property
     def tips(self) -> bool:
@@ -174,19 +190,34 @@ class Control:
 
     def settle(self) -> None:
         """Work out where the axes are after the rows so far."""
-        first, last = self._settled, self.columns.n
-        if first == last:
-            return
         c = self.columns
-        rows = slice(first, last)
+        if c.settled == c.n:
+            return
+        rows, waiting = slice(c.settled, c.n), slice(c.settled - c.base, c.n - c.base)
+        columns = list(self.machine.rotary)
+        place, rotary = c.place[rows], c.rotary[rows]
         status = poses.settle(
-            self.machine, self._packed, c.joints[rows], c.way[rows], c.tip[rows], c.axis[rows], self.held, self.tips
+            self.machine,
+            self._packed,
+            place,
+            rotary,
+            c.way[waiting],
+            c.vector[waiting],
+            self.held[columns],
+            self.tips,
         )
-        self._report(status, first)
-        held = c.joints[last - 1].copy()
+        self.by_tip.set(c.settled, self.tips)
+        self._report(status, c.settled - c.base)
+        by_tip = np.array([self.tips])
+        held = poses.joints_of(self.machine, self._packed, by_tip, place[-1:], rotary[-1:])[0]
         self.held = np.where(np.isfinite(held), held, self.held)
-        self._settled = last
+        c.settled = c.n
         self._turned = False
+
+    def _clear_if_full(self) -> None:
+        if self.columns.full:
+            self.settle()
+            self.columns.clear()
 
     def _report(self, status: Codes, first: int) -> None:
         texts = (
@@ -428,20 +459,20 @@ class Control:
             self.note("a position is farther away than any machine reaches: the block is not executed", Severity.ERROR)
             return
         c = self.columns
+        self._clear_if_full()
         c.reserve(1)
-        row = c.n
-        c.block[row] = self.line
-        c.number[row] = self.number
+        row, waits = c.n, c.n - c.base
+        c.block[waits] = self.line
+        c.number[waits] = self.block_number
         c.kind[row] = kind
         c.programmed[row] = bits
-        c.way[row] = way
-        c.feed[row] = self.place[3]
-        c.tip[row] = self.map[:, :3] @ end + self.map[:, 3]
-        c.axis[row] = math.nan
+        c.place[row] = self.map[:, :3] @ end + self.map[:, 3]
+        c.rotary[row] = rotary
+        c.way[waits] = way
+        c.vector[waits] = math.nan
         if vector:
-            c.axis[row] = self.turn @ np.array([vector.get(letter, 0.0) for letter in "ABC"])
-        c.joints[row, self.machine.rotary[0]] = rotary[0]
-        c.joints[row, self.machine.rotary[1]] = rotary[1]
+            c.vector[waits] = self.turn @ np.array([vector.get(letter, 0.0) for letter in "ABC"])
+        self.feed.set(row, float(self.place[3]))
         c.n += 1
         self.place[:3] = end
         self._turned |= bool(bits & (Written.FIRST | Written.SECOND | Written.VECTOR))
@@ -575,7 +606,8 @@ class Control:
         along = along / np.linalg.norm(along)
         if not self.tips:
             return
-        if rows and float(np.linalg.norm(self.columns.axis[self.row - 1] - along)) > ASKEW:
+        axis = forward(self.machine, self.held[None])[1][0]
+        if rows and float(np.linalg.norm(axis - along)) > ASKEW:
             self.note("the cycle drills along the axis of the frame, which is not the tool axis", Severity.WARNING)
 
     def unswivel(self) -> None:

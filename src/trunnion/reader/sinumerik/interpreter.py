@@ -11,11 +11,11 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
+from trunnion.arrays import Ints
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.machine import Machine
 from trunnion.reader.columns import Changes
-from trunnion.reader.run import Comment, Finding, Orientation, Run, Written
+from trunnion.reader.run import Comment, Finding, Orientation, Run, State
 from trunnion.reader.sinumerik import cycles, scan
 from trunnion.reader.sinumerik.block import Block, BlockReader, Call, read_call
 from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, FARTHEST, LINEAR, RAPID, THROUGH, Control
@@ -63,9 +63,9 @@ DEEPEST_CALL: Final = 16
 #: Names with arguments that the interpreter knows; all others are subprograms.
 _BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SETAL"})
 
-#: Rows there is room for when the kernel starts, and comments it may note before it comes back.
+#: Rows there is room for when the kernel starts, and fewer than which are too few.
 _ROOM: Final = 65536
-_COMMENTS: Final = 4096
+_LEAST_ROOM: Final = 4096
 
 #: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
 _PLAIN = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
@@ -143,7 +143,7 @@ class Interpreter:
                 if not text.fill():
                     continue
             line = text.line
-            control.line, control.number = line, -1
+            control.line, control.block_number = line, -1
             raw = text.next_line()
             self._count(1 + len(raw) // LONG)
             self._line(call, line, raw)
@@ -190,16 +190,15 @@ class Interpreter:
         """Let the kernel take plain blocks."""
         control, text = self._control, call.text
         columns = control.columns
-        comments = np.empty((_COMMENTS, 4), np.int64)
         while text.fill():
-            if columns.capacity - columns.n < _COMMENTS:
-                columns.reserve(_ROOM)
+            if columns.capacity - columns.n < _LEAST_ROOM:
+                # A little more than there will be if the program goes on as it began.
+                columns.reserve(_ROOM, int(1.02 * columns.n / text.share) + _ROOM)
             control.before_scan(text.position, text.line)
             scan.scan(
                 text.buffer,
                 len(text.buffer),
                 control.table,
-                self._machine.rotary,
                 control.tips,
                 control.lengths,
                 control.feeds,
@@ -209,18 +208,17 @@ class Interpreter:
                 control.counts,
                 control.place,
                 control.target(),
-                comments,
+                control.notes,
             )
             control.after_scan()
-            self._take_comments(text, comments[: control.counts[scan.COMMENTS]])
+            self._take_comments(text, control.notes.comments[: control.counts[scan.COMMENTS]])
             line = int(control.counts[scan.LINE])
             taken = line - text.line
-            full = columns.n == columns.capacity or control.counts[scan.COMMENTS] == _COMMENTS
             size = int(control.counts[scan.POSITION]) - text.position
             text.position, text.line = int(control.counts[scan.POSITION]), line
             control.line = line
             self._count(taken + max(size - LONG * taken, 0) // LONG)
-            if text.position < len(text.buffer) and not full:
+            if text.position < len(text.buffer) and not control.full:
                 return
 
     def _take_comments(self, text: Text, table: Ints) -> None:
@@ -259,7 +257,7 @@ class Interpreter:
                 at = 2
         if len(tokens) > at + 1 and tokens[at].text == "N" and tokens[at + 1].text.isdigit():
             number = tokens[at + 1].value
-            control.number = int(number) if number < 1e15 else -1
+            control.block_number = int(number) if number < 1e15 else -1
             at += 2
         while len(tokens) > at + 1 and tokens[at].sort is Sort.NAME and tokens[at + 1].text == ":":
             at += 2
@@ -603,36 +601,35 @@ class Interpreter:
     def _result(self) -> Run:
         control = self._control
         c = control.columns
+        c.clear()
         n = c.n
-        programmed = c.programmed[:n]
-        vectors: Flags = (programmed & int(Written.VECTOR)) != 0
-        said = control.orientation.column(n, np.uint8)
-        orientation = np.where(said == 2, vectors, said).astype(np.uint8)
         findings = list(self._findings)
         if self._more:
             findings.append(Finding(0, f"and {self._more} findings more", Severity.ERROR, self._files[0]))
         return Run(
             machine=self._machine,
             files=tuple(self._files),
-            block=c.block[:n],
-            file=self._file.column(n, np.uint16),
-            number=c.number[:n],
+            blocks=c.blocks.ramps(),
+            numbers=c.numbers.ramps(),
             kind=c.kind[:n],
-            programmed=programmed,
-            tip=c.tip[:n],
-            axis=c.axis[:n],
-            joints=c.joints[:n],
-            feed=c.feed[:n],
-            feed_mode=control.feed_mode.column(n, np.uint8),
-            rpm=control.rpm.column(n, np.float64),
-            spindle=control.spindle.column(n, np.int8),
-            tool=control.tool.column(n, np.int32),
-            edge=control.edge.column(n, np.int32),
-            offset=control.offset.column(n, np.uint16),
-            tcp=control.tcp_rows.column(n, np.bool_),
-            machine_frame=control.machine_rows.column(n, np.bool_),
-            inches=control.inch_rows.column(n, np.bool_),
-            orientation=orientation,
+            programmed=c.programmed[:n],
+            place=c.place[:n],
+            rotary=c.rotary[:n],
+            state=State(
+                file=self._file.steps(n, np.uint16),
+                feed=control.feed.steps(n, np.float64),
+                feed_mode=control.feed_mode.steps(n, np.uint8),
+                rpm=control.rpm.steps(n, np.float64),
+                spindle=control.spindle.steps(n, np.int8),
+                tool=control.tool.steps(n, np.int32),
+                edge=control.edge.steps(n, np.int32),
+                offset=control.offset.steps(n, np.uint16),
+                tcp=control.tcp_rows.steps(n, np.bool_),
+                machine_frame=control.machine_rows.steps(n, np.bool_),
+                inches=control.inch_rows.steps(n, np.bool_),
+                orientation=control.orientation.steps(n, np.uint8),
+                by_tip=control.by_tip.steps(n, np.bool_),
+            ),
             start=control.start,
             arcs=control.finish_arcs(),
             tools=tuple(control.tools),

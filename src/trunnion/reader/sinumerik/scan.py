@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numba import njit
 
-from trunnion.arrays import Bytes, Codes, Floats, Ints, Lines
+from trunnion.arrays import Bytes, Codes, Floats, Ints
 
 NUMBER: Final = 1
 PREPARATORY: Final = 2
@@ -23,12 +23,13 @@ FEED: Final = 3
 SLIDE: Final = 4  # and the two after it: X, Y, Z
 ROTARY: Final = 7  # and the one after it
 
-#: Fields of ``State.counts``: motion kind (0, 1, or more where plain blocks need a G word), rows, comments.
+#: Fields of ``counts``: motion kind (0, 1, or more where plain blocks need a G word), rows, comments, place, feeds.
 KIND: Final = 0
 ROW: Final = 1
 COMMENTS: Final = 2
 POSITION: Final = 3
 LINE: Final = 4
+FEEDS: Final = 5
 
 _POWERS: Final = np.array([10.0**k for k in range(23)])
 
@@ -50,17 +51,30 @@ _EQUALS: Final = 61
 
 
 class Target(NamedTuple):
-    """Columns that rows go to; see ``Columns``."""
+    """Columns that rows go to; see ``Columns``. In those from ``block`` on, row r is at r - ``base``."""
 
-    block: Lines
-    number: Ints
     kind: Codes
     programmed: Codes
+    place: Floats
+    rotary: Floats
+    base: int
+    block: Ints
+    number: Ints
+    vector: Floats
     way: Codes
-    feed: Floats
-    tip: Floats
-    axis: Floats
-    joints: Floats
+
+
+class Notes(NamedTuple):
+    """What the kernel notes besides rows, written from the top; ``counts`` says how many there are.
+
+    comments    (k, 4) int64   line, row, first byte and end of each comment
+    feed_rows   (k,) int64     rows from which another feed holds
+    feeds       (k,) float64   that feed
+    """
+
+    comments: Ints
+    feed_rows: Ints
+    feeds: Floats
 
 
 def letters(rotary: tuple[str, str]) -> Codes:
@@ -80,7 +94,6 @@ def scan(
     text: Bytes,
     end: int,
     table: Codes,
-    rotary: tuple[int, int],
     vectors: bool,
     lengths: float,
     feeds: float,
@@ -90,28 +103,28 @@ def scan(
     counts: Ints,
     place: Floats,
     target: Target,
-    comments: Ints,
+    notes: Notes,
 ) -> None:
-    """Take plain blocks until one is not, the text ends, or the columns or the table of comments are full.
+    """Take plain blocks until one is not, the text ends, or the columns or the notes are full.
 
     text      (m,) uint8       the program; whole lines up to ``end``
     table     (256,) uint8     from ``letters``
-    rotary    two int          columns of the rotary axes in ``target.joints``
     vectors   bool             A3= B3= C3= are allowed
-    frame     (3, 4) float64   from programmed position to ``target.tip``
-    turn      (3, 3) float64   from programmed vector to ``target.axis``
-    counts    (5,) int64       KIND, ROW, COMMENTS, POSITION (byte) and LINE (of the next block), updated
-    place     (4,) float64     programmed X Y Z, mm, and feed, updated
-    comments  (k, 4) int64     line, row, first byte and end of each comment, written
+    frame     (3, 4) float64   from programmed position to ``target.place``
+    turn      (3, 3) float64   from programmed vector to ``target.vector``
+    counts    (6,) int64       KIND, ROW, COMMENTS, POSITION (byte), LINE (of the next block) and FEEDS, updated
+    place     (5,) float64     programmed X Y Z, mm, feed, and feed of the row before, updated
     """
     kind = counts[KIND]
     row = counts[ROW]
     noted = counts[COMMENTS]
+    feeds_noted = counts[FEEDS]
     position = counts[POSITION]
     line = counts[LINE]
-    room = target.block.shape[0]
+    comments = notes.comments
+    room = min(target.kind.shape[0], target.base + target.way.shape[0])
     values = np.zeros(12)
-    while position < end and row < room and noted < comments.shape[0]:
+    while position < end and row < room and noted < comments.shape[0] and feeds_noted < notes.feeds.shape[0]:
         at = position
         seen = 0
         number = -1
@@ -205,29 +218,35 @@ def scan(
             if seen & (1 << (SLIDE + k)):
                 place[k] = values[SLIDE + k] * lengths
         if moves:
-            target.block[row] = line
-            target.number[row] = number
+            waits = row - target.base
+            target.block[waits] = line
+            target.number[waits] = number
             target.kind[row] = kind
-            target.feed[row] = place[3]
+            # A feed that is not known (NaN) differs from itself, but is no change.
+            if place[3] != place[4] and (place[3] == place[3] or place[4] == place[4]):
+                notes.feed_rows[feeds_noted] = row
+                notes.feeds[feeds_noted] = place[3]
+                place[4] = place[3]
+                feeds_noted += 1
             bits = moves & 0b11111
             if seen & (1 << FEED):
                 bits |= 64
             for k in range(3):
-                target.tip[row, k] = (
+                target.place[row, k] = (
                     frame[k, 0] * place[0] + frame[k, 1] * place[1] + frame[k, 2] * place[2] + frame[k, 3]
                 )
             for k in range(2):
-                target.joints[row, rotary[k]] = values[ROTARY + k] if seen & (1 << (ROTARY + k)) else np.nan
-                target.axis[row, k] = np.nan
+                target.rotary[row, k] = values[ROTARY + k] if seen & (1 << (ROTARY + k)) else np.nan
+            target.vector[waits, 0] = np.nan
             if moves >> 5:
                 bits |= 32
                 for k in range(3):
                     # Components that a block does not write count as zero.
                     values[9 + k] = values[9 + k] if seen & (1 << (9 + k)) else 0.0
                 for k in range(3):
-                    target.axis[row, k] = turn[k, 0] * values[9] + turn[k, 1] * values[10] + turn[k, 2] * values[11]
+                    target.vector[waits, k] = turn[k, 0] * values[9] + turn[k, 1] * values[10] + turn[k, 2] * values[11]
             target.programmed[row] = bits
-            target.way[row] = way
+            target.way[waits] = way
             row += 1
         if comment >= 0:
             comments[noted, 0] = line
@@ -240,5 +259,6 @@ def scan(
     counts[KIND] = kind
     counts[ROW] = row
     counts[COMMENTS] = noted
+    counts[FEEDS] = feeds_noted
     counts[POSITION] = position
     counts[LINE] = line

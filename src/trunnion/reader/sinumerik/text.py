@@ -17,7 +17,7 @@ from trunnion.arrays import Bytes, Ints
 from trunnion.errors import InputError, Problem
 
 #: Bytes read at a time.
-CHUNK: Final = 1 << 20
+CHUNK: Final = 1 << 18
 
 #: Longer lines belong to no program.
 LONGEST_LINE: Final = 1 << 16
@@ -102,6 +102,14 @@ class Text:
     def size(self) -> int:
         """Bytes of the file."""
         return len(self.buffer) if self.whole else os.fstat(self._file.fileno()).st_size
+
+    @property
+    def share(self) -> float:
+        """How much of the file lies before the next line, more than 0 and at most 1."""
+        behind = self.position
+        if not self.whole:
+            behind += self._file.tell() - len(self.buffer) - len(self._tail)
+        return min(max(behind, 1) / max(self.size, 1), 1.0)
 
     def fill(self) -> bool:
         """See that the buffer holds a line; False at the end of the program."""

@@ -1,0 +1,191 @@
+"""Points between CL points: enough of them by a look at every hundredth of the way, and no more than it takes."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from trunnion.arrays import Floats
+from trunnion.machine import Machine, forward, inverse, load_machine, shipped, slide_positions
+from trunnion.plan.spans import Spans, divide
+
+NAMES = sorted(shipped())
+ZERO = (37.0, -21.0, 110.0)
+
+
+def machine(name: str) -> Machine:
+    """A machine with a part clamped off its rotary axes."""
+    return replace(load_machine(name), workpiece_zero=ZERO)
+
+
+def great_circle(begin: Floats, end: Floats, part: Floats) -> Floats:
+    """(k, 3) unit vectors."""
+    angle = math.atan2(float(np.linalg.norm(np.cross(begin, end))), float(begin @ end))
+    if angle < 1e-9:
+        return np.repeat(begin[None], len(part), axis=0)
+    vectors = np.sin((1.0 - part) * angle)[:, None] * begin + np.sin(part * angle)[:, None] * end
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1)[:, None])
+
+
+def followed(model: Machine, tip: Floats, axis: Floats) -> Floats:
+    """Rotary positions of dense rows, as they wind: each the nearest to the one before, the first near home."""
+    options = inverse(model, tip, axis).joints[..., list(model.rotary)]
+    last = np.array([model.axes[c].home for c in model.rotary])
+    rotary = np.empty((len(tip), 2))
+    for row in range(len(tip)):
+        wound = options[:, row] + 360.0 * np.round((last - options[:, row]) / 360.0)
+        rotary[row] = last = wound[np.abs(wound - last).sum(axis=1).argmin()]
+    return rotary
+
+
+def axes_of(model: Machine, tip: Floats, axis: Floats) -> Floats:
+    """Rotary positions of a path, followed in small steps from point to point."""
+    part = np.linspace(0.0, 1.0, 101)
+    looks = [axis[:1], *(great_circle(axis[row - 1], axis[row], part) for row in range(1, len(axis)))]
+    dense = np.concatenate(looks)
+    return followed(model, np.zeros_like(dense), dense)[:: len(part)]
+
+
+def off(model: Machine, tip: Floats, axis: Floats, spans: Spans, tcp: bool) -> tuple[float, float]:
+    """How far the tip is from the CAM's line, mm, and the tool axis from its great circle, deg, on all ways."""
+    joints = np.empty((len(spans.tip), 5))
+    joints[:] = slide_positions(model, spans.tip, spans.rotary)
+    worst_tip = worst_axis = 0.0
+    share = np.linspace(0.0, 1.0, 101)[:, None]
+    for k in range(1, len(spans.tip)):
+        row = int(spans.source[k])
+        if row == 0:
+            continue
+        p, q = tip[row - 1], tip[row]
+        way = joints[k - 1] + share * (joints[k] - joints[k - 1])
+        now, look = forward(model, way)
+        if tcp:
+            now = spans.tip[k - 1] + share * (spans.tip[k] - spans.tip[k - 1])
+        first, last = ((spans.tip[k - 1 : k + 1] - p) @ (q - p) / ((q - p) @ (q - p))).tolist()
+        part = np.clip((now - p) @ (q - p) / ((q - p) @ (q - p)), max(first, 0.0), last)
+        worst_tip = max(worst_tip, float(np.linalg.norm(now - p - part[:, None] * (q - p), axis=1).max()))
+        wanted = great_circle(axis[row - 1], axis[row], part)
+        worst_axis = max(worst_axis, float(np.degrees(2 * np.arcsin(np.linalg.norm(look - wanted, axis=1) / 2)).max()))
+    return worst_tip, worst_axis
+
+
+steps = st.tuples(st.floats(-30.0, 30.0), st.floats(-30.0, 30.0), st.floats(-20.0, 20.0))
+leans = st.tuples(st.floats(-0.6, 0.6), st.floats(-0.6, 0.6))
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    st.sampled_from(NAMES),
+    st.lists(st.tuples(steps, leans), min_size=2, max_size=5),
+    st.booleans(),
+    st.sampled_from([0.001, 0.01, 0.1]),
+    st.sampled_from([0.01, 0.05, 0.5]),
+)
+def test_the_tool_stays_within_its_tolerances(
+    name: str,
+    path: list[tuple[tuple[float, float, float], tuple[float, float]]],
+    tcp: bool,
+    tip_tolerance: float,
+    axis_tolerance: float,
+) -> None:
+    model = machine(name)
+    tip = np.cumsum([step for step, _ in path], axis=0)
+    assume(np.linalg.norm(np.diff(tip, axis=0), axis=1).min() > 0.1)
+    axis = np.array([[i, j, 1.0] for _, (i, j) in path])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    rotary = axes_of(model, tip, axis)
+    assume(np.isfinite(rotary).all())
+    spans = divide(
+        model, tip, axis, rotary, np.ones(len(tip), bool),
+        tcp=tcp, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance,
+    )  # fmt: skip
+    last = np.flatnonzero(np.diff(np.append(spans.source, len(tip))))
+    np.testing.assert_array_equal(spans.tip[last], tip)
+    np.testing.assert_array_equal(spans.rotary[last], rotary)
+    worst_tip, worst_axis = off(model, tip, axis, spans, tcp)
+    assert worst_tip <= tip_tolerance * (1.0 + 1e-6) + 1e-9
+    assert worst_axis <= axis_tolerance * (1.0 + 1e-6) + 1e-7
+
+
+def fewest(model: Machine, tip: Floats, axis: Floats, rotary: Floats, tolerance: tuple[float, float]) -> int:
+    """The fewest spans that end at thousandths of the way: as far as the tolerances reach, again and again."""
+    grid = np.linspace(0.0, 1.0, 1001)
+    tips = tip[0] + grid[:, None] * (tip[1] - tip[0])
+    axes = great_circle(axis[0], axis[1], grid)
+    winding = followed(model, tips, axes)
+    winding += np.round((rotary[0] - winding[0]) / 360.0) * 360.0
+
+    def holds(a: int, b: int) -> bool:
+        piece = Spans(np.array([0, 1]), tips[[a, b]], axes[[a, b]], winding[[a, b]])
+        worst = off(model, tips[[a, b]], axes[[a, b]], piece, tcp=False)
+        return worst[0] <= tolerance[0] and worst[1] <= tolerance[1]
+
+    count, at = 0, 0
+    while at < 1000:
+        low, high = at + 1, 1001
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (middle, high) if holds(at, middle) else (low, middle)
+        count, at = count + 1, low
+    return count
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_more_points_than_needed(name: str) -> None:
+    model = machine(name)
+    tip = np.array([[-40.0, 10.0, 0.0], [35.0, -25.0, 12.0]])
+    axis = np.array([[0.1, 0.35, 1.0], [0.55, 0.1, 1.0]])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    rotary = axes_of(model, tip, axis)
+    spans = divide(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.005, axis_tolerance=0.05)
+    needed = fewest(model, tip, axis, rotary, (0.005, 0.05))
+    assert needed > 5
+    assert len(spans.tip) - 1 <= math.ceil(1.1 * needed)
+
+
+def test_with_tcp_a_short_turn_needs_no_points_and_without_it_does() -> None:
+    model = machine("generic_head_table_bc")
+    tip = np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0]])
+    axis = np.array([[0.3, 0.0, 1.0], [0.3, 0.01, 1.0]])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    rotary = axes_of(model, tip, axis)
+    counts = [
+        len(divide(model, tip, axis, rotary, np.ones(2, bool), tcp=tcp, tip_tolerance=0.001, axis_tolerance=0.1).tip)
+        for tcp in (True, False)
+    ]
+    assert counts[0] == 2
+    assert counts[1] > 2
+
+
+def test_a_turn_in_the_pole_is_cut_into_pieces_at_rest() -> None:
+    """The CAM goes through the pole, the machine keeps its side: C turns half-way round under an upright tool."""
+    model = machine("generic_head_table_bc")
+    tip = np.array([[-10.0, 0.0, 0.0], [10.0, 0.0, 0.0]])
+    axis = np.array([[-0.2, 0.0, 1.0], [0.2, 0.0, 1.0]])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    first = axes_of(model, tip, axis)[0]
+    options = inverse(model, tip, axis).joints[..., list(model.rotary)].reshape(-1, 2, 2)
+    candidates = options.reshape(-1, 2)
+    same_side = [c for c in candidates if abs(c[1] - first[1]) < 1e-6 and abs(c[0] - first[0]) > 90.0]
+    rotary = np.array([first, same_side[0]])
+    spans = divide(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.01, axis_tolerance=0.1)
+    assert off(model, tip, axis, spans, tcp=False)[0] <= 0.01
+    upright = np.abs(spans.axis[:, 2] - 1.0) < 1e-9
+    assert upright.sum() > 50
+    assert np.linalg.norm(spans.tip[upright], axis=1).max() < 1e-3
+
+
+def test_rows_that_are_not_among_those_stay_as_they_are() -> None:
+    model = machine("generic_head_head_ca")
+    tip = np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    axis = np.array([[0.0, 0.2, 1.0], [0.4, 0.2, 1.0], [0.0, 0.2, 1.0]])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    rotary = axes_of(model, tip, axis)
+    spans = divide(
+        model, tip, axis, rotary, np.array([True, False, True]), tcp=False, tip_tolerance=0.01, axis_tolerance=1.0
+    )
+    assert (spans.source == 1).sum() == 1
+    assert (spans.source == 2).sum() > 1
