@@ -118,7 +118,10 @@ class State:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Poses:
-    """Where axes and tool are, in k rows: ``joints`` (k, 5), ``tip`` (k, 3), ``axis`` (k, 3), as in ``Run``; read-only."""
+    """Where axes and tool are, in k rows: ``joints`` (k, 5), ``tip`` (k, 3), ``axis`` (k, 3), as in ``Run``.
+
+    All are read-only.
+    """
 
     joints: Floats
     tip: Floats

@@ -193,7 +193,7 @@ class Interpreter:
         while text.fill():
             if columns.capacity - columns.n < _LEAST_ROOM:
                 # A little more than there will be if the program goes on as it began.
-                columns.reserve(_ROOM, int(1.02 * columns.n / text.share) + _ROOM)
+                columns.reserve(_ROOM, int(1.02 * text.expected(columns.n)) + _ROOM)
             control.before_scan(text.position, text.line)
             scan.scan(
                 text.buffer,
