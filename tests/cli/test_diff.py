@@ -29,6 +29,21 @@ def without_numbers(text: str) -> str:
     return re.sub(r"^N\d+ ", "", text, flags=re.MULTILINE)
 
 
+def renumbered(text: str) -> str:
+    """Every line with a number, 5 more than that of the line before."""
+    return "".join(f"N{5 * k} {line}\n" for k, line in enumerate(without_numbers(text).splitlines(), 1))
+
+
+def terse(text: str) -> str:
+    """Numbers without zeros that say nothing, words without blanks between them."""
+    lines = []
+    for line in text.splitlines():
+        if re.search(r" [XYZBC]-?[\d.]", line) and ";" not in line and "SUPA" not in line:
+            line = re.sub(r"(?<=[XYZBC])(-?)0(?=\.)|(?<=\.\d)0+(?= |$)|\.0*(?= |$)", r"\1", line).replace(" ", "")
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
 def wordy(text: str) -> str:
     """Every motion block with its G word, its feed and all its coordinates, zeros in front."""
     lines, held, g, feed = [], {}, "G0", ""
@@ -58,11 +73,14 @@ def test_a_program_is_the_same_as_itself(tmp_path: Path, capfd: pytest.CaptureFi
     )
 
 
-@pytest.mark.parametrize("rewrite", [without_numbers, wordy, str.lower, lambda text: text.replace("\n", "\r\n")])
+@pytest.mark.parametrize(
+    "rewrite", [without_numbers, renumbered, terse, wordy, str.lower, lambda text: text.replace("\n", "\r\n")]
+)
 def test_other_words_for_the_same_motion_are_the_same(
     rewrite: object, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert callable(rewrite)
+    assert rewrite(TEXT) != TEXT
     assert diff(capfd, tmp_path, rewrite(TEXT))[0] == 0
 
 
@@ -122,6 +140,14 @@ def test_the_worst_difference_is_named_besides_the_first(tmp_path: Path, capfd: 
     assert code == 1
     assert out.splitlines()[0].startswith("different: 2 places")
     assert "worst: first:54 (N540) against second:54 (N540): tips are 4.000000 mm apart" in out
+
+
+def test_differences_have_the_block_numbers_of_both_programs(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    other = renumbered(TEXT.replace("X47.2619 ", "X47.3619 ").replace("X45.92544 ", "X49.92544 "))
+    code, out = diff(capfd, tmp_path, terse(other))
+    assert code == 1
+    assert "first: first:52 (N520) against second:52 (N260): tips are 0.100000 mm apart" in out
+    assert "worst: first:54 (N540) against second:54 (N270): tips are 4.000000 mm apart" in out
 
 
 def test_a_program_for_another_machine_is_the_same_if_the_tool_does_the_same(

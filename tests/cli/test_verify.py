@@ -1,12 +1,18 @@
 """``trunnion verify``, and the proof at the end of ``trunnion post``."""
 
 import json
+import re
+from collections.abc import Callable
+from html import escape
+from io import BytesIO
 from pathlib import Path
+from typing import BinaryIO
 
 import pytest
 
 from tests.paths import YL569
 from trunnion.cli import main
+from trunnion.control import Program, write_program
 
 PROGRAM = YL569 / "3_blade_finish.expected.mpf"
 CL = YL569 / "3_blade_finish.cls"
@@ -77,11 +83,31 @@ def test_a_machine_whose_programs_cannot_be_read_yet_says_so(capfd: pytest.Captu
     assert "cannot be read yet" in capfd.readouterr().err
 
 
-def test_a_report_holds_the_same_checks(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("trunnion.report")
-    report = tmp_path / "report.json"
-    assert verify(capfd, PROGRAM, "--cl", CL, "--report", report)[0] == 0
-    assert "tip" in json.dumps(json.loads(report.read_text(encoding="utf-8")))
+@pytest.mark.parametrize("suffix", [".json", ".html"])
+@pytest.mark.parametrize("with_cl", [True, False])
+def test_a_report_holds_the_same_checks(
+    suffix: str, with_cl: bool, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    report = tmp_path / f"report{suffix}"
+    cl: list[str | Path] = ["--cl", CL] if with_cl else []
+    code, out, _ = verify(capfd, PROGRAM, *cl, "--report", report)
+    assert code == 0
+    assert_reported(report, [line for line in out.splitlines() if " ok " in line])
+
+
+def assert_reported(report: Path, lines: list[str]) -> None:
+    """A report, page or data, says what the lines of the checks say, and has the columns of every motion."""
+    text = report.read_text(encoding="utf-8")
+    keys, _, summaries = zip(*(line.split(maxsplit=2) for line in lines), strict=True)
+    assert len(keys) >= 7
+    if report.suffix == ".html":
+        assert "✗ failed" not in text
+        assert all(escape(summary) in text for summary in summaries)
+        return
+    said = json.loads(text)
+    assert [(check["key"], check["summary"]) for check in said["checks"]] == list(zip(keys, summaries, strict=True))
+    assert {len(column) for column in said["columns"].values()} == {said["motions"]} == {154}
+    assert any(said["columns"]["cl_line"]) == ("tip" in keys)
 
 
 # The end of ``trunnion post``
@@ -97,6 +123,157 @@ def machine_without_tcp(folder: Path) -> Path:
         encoding="utf-8",
     )
     return file
+
+
+CHECKS = [
+    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "span", "travel", "speed",
+    "acceleration", "modal", "words",
+]  # fmt: skip
+
+
+def post(*arguments: str | Path) -> int:
+    """Exit code of ``trunnion post``."""
+    return main(["post", *map(str, arguments)])
+
+
+def spoil(monkeypatch: pytest.MonkeyPatch, change: Callable[[bytes], bytes]) -> None:
+    """Let the writer write something else than it was told."""
+
+    def wrong(program: Program, sink: BinaryIO, advance: Callable[[int], None] | None = None) -> None:
+        whole = BytesIO()
+        write_program(program, whole, advance)
+        changed = change(whole.getvalue())
+        assert changed != whole.getvalue()
+        sink.write(changed)
+
+    monkeypatch.setattr("trunnion.cli.post.write_program", wrong)
+
+
+def without_a_block(text: bytes) -> bytes:
+    """The program without the block N600, which cuts."""
+    return re.sub(rb"(?m)^N600 .*\n", b"", text)
+
+
+@pytest.mark.parametrize("output", ["p.mpf", "-"])
+def test_post_ends_with_one_line_a_check(output: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    target = output if output == "-" else tmp_path / output
+    assert post(CL, "--machine", "yl569", "--output", target) == 0
+    lines = capfd.readouterr().err.splitlines()
+    proven = [line for line in lines if " ok " in line]
+    assert [line.split()[0] for line in proven] == CHECKS
+    assert "147 points in their order" in proven[0]
+    assert [line for line in lines if line not in proven] == ([] if output == "-" else [lines[-1]])
+
+
+def test_no_program_is_too_long_to_be_proven(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    text = CL.read_text(encoding="utf-8").splitlines(keepends=True)
+    first = next(k for k, line in enumerate(text) if line.startswith("GOTO/") and "FEDRAT" in "".join(text[:k]))
+    cl = tmp_path / "long.cls"
+    tail = [line for line in text[first:] if not line.startswith("GOTO/")]
+    points = [f"GOTO/{k % 90:.4f},{k % 70:.4f},5.0000,0.0000000,0.0000000,1.0000000\n" for k in range(310_000)]
+    cl.write_text("".join([*text[:first], *points, *tail]), encoding="utf-8")
+    target = tmp_path / "p.mpf"
+    assert post(cl, "--machine", "yl569", "--output", target) == 0
+    err = capfd.readouterr().err
+    assert [line.split()[0] for line in err.splitlines() if " ok " in line] == CHECKS
+    assert "warning: more than" not in err
+    last = re.findall(rb"(?m)^N\d+ .*X.*\n", target.read_bytes())[-2]
+    spoil(monkeypatch, lambda text: text.replace(last, b"", 1))
+    target.unlink()
+    assert post(cl, "--machine", "yl569", "--output", target) == 1
+    assert not target.exists()
+
+
+def test_a_program_that_lacks_a_block_is_refused_with_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    spoil(monkeypatch, without_a_block)
+    target = tmp_path / "p.mpf"
+    target.write_bytes(b"the old one")
+    assert post(CL, "--machine", "yl569", "--output", target) == 1
+    out, err = capfd.readouterr()
+    assert (out, target.read_bytes(), len(list(tmp_path.iterdir()))) == ("", b"the old one", 1)
+    assert "order         FAIL  N610: no block goes to this CL point" in err
+    assert f"{target}:60 (N610), {CL}:31: no block goes to this CL point [order]" in err
+    assert err.splitlines()[-1] == (
+        f"{CL}: error: the program does not do what this file asks for: order;"
+        " no program is written; --force writes it"
+    )
+    assert post(CL, "--machine", "yl569", "--output", "-") == 1
+    assert capfd.readouterr().out == ""
+    assert post(CL, "--machine", "yl569", "--output", target, "--force") == 0
+    assert "order" not in target.read_text(encoding="utf-8")
+    assert target.read_text(encoding="utf-8").startswith(
+        "N10 ;MUST NOT RUN AS IT IS, written by --force: every CL point has its block, every block its point: N610"
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key"),
+    [
+        (b"X47.2619 ", b"X47.2620 ", "tip"),
+        (b"C11.03423", b"C11.03425", "axis"),
+        (b"F250.", b"F251.", "feed"),
+        (b"S2500", b"S2501", "spindle"),
+        (b"T=2", b"T=3", "tool"),
+        (b"G54", b"G55", "offset"),
+        (b"M30", b"M5", "modal"),
+        (b" TRAORI", b" TRAORY", "words"),
+        (b"SUPA G0 Z=_Z_HOME D0", b"SUPA G0 Z=_Z_HOME-1 D0", "home"),
+    ],
+)
+def test_whatever_the_writer_does_wrong_post_refuses(
+    old: bytes,
+    new: bytes,
+    key: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    spoil(monkeypatch, lambda text: text.replace(old, new, 1))
+    assert post(CL, "--machine", "yl569", "--output", tmp_path / "p.mpf") == 1
+    assert list(tmp_path.iterdir()) == []
+    assert re.search(rf"(?m)^{key} +FAIL ", capfd.readouterr().err)
+
+
+@pytest.mark.parametrize("suffix", [".json", ".html"])
+def test_post_reports_what_it_proved(suffix: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    report = tmp_path / f"report{suffix}"
+    assert post(CL, "--machine", "yl569", "--output", tmp_path / "p.mpf", "--report", report) == 0
+    assert_reported(report, [line for line in capfd.readouterr().err.splitlines() if " ok " in line])
+
+
+def test_a_refused_program_has_its_report_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    spoil(monkeypatch, without_a_block)
+    report = tmp_path / "report.json"
+    assert post(CL, "--machine", "yl569", "--output", tmp_path / "p.mpf", "--report", report) == 1
+    said = json.loads(report.read_text(encoding="utf-8"))
+    assert [check["key"] for check in said["checks"] if not check["passed"]] == ["order"]
+    assert [path.name for path in tmp_path.iterdir()] == ["report.json"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ([CL, "--output", "p.mpf", "--report", "page.pdf"], ".html"),
+        ([CL, YL569 / "2_hub_rough.cls", "--output", ".", "--report", "r.json"], "one report for 2 programs"),
+    ],
+)
+def test_a_report_that_cannot_be_is_said_before_any_work(
+    arguments: list[str | Path],
+    word: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert post(*arguments, "--machine", "yl569") == 2
+    assert word in capfd.readouterr().err
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_post_refuses_a_program_that_does_something_else_and_writes_nothing(

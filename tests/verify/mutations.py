@@ -147,7 +147,7 @@ def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
         keep &= ~run.machine_frame
     rapid = run.kind == Kind.RAPID
     home = run.machine_frame
-    # Where no slide is named and TCP is off, the length of the tool has no say.
+    # Where no slide is named and TCP is off, the length of the tool and the work offset have no say.
     lengthless = home | (((run.programmed & 7) == 0) & ~run.tcp)
     coolant = _coolant(run)
     circle = np.zeros((len(run), 8))
@@ -156,7 +156,8 @@ def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
     columns = [
         run.block, run.kind, run.tip, run.axis, run.joints, np.where(rapid, 0.0, run.feed),
         np.where(rapid, 0, run.feed_mode), np.where(home, 0.0, run.rpm), np.where(home, 0, run.spindle),
-        np.where(home, 0, tools), np.where(lengthless, 0, run.edge), run.offset,
+        np.where(home, 0, tools), np.where(lengthless, 0, run.edge),
+        np.where(lengthless, 0, run.offset),
         run.tcp, run.machine_frame, run.orientation, np.where(home, 0.0, coolant), circle,
     ]  # fmt: skip
     return [np.asarray(column, np.float64)[keep] for column in columns]
@@ -197,7 +198,7 @@ DRIVES = "how the control drives between the points"
 SMOOTHING = "tolerance and mode of CYCLE832"
 AGAIN = "words that say what holds anyway"
 START = "the way home that the program begins with"
-HOME = "spindle, tool, edge or coolant away from the part"
+HOME = "spindle, tool, edge, offset or coolant away from the part"
 AFTER = "spindle, coolant and tool after the last motion"
 OTHERS = "waits, stops and words of the machine builder"
 
@@ -219,7 +220,7 @@ def beside(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
     counts = _moves(run) | np.array(finds, np.bool_)
     at = run.block[counts]
     rows = np.concatenate(([0], np.cumsum(counts)))
-    state = np.column_stack((run.rpm, run.spindle, run.tool, run.edge, _coolant(run)))[counts]
+    state = np.column_stack((run.rpm, run.spindle, run.tool, run.edge, run.offset, _coolant(run)))[counts]
     said = [(int(np.searchsorted(at, k + 1)), _names(line)) for k, line in enumerate(lines)]
     changes = [event.before_row for event in run.events if event.kind == "tool_change"]
     found = [(bits, sum(k <= row for k in changes), int(run.kind[row])) for row, bits in enumerate(finds) if bits]

@@ -37,7 +37,11 @@ def run(arguments: argparse.Namespace) -> int:
     if "zero" in settings:
         machine = replace(machine, workpiece_zero=point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
-    for target, files in _targets(arguments, control).items():
+    targets = _targets(arguments, control)
+    if arguments.report and len(targets) > 1:
+        what = f"one report for {len(targets)} programs"
+        raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
+    for target, files in targets.items():
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
             program = planned_program(paths, machine, control, printed, arguments.force)

@@ -118,10 +118,7 @@ class State:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Poses:
-    """Where axes and tool are, in k rows: ``joints`` (k, 5), ``tip`` (k, 3), ``axis`` (k, 3), as in ``Run``.
-
-    All are read-only.
-    """
+    """Where axes and tool are in k rows: ``joints`` (k, 5), ``tip`` and ``axis`` (k, 3) as in ``Run``, read-only."""
 
     joints: Floats
     tip: Floats

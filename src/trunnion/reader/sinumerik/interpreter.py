@@ -192,8 +192,9 @@ class Interpreter:
         columns = control.columns
         while text.fill():
             if columns.capacity - columns.n < _LEAST_ROOM:
-                # A little more than there will be if the program goes on as it began.
-                columns.reserve(_ROOM, int(1.02 * text.expected(columns.n)) + _ROOM)
+                # A little more than there will be if the program goes on as it began, once it is known how it does.
+                begun = columns.n > _ROOM // 2
+                columns.reserve(_ROOM, int(1.02 * text.expected(columns.n)) if begun else 0)
             control.before_scan(text.position, text.line)
             scan.scan(
                 text.buffer,
