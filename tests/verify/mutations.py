@@ -196,7 +196,7 @@ _NAME = re.compile(r"[A-Z_$][A-Z_]+\d*|[A-Z]\d+")
 
 DRIVES = "how the control drives between the points"
 SMOOTHING = "tolerance and mode of CYCLE832"
-AGAIN = "words that say what holds anyway"
+AGAIN = "words that hold anyway, or that nothing asks after"
 START = "the way home that the program begins with"
 HOME = "spindle, tool, edge, offset or coolant away from the part"
 AFTER = "spindle, coolant and tool after the last motion"
@@ -204,12 +204,13 @@ OTHERS = "waits, stops and words of the machine builder"
 
 #: What a mutation may change without being reported, and why.
 REASONS = {
-    DRIVES: "no motion from point to point shows it: G60, G601, COMPOF, FNORM, ORIWKS",
-    SMOOTHING: "no motion from point to point shows it",
-    AGAIN: "the control may be set so that they hold when a program begins, and the reader takes them to",
+    SMOOTHING: "the control's own smoothing between the points; no motion from point to point shows it",
+    DRIVES: "`G60`, `G601`, `G64`, `COMPOF`, `FNORM`, `ORIWKS` and a `G40` where nothing was on: as before",
+    AGAIN: "`G90`, `G94` or `TRAFOOF` before anything else was said, and a working plane without circles in it: "
+    "the reader begins as controls are delivered",
+    AFTER: "nothing moves any more; `M30` stops the spindle too, and no CL file says which tool stays in it",
+    HOME: "on the way home, and where only rotary axes move without TCP: no CL file asks for it, and nothing is cut",
     START: "the machine is taken to stand at home when the program begins, so that nothing moves",
-    HOME: "motions home, and of rotary axes alone without TCP: no CL file asks for it, and nothing is cut",
-    AFTER: "nothing moves any more, M30 stops the spindle too, and no CL file says which tool stays in it",
     OTHERS: "the CL file does not ask for it",
 }
 
