@@ -211,7 +211,6 @@ REASONS = {
     AFTER: "nothing moves any more; `M30` stops the spindle too, and no CL file says which tool stays in it",
     HOME: "on the way home, and where only rotary axes move without TCP: no CL file asks for it, and nothing is cut",
     START: "the machine is taken to stand at home when the program begins, so that nothing moves",
-    OTHERS: "the CL file does not ask for it",
 }
 
 
