@@ -233,6 +233,17 @@ def test_memory_grows_with_the_program_and_no_faster(folder: Path, data: bytes) 
     assert peak <= CONSTANT + EACH_BYTE * len(data)
 
 
+def test_a_loop_before_a_long_tail_asks_for_no_room_that_it_does_not_need(folder: Path) -> None:
+    data = b"MARK:\n" + b"X1\nX2\n" * 50 + b"GOTOB MARK\n" + (b";" + b"x" * 60 + b"\n") * 30_000
+    tracemalloc.start()
+    try:
+        assert oracle.judge_program(data, folder, limit=150_000) is None
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak <= CONSTANT + EACH_BYTE * len(data)
+
+
 def interpreter_run(path: Path, limit: int) -> Run:
     """Run a program of a folder."""
     return interpreter.Interpreter(path, oracle.machine("yl569"), step_limit=limit, skip=False, shortest=None).run()

@@ -147,7 +147,7 @@ def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
         keep &= ~run.machine_frame
     rapid = run.kind == Kind.RAPID
     home = run.machine_frame
-    # Where no slide is named and TCP is off, the length of the tool has no say.
+    # Where no slide is named and TCP is off, the length of the tool and the work offset have no say.
     lengthless = home | (((run.programmed & 7) == 0) & ~run.tcp)
     coolant = _coolant(run)
     circle = np.zeros((len(run), 8))
@@ -156,7 +156,8 @@ def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
     columns = [
         run.block, run.kind, run.tip, run.axis, run.joints, np.where(rapid, 0.0, run.feed),
         np.where(rapid, 0, run.feed_mode), np.where(home, 0.0, run.rpm), np.where(home, 0, run.spindle),
-        np.where(home, 0, tools), np.where(lengthless, 0, run.edge), run.offset,
+        np.where(home, 0, tools), np.where(lengthless, 0, run.edge),
+        np.where(lengthless, 0, run.offset),
         run.tcp, run.machine_frame, run.orientation, np.where(home, 0.0, coolant), circle,
     ]  # fmt: skip
     return [np.asarray(column, np.float64)[keep] for column in columns]
@@ -195,21 +196,21 @@ _NAME = re.compile(r"[A-Z_$][A-Z_]+\d*|[A-Z]\d+")
 
 DRIVES = "how the control drives between the points"
 SMOOTHING = "tolerance and mode of CYCLE832"
-AGAIN = "words that say what holds anyway"
+AGAIN = "words that hold anyway, or that nothing asks after"
 START = "the way home that the program begins with"
-HOME = "spindle, tool, edge or coolant away from the part"
+HOME = "spindle, tool, edge, offset or coolant away from the part"
 AFTER = "spindle, coolant and tool after the last motion"
 OTHERS = "waits, stops and words of the machine builder"
 
 #: What a mutation may change without being reported, and why.
 REASONS = {
-    DRIVES: "no motion from point to point shows it: G60, G601, COMPOF, FNORM, ORIWKS",
-    SMOOTHING: "no motion from point to point shows it",
-    AGAIN: "the control may be set so that they hold when a program begins, and the reader takes them to",
+    SMOOTHING: "the control's own smoothing between the points; no motion from point to point shows it",
+    DRIVES: "`G60`, `G601`, `G64`, `COMPOF`, `FNORM`, `ORIWKS` and a `G40` where nothing was on: as before",
+    AGAIN: "`G90`, `G94` or `TRAFOOF` before anything else was said, and a working plane without circles in it: "
+    "the reader begins as controls are delivered",
+    AFTER: "nothing moves any more; `M30` stops the spindle too, and no CL file says which tool stays in it",
+    HOME: "on the way home, and where only rotary axes move without TCP: no CL file asks for it, and nothing is cut",
     START: "the machine is taken to stand at home when the program begins, so that nothing moves",
-    HOME: "motions home, and of rotary axes alone without TCP: no CL file asks for it, and nothing is cut",
-    AFTER: "nothing moves any more, M30 stops the spindle too, and no CL file says which tool stays in it",
-    OTHERS: "the CL file does not ask for it",
 }
 
 
@@ -219,7 +220,7 @@ def beside(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
     counts = _moves(run) | np.array(finds, np.bool_)
     at = run.block[counts]
     rows = np.concatenate(([0], np.cumsum(counts)))
-    state = np.column_stack((run.rpm, run.spindle, run.tool, run.edge, _coolant(run)))[counts]
+    state = np.column_stack((run.rpm, run.spindle, run.tool, run.edge, run.offset, _coolant(run)))[counts]
     said = [(int(np.searchsorted(at, k + 1)), _names(line)) for k, line in enumerate(lines)]
     changes = [event.before_row for event in run.events if event.kind == "tool_change"]
     found = [(bits, sum(k <= row for k in changes), int(run.kind[row])) for row, bits in enumerate(finds) if bits]

@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+from tests.verify import mutations
 from tests.verify.conftest import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier
 
 PAGE = (Path(__file__).parents[2] / "docs" / "checks.md").read_text(encoding="utf-8")
@@ -16,3 +17,10 @@ def test_every_check_has_a_section_and_every_name_in_the_table_is_a_check(verifi
     assert [key for key in keys if key not in sections] == []
     linked = re.findall(r"\[([a-z]+)\]\(#\1\)", PAGE)
     assert sorted(linked) == sorted(keys)
+
+
+def test_every_reason_why_a_fault_is_not_caught_is_in_the_page() -> None:
+    plain = PAGE.replace("`", "")
+    for what, why in mutations.REASONS.items():
+        assert f"| {what} |" in plain
+        assert why in PAGE

@@ -91,6 +91,8 @@ def test_every_fault_that_changes_the_work_is_reported_at_its_block(name: str, t
         (31, "", "BESIDE", START),
         (38, "", "BESIDE", HOME),
         (201, "", "BESIDE", AFTER),
+        (10, "N100 G40 G17 G710 G54 G90 G60 G601 FNORM", "BESIDE", HOME),
+        (34, "N340 M2", "CAUGHT", "BLOCK"),
     ],
 )
 def test_what_a_fault_comes_to_is_judged_without_the_checks(

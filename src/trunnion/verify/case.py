@@ -1,7 +1,7 @@
 """What a verification is about: a run, what was wanted, and how to say where something is."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +55,12 @@ class Case:
         """A place by its row of the CL files, where no motion answers to it: the block before which it should stand."""
         assert self.pairs is not None
         k = self.pairs.cl.before(cl)
+        ends = [event for event in self.run.events if event.kind == "end"]
+        if not len(self.pairs.nc) and ends:
+            # The program ends before the first of them.
+            end = self.at(ends[0], 0.0, text)
+            assert self.wanted is not None
+            return replace(end, cl_file=self.wanted.part_of(cl).file, cl_line=self.wanted.point(cl).line)
         if not len(self.run):
             return Place(0, -1, 0.0, text)
         row = self.pairs.nc[k] if k < len(self.pairs.nc) else self.after(self.pairs.nc[-1] if k else 0)

@@ -194,7 +194,7 @@ class Interpreter:
             if columns.capacity - columns.n < _LEAST_ROOM:
                 # A little more than there will be if the program goes on as it began, once it is known how it does.
                 begun = columns.n > _ROOM // 2
-                columns.reserve(_ROOM, int(1.02 * columns.n / text.share) if begun else 0)
+                columns.reserve(_ROOM, int(1.02 * text.expected(columns.n)) if begun else 0)
             control.before_scan(text.position, text.line)
             scan.scan(
                 text.buffer,

@@ -22,6 +22,9 @@ CHUNK: Final = 1 << 18
 #: Longer lines belong to no program.
 LONGEST_LINE: Final = 1 << 16
 
+#: No block that moves is shorter.
+SHORTEST_ROW: Final = len("X1\n")
+
 #: Bytes looked at for the end of a line at first.
 _LINE: Final = 256
 
@@ -104,12 +107,17 @@ class Text:
         return len(self.buffer) if self.whole else os.fstat(self._file.fileno()).st_size
 
     @property
-    def share(self) -> float:
-        """How much of the file lies before the next line, more than 0 and at most 1."""
-        behind = self.position
-        if not self.whole:
-            behind += self._file.tell() - len(self.buffer) - len(self._tail)
-        return min(max(behind, 1) / max(self.size, 1), 1.0)
+    def _behind(self) -> int:
+        """Bytes before the next line."""
+        return self.position + (0 if self.whole else self._file.tell() - len(self.buffer) - len(self._tail))
+
+    def expected(self, rows: int) -> int:
+        """How many rows there will be if the program goes on as it began, with ``rows`` up to here.
+
+        A loop makes many rows of few bytes: what lies ahead bounds what may be expected of it.
+        """
+        behind, size = self._behind, self.size
+        return min(rows * size // max(behind, 1), rows + (size - behind) // SHORTEST_ROW)
 
     def fill(self) -> bool:
         """See that the buffer holds a line; False at the end of the program."""
