@@ -5,7 +5,16 @@ from enum import StrEnum
 
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
-from trunnion.toolpath import Operation
+from trunnion.toolpath import Frame, Operation
+
+
+class Manner(StrEnum):
+    """How the machine makes an operation."""
+
+    THREE_AXIS = "three-axis"
+    TILTED = "tilted plane"
+    TCP = "TCP"
+    WITHOUT_TCP = "without TCP"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -16,15 +25,22 @@ class Motion:
                  to be given as arcs turned into lines
     rotary       (n, 2) float64   positions of the rotary axes, degrees, in the order of ``machine.rotary`` and in the
                  range that each displays. The slides follow from them and the tip: ``trunnion.machine.slide_positions``
-    three_axis   the tool axis is +Z of the program's coordinate system throughout
+    manner       three-axis: the tool axis is +Z of the program's coordinate system throughout
+    plane        the tilted plane as seen from the program's coordinate system, for that manner only
     """
 
     operation: Operation
     rotary: Floats
-    three_axis: bool
+    manner: Manner
+    plane: Frame | None = None
 
     def __post_init__(self) -> None:
         self.rotary.setflags(write=False)
+
+    @property
+    def three_axis(self) -> bool:
+        """Whether the rotary axes stand still at the program's own coordinate system."""
+        return self.manner is Manner.THREE_AXIS
 
 
 class Why(StrEnum):

@@ -11,7 +11,7 @@ from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
 from trunnion.plan.decisions import Planned, decisions, pose_words
-from trunnion.plan.motion import Decision, Motion, Plan
+from trunnion.plan.motion import Decision, Manner, Motion, Plan
 from trunnion.plan.optimum import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, choose, take
 from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
@@ -81,7 +81,8 @@ class _Stretch:
     def motion(self, wishes: Wishes) -> Motion:
         """What is to be written."""
         operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
-        return Motion(operation, rotary, _is_upright(self.operation.moves.axis))
+        upright = _is_upright(self.operation.moves.axis)
+        return Motion(operation, rotary, Manner.THREE_AXIS if upright else Manner.TCP)
 
 
 def _stretch(file: str, operation: Operation, machine: Machine, wishes: Wishes) -> _Stretch:
