@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import Severity
-from trunnion.machine import Machine, Packed, forward, pack
+from trunnion.machine import Machine, Packed, forward, pack, tool_axes
 from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.poses import joints_of
 from trunnion.toolpath import Arcs
@@ -129,6 +129,13 @@ class Poses:
             column.setflags(write=False)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Stretch(Poses):
+    """Consecutive rows: ``half_way`` (k - 1, 3) is the tool axis where every joint is half-way from row to row."""
+
+    half_way: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """A program as a machine's control ran it; columns have n rows and are read-only.
@@ -216,7 +223,7 @@ class Run:
         tip[by_tip] = place[by_tip]
         return Poses(joints, tip, axis)
 
-    def stretch(self, first: int, end: int) -> Poses:
+    def stretch(self, first: int, end: int) -> Stretch:
         """Where axes and tool are in consecutive rows, led by the place before them: (end - first + 1) rows."""
         rows = slice(max(first - 1, 0), end)
         by_tip = self.state.by_tip.part(rows.start, end)
@@ -224,14 +231,14 @@ class Run:
         joints = joints_of(self.machine, self._packed, by_tip, place, self.rotary[rows])
         if first == 0:
             joints = np.concatenate((self.start[None], joints))
-        tip, axis = forward(self.machine, joints)
         if first and by_tip.all():
-            return Poses(joints, place, axis)
+            return Stretch(joints, place, *tool_axes(self.machine, joints))
+        tip, _ = forward(self.machine, joints)
         reached = tip[1:] if first == 0 else tip
         reached[by_tip] = place[by_tip]
-        return Poses(joints, tip, axis)
+        return Stretch(joints, tip, *tool_axes(self.machine, joints))
 
-    def stretches(self) -> Iterator[tuple[int, int, Poses]]:
+    def stretches(self) -> Iterator[tuple[int, int, Stretch]]:
         """All rows, ``CHUNK`` at a time: first row, the row after the last, and ``stretch`` of them."""
         for first in range(0, len(self), CHUNK):
             end = min(first + CHUNK, len(self))
