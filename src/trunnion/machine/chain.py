@@ -98,7 +98,7 @@ def pack_chain(machine: Machine, tool_length: float = 0.0) -> Chain:
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def chain_rows(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
     """Write tip and tool axis (n, 3) of each row of ``joints`` (n, 5)."""
     for row in range(joints.shape[0]):
@@ -138,7 +138,7 @@ def chain_row(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
     axis[0], axis[1], axis[2] = i, j, k
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def axis_rows(chain: Chain, turning: tuple[int, int], joints: Floats, axis: Floats, half_way: Floats) -> None:
     """Write the tool axis (n, 3) of rows of ``joints`` (n, 5), and ``half_way`` (n - 1, 3) between each two rows.
 

@@ -224,14 +224,14 @@ def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: 
     return joints
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def slide_rows(packed: Packed, tip: Floats, rotary: Floats, joints: Floats) -> None:
     """Call ``solve_slides`` for each row; joints (n, 5) is written."""
     for row in range(tip.shape[0]):
         solve_slides(packed, rotary[row, 0], rotary[row, 1], tip[row, 0], tip[row, 1], tip[row, 2], joints[row])
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_rows(packed: Packed, tip: Floats, axis: Floats, joints: Floats, status: Codes) -> None:
     """Call ``solve_point`` for each row; joints (2, n, 5) and status (n,) uint8 are written."""
     for row in range(tip.shape[0]):

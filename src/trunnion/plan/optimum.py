@@ -72,7 +72,7 @@ _COS_BEND: Final = math.cos(math.radians(BEND))
 
 def _without_counting(kernel: Kernel) -> Kernel:
     """Compile a kernel that counts no references: by an option of Numba's that its type hints do not know."""
-    options: dict[str, Any] = {"cache": True, "_nrt": False}
+    options: dict[str, Any] = {"cache": True, "nogil": True, "_nrt": False}
     compiled: Kernel = njit(**options)(kernel)
     return compiled
 
@@ -487,7 +487,7 @@ def nearest(
     return now
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def trace(back: Codes, end: int, state: Codes) -> None:
     """Read the way back: ``state`` (n,) is the state of each row, with the bits of the step into it."""
     now = end

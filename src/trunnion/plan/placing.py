@@ -94,7 +94,7 @@ def _enter(
         found[row, r] = value if np.isnan(begin) else value - 360.0 * np.floor((value - begin) / 360.0)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def place(
     packed: Packed,
     choice: Choice,
@@ -153,7 +153,7 @@ def place(
         last_1, last_2 = joints[columns[0]], joints[columns[1]]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def straight_on(
     packed: Packed,
     choice: Choice,

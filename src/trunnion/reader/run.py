@@ -10,9 +10,11 @@ swivelled planes are already resolved to it.
 """
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, fields
 from enum import IntEnum, IntFlag
 from functools import cached_property
+from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +28,9 @@ from trunnion.toolpath import Arcs
 
 #: Rows that are worked out at a time: what is needed for them stays in the processor's cache.
 CHUNK = 8192
+
+#: Stretches from which on a second thread is worth its start.
+_WORTH_A_THREAD = 4
 
 
 class Written(IntFlag):
@@ -239,10 +244,21 @@ class Run:
         return Stretch(joints, tip, *tool_axes(self.machine, joints))
 
     def stretches(self) -> Iterator[tuple[int, int, Stretch]]:
-        """All rows, ``CHUNK`` at a time: first row, the row after the last, and ``stretch`` of them."""
-        for first in range(0, len(self), CHUNK):
-            end = min(first + CHUNK, len(self))
-            yield first, end, self.stretch(first, end)
+        """All rows, ``CHUNK`` at a time: first row, the row after the last, and ``stretch`` of them.
+
+        While one stretch is looked at the next one is worked out, on another core if there is one.
+        """
+        bounds = [(first, min(first + CHUNK, len(self))) for first in range(0, len(self), CHUNK)]
+        if len(bounds) < _WORTH_A_THREAD:
+            yield from ((first, end, self.stretch(first, end)) for first, end in bounds)
+            return
+        with ThreadPoolExecutor(1) as aside:
+            coming = aside.submit(self.stretch, *bounds[0])
+            for (first, end), after in zip_longest(bounds, bounds[1:]):
+                ready = coming.result()
+                if after is not None:
+                    coming = aside.submit(self.stretch, *after)
+                yield first, end, ready
 
     def oriented(self, first: int, end: int) -> Codes:
         """Column ``orientation`` of consecutive rows."""

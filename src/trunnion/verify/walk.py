@@ -178,7 +178,7 @@ def beside(axis: Floats, half_way: Floats, row: int) -> float:
     return math.degrees(chord if chord < 1e-8 else 2.0 * math.asin(min(1.0, 0.5 * chord)))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def walk_rows(
     first: int,
     joints: Floats,
