@@ -12,7 +12,7 @@ from tests.reader import naive
 from trunnion.errors import InputError
 from trunnion.machine import forward, load_machine
 from trunnion.reader import Run, poses, run_program
-from trunnion.reader.sinumerik.interpreter import Interpreter
+from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 from trunnion.reader.subdivide import on_circle
 
 YL569 = load_machine("yl569")
@@ -36,7 +36,7 @@ def twice(path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Run, Run]:
     """Run a program with and without the scan kernel."""
     fast = run_program(path, YL569)
     with monkeypatch.context() as patch:
-        patch.setattr(Interpreter, "_may_be_plain", lambda *_: False)
+        patch.setattr(SinumerikInterpreter, "_may_be_plain", lambda *_: False)
         return fast, run_program(path, YL569)
 
 
