@@ -22,10 +22,13 @@ from trunnion.verify import compare
 MACHINE = load_machine("yl569")
 CONTROL = load_control(MACHINE.control)
 
-#: Tool axes that the YL569 reaches, upright ones among them.
+#: Tool axes that the YL569 reaches, upright ones among them. Others stand clear of its pole: nearer to it the angles of
+#: a tilted plane, as they are printed, leave C open.
 AXES = st.one_of(
     st.just((0.0, 0.0, 1.0)),
-    st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.01, 1)),
+    st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.01, 1)).filter(
+        lambda axis: abs(axis[0]) + abs(axis[1]) > 0.01
+    ),
 )
 
 

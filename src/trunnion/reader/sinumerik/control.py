@@ -665,14 +665,22 @@ class Control:
             self.note("CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return None
         pairs.sort(key=lambda pair: pair[1], reverse=direction > 0)
-        first, second = pairs[0] if pairs[0] in fits else fits[0]
+        taken = pairs[0] if pairs[0] in fits else fits[0]
         if pairs[0] not in fits:
             self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
+        first, second = (self._turn_inside(c, v) for c, v in zip(columns, taken, strict=True))
         return first, second
+
+    def _turn_inside(self, column: int, value: float) -> float:
+        """The turn of a rotary value that is inside the travel and nearest to where the axis stands."""
+        axis = self.machine.axes[column]
+        low, high = axis.low - poses.SLACK, axis.high + poses.SLACK
+        return float(poses.nearest(float(self.held[column]), value, axis.endless, low, high))
 
     def _inside(self, column: int, value: float) -> bool:
         axis = self.machine.axes[column]
-        return axis.endless or any(axis.low <= value + turn <= axis.high for turn in (0.0, -360.0, 360.0))
+        low, high = axis.low - poses.SLACK, axis.high + poses.SLACK
+        return axis.endless or any(low <= value + turn <= high for turn in (0.0, -360.0, 360.0))
 
     # The end
 
