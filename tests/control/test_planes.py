@@ -69,8 +69,8 @@ def reachable(machine: Machine, share: tuple[float, float]) -> Floats:
         axis = machine.axes[column]
         low, high = (0.0, 360.0) if axis.endless else (axis.low, axis.high)
         joints[column] = low + part * (high - low)
-    axis: Floats = forward(machine, joints[None])[1][0]
-    return axis
+    direction: Floats = forward(machine, joints[None])[1][0]
+    return direction
 
 
 def text_of(axes: list[Floats], tips: list[tuple[float, float, float]]) -> str:
