@@ -1,6 +1,7 @@
 """``trunnion post``: CL files in, one proven NC program out (or one each, into a folder)."""
 
 import argparse
+import math
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -8,20 +9,25 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
+import numpy as np
+
 from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
-from trunnion.control import Control, Program, check_program, load_control, write_program
+from trunnion.control import CHOICES, Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Wishes, plan
+from trunnion.plan import Manner, Motion, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
 #: Settings that say how to read, to place and to plan rather than what to print.
-_RUN_SETTINGS = ("units", "zero", "rewind", "clearance")
+_RUN_SETTINGS = ("units", "zero", "rewind", "clearance", "manner")
+
+#: What the setting ``manner`` may say.
+_MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -182,18 +188,37 @@ def prove(
 
 
 def _allowed(program: Program) -> "list[Allowed]":
-    """Half the last digit that each operation prints."""
+    """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
     from trunnion.verify import Allowed
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
+    turning = control.number_formats(three_axis=False)["plane_angle"].decimals
     allowed = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
-        angle = max(half["primary"], half["secondary"])
-        allowed.append(Allowed(half["X"], angle, control.chord_tolerance, half["feed"]))
+        tip, angle = half["X"], max(half["primary"], half["secondary"])
+        if motion.plane is not None:
+            tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
+            tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
+        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"]))
     return allowed
+
+
+def _in_plane(motion: Motion, half: float, tilt: float) -> float:
+    """How far a coordinate may be off where ``half`` is, in each coordinate of the plane and of its origin, mm, and
+    the plane itself by ``tilt`` degrees."""
+    assert motion.plane is not None
+    reach = float(np.abs(motion.as_written().moves.tip).max())
+    rounded = half * (1.0 + float(np.abs(motion.plane.matrix()).sum(axis=1).max()))
+    return rounded + float(np.radians(tilt)) * reach * math.sqrt(3.0)
+
+
+def _lever(motion: Motion, machine: Machine) -> float:
+    """How far a turn of the rotary axis next to the workpiece turns the tool axis: near its pole hardly at all."""
+    first = np.array(machine.axes[machine.rotary[0]].direction)
+    return max(float(np.linalg.norm(np.cross(first, motion.operation.moves.axis[0]))), 1e-3)
 
 
 def _asked(program: Program) -> "Settings":
@@ -230,6 +255,13 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
+    if settings.get("manner", "auto") not in _MANNERS:
+        cure = f"write one of {', '.join(_MANNERS)}"
+        problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
+    for name, choices in CHOICES.items():
+        if settings.get(name, choices[0]) not in choices:
+            cure = f"write one of {', '.join(choices)}"
+            problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
     if settings.get("units", "mm") not in ("mm", "inch"):
         problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
     if not settings.get("edge", "1").isdigit():
@@ -241,8 +273,9 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
 def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
     """What the settings say to the planner."""
     rewind, text = settings.get("rewind", "insert") == "insert", settings.get("clearance")
+    manner = _MANNERS[settings.get("manner", "auto")]
     if text is None:
-        return Wishes(rewind=rewind, explain=explain)
+        return Wishes(rewind=rewind, explain=explain, manner=manner)
     try:
         clearance = float(text)
     except ValueError:
@@ -250,7 +283,7 @@ def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
     if not 0.1 <= clearance <= 10000.0:
         cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50"
         raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
-    return Wishes(rewind=rewind, clearance=clearance, explain=explain)
+    return Wishes(rewind=rewind, clearance=clearance, explain=explain, manner=manner)
 
 
 def point(text: str) -> tuple[float, float, float]:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from trunnion.plan.motion import Manner
+
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
@@ -11,9 +13,11 @@ class Wishes:
     clearance  how far the tool draws back along its axis for that, mm
     engage     share of the feed with which it comes back
     explain    compare with what the nearest neighbour would have done
+    manner     how every operation is to be made, whatever the rule says; None: by the rule
     """
 
     rewind: bool = True
     clearance: float = 50.0
     engage: float = 0.5
     explain: bool = False
+    manner: Manner | None = None
