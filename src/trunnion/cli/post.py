@@ -1,6 +1,7 @@
 """``trunnion post``: CL files in, one proven NC program out (or one each, into a folder)."""
 
 import argparse
+import math
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -14,14 +15,17 @@ from trunnion.cli.progress import progress
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Wishes, plan
+from trunnion.plan import Pole, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
+#: Settings that say how to plan.
+PLANNING = ("rewind", "clearance", "pole", "pole_angle", "lower_feed")
+
 #: Settings that say how to read, to place and to plan rather than what to print.
-_RUN_SETTINGS = ("units", "zero", "rewind", "clearance")
+_RUN_SETTINGS = ("units", "zero", *PLANNING)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -183,7 +187,7 @@ def prove(
 
 def _allowed(program: Program) -> "list[Allowed]":
     """Half the last digit that each operation prints."""
-    from trunnion.verify import Allowed
+    from trunnion.verify import Agreed, Allowed
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
@@ -192,7 +196,9 @@ def _allowed(program: Program) -> "list[Allowed]":
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
         angle = max(half["primary"], half["secondary"])
-        allowed.append(Allowed(half["X"], angle, control.chord_tolerance, half["feed"]))
+        apart = motion.departures
+        agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
+        allowed.append(Allowed(half["X"], angle, control.chord_tolerance, half["feed"], agreed))
     return allowed
 
 
@@ -230,6 +236,12 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
+    if settings.get("pole", "off") not in list(Pole):
+        what = f"pole is {settings['pole']!r}"
+        problems.append(Problem("--set", 0, what, f"write pole= and one of {', '.join(Pole)}"))
+    if settings.get("lower_feed", "no") not in ("yes", "no"):
+        what = f"lower_feed is {settings['lower_feed']!r}"
+        problems.append(Problem("--set", 0, what, "write lower_feed=yes or lower_feed=no"))
     if settings.get("units", "mm") not in ("mm", "inch"):
         problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
     if not settings.get("edge", "1").isdigit():
@@ -239,18 +251,36 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
 
 
 def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
-    """What the settings say to the planner."""
-    rewind, text = settings.get("rewind", "insert") == "insert", settings.get("clearance")
+    """What the settings, checked by ``check_settings``, say to the planner."""
+    usual = Wishes()
+    cures = {
+        "clearance": "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50",
+        "pole_angle": "write pole_angle=DEG, by how much the tool axis may lean near the pole, such as pole_angle=0.1",
+    }
+    return Wishes(
+        rewind=settings.get("rewind", "insert") == "insert",
+        clearance=_number(settings, "clearance", usual.clearance, (0.1, 10000.0), cures),
+        explain=explain,
+        pole=Pole(settings.get("pole", "off")),
+        pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),
+        lower_feed=settings.get("lower_feed", "no") == "yes",
+    )
+
+
+def _number(
+    settings: Mapping[str, str], key: str, usual: float, within: tuple[float, float], cures: Mapping[str, str]
+) -> float:
+    """A setting that is a number."""
+    text = settings.get(key)
     if text is None:
-        return Wishes(rewind=rewind, explain=explain)
+        return usual
     try:
-        clearance = float(text)
+        value = float(text)
     except ValueError:
-        clearance = 0.0
-    if not 0.1 <= clearance <= 10000.0:
-        cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50"
-        raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
-    return Wishes(rewind=rewind, clearance=clearance, explain=explain)
+        value = math.nan
+    if not within[0] <= value <= within[1]:
+        raise InputError(Problem("--set", 0, f"{key} is {text!r}", cures[key]))
+    return value
 
 
 def point(text: str) -> tuple[float, float, float]:

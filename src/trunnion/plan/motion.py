@@ -1,11 +1,22 @@
 """What the planner hands on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
-from trunnion.arrays import Floats
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
 from trunnion.errors import Problem
 from trunnion.toolpath import Frame, Operation
+
+
+class Pole(StrEnum):
+    """What is done near the pole where a rotary axis would have to be too fast (``trunnion.plan.pole``)."""
+
+    OFF = "off"
+    HOLD = "hold"
+    SPREAD = "spread"
+    LEAN = "lean"
 
 
 class Manner(StrEnum):
@@ -18,6 +29,32 @@ class Manner(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Departures:
+    """Where an operation is not made as its CL file has it; rows are those of the CL file, growing.
+
+    lean    degrees by which the tool axis may lean at the rows ``leaned``
+    leaned  (k,) int64
+    rotary  (k, 2) float64  positions of the rotary axes there, as ``Motion`` has them
+    slowed  (m,) int64      rows with another feed
+    feed    (m,) float64    that feed, in the unit of the CL file's
+    """
+
+    lean: float
+    leaned: Ints
+    rotary: Floats
+    slowed: Ints
+    feed: Floats
+
+    @staticmethod
+    def none() -> "Departures":
+        """Everything as it is in the CL file."""
+        return Departures(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
+
+    def __len__(self) -> int:
+        return len(self.leaned) + len(self.slowed)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Motion:
     """One operation on the machine.
 
@@ -27,12 +64,14 @@ class Motion:
                  range that each displays. The slides follow from them and the tip: ``trunnion.machine.slide_positions``
     manner       three-axis: the tool axis is +Z of the program's coordinate system throughout
     plane        the tilted plane as seen from the program's coordinate system, for that manner only
+    departures   where it is not made as its CL file has it
     """
 
     operation: Operation
     rotary: Floats
     manner: Manner
     plane: Frame | None = None
+    departures: Departures = field(default_factory=Departures.none)
 
     def __post_init__(self) -> None:
         self.rotary.setflags(write=False)
@@ -50,6 +89,8 @@ class Why(StrEnum):
     POLE = "pole"
     CHANGE = "change"
     REWIND = "rewind"
+    SPEED = "speed"
+    FEED = "feed"
     MORE = "more"
     NEAREST = "nearest"
 
