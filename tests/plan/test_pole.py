@@ -14,9 +14,9 @@ from trunnion.arrays import Flags, Floats
 from trunnion.machine import Machine, forward, inverse, load_machine, pack, shipped
 from trunnion.plan import Plan, Pole, Why, Wishes, plan
 from trunnion.plan.cone import leanest, nearest_second, off_pole
-from trunnion.plan.optimum import REWIND
+from trunnion.plan.placing import REWIND
 from trunnion.plan.pole import Leaning, leaning
-from trunnion.plan.poses import choose, take
+from trunnion.plan.poses import follow
 from trunnion.plan.speed import shares
 from trunnion.toolpath import Moves, Operation, Toolpath
 
@@ -64,7 +64,7 @@ def passes(draw: st.DrawFn, machine: Machine) -> Operation:
 
 def looked_after(machine: Machine, operation: Operation, mode: Pole, angle: float) -> Leaning:
     moves = operation.moves
-    poses = take(machine, moves, choose(machine, moves, False), False)
+    poses = follow(machine, moves, False)
     return leaning(machine, operation, poses, False, mode, angle, np.zeros(len(moves), bool))
 
 
@@ -127,7 +127,7 @@ def test_nothing_is_done_where_nothing_is_too_fast(data: st.DataObject, name: st
     operation = replace(operation, moves=replace(operation.moves, feed=operation.moves.feed / 1e6))
     for mode in (Pole.HOLD, Pole.SPREAD, Pole.LEAN):
         found = looked_after(machine, operation, mode, 0.5)
-        plain = take(machine, operation.moves, choose(machine, operation.moves, False), False)
+        plain = follow(machine, operation.moves, False)
         if not (shares(machine, operation, plain.rotary, np.zeros(0, np.int64)) > 0.98).any():
             assert not len(found.rows)
             np.testing.assert_array_equal(found.poses.rotary, plain.rotary)

@@ -15,7 +15,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.machine import Machine, pack
 from trunnion.plan.cone import off_pole
 from trunnion.plan.motion import Decision, Departures, Pole, Why
-from trunnion.plan.optimum import REWIND
+from trunnion.plan.placing import REWIND
 from trunnion.plan.pole import Leaning, Place, leaning
 from trunnion.plan.poses import Poses
 from trunnion.plan.speed import fastest, lowered

@@ -13,8 +13,8 @@ from trunnion.plan.arcs import lines_for_arcs, plain_arcs
 from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower, source_rows
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
-from trunnion.plan.optimum import BLOCKED, OUT_OF_REACH, REWIND
-from trunnion.plan.poses import Poses, beyond_fit, choose, take
+from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
+from trunnion.plan.poses import Poses, beyond_fit, follow
 from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.plan.wishes import Wishes
@@ -95,7 +95,7 @@ def _stretch(asked: Asked) -> _Stretch:
     """Plan one operation in the program's coordinate system."""
     file, operation, machine, wishes = asked.file, asked.operation, asked.machine, asked.wishes
     moves = operation.moves
-    poses = take(machine, moves, choose(machine, moves, asked.keep_slides), asked.keep_slides)
+    poses = follow(machine, moves, asked.keep_slides)
     if (poses.outcome == OUT_OF_REACH).any():
         problems = tuple(_row_problems(file, moves, poses, machine))
         return _Stretch(file, operation, poses, (), problems, (), Departures.none())

@@ -28,10 +28,10 @@ from trunnion.machine import Machine, Packed, forward, pack, slide_positions
 from trunnion.machine.inverse import inverse
 from trunnion.plan.cone import Cone, leanest, nearest_second, off_pole, way_of_second
 from trunnion.plan.motion import Pole
-from trunnion.plan.optimum import FINE, OUT_OF_REACH, REWIND, REWOUND
-from trunnion.plan.poses import Poses, choose, take
+from trunnion.plan.placing import FINE, OUT_OF_REACH, REWIND
+from trunnion.plan.poses import Poses, follow
 from trunnion.plan.speed import displayed, reach, turns_freely, wound
-from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
+from trunnion.plan.states import LIMIT_TOLERANCE, REWOUND, limits_of
 from trunnion.toolpath import Moves, Operation
 
 #: Degrees that an axis can turn before and after a place that asks too much of it, in which a way is looked for first.
@@ -196,7 +196,7 @@ def _through(work: _Work, poses: Poses, cones: list[Cone], keep_slides: bool) ->
     solutions = inverse(work.machine, moves.tip[: cones[0].end], moves.axis[: cones[0].end])
     if not solutions.reachable[cones[0].first]:
         return poses, []
-    through = take(work.machine, moves, choose(work.machine, moves, keep_slides), keep_slides)
+    through = follow(work.machine, moves, keep_slides)
     if (through.outcome == OUT_OF_REACH).any() or np.count_nonzero(through.outcome) > np.count_nonzero(poses.outcome):
         return poses, cones
     return through, cones
