@@ -29,12 +29,14 @@ class Motion:
     manner       three-axis: the tool axis is +Z of the program's coordinate system throughout
     plane        the tilted plane as seen from the program's coordinate system, for that manner only. Its Z is the tool
                  axis
+    begins       False: it goes on with the operation of the motion before it, in another plane
     """
 
     operation: Operation
     rotary: Floats
     manner: Manner
     plane: Frame | None = None
+    begins: bool = True
 
     def __post_init__(self) -> None:
         self.rotary.setflags(write=False)
