@@ -472,7 +472,7 @@ class _Author:
         self._writer.table(columns, {"X": True, "Y": True}, np.where(wanted != before, wanted, -1), texts)
         self._writer.lines(["MCALL"])
         self._height = heights.retract
-        self._writer.remember("Z", self._count("X", heights.retract))
+        self._writer.forget("X", "Y", "Z")  # a point at which the tool already stands gets its block
         return int(wanted[-1])
 
     def _block(self, words: Mapping[str, int]) -> None:

@@ -12,6 +12,7 @@ from trunnion.verify import demands, modal
 from trunnion.verify.align import Pairs, in_order, matched
 from trunnion.verify.arcs import Arc, turned
 from trunnion.verify.case import NAMED, Case, Settings
+from trunnion.verify.holes import holes
 from trunnion.verify.model import Check, Place, Verification
 from trunnion.verify.points import Deviations, Off
 from trunnion.verify.turns import turns
@@ -61,7 +62,7 @@ def verify(
         case = Case(run, wanted, pairs, settings)
         checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis)]
         checks += [demands.kind(case), demands.feed(case), demands.spindle(case), demands.tool(case)]
-        checks += [demands.coolant(case), demands.offset(case), demands.home(case)]
+        checks += [demands.coolant(case), demands.offset(case), demands.home(case), holes(case)]
     else:
         _go_by(run, walker)
         case = Case(run, None, None, settings)
@@ -173,7 +174,7 @@ def _axis(case: Case, off: Off) -> Check:
 
 def _measured(key: str, title: str, case: Case, off: Off, unit: str, places: list[Place], count: int) -> Check:
     assert case.pairs is not None
-    if not len(case.pairs.nc):
+    if not len(case.pairs.nc) and case.wanted is not None and len(case.wanted):
         return Check(key, title, False, "no block answers to any CL point", unit=unit)
     summary = f"largest {off.largest:.6f} {unit}, rms {off.rms:.6f}, allowed {off.limit:.6f}"
     if count:
