@@ -12,19 +12,22 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 
 from trunnion.cl import read_cl
-from trunnion.cli.output import whole
 from trunnion.cli.progress import progress
 from trunnion.control import CHOICES, Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Manner, Motion, Wishes, plan
+from trunnion.plan import Manner, Motion, Pole, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
+#: Settings that say how to plan.
+PLANNING = ("manner", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
+
 #: Settings that say how to read, to place and to plan rather than what to print.
-_RUN_SETTINGS = ("units", "zero", "rewind", "clearance", "manner")
+_RUN_SETTINGS = ("units", "zero", *PLANNING)
 
 #: What the setting ``manner`` may say.
 _MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
@@ -190,7 +193,7 @@ def prove(
 
 def _allowed(program: Program) -> "list[Allowed]":
     """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
-    from trunnion.verify import Allowed
+    from trunnion.verify import Agreed, Allowed
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
@@ -206,7 +209,9 @@ def _allowed(program: Program) -> "list[Allowed]":
         if not motion.begins:
             before = allowed.pop()
             tip, angle = max(tip, before.tip), max(angle, before.angle)
-        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"]))
+        apart = motion.departures
+        agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
+        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed))
     return allowed
 
 
@@ -266,6 +271,12 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         if settings.get(name, choices[0]) not in choices:
             cure = f"write one of {', '.join(choices)}"
             problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
+    if settings.get("pole", "off") not in list(Pole):
+        what = f"pole is {settings['pole']!r}"
+        problems.append(Problem("--set", 0, what, f"write pole= and one of {', '.join(Pole)}"))
+    if settings.get("lower_feed", "no") not in ("yes", "no"):
+        what = f"lower_feed is {settings['lower_feed']!r}"
+        problems.append(Problem("--set", 0, what, "write lower_feed=yes or lower_feed=no"))
     if settings.get("units", "mm") not in ("mm", "inch"):
         problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
     if not settings.get("edge", "1").isdigit():
@@ -275,19 +286,37 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
 
 
 def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
-    """What the settings say to the planner."""
-    rewind, text = settings.get("rewind", "insert") == "insert", settings.get("clearance")
-    manner = _MANNERS[settings.get("manner", "auto")]
+    """What the settings, checked by ``check_settings``, say to the planner."""
+    usual = Wishes()
+    cures = {
+        "clearance": "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50",
+        "pole_angle": "write pole_angle=DEG, by how much the tool axis may lean near the pole, such as pole_angle=0.1",
+    }
+    return Wishes(
+        rewind=settings.get("rewind", "insert") == "insert",
+        clearance=_number(settings, "clearance", usual.clearance, (0.1, 10000.0), cures),
+        explain=explain,
+        manner=_MANNERS[settings.get("manner", "auto")],
+        pole=Pole(settings.get("pole", "off")),
+        pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),
+        lower_feed=settings.get("lower_feed", "no") == "yes",
+    )
+
+
+def _number(
+    settings: Mapping[str, str], key: str, usual: float, within: tuple[float, float], cures: Mapping[str, str]
+) -> float:
+    """A setting that is a number."""
+    text = settings.get(key)
     if text is None:
-        return Wishes(rewind=rewind, explain=explain, manner=manner)
+        return usual
     try:
-        clearance = float(text)
+        value = float(text)
     except ValueError:
-        clearance = 0.0
-    if not 0.1 <= clearance <= 10000.0:
-        cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50"
-        raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
-    return Wishes(rewind=rewind, clearance=clearance, explain=explain, manner=manner)
+        value = math.nan
+    if not within[0] <= value <= within[1]:
+        raise InputError(Problem("--set", 0, f"{key} is {text!r}", cures[key]))
+    return value
 
 
 def point(text: str) -> tuple[float, float, float]:

@@ -1,12 +1,23 @@
 """What the planner hands on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
-from trunnion.arrays import Floats
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
 from trunnion.errors import Problem
 from trunnion.plan.frames import into_plane
 from trunnion.toolpath import Frame, Operation
+
+
+class Pole(StrEnum):
+    """What is done near the pole where a rotary axis would have to be too fast (``trunnion.plan.pole``)."""
+
+    OFF = "off"
+    HOLD = "hold"
+    SPREAD = "spread"
+    LEAN = "lean"
 
 
 class Manner(StrEnum):
@@ -16,6 +27,32 @@ class Manner(StrEnum):
     TILTED = "tilted plane"
     TCP = "TCP"
     WITHOUT_TCP = "without TCP"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Departures:
+    """Where an operation is not made as its CL file has it; rows are those of the CL file, growing.
+
+    lean    degrees by which the tool axis may lean at the rows ``leaned``
+    leaned  (k,) int64
+    rotary  (k, 2) float64  positions of the rotary axes there, as ``Motion`` has them
+    slowed  (m,) int64      rows with another feed
+    feed    (m,) float64    that feed, in the unit of the CL file's
+    """
+
+    lean: float
+    leaned: Ints
+    rotary: Floats
+    slowed: Ints
+    feed: Floats
+
+    @staticmethod
+    def none() -> "Departures":
+        """Everything as it is in the CL file."""
+        return Departures(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
+
+    def __len__(self) -> int:
+        return len(self.leaned) + len(self.slowed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,6 +66,7 @@ class Motion:
     manner       three-axis: the tool axis is +Z of the program's coordinate system throughout
     plane        the tilted plane as seen from the program's coordinate system, for that manner only. Its Z is the tool
                  axis
+    departures   where it is not made as its CL file has it
     begins       False: it goes on with the operation of the motion before it, in another plane
     """
 
@@ -36,6 +74,7 @@ class Motion:
     rotary: Floats
     manner: Manner
     plane: Frame | None = None
+    departures: Departures = field(default_factory=Departures.none)
     begins: bool = True
 
     def __post_init__(self) -> None:
@@ -58,6 +97,8 @@ class Why(StrEnum):
     POLE = "pole"
     CHANGE = "change"
     REWIND = "rewind"
+    SPEED = "speed"
+    FEED = "feed"
     MORE = "more"
     NEAREST = "nearest"
 

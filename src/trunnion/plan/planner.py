@@ -10,10 +10,11 @@ from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
 from trunnion.plan.decisions import Planned, decisions, pose_words
+from trunnion.plan.departures import Asked, near_pole, slower, source_rows
 from trunnion.plan.frames import into_frame, into_plane, seen_from
 from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
 from trunnion.plan.kinds import contradictions, manner_of, plane_of
-from trunnion.plan.motion import Decision, Manner, Motion, Plan
+from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
 from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
@@ -53,6 +54,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
     program_frame = pairs[0][1].frame
+    keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
     against: list[Problem] = []
     for path, original in pairs:
@@ -66,12 +68,15 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
         kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
         operation = lines_for_arcs(operation, kept, chord_tolerance)
-        stretch = replace(_stretch(path.file, operation, machine, wishes), manner=manner, plane=plane)
+        source = source_rows(original, operation)
+        stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
         parts = by_axis(operation) if manner is Manner.TCP and wishes.manner is None else None
-        stretches.append(stretch if parts is None else replace(stretch, manner=Manner.TILTED, plane=own, parts=parts))
+        kind = replace(stretch, manner=manner, plane=plane)
+        stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own, parts=parts))
     if against:
         raise Refused(against)
-    problems = [problem for stretch in stretches for problem in stretch.problems]
+    problems = [*_unknown_speeds(pairs[0][0].file, machine, wishes)]
+    problems += [problem for stretch in stretches for problem in stretch.problems]
     if any((stretch.poses.outcome == OUT_OF_REACH).any() for stretch in stretches):
         raise Refused(problems)
     if machine.workpiece_zero is None:
@@ -94,6 +99,7 @@ class _Stretch:
     rewinds: tuple[Rewind, ...]
     problems: tuple[Problem, ...]
     log: tuple[Decision, ...]
+    departures: Departures
     manner: Manner = Manner.TCP
     plane: Frame | None = None
     parts: Sequence[tuple[int, int]] = ()
@@ -102,7 +108,7 @@ class _Stretch:
         """What is to be written."""
         if not self.parts:
             operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
-            return [Motion(operation, rotary, self.manner, self.plane)]
+            return [Motion(operation, rotary, self.manner, self.plane, self.departures)]
         assert self.plane is not None
         return [
             Motion(
@@ -116,19 +122,33 @@ class _Stretch:
         ]
 
 
-def _stretch(file: str, operation: Operation, machine: Machine, wishes: Wishes) -> _Stretch:
+def _stretch(asked: Asked) -> _Stretch:
     """Plan one operation in the program's coordinate system."""
-    moves, keep_slides = operation.moves, machine.workpiece_zero is not None
-    poses = follow(machine, moves, keep_slides)
+    file, operation, machine, wishes = asked.file, asked.operation, asked.machine, asked.wishes
+    moves = operation.moves
+    poses = follow(machine, moves, asked.keep_slides)
     if (poses.outcome == OUT_OF_REACH).any():
-        return _Stretch(file, operation, poses, (), tuple(_row_problems(file, moves, poses, machine)), ())
-    planned = Planned(machine, file, operation, poses.rotary, poses.state, keep_slides)
+        problems = tuple(_row_problems(file, moves, poses, machine))
+        return _Stretch(file, operation, poses, (), problems, (), Departures.none())
+    operation, poses, leaned, log, lacking = near_pole(asked, poses)
+    operation, slowed, too_fast = slower(replace(asked, operation=operation), poses)
+    departures = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
+    planned = Planned(machine, file, operation, poses.rotary, poses.state, asked.keep_slides)
     needed = _rewinds(planned, poses)
-    problems = [*_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes)]
+    problems = (*lacking, *_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes))
     if wishes.rewind:
         _widen(poses, machine, moves, needed, wishes.clearance)
-    log = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
-    return _Stretch(file, operation, poses, needed if wishes.rewind else (), tuple(problems), tuple(log))
+    said = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
+    log = [*said, *log, *too_fast]
+    return _Stretch(file, operation, poses, needed if wishes.rewind else (), problems, tuple(log), departures)
+
+
+def _unknown_speeds(file: str, machine: Machine, wishes: Wishes) -> Iterable[Problem]:
+    """What was wished for and cannot be done, for nobody says how fast the rotary axes are."""
+    names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
+    if names and (wishes.pole is not Pole.OFF or wishes.lower_feed):
+        what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: it is never too fast"
+        yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING)
 
 
 def _rewinds(planned: Planned, poses: Poses) -> tuple[Rewind, ...]:

@@ -43,8 +43,8 @@ def fits(machine: Machine, rotary: tuple[float, float]) -> bool:
     )
 
 
-def turned_into_travel(machine: Machine, rotary: tuple[float, float], held: Floats) -> tuple[float, float]:
-    """A rotary position on the turns that are inside the travel and nearest to where the axes stand, ``held`` (5,)."""
+def turned_inside(machine: Machine, rotary: tuple[float, float], held: Floats) -> tuple[float, float]:
+    """The turns of a rotary position that lie inside the travel, nearest to where the axes stand in ``held`` (5,)."""
     first, second = (
         float(nearest(float(held[column]), value, axis.endless, axis.low - SLACK, axis.high + SLACK))
         for column, value in zip(machine.rotary, rotary, strict=True)
