@@ -17,7 +17,7 @@ from trunnion.control import CHOICES, Control, Program, check_program, load_cont
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Decision, Manner, Motion, Pole, Wishes, plan
+from trunnion.plan import Clearance, Decision, Manner, Motion, Pole, Surface, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
@@ -296,18 +296,31 @@ def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
     """What the settings, checked by ``check_settings``, say to the planner."""
     usual = Wishes()
     cures = {
-        "clearance": "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50",
         "pole_angle": "write pole_angle=DEG, by how much the tool axis may lean near the pole, such as pole_angle=0.1",
     }
     return Wishes(
         rewind=settings.get("rewind", "insert") == "insert",
-        clearance=_number(settings, "clearance", usual.clearance, (0.1, 10000.0), cures),
+        clearance=_clearance(settings["clearance"]) if "clearance" in settings else usual.clearance,
         explain=explain,
         manner=_MANNERS[settings.get("manner", "auto")],
         pole=Pole(settings.get("pole", "off")),
         pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),
         lower_feed=settings.get("lower_feed", "no") == "yes",
     )
+
+
+def _clearance(text: str) -> Clearance:
+    """The setting ``clearance``."""
+    kind, _, number = text.rpartition(":")
+    try:
+        surface, value = Surface(kind or Surface.DISTANCE), float(number)
+    except ValueError:
+        surface, value = Surface.DISTANCE, math.nan
+    least = -10000.0 if surface is Surface.PLANE else 0.1
+    if least <= value <= 10000.0:
+        return Clearance(value, surface)
+    cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
+    raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
 
 
 def _number(
