@@ -210,6 +210,10 @@ def _settings(table: Table) -> dict[str, str]:
     for name, choices in CHOICES.items():
         if found.setdefault(name, choices[0]) not in choices:
             table.problem(name, f"is {found[name]!r}", f"write one of {', '.join(choices)}")
+    try:
+        float(found.get("bore_lift") or 0.0)
+    except ValueError:
+        table.problem("bore_lift", f"is {found['bore_lift']!r}", "write millimetres, or nothing")
     table.finish()
     return found
 

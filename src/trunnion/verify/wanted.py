@@ -2,7 +2,7 @@
 
 In:     toolpaths, in the order in which they are cut.
 Out:    the rows of all operations one after the other, and from which row on which spindle, tool and coolant hold.
-Frame:  the coordinate system of the first operation that moves: it is the program's.
+Frame:  the program's, which is the coordinate system of the first operation that moves, or the CAM's absolute one.
 """
 
 from collections.abc import Sequence
@@ -126,7 +126,9 @@ class Point:
 class Wanted:
     """All operations of a program, end to end. Their columns stay where they are; holes are kept apart."""
 
-    def __init__(self, toolpaths: Sequence[Toolpath], allowed: Allowed | Sequence[Allowed]) -> None:
+    def __init__(
+        self, toolpaths: Sequence[Toolpath], allowed: Allowed | Sequence[Allowed], absolute: bool = False
+    ) -> None:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
             file = toolpaths[0].file if toolpaths else "CL file"
@@ -134,7 +136,7 @@ class Wanted:
         limits = [allowed] * len(moving) if isinstance(allowed, Allowed) else list(allowed)
         if len(limits) != len(moving):
             raise ValueError(f"{len(limits)} limits for {len(moving)} operations")
-        frame = moving[0][1].frame
+        frame = Frame() if absolute else moving[0][1].frame
         parts: list[Part] = []
         found: list[Hole] = []
         first = 0
