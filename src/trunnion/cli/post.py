@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
-from trunnion.control import CHOICES, Control, Program, check_program, load_control, write_program
+from trunnion.control import CHOICES, Control, Program, check_program, is_lift, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
@@ -270,12 +270,9 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
-    try:
-        float(settings.get("bore_lift") or 0.0)
-    except ValueError:
-        problems.append(
-            Problem("--set", 0, f"bore_lift is {settings['bore_lift']!r}", "write millimetres: bore_lift=0.5")
-        )
+    if not is_lift(settings.get("bore_lift", "")):
+        cure = "write millimetres, such as bore_lift=0.5"
+        problems.append(Problem("--set", 0, f"bore_lift is {settings['bore_lift']!r}", cure))
     if settings.get("numbers", "on") not in ("on", "off"):
         problems.append(Problem("--set", 0, f"numbers is {settings['numbers']!r}", "write numbers=on or numbers=off"))
     if settings.get("frame", "first") not in _FRAMES:
