@@ -291,3 +291,14 @@ def test_holes_survive_reading(tmp_path: Path) -> None:
     file.write_text(CLEAR + f"CYCLE/DRILL,{HEIGHTS}MMPM,250\nGOTO/10,0,0\n" + FOOT, encoding="utf-8")
     operation = read_cl(file).operations[0]
     assert len(operation.moves) == 2
+
+
+def test_another_tool_is_seen_in_an_operation_of_nothing_but_holes(tmp_path: Path) -> None:
+    cl, nc = tmp_path / "only.cls", tmp_path / "only.mpf"
+    text = CLEAR.replace("RAPID\nGOTO/0.0,0.0,50.0,0.0,0.0,1.0\n", "")
+    cl.write_text(text + f"CYCLE/DRILL,{HEIGHTS}MMPM,100\nGOTO/10,0,0\nGOTO/20,0,0\n" + FOOT, encoding="utf-8")
+    assert main(["post", str(cl), "--machine", "yl569", "--output", str(nc)]) == 0
+    lines = nc.read_text(encoding="utf-8").splitlines()
+    assert proven(lines, cl, tmp_path) == []
+    assert proven([line.replace("T=1", "T=2") for line in lines], cl, tmp_path) == ["holes"]
+    assert "holes" in proven([line for line in lines if "S4000" not in line], cl, tmp_path)

@@ -103,6 +103,11 @@ class Call:
         return tuple(str(text) for text in (self.number, self.name) if text not in (None, ""))
 
 
+def is_called(text: str, names: tuple[str, ...]) -> bool:
+    """Whether a program's word for a tool is one of its names."""
+    return text in names or (text.isdigit() and str(int(text)) in names)
+
+
 @dataclass(frozen=True, slots=True)
 class Stretch:
     """Rows ``first`` to ``end`` ask for ``value``."""
@@ -141,10 +146,15 @@ class Wanted:
         found: list[Hole] = []
         first = 0
         spindle: Spin | None = None
+        number: int | None = None
         for (path, whole), limit in zip(moving, limits, strict=True):
             seen = seen_from(frame, whole)
             operation, rows = without_holes(seen)
-            found += holes_of(seen, rows, first, path.file, limit.tip, spindle)
+            loads = [event.number for event in seen.events if isinstance(event, LoadTool)]
+            number = loads[-1] if loads else number
+            tools = () if number is None else Call(number, seen.tool.name).names
+            holes = holes_of(seen, rows, first, path.file, limit.tip, spindle)
+            found += [replace(hole, tools=tools) for hole in holes]
             spindle = spindle_at(seen, len(seen.moves), spindle)
             parts.append(Part(path.file, operation, first, limit))
             first += len(operation.moves)
