@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
-from trunnion.control import CHOICES, Control, Program, check_program, load_control, write_program
+from trunnion.control import CHOICES, Control, Program, check_program, is_lift, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
@@ -24,10 +24,13 @@ if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
 #: Settings that say how to plan.
-PLANNING = ("manner", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
+PLANNING = ("manner", "frame", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
 
 #: Settings that say how to read, to place and to plan rather than what to print.
-_RUN_SETTINGS = ("units", "zero", *PLANNING)
+_RUN_SETTINGS = ("units", "zero", "numbers", *PLANNING)
+
+#: What the setting ``frame`` may say: whose coordinate system the program's is.
+_FRAMES = ("first", "absolute")
 
 #: What the setting ``manner`` may say.
 _MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
@@ -43,6 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     control = load_control(machine.control)
     settings = dict(arguments.settings)
     check_settings(settings, control)
+    if settings.get("numbers") == "off":
+        control = replace(control, numbers=replace(control.numbers, letter=""))
     if "zero" in settings:
         machine = replace(machine, workpiece_zero=point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
@@ -58,6 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
                 paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
             )
             claim = write(program, sink)
+            claim = replace(claim, settings=replace(claim.settings, absolute=wishes.absolute))
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
@@ -271,6 +277,14 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
+    if not is_lift(settings.get("bore_lift", "")):
+        cure = "write millimetres, such as bore_lift=0.5"
+        problems.append(Problem("--set", 0, f"bore_lift is {settings['bore_lift']!r}", cure))
+    if settings.get("numbers", "on") not in ("on", "off"):
+        problems.append(Problem("--set", 0, f"numbers is {settings['numbers']!r}", "write numbers=on or numbers=off"))
+    if settings.get("frame", "first") not in _FRAMES:
+        cure = f"write one of {', '.join(_FRAMES)}"
+        problems.append(Problem("--set", 0, f"frame is {settings['frame']!r}", cure))
     if settings.get("manner", "auto") not in _MANNERS:
         cure = f"write one of {', '.join(_MANNERS)}"
         problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
@@ -303,6 +317,7 @@ def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
         clearance=_clearance(settings["clearance"]) if "clearance" in settings else usual.clearance,
         explain=explain,
         manner=_MANNERS[settings.get("manner", "auto")],
+        absolute=settings.get("frame", "first") == "absolute",
         pole=Pole(settings.get("pole", "off")),
         pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),
         lower_feed=settings.get("lower_feed", "no") == "yes",

@@ -55,7 +55,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
-    program_frame = pairs[0][1].frame
+    program_frame = Frame() if wishes.absolute else pairs[0][1].frame
     keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
     against: list[Problem] = []

@@ -18,6 +18,7 @@ class Wishes:
     manner      how every operation is to be made, whatever the rule says; None: by the rule
     pole        what is done near the pole where a rotary axis would have to be too fast
     pole_angle  by how much the tool axis may lean for that, degrees
+    absolute    the program's coordinate system is the CAM's absolute one, not that of the first operation
     lower_feed  lower the feed where a rotary axis would have to be too fast
     """
 
@@ -26,6 +27,7 @@ class Wishes:
     engage: float = 0.5
     explain: bool = False
     manner: Manner | None = None
+    absolute: bool = False
     pole: Pole = Pole.OFF
     pole_angle: float = 0.1
     lower_feed: bool = False
