@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     _check_settings(settings, target_control, arguments.to_cl)
     if "zero" in settings:
         target_machine = replace(target_machine, workpiece_zero=point(settings.pop("zero")))
-    wishes = wishes_of(settings)
+    wishes = wishes_of(settings, target_control)
     settings = {key: value for key, value in settings.items() if key not in PLANNING}
     target = _target(arguments, target_control)
     with whole(target) as sink:

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
-from trunnion.control import CHOICES, Control, Program, check_program, is_lift, load_control, write_program
+from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
@@ -47,11 +47,11 @@ def run(arguments: argparse.Namespace) -> int:
     settings = dict(arguments.settings)
     check_settings(settings, control)
     if settings.get("numbers") == "off":
-        control = replace(control, numbers=replace(control.numbers, letter=""))
+        control = replace(control, numbers=replace(control.numbers, numbered=False))
     if "zero" in settings:
         machine = replace(machine, workpiece_zero=point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
-    wishes = wishes_of(settings, arguments.explain or bool(arguments.report))
+    wishes = wishes_of(settings, control, arguments.explain or bool(arguments.report))
     targets = _targets(arguments, control)
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
@@ -116,11 +116,25 @@ def planned_program(
         raise InputError(lacking)
     say(lacking)
     against = [problem for problem in planned.problems if problem.severity is Severity.ERROR]
+    against += _unprovable(machine, control)
     if against and not force:
-        raise Refused((*planned.problems, Problem(paths[0].file, 0, "no program is written", "--force writes it")))
+        unproven = _unprovable(machine, control)
+        raise Refused(
+            (*planned.problems, *unproven, Problem(paths[0].file, 0, "no program is written", "--force writes it"))
+        )
     say(planned.problems)
     notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in against]
     return replace(program, notices=notices), planned.decisions
+
+
+def _unprovable(machine: Machine, control: Control) -> list[Problem]:
+    """Why a program of this machine can be written but not read back; empty where it can."""
+    from trunnion.reader import can_read
+
+    if can_read(machine):
+        return []
+    what = f"programs for {control.name} cannot be read back yet: nothing proves this one"
+    return [Problem(machine.key, 0, what)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,9 +196,13 @@ def prove(
         When a check fails and there is no program to write again.
     """
     from trunnion.cli.verify import report as write_report
-    from trunnion.reader import run_program
+    from trunnion.reader import can_read, run_program
     from trunnion.verify import check_lines, failures, place_lines, time_lines, verify
 
+    if not can_read(claim.machine):
+        what = "it is written by --force, and nothing has been checked" + (": there is no report" if report else "")
+        say([Problem(target, 0, what, severity=Severity.WARNING)])
+        return
     sink.flush()
     run = run_program(Path(sink.name), claim.machine)
     found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
@@ -210,7 +228,8 @@ def _allowed(program: Program) -> "list[Allowed]":
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
-    turning = control.number_formats(three_axis=False)["plane_angle"].decimals
+    formats = control.number_formats(three_axis=False)
+    turning = formats["plane_angle" if "plane_angle" in formats else "angle"].decimals
     allowed: list[Allowed] = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
@@ -252,7 +271,7 @@ def _asked(program: Program) -> "Settings":
     return Settings(
         tool=values["tool"].strip('"'),
         work_offset=int(offset) if offset.isdigit() else None,
-        edge=int(values["edge"]),
+        edge=int(values["edge"]) if "edge" in values else None,
     )
 
 
@@ -277,9 +296,8 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
-    if not is_lift(settings.get("bore_lift", "")):
-        cure = "write millimetres, such as bore_lift=0.5"
-        problems.append(Problem("--set", 0, f"bore_lift is {settings['bore_lift']!r}", cure))
+    for name, cure in control.family.wrong_settings(settings):
+        problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
     if settings.get("numbers", "on") not in ("on", "off"):
         problems.append(Problem("--set", 0, f"numbers is {settings['numbers']!r}", "write numbers=on or numbers=off"))
     if settings.get("frame", "first") not in _FRAMES:
@@ -288,7 +306,7 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     if settings.get("manner", "auto") not in _MANNERS:
         cure = f"write one of {', '.join(_MANNERS)}"
         problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
-    for name, choices in CHOICES.items():
+    for name, choices in control.family.CHOICES.items():
         if settings.get(name, choices[0]) not in choices:
             cure = f"write one of {', '.join(choices)}"
             problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
@@ -306,7 +324,7 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         raise InputError(problems)
 
 
-def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
+def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = False) -> Wishes:
     """What the settings, checked by ``check_settings``, say to the planner."""
     usual = Wishes()
     cures = {
@@ -317,6 +335,7 @@ def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
         clearance=_clearance(settings["clearance"]) if "clearance" in settings else usual.clearance,
         explain=explain,
         manner=_MANNERS[settings.get("manner", "auto")],
+        manners=control.manners(settings),
         absolute=settings.get("frame", "first") == "absolute",
         pole=Pole(settings.get("pole", "off")),
         pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),

@@ -15,7 +15,7 @@ from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower, source_rows
 from trunnion.plan.frames import into_frame, into_plane, seen_from
 from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
-from trunnion.plan.kinds import contradictions, manner_of, plane_of
+from trunnion.plan.kinds import contradictions, in_other_words, manner_of, plane_of
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
@@ -59,25 +59,29 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
     against: list[Problem] = []
+    said: list[Problem] = []
     for path, original in pairs:
         try:
             operation = into_frame(with_holes(original), program_frame)
         except CycleError as error:
             against.append(Problem(path.file, error.line, error.what, error.cure))
             continue
-        manner, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
-        against += contradictions(path.file, operation, manner)
+        asked, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
+        manner, reworded = in_other_words(path.file, operation, asked, wishes.manners)
+        said += reworded
+        against += contradictions(path.file, operation, manner, wishes.manners)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
         kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         source = source_rows(original, operation)
         stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
-        parts = by_axis(operation) if manner is Manner.TCP and wishes.manner is None else None
+        planes = Manner.TILTED in wishes.manners and wishes.manner is None
+        parts = by_axis(operation) if manner is Manner.TCP and planes else None
         kind = replace(stretch, manner=manner, plane=plane)
         stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own, parts=parts))
     if against:
         raise Refused(against)
-    problems = [*_unknown_speeds(pairs[0][0].file, machine, wishes)]
+    problems = [*said, *_unknown_speeds(pairs[0][0].file, machine, wishes)]
     problems += [problem for stretch in stretches for problem in stretch.problems]
     if any((stretch.poses.outcome == OUT_OF_REACH).any() for stretch in stretches):
         raise Refused(problems)

@@ -16,6 +16,7 @@ class Wishes:
     engage      share of the feed with which it comes back
     explain     say more in the log: what the nearest neighbour would have done, where a rotary axis is too fast
     manner      how every operation is to be made, whatever the rule says; None: by the rule
+    manners     those that the control has words for
     pole        what is done near the pole where a rotary axis would have to be too fast
     pole_angle  by how much the tool axis may lean for that, degrees
     absolute    the program's coordinate system is the CAM's absolute one, not that of the first operation
@@ -27,6 +28,7 @@ class Wishes:
     engage: float = 0.5
     explain: bool = False
     manner: Manner | None = None
+    manners: frozenset[Manner] = frozenset(Manner)
     absolute: bool = False
     pole: Pole = Pole.OFF
     pole_angle: float = 0.1

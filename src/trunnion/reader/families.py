@@ -62,6 +62,11 @@ def run_program(
     return READERS[name](Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
 
 
+def can_read(machine: Machine) -> bool:
+    """Whether there is a reader for the programs of a machine."""
+    return family_of(machine) in READERS
+
+
 @lru_cache(maxsize=8)
 def family_of(machine: Machine) -> str:
     """Return the family of a machine's control; of all that the control's definition says, this alone is asked."""
