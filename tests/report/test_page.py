@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.report.cases import CHECKS, PLACES, Page, blade, waves, with_columns, with_seconds
+from trunnion.machine.pace import clock
 from trunnion.reader import Steps
 from trunnion.report import write_report
 from trunnion.report.pack import unpack

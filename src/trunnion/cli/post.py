@@ -9,23 +9,28 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
+import numpy as np
+
 from trunnion.cl import read_cl
-from trunnion.cli.output import whole
 from trunnion.cli.progress import progress
-from trunnion.control import Control, Program, check_program, load_control, write_program
+from trunnion.control import CHOICES, Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Decision, Pole, Wishes, plan
+from trunnion.plan import Decision, Manner, Motion, Pole, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
 #: Settings that say how to plan.
-PLANNING = ("rewind", "clearance", "pole", "pole_angle", "lower_feed")
+PLANNING = ("manner", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
 
 #: Settings that say how to read, to place and to plan rather than what to print.
 _RUN_SETTINGS = ("units", "zero", *PLANNING)
+
+#: What the setting ``manner`` may say.
+_MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -193,20 +198,39 @@ def prove(
 
 
 def _allowed(program: Program) -> "list[Allowed]":
-    """Half the last digit that each operation prints."""
+    """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
     from trunnion.verify import Agreed, Allowed
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
+    turning = control.number_formats(three_axis=False)["plane_angle"].decimals
     allowed = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
-        angle = max(half["primary"], half["secondary"])
+        tip, angle = half["X"], max(half["primary"], half["secondary"])
+        if motion.plane is not None:
+            tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
+            tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
         apart = motion.departures
         agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
-        allowed.append(Allowed(half["X"], angle, control.chord_tolerance, half["feed"], agreed))
+        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed))
     return allowed
+
+
+def _in_plane(motion: Motion, half: float, tilt: float) -> float:
+    """How far a coordinate may be off where ``half`` is, in each coordinate of the plane and of its origin, mm, and
+    the plane itself by ``tilt`` degrees."""
+    assert motion.plane is not None
+    reach = float(np.abs(motion.as_written().moves.tip).max())
+    rounded = half * (1.0 + float(np.abs(motion.plane.matrix()).sum(axis=1).max()))
+    return rounded + float(np.radians(tilt)) * reach * math.sqrt(3.0)
+
+
+def _lever(motion: Motion, machine: Machine) -> float:
+    """How far a turn of the rotary axis next to the workpiece turns the tool axis: near its pole hardly at all."""
+    first = np.array(machine.axes[machine.rotary[0]].direction)
+    return max(float(np.linalg.norm(np.cross(first, motion.operation.moves.axis[0]))), 1e-3)
 
 
 def _asked(program: Program) -> "Settings":
@@ -243,6 +267,13 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
+    if settings.get("manner", "auto") not in _MANNERS:
+        cure = f"write one of {', '.join(_MANNERS)}"
+        problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
+    for name, choices in CHOICES.items():
+        if settings.get(name, choices[0]) not in choices:
+            cure = f"write one of {', '.join(choices)}"
+            problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
     if settings.get("pole", "off") not in list(Pole):
         what = f"pole is {settings['pole']!r}"
         problems.append(Problem("--set", 0, what, f"write pole= and one of {', '.join(Pole)}"))
@@ -268,6 +299,7 @@ def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
         rewind=settings.get("rewind", "insert") == "insert",
         clearance=_number(settings, "clearance", usual.clearance, (0.1, 10000.0), cures),
         explain=explain,
+        manner=_MANNERS[settings.get("manner", "auto")],
         pole=Pole(settings.get("pole", "off")),
         pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),
         lower_feed=settings.get("lower_feed", "no") == "yes",

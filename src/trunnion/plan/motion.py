@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import Problem
+from trunnion.plan.frames import into_plane
 from trunnion.toolpath import Frame, Operation
 
 
@@ -63,7 +64,8 @@ class Motion:
     rotary       (n, 2) float64   positions of the rotary axes, degrees, in the order of ``machine.rotary`` and in the
                  range that each displays. The slides follow from them and the tip: ``trunnion.machine.slide_positions``
     manner       three-axis: the tool axis is +Z of the program's coordinate system throughout
-    plane        the tilted plane as seen from the program's coordinate system, for that manner only
+    plane        the tilted plane as seen from the program's coordinate system, for that manner only. Its Z is the tool
+                 axis
     departures   where it is not made as its CL file has it
     """
 
@@ -80,6 +82,10 @@ class Motion:
     def three_axis(self) -> bool:
         """Whether the rotary axes stand still at the program's own coordinate system."""
         return self.manner is Manner.THREE_AXIS
+
+    def as_written(self) -> Operation:
+        """The operation in the coordinates of its blocks: those of the tilted plane, or else the program's."""
+        return self.operation if self.plane is None else into_plane(self.operation, self.plane)
 
 
 class Why(StrEnum):

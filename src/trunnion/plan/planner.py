@@ -5,23 +5,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
 from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower, source_rows
+from trunnion.plan.frames import into_frame, into_plane, seen_from
+from trunnion.plan.kinds import contradictions, manner_of, plane_of
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
 from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.plan.wishes import Wishes
-from trunnion.toolpath import Frame, From, Moves, Operation, Toolpath
-
-#: An operation is three-axis when no component of its tool axis differs from +Z by more than this.
-_UPRIGHT = 1e-7
+from trunnion.toolpath import Frame, Moves, Operation, Toolpath
 
 #: How many rows of one kind of trouble are named one by one.
 _NAMED = 5
@@ -47,7 +45,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     InputError
         When there is nothing to plan.
     Refused
-        When no position of the machine gives a tool axis; of that no program can be made at all.
+        When no position of the machine gives a tool axis, or an operation cannot be made in the manner that is wished
+        for; of that no program can be made at all.
     """
     wishes = wishes or Wishes()
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
@@ -56,11 +55,21 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     program_frame = pairs[0][1].frame
     keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
+    against: list[Problem] = []
     for path, original in pairs:
         operation = into_frame(original, program_frame)
-        operation = lines_for_arcs(operation, plain_arcs(operation), chord_tolerance)
+        manner = manner_of(operation, wishes.manner)
+        against += contradictions(path.file, operation, manner)
+        plane = None
+        if manner is Manner.TILTED:
+            plane = plane_of(operation.moves.axis[0], seen_from(original.frame, program_frame))
+        kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
+        operation = lines_for_arcs(operation, kept, chord_tolerance)
         source = source_rows(original, operation)
-        stretches.append(_stretch(Asked(machine, path.file, operation, source, wishes, keep_slides)))
+        stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
+        stretches.append(replace(stretch, manner=manner, plane=plane))
+    if against:
+        raise Refused(against)
     problems = [*_unknown_speeds(pairs[0][0].file, machine, wishes)]
     problems += [problem for stretch in stretches for problem in stretch.problems]
     if any((stretch.poses.outcome == OUT_OF_REACH).any() for stretch in stretches):
@@ -73,7 +82,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stretch:
-    """An operation with its poses, as it is before rewinds are put in, and the file that it came from."""
+    """An operation with its poses, as it is before rewinds are put in, the file that it came from, and its kind."""
 
     file: str
     operation: Operation
@@ -82,13 +91,13 @@ class _Stretch:
     problems: tuple[Problem, ...]
     log: tuple[Decision, ...]
     departures: Departures
+    manner: Manner = Manner.TCP
+    plane: Frame | None = None
 
     def motion(self, wishes: Wishes) -> Motion:
         """What is to be written."""
         operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
-        upright = _is_upright(self.operation.moves.axis)
-        manner = Manner.THREE_AXIS if upright else Manner.TCP
-        return Motion(operation, rotary, manner, departures=self.departures)
+        return Motion(operation, rotary, self.manner, self.plane, self.departures)
 
 
 def _stretch(asked: Asked) -> _Stretch:
@@ -171,37 +180,6 @@ def _widen(poses: Poses, machine: Machine, moves: Moves, rewinds: Sequence[Rewin
                 poses.extremes[column, 0], poses.where[column, 0] = least, rewind.row - 1
             if most > poses.extremes[column, 1]:
                 poses.extremes[column, 1], poses.where[column, 1] = most, rewind.row - 1
-
-
-def _is_upright(axis: Floats) -> bool:
-    if axis[0, 2] < 1.0 - _UPRIGHT:  # the usual case decides itself at the first row
-        return False
-    return bool(np.abs(axis - [0.0, 0.0, 1.0]).max() < _UPRIGHT)
-
-
-def into_frame(operation: Operation, frame: Frame) -> Operation:
-    """The operation as seen from another coordinate system; itself when it is the same one.
-
-    With M the matrix and o the origin of a frame in the CAM's absolute system, a point is
-    M_to^T (M_from p + o_from - o_to) and a direction M_to^T M_from u.
-    """
-    if operation.frame == frame:
-        return operation
-    turn = frame.matrix().T @ operation.frame.matrix()
-    shift = frame.matrix().T @ (np.array(operation.frame.origin) - np.array(frame.origin))
-    moves, arcs = operation.moves, operation.arcs
-    return replace(
-        operation,
-        frame=frame,
-        moves=replace(moves, tip=moves.tip @ turn.T + shift, axis=moves.axis @ turn.T),
-        arcs=replace(arcs, centre=arcs.centre @ turn.T + shift, normal=arcs.normal @ turn.T),
-        events=tuple(
-            replace(event, tip=tuple(turn @ event.tip + shift), axis=tuple(turn @ event.axis))
-            if isinstance(event, From)
-            else event
-            for event in operation.events
-        ),
-    )
 
 
 def _row_problems(file: str, moves: Moves, poses: Poses, machine: Machine) -> Iterable[Problem]:

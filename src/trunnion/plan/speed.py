@@ -22,7 +22,7 @@ USED: Final = 0.99
 _LEAST_FEED: Final = 0.1
 
 #: A tip that moves by less than this, mm, rests.
-_RESTS: Final = 1e-9
+RESTS: Final = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ def reach(machine: Machine, operation: Operation) -> tuple[Floats, Flags]:
     moves = operation.moves
     way = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
     rate = rates(operation)
-    bound = (moves.kind != Kind.RAPID) & (way >= _RESTS) & (rate > 0.0)
+    bound = (moves.kind != Kind.RAPID) & (way >= RESTS) & (rate > 0.0)
     bound[0] = False
     far = np.full((len(moves), 2), np.inf)
     for r, column in enumerate(machine.rotary):
@@ -173,9 +173,9 @@ def _scan(
         one, two = abs(one), abs(two)
         x, y, z = tip[row, 0] - tip[row - 1, 0], tip[row, 1] - tip[row - 1, 1], tip[row, 2] - tip[row - 1, 2]
         way = math.sqrt(x * x + y * y + z * z)
-        if way < _RESTS:
+        if way < RESTS:
             way = max(one, two)
-            if way < _RESTS:
+            if way < RESTS:
                 continue
         minutes = way / rate[row]
         one, two = one / minutes / rapid[0], two / minutes / rapid[1]

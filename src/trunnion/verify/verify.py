@@ -16,6 +16,7 @@ from trunnion.verify.arcs import Arc, turned
 from trunnion.verify.case import NAMED, Case, Settings
 from trunnion.verify.model import Check, Place, Share, Verification
 from trunnion.verify.points import Deviations, Off
+from trunnion.verify.turns import turns
 from trunnion.verify.walk import Walk, Walker, Worst
 from trunnion.verify.wanted import Allowed, Wanted
 
@@ -70,7 +71,7 @@ def verify(
         checks.append(demands.offset(case))
     way = walker.walked()
     checks += [_span(case, way), _travel(case, way), _speed(case, way), _acceleration(case, way)]
-    checks += [modal.modal(case), modal.words(case)]
+    checks += [turns(case), modal.modal(case), modal.words(case)]
     cl_line = _cl_lines(case) if columns else np.zeros(0, np.int32)
     operations = tuple(_operations(case))
     return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line, operations)
