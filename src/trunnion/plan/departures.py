@@ -117,15 +117,16 @@ def _enough(asked: Asked, poses: Poses, angle: float) -> str:
     """What would do where ``angle``, degrees, is too small."""
     for more in angle * 2.0 ** np.arange(1, _TRIED):
         if all(place.found for place in _leaning(asked, poses, Pole.LEAN, float(more)).places):
-            return f"--set pole=lean --set pole_angle={more:g} would do, or --set lower_feed=yes"
+            return f"--set pole=lean --set pole_angle={more:.4g} would do, or --set lower_feed=yes"
     return "--set lower_feed=yes lowers the feed there"
 
 
 def _no_way(asked: Asked, place: Place, cure: str) -> Problem:
     line = asked.operation.moves.line
+    name = asked.machine.axes[asked.machine.rotary[0]].name
     what = (
-        f"no lean of the tool axis by up to {asked.wishes.pole_angle:g} degrees keeps the rotary axes within their"
-        f" speed up to line {line[place.end - 1]}"
+        f"no lean of the tool axis by up to {asked.wishes.pole_angle:g} degrees keeps axis {name} within its speed"
+        f" up to line {line[place.end - 1]}"
     )
     return Problem(asked.file, int(line[place.first]), what, cure, Severity.WARNING)
 
