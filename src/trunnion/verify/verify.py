@@ -197,7 +197,8 @@ def _measured(key: str, title: str, case: Case, off: Off, unit: str, places: lis
     assert case.pairs is not None
     if not len(case.pairs.nc):
         return Check(key, title, False, "no block answers to any CL point", unit=unit)
-    summary = f"largest {off.largest:.6f} {unit}, rms {off.rms:.6f}, allowed {off.limit:.6f}"
+    each, whole = ("X, Y or Z", "distance") if unit == "mm" else ("a rotary axis", "angle")
+    summary = f"largest {off.largest:.6f} {unit} in {each}, rms {whole} {off.rms:.6f}, allowed {off.limit:.6f}"
     if count:
         summary += f", {count} points off, first in {_block(min(places, key=lambda p: p.nc_line))}"
     passed = not count
