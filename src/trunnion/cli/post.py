@@ -186,7 +186,10 @@ def prove(
     for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
         print(line, file=sys.stderr)
     if not decisions and _too_fast(found):
-        print(f"{found.program}: rotary axes are too fast there; --explain says what helps", file=sys.stderr)
+        print(
+            f"{found.program}: a rotary axis cannot follow the feed everywhere; --explain says where, and what helps",
+            file=sys.stderr,
+        )
     if report:
         write_report(found, report, decisions)
     failed = failures(found)
