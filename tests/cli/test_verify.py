@@ -126,7 +126,7 @@ def machine_without_tcp(folder: Path) -> Path:
 
 
 CHECKS = [
-    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "span", "travel", "speed",
+    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "holes", "span", "travel", "speed",
     "acceleration", "turns", "modal", "words",
 ]  # fmt: skip
 
