@@ -52,7 +52,7 @@ def _post(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",
-        help="what templates print (title, part, date, method, …), units, zero, rewind, clearance; may be repeated",
+        help="what templates print (title, part, date, method, …), units, zero, tcp, tolerances, …; may be repeated",
     )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
@@ -77,6 +77,10 @@ def _verify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--span", type=_tolerance, metavar="DEG", help="how far the tool axis may be off between points"
     )
+    parser.add_argument(
+        "--span-tip", type=_tolerance, metavar="MM", help="how far the tip may be off between points without TCP"
+    )
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, for programs without TCP")
     parser.add_argument("--tool", default="", metavar="T", help="tool that was called in place of the CL file's")
     parser.add_argument("--offset", metavar="G", help="work offset of the program; G54 where there is a CL file")
     parser.add_argument("--edge", type=int, metavar="D", help="cutting edge under which the tool works; with --cl 1")

@@ -1,12 +1,13 @@
 """``trunnion post``: CL files in, one proven NC program out (or one each, into a folder)."""
 
 import argparse
+import math
 import os
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from trunnion.cl import read_cl
 from trunnion.cli.output import whole
@@ -14,14 +15,16 @@ from trunnion.cli.progress import progress
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Wishes, plan
+from trunnion.plan import Manner, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
 #: Settings that say how to read, to place and to plan rather than what to print.
-_RUN_SETTINGS = ("units", "zero", "rewind", "clearance")
+RUN_SETTINGS = (
+    "units", "zero", "tool_length", "tcp", "tip_tolerance", "axis_tolerance", "rewind", "clearance",
+)  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,10 +37,9 @@ def run(arguments: argparse.Namespace) -> int:
     control = load_control(machine.control)
     settings = dict(arguments.settings)
     check_settings(settings, control)
-    if "zero" in settings:
-        machine = replace(machine, workpiece_zero=point(settings["zero"]))
-    printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
-    wishes = wishes_of(settings, arguments.explain)
+    machine = set_up(machine, settings)
+    printed = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
+    wishes = wishes_of(settings, control, arguments.explain)
     targets = _targets(arguments, control)
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
@@ -46,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
             program = planned_program(paths, machine, control, printed, arguments.force, wishes)
-            claim = write(program, sink)
+            claim = write(program, sink, wishes)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
@@ -120,12 +122,12 @@ class Claim:
     settings: "Settings"
 
 
-def write(program: Program, sink: BinaryIO) -> Claim:
-    """Write a program; what comes back is all that its proof needs."""
+def write(program: Program, sink: BinaryIO, wishes: Wishes) -> Claim:
+    """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for."""
     rows = sum(len(motion.operation.moves) for motion in program.motions)
     with progress("writing", rows, "points") as advance:
         write_program(program, sink, advance)
-    return Claim(program.machine, rows, len(program.motions), _allowed(program), _asked(program))
+    return Claim(program.machine, rows, len(program.motions), _allowed(program), _asked(program, wishes))
 
 
 def prove(
@@ -192,13 +194,18 @@ def _allowed(program: Program) -> "list[Allowed]":
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
         angle = max(half["primary"], half["secondary"])
-        allowed.append(Allowed(half["X"], angle, control.chord_tolerance, half["feed"]))
+        # Three slides are rounded, and turned parts look at them aslant.
+        tip = half["X"] * (math.sqrt(3.0) if motion.manner is Manner.WITHOUT_TCP else 1.0)
+        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"]))
     return allowed
 
 
-def _asked(program: Program) -> "Settings":
+def _asked(program: Program, wishes: Wishes) -> "Settings":
     """What the settings of the run say that the CL files do not."""
     from trunnion.verify import Settings
+
+    led = any(motion.manner is Manner.WITHOUT_TCP for motion in program.motions)
+    axis = wishes.axis_between if led or math.isfinite(wishes.axis_between) else None
 
     values = {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
     offset = values["work_offset"].strip().upper().removeprefix("G")
@@ -206,6 +213,8 @@ def _asked(program: Program) -> "Settings":
         tool=values["tool"].strip('"'),
         work_offset=int(offset) if offset.isdigit() else None,
         edge=int(values["edge"]),
+        span=axis,
+        span_tip=wishes.tip_tolerance if led else None,
     )
 
 
@@ -217,7 +226,7 @@ def say(problems: Sequence[Problem]) -> None:
 
 def check_settings(settings: Mapping[str, str], control: Control) -> None:
     """Raise ``InputError`` for settings that the control does not have, or that make no sense."""
-    known = (*control.settings, *_RUN_SETTINGS)
+    known = (*control.settings, *RUN_SETTINGS)
     problems = [
         Problem("--set", 0, f"{key} is no setting of {control.name}", f"write one of {', '.join(known)}")
         for key in settings
@@ -230,6 +239,8 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
+    if settings.get("tcp", "on") not in ("on", "off"):
+        problems.append(Problem("--set", 0, f"tcp is {settings['tcp']!r}", "write tcp=on or tcp=off"))
     if settings.get("units", "mm") not in ("mm", "inch"):
         problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
     if not settings.get("edge", "1").isdigit():
@@ -238,19 +249,52 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         raise InputError(problems)
 
 
-def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
-    """What the settings say to the planner."""
-    rewind, text = settings.get("rewind", "insert") == "insert", settings.get("clearance")
+#: Settings that are numbers: their limits, and what to write.
+_NUMBERS = {
+    "clearance": (0.1, 1e4, "clearance=MM, how far the tool draws back for a rewind, such as clearance=50"),
+    "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
+    "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
+    "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
+}
+
+
+def number(settings: Mapping[str, str], key: str) -> float | None:
+    """A setting that is a number; None where nobody set it.
+
+    Raises
+    ------
+    InputError
+        If it is none, or beyond what makes sense.
+    """
+    text = settings.get(key)
     if text is None:
-        return Wishes(rewind=rewind, explain=explain)
+        return None
+    low, high, cure = _NUMBERS[key]
     try:
-        clearance = float(text)
+        value = float(text)
     except ValueError:
-        clearance = 0.0
-    if not 0.1 <= clearance <= 10000.0:
-        cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50"
-        raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
-    return Wishes(rewind=rewind, clearance=clearance, explain=explain)
+        value = math.nan
+    if not low <= value <= high:
+        raise InputError(Problem("--set", 0, f"{key} is {text!r}", f"write {cure}"))
+    return value
+
+
+def set_up(machine: Machine, settings: Mapping[str, str]) -> Machine:
+    """The machine with its workpiece and its tool where the settings say so."""
+    if "zero" in settings:
+        machine = replace(machine, workpiece_zero=point(settings["zero"]))
+    length = number(settings, "tool_length")
+    return machine if length is None else replace(machine, tool_length=length)
+
+
+def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = False) -> Wishes:
+    """What the settings say to the planner."""
+    tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
+    if tcp and not control.tcp:
+        raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
+    said = {key: number(settings, key) for key in ("clearance", "tip_tolerance", "axis_tolerance")}
+    known: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+    return Wishes(rewind=settings.get("rewind", "insert") == "insert", explain=explain, tcp=tcp, **known)
 
 
 def point(text: str) -> tuple[float, float, float]:

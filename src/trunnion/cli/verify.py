@@ -1,7 +1,6 @@
 """``trunnion verify``: an NC program, read back by an author of its own, run, and compared with its CL files."""
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,7 +22,7 @@ _REPORTS = (".html", ".json")
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
-    from trunnion.cli.post import point
+    from trunnion.cli.post import set_up
     from trunnion.reader import run_program
     from trunnion.verify import Allowed, Settings, check_lines, place_lines, verify
 
@@ -31,8 +30,8 @@ def run(arguments: argparse.Namespace) -> int:
         check_report(arguments.report)
     machine = load_machine(arguments.machine)
     check_reader(machine)
-    if arguments.zero:
-        machine = replace(machine, workpiece_zero=point(arguments.zero))
+    given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
+    machine = set_up(machine, {key: value for key, value in given.items() if value})
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
     done = run_program(Path(arguments.file), machine)
     found = verify(
@@ -44,6 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
             work_offset=_offset(arguments.offset, bool(paths)),
             edge=1 if arguments.edge is None and paths else arguments.edge,
             span=arguments.span,
+            span_tip=arguments.span_tip,
         ),
         columns=bool(arguments.report),
     )

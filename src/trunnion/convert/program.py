@@ -38,7 +38,14 @@ _PHASES = {
     "traverse": Phase.TRAVERSE,
 }
 _ENDS = "operation_end_five_axis", "operation_end_three_axis"
-_HEADS = "operation_start", "first_tool", "tool_change", "approach_five_axis", "approach_three_axis"
+_HEADS = (
+    "operation_start",
+    "first_tool",
+    "tool_change",
+    "approach_five_axis",
+    "approach_three_axis",
+    "approach_without_tcp",
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -51,6 +51,7 @@ class Why(StrEnum):
     CHANGE = "change"
     REWIND = "rewind"
     MORE = "more"
+    POINTS = "points"
     NEAREST = "nearest"
 
 

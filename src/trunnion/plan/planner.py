@@ -10,6 +10,7 @@ from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
+from trunnion.plan.between import check_without_tcp, with_points
 from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.motion import Decision, Manner, Motion, Plan
 from trunnion.plan.optimum import BLOCKED, OUT_OF_REACH, REWIND
@@ -39,12 +40,12 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     chord_tolerance
         For arcs that become lines, mm.
     wishes
-        How to rewind, and whether to explain.
+        How to rewind, with TCP or without, what is allowed between the points, and whether to explain.
 
     Raises
     ------
     InputError
-        When there is nothing to plan.
+        When there is nothing to plan, or without TCP something is not known that slide positions depend on.
     Refused
         When no position of the machine gives a tool axis; of that no program can be made at all.
     """
@@ -53,6 +54,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
     program_frame = pairs[0][1].frame
+    if not wishes.tcp:
+        wishes = replace(wishes, rewind=False)  # nobody would hold the tip while the axes turn
     stretches: list[_Stretch] = []
     for path, original in pairs:
         operation = into_frame(original, program_frame)
@@ -63,8 +66,17 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         raise Refused(problems)
     if machine.workpiece_zero is None:
         problems += _fit_problems(stretches, machine)
-    log = [decision for stretch in stretches for decision in stretch.log]
-    return Plan(tuple(stretch.motion(wishes) for stretch in stretches), tuple(problems), tuple(log))
+    motions = [stretch.motion(wishes) for stretch in stretches]
+    lacking = [motion.operation for motion in motions if motion.manner is Manner.WITHOUT_TCP]
+    if lacking:
+        check_without_tcp(pairs[0][0].file, lacking, machine)
+    led = [
+        with_points(stretch.file, motion, machine, wishes, chord_tolerance)
+        for stretch, motion in zip(stretches, motions, strict=True)
+    ]
+    problems += [problem for one in led for problem in one.problems]
+    log = [decision for stretch, one in zip(stretches, led, strict=True) for decision in (*stretch.log, *one.log)]
+    return Plan(tuple(one.motion for one in led), tuple(problems), tuple(log))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +94,8 @@ class _Stretch:
         """What is to be written."""
         operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
         upright = _is_upright(self.operation.moves.axis)
-        return Motion(operation, rotary, Manner.THREE_AXIS if upright else Manner.TCP)
+        simultaneous = Manner.TCP if wishes.tcp else Manner.WITHOUT_TCP
+        return Motion(operation, rotary, Manner.THREE_AXIS if upright else simultaneous)
 
 
 def _stretch(file: str, operation: Operation, machine: Machine, wishes: Wishes) -> _Stretch:
@@ -125,7 +138,8 @@ def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes
             what = "the rotary axes would have to rewind in the cut"
             if rewind.end is not None:
                 what = f"{beyond_words(machine, rewind.end.column, rewind.end.value)} in the cut"
-            cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
+            allowed = "allow rewinds (--set rewind=insert)" if wishes.tcp else "post with TCP (--set tcp=on)"
+            cure = f"{allowed}, split the operation, or turn the workpiece"
             yield Problem(planned.file, at, what, cure)
             continue
         what = f"the tool draws back {wishes.clearance:g} mm in the cut to rewind, {rewind.reason}"

@@ -101,6 +101,22 @@ def divide(
     return spans
 
 
+def branches(machine: Machine, axis: Floats, rotary: Floats) -> Ints:
+    """(n,) int64: which of the two solutions each row stands in; -1 in the pole, where they are one.
+
+    ``axis`` (n, 3) in the workpiece frame, ``rotary`` (n, 2) in degrees.
+    """
+    found = np.empty(len(axis), np.int64)
+    _branches(pack(machine), axis, rotary, found)
+    return found
+
+
+@njit(cache=True)
+def _branches(packed: Packed, axis: Floats, rotary: Floats, found: Ints) -> None:
+    for row in range(axis.shape[0]):
+        found[row] = _branch_of(packed, axis[row], rotary[row])
+
+
 @njit(cache=True)
 def _divide(
     chain: Chain,

@@ -1,19 +1,38 @@
 """What whoever asks for a program may wish of its planning."""
 
+import math
 from dataclasses import dataclass
+from typing import Final
+
+#: How far the tool axis may be off between CL points without TCP, degrees, unless something else is asked.
+AXIS_WITHOUT_TCP: Final = 0.05
 
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
     """Wishes with their defaults.
 
-    rewind     insert retreats where an axis must wind back in the cut; False: refuse the program
-    clearance  how far the tool draws back along its axis for that, mm
-    engage     share of the feed with which it comes back
-    explain    compare with what the nearest neighbour would have done
+    rewind          insert retreats where an axis must wind back in the cut; False: refuse the program
+    clearance       how far the tool draws back along its axis for that, mm
+    engage          share of the feed with which it comes back
+    explain         compare with what the nearest neighbour would have done
+    tcp             the control holds the tip (TCP); False: the slides and rotary axes themselves are led
+    tip_tolerance   without TCP: how far the tip may be off its line between CL points, mm
+    axis_tolerance  how far the tool axis may be off its great circle between CL points, degrees; None: with TCP it is
+                    not looked at, without TCP it is ``AXIS_WITHOUT_TCP``
     """
 
     rewind: bool = True
     clearance: float = 50.0
     engage: float = 0.5
     explain: bool = False
+    tcp: bool = True
+    tip_tolerance: float = 0.005
+    axis_tolerance: float | None = None
+
+    @property
+    def axis_between(self) -> float:
+        """How far the tool axis may be off between CL points, degrees; infinite where nobody asks."""
+        if self.axis_tolerance is not None:
+            return self.axis_tolerance
+        return math.inf if self.tcp else AXIS_WITHOUT_TCP

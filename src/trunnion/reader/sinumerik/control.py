@@ -5,10 +5,14 @@ It knows nothing of text. The interpreter tells it what a block said; it answers
 Two ways to mean X Y Z. With TRAORI, or in a plane swivelled by CYCLE800, they are the tool tip in the active frame.
 Otherwise they are the values of the slides, counted from the work offset: with the rotary axes at zero the tip is then
 where the program says, with turned axes it is where the machine takes it.
+
+The length of the tool, if it is known, is what the control has in its tool offset. Without TRAORI an edge (D1) adds it
+to the slide that stands on the working plane, wherever the tool points; D0 takes it away.
 """
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -69,9 +73,10 @@ class Control:
         self.start = machine.home.copy()
         self.held = machine.home.copy()
         self._origin_slides, self._origin_tip = self._origins()
+        self._tool_length = machine.tool_length or 0.0
 
         self.absolute = True
-        self.plane = 2
+        self._plane = 2
         self.lengths = 1.0
         self.feeds = 1.0
         self.tcp = False
@@ -243,10 +248,14 @@ class Control:
         return self._swivel.then(self._program)
 
     def _origins(self) -> tuple[Floats, Floats]:
-        """Slide values at the work offset's zero, and the tip where the machine's zero is; rotary axes at zero."""
+        """Slide values at the work offset's zero, and the tip where the machine's zero is; rotary axes at zero.
+
+        Both without a tool: lengths are added where an edge is in force.
+        """
+        bare = replace(self.machine, tool_length=None)
         joints = np.zeros(5)
-        solve_slides(self._packed, 0.0, 0.0, 0.0, 0.0, 0.0, joints)
-        tip = forward(self.machine, np.zeros((1, 5)))[0][0]
+        solve_slides(pack(bare), 0.0, 0.0, 0.0, 0.0, 0.0, joints)
+        tip = forward(bare, np.zeros((1, 5)))[0][0]
         return np.nan_to_num(joints[self._slides]), tip
 
     def _remap(self) -> None:
@@ -257,7 +266,9 @@ class Control:
         if self.tips:
             origin = self._origin_tip if none else np.zeros(3)
         else:
-            origin = np.zeros(3) if none else self._origin_slides
+            origin = np.zeros(3) if none else self._origin_slides.copy()
+            if self.edge.now > 0:
+                origin[self._plane] += self._tool_length
         self.map = affine(frame.linear, frame.shift + origin)
         self.turn = np.eye(3) if self._machine_vectors else np.ascontiguousarray(frame.linear)
 
@@ -301,6 +312,29 @@ class Control:
             with self.change():
                 self.tcp = on
             self.tcp_rows.set(self.row, on)
+
+    @property
+    def plane(self) -> int:
+        """Axis that stands on the working plane: 2 for G17."""
+        return self._plane
+
+    @plane.setter
+    def plane(self, plane: int) -> None:
+        if plane == self._plane:
+            return
+        if not self._tool_length:
+            self._plane = plane
+            return
+        with self.change():
+            self._plane = plane
+
+    def set_edge(self, edge: int) -> None:
+        """D word: the offsets of the tool, of which its length is known here."""
+        if not self._tool_length or (edge > 0) == (self.edge.now > 0):
+            self.edge.set(self.row, edge)
+            return
+        with self.change():
+            self.edge.set(self.row, edge)
 
     def set_offset(self, code: int) -> None:
         """G54 and its kin."""

@@ -312,7 +312,7 @@ class Interpreter:
         if block.tool is not None:
             control.choose(block.tool)
         if block.edge is not None:
-            control.edge.set(control.row, block.edge)
+            control.set_edge(block.edge)
         late = [code for code in block.m if code in M_LATE]
         for code in block.m:
             if code not in late:
