@@ -1,6 +1,5 @@
 """Programs without TCP, read back by the reader's own control: tip and tool axis on the way, and how long it takes."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -79,14 +78,20 @@ def rows_of_points(run: Run, tip: Floats, axis: Floats) -> list[int]:
 
 def great_circle_distance(look: Floats, begin: Floats, end: Floats) -> Floats:
     """Degrees from vectors (n, 3) to the arc of the great circle from ``begin`` to ``end``."""
-    part = np.linspace(0.0, 1.0, 4001)[:, None]
-    angle = math.atan2(float(np.linalg.norm(np.cross(begin, end))), float(begin @ end))
-    arc = begin + part * (end - begin)
-    if angle > 1e-9:
-        arc = (np.sin((1.0 - part) * angle) * begin + np.sin(part * angle) * end) / math.sin(angle)
-    arc /= np.linalg.norm(arc, axis=1)[:, None]
-    nearest = arc[np.argmax(look @ arc.T, axis=1)]
-    return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(look - nearest, axis=1), 1.0))))
+    pole = np.cross(begin, end)
+    length = float(np.linalg.norm(pole))
+    if length < 1e-9:
+        return apart(look, end)
+    pole /= length
+    foot = look - np.outer(look @ pole, pole)
+    foot /= np.linalg.norm(foot, axis=1)[:, None]
+    inside = (np.cross(begin, foot) @ pole >= 0.0) & (np.cross(foot, end) @ pole >= 0.0)
+    return np.where(inside, apart(look, foot), np.minimum(apart(look, begin), apart(look, end)))
+
+
+def apart(look: Floats, other: Floats) -> Floats:
+    """Degrees between unit vectors (n, 3)."""
+    return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(look - other, axis=1), 1.0))))
 
 
 def worst_off(run: Run, tip: Floats, axis: Floats, kind: Sequence[int]) -> tuple[float, float]:

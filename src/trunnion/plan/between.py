@@ -124,7 +124,9 @@ def with_points(file: str, motion: Motion, machine: Machine, wishes: Wishes, cho
         operation, rotary = _circles_of_slides(machine, operation, rotary, chord_tolerance)
     moves = operation.moves
     wound = _wound_up(machine, rotary)
-    bend = _bend_to_other_side(machine, moves.axis, wound)
+    side = branches(machine, moves.axis, wound)
+    wound, stray = _as_the_great_circle_winds(machine, moves.axis, wound, side)
+    bend = _bend_to_other_side(machine, moves.axis, wound, side, stray)
     crosses, bent = bend >= 0.0, bend > wishes.axis_between
     ways = (moves.kind != Kind.ARC) & ~crosses
     if not without:
@@ -221,17 +223,61 @@ def _displayed(machine: Machine, wound: Floats) -> Floats:
     return shown
 
 
-def _bend_to_other_side(machine: Machine, axis: Floats, wound: Floats) -> Floats:
+def _as_the_great_circle_winds(machine: Machine, axis: Floats, wound: Floats, side: Ints) -> tuple[Floats, Flags]:
+    """Positions such that an endless first axis goes the way round that the great circle past the pole goes.
+
+    From row to row that is the shorter way but for coarse steps close by the pole. On a great circle of less than half
+    a turn the azimuth of the tool axis changes by less than half a turn, and the first axis by this less what the tilt
+    of the second turns the tool about it.
+
+    Returns
+    -------
+    wound, stray
+        (n, 2) degrees; and (n,) bool: rows to which an axis with limits goes the other way round.
+    """
+    first, second = machine.rotary
+    sense, line = machine.axes[first].sense, np.array(machine.axes[first].direction)
+    steps = np.diff(wound[:, 0])
+    rows = 1 + np.flatnonzero((np.abs(steps) > 90.0) & (side[1:] == side[:-1]) & (side[1:] >= 0))
+    stray = np.zeros(len(wound), np.bool_)
+    if not len(rows):
+        return wound, stray
+    joints = np.zeros((len(wound), 5))
+    joints[:, second] = wound[:, 1]
+    asked, tilted = _azimuths(axis, line), _azimuths(forward(machine, joints)[1], line)
+    by_path = _wrapped(asked[rows] - asked[rows - 1])
+    turn = sense * (by_path - _wrapped(tilted[rows] - tilted[rows - 1]))
+    turns = np.rint((turn - steps[rows - 1]) / 360.0) * (np.abs(by_path) < 180.0 - 1e-6)
+    if not machine.axes[first].endless:
+        stray[rows[turns != 0.0]] = True
+        return wound, stray
+    again = np.zeros(len(wound))
+    again[rows] = 360.0 * turns
+    return np.column_stack((wound[:, 0] + np.cumsum(again), wound[:, 1])), stray
+
+
+def _azimuths(axis: Floats, line: Floats) -> Floats:
+    """(n,) degrees: angles of vectors about a line, from anywhere."""
+    across = np.cross(line, np.eye(3)[int(np.argmin(np.abs(line)))])
+    across /= np.linalg.norm(across)
+    return np.asarray(np.degrees(np.arctan2(axis @ np.cross(line, across), axis @ across)))
+
+
+def _wrapped(angle: Floats) -> Floats:
+    return np.asarray(angle - 360.0 * np.rint(angle / 360.0))
+
+
+def _bend_to_other_side(machine: Machine, axis: Floats, wound: Floats, side: Ints, stray: Flags) -> Floats:
     """How far the tool axis leaves its great circle where the rotary axes turn evenly to their other side.
 
     Returns (n,) degrees, -1 for rows on the way to which they keep their side. They turn so on a way through the pole,
     and when they go round by another turn; no points make that another way.
     """
     bend = np.full(len(axis), -1.0)
-    side = branches(machine, axis, wound)
     other = (side[1:] != side[:-1]) & (side[1:] >= 0) & (side[:-1] >= 0)
-    steps = np.abs(np.diff(wound, axis=0)).max(axis=1, initial=0.0)
-    for row in (1 + np.flatnonzero(other | (steps > 180.0 + 1e-6))).tolist():
+    ended = [not machine.axes[column].endless for column in machine.rotary]
+    far = np.abs(np.diff(wound, axis=0))[:, ended].max(axis=1, initial=0.0) > 180.0 + 1e-6
+    for row in (1 + np.flatnonzero(other | far | stray[1:])).tolist():
         joints = np.zeros((len(_SHARES), 5))
         joints[:, list(machine.rotary)] = wound[row - 1] + _SHARES[:, None] * (wound[row] - wound[row - 1])
         wanted = turned_evenly(axis[row - 1], axis[row], _SHARES)

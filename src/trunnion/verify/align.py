@@ -254,8 +254,9 @@ class _Matcher:
         wanted = self._wanted
         near, bend = self._limits(j), math.radians(self._bend)
         way = follow(
-            is_.tip, is_.axis, wanted.tip(points), wanted.axis(points), wanted.kind(points), near, bend + 2.0 * near[1]
-        )
+            is_.tip, is_.axis, self._run.kind[rows], wanted.tip(points), wanted.axis(points), wanted.kind(points), near,
+            bend + 2.0 * near[1],
+        )  # fmt: skip
         nc, cl = rows[: way.motions], j + way.partner
         there = np.flatnonzero(way.there)
         edges = np.flatnonzero((np.diff(nc[there]) != 1) | (np.diff(cl[there]) != 1))

@@ -53,6 +53,7 @@ class Way:
 def follow(
     tip: Floats,
     axis: Floats,
+    kind: Codes,
     want_tip: Floats,
     want_axis: Floats,
     want_kind: Codes,
@@ -65,6 +66,8 @@ def follow(
     ----------
     tip, axis : (n, 3) float64
         Of motions in their order.
+    kind : (n,) uint8
+        A ``Kind``.
     want_tip, want_axis : (m, 3) float64
         Of CL points in their order, led by the one from which the first motion starts.
     want_kind : (m,) uint8
@@ -75,7 +78,7 @@ def follow(
         How far the tool axis of points between may be off the great circle, rad.
     """
     partner, there = np.zeros(len(tip), np.int64), np.zeros(len(tip), np.bool_)
-    motions, points = _follow(tip, axis, want_tip, want_axis, want_kind, near[0], near[1], bend, partner, there)
+    motions, points = _follow(tip, axis, kind, want_tip, want_axis, want_kind, near[0], near[1], bend, partner, there)
     return Way(motions, points, partner[:motions], there[:motions])
 
 
@@ -83,6 +86,7 @@ def follow(
 def _follow(
     tip: Floats,
     axis: Floats,
+    kind: Codes,
     want_tip: Floats,
     want_axis: Floats,
     want_kind: Codes,
@@ -98,10 +102,14 @@ def _follow(
     while i < tip.shape[0] and j < want_tip.shape[0]:
         if _is_at(tip, axis, i, want_tip, want_axis, j, near_tip, near_axis):
             there[i], partner[i] = True, j - 1
-            # More motions at the same place lead there too: the last of them is the one.
+            # More motions of that kind at the same place lead there too: the last of them is the one.
             if motions < i and there[i - 1] and partner[i - 1] == j - 1:
                 there[i - 1] = False
-            again = i + 1 < tip.shape[0] and _is_at(tip, axis, i + 1, want_tip, want_axis, j, near_tip, near_axis)
+            again = (
+                i + 1 < tip.shape[0]
+                and kind[i + 1] == kind[i]
+                and _is_at(tip, axis, i + 1, want_tip, want_axis, j, near_tip, near_axis)
+            )
             i += 1
             if not again:
                 j, done = j + 1, 0.0
