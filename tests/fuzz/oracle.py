@@ -14,7 +14,7 @@ from trunnion.cl import read_cl
 from trunnion.errors import InputError, Refused, TrunnionError
 from trunnion.machine import Machine, load_machine
 from trunnion.reader import Run, run_program
-from trunnion.reader.sinumerik.interpreter import MOST_FINDINGS
+from trunnion.reader.interpreter import MOST_FINDINGS
 from trunnion.toolpath import Kind, Toolpath
 
 #: Blocks that loops and calls may execute.
@@ -52,7 +52,7 @@ def judge_program(data: bytes, folder: Path, key: str = "yl569", limit: int = LI
     path.write_bytes(data)
     try:
         with no_warnings():
-            run = run_program(path, machine(key), step_limit=limit)
+            run = run_program(path, machine(key), family="sinumerik_840d", step_limit=limit)
     except InputError as error:
         _check_error(error, folder)
         return None

@@ -36,7 +36,7 @@ def watch(event, values):
 
 def run(path):
     try:
-        return len(run_program(path, machine, step_limit=2000).findings)
+        return len(run_program(path, machine, family="sinumerik_840d", step_limit=2000).findings)
     except InputError:
         return -1
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from tests.fuzz import oracle, pieces, seeds
 from tests.fuzz.mangle import mangle
 from trunnion.errors import InputError
-from trunnion.reader import Run, subdivide
-from trunnion.reader.sinumerik import interpreter
-from trunnion.reader.sinumerik.text import Text
+from trunnion.reader import Run, interpreter, subdivide
+from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
+from trunnion.reader.sinumerik.text import SinumerikText
 
 
 @pytest.fixture(scope="module")
@@ -178,13 +178,13 @@ def test_blocks_of_a_program_without_loops_are_never_too_many(folder: Path) -> N
 
 def test_labels_of_a_subprogram_are_looked_for_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     searched: list[int] = []
-    real = Text._match_structures
+    real = SinumerikText._match_structures
 
-    def counted(text: Text) -> dict[int, tuple[int, int]]:
+    def counted(text: SinumerikText) -> dict[int, tuple[int, int]]:
         searched.append(1)
         return real(text)
 
-    monkeypatch.setattr(Text, "_match_structures", counted)
+    monkeypatch.setattr(SinumerikText, "_match_structures", counted)
     oracle.judge_program(b"SUB\n" * 50, folder)
     assert len(searched) == 1
 
@@ -246,4 +246,4 @@ def test_a_loop_before_a_long_tail_asks_for_no_room_that_it_does_not_need(folder
 
 def interpreter_run(path: Path, limit: int) -> Run:
     """Run a program of a folder."""
-    return interpreter.Interpreter(path, oracle.machine("yl569"), step_limit=limit, skip=False, shortest=None).run()
+    return SinumerikInterpreter(path, oracle.machine("yl569"), step_limit=limit, skip=False, shortest=None).run()

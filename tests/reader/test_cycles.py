@@ -4,7 +4,8 @@ import pytest
 
 from tests.reader.conftest import Runner, close
 from trunnion.reader import Run
-from trunnion.reader.sinumerik.cycles import CycleError, strokes
+from trunnion.reader.drilling import CycleError
+from trunnion.reader.sinumerik.cycles import strokes
 from trunnion.toolpath import Kind
 
 

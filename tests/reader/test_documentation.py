@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.reader.sinumerik import cycles, expressions, flow, interpreter, text, words
+from trunnion.reader import interpreter, text
+from trunnion.reader.sinumerik import cycles, expressions, flow, words
+from trunnion.reader.sinumerik.text import DEEPEST
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reader.md").read_text(encoding="utf-8")
 
@@ -64,7 +66,7 @@ def test_limits_are_those_of_the_page() -> None:
     plain = PAGE.replace(" 000", "000")
     assert str(interpreter.STEPS) in plain
     assert f"After {interpreter.MOST_FINDINGS} findings" in plain
-    assert f"at most {text.DEEPEST} inside" in plain
+    assert f"at most {DEEPEST} inside" in plain
     assert f"At most {interpreter.DEEPEST_CALL} programs" in plain
     assert f"calls at most {interpreter.MOST_FILES} files" in plain
     assert f"for every {interpreter.LONG} characters" in plain

@@ -167,7 +167,7 @@ def test_ways_of_endless_axes(run: Runner) -> None:
 
 
 def test_an_axis_that_writes_its_turns_takes_the_number(run: Runner) -> None:
-    result = run("TRAORI\nC350\nC725", machine=load_machine("mikron_600u"))
+    result = run("TRAORI\nC350\nC725", machine=load_machine("mikron_600u"), family="sinumerik_840d")
     assert rotary(result)[:, 1].tolist() == [350.0, 725.0]
 
 

@@ -1,11 +1,14 @@
 """A block, read: its words by what they address. Reading assigns variables; everything else is for the interpreter."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
+import numpy as np
+
+from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.reader.sinumerik.control import Word
+from trunnion.reader.rows import Note
 from trunnion.reader.sinumerik.expressions import OPERATORS, ExpressionError, Reader, Value, whole
 from trunnion.reader.sinumerik.tokens import Sort, Token
 from trunnion.reader.sinumerik.variables import Variables
@@ -21,8 +24,7 @@ from trunnion.reader.sinumerik.words import (
     TYPES,
     WAYS,
 )
-
-Note = Callable[[str, Severity], None]
+from trunnion.reader.word import How, Word
 
 #: Larger feeds, in any unit, are slips of the program.
 FASTEST: Final = 1e9
@@ -66,6 +68,11 @@ class Block:
     tool: str | None = None
     edge: int | None = None
     traori: float = 1.0
+
+    @property
+    def tool_axis(self) -> Floats | None:
+        """The vector, (3,); components that are not written are 0."""
+        return np.array([self.vector.get(letter, 0.0) for letter in "ABC"]) if self.vector else None
 
 
 class BlockReader:
@@ -141,7 +148,7 @@ class BlockReader:
         reader.expect("=")
         variables.set_parameter(number, reader.number())
 
-    def _value(self, reader: Reader) -> tuple[Value, str]:
+    def _value(self, reader: Reader) -> tuple[Value, How]:
         """Read what follows an address: a number, or = and an expression, maybe inside AC() or its kin."""
         if reader.takes("="):
             how = reader.peek()
@@ -149,8 +156,8 @@ class BlockReader:
                 reader.at += 2
                 value = reader.number()
                 reader.expect(")")
-                return value, how
-            return reader.value(), ""
+                return value, How(how)
+            return reader.value(), How.AS_SET
         sign = 1.0
         if reader.peek() in ("+", "-"):
             sign = -1.0 if reader.peek() == "-" else 1.0
@@ -159,14 +166,14 @@ class BlockReader:
         if token is None or token.sort is not Sort.NUMBER:
             raise ExpressionError("a number is missing")
         reader.at += 1
-        return sign * token.value, ""
+        return sign * token.value, How.AS_SET
 
-    def _axis(self, block: Block, name: str, value: float, how: str) -> None:
+    def _axis(self, block: Block, name: str, value: float, how: How) -> None:
         if name in block.axes:
             self._note(f"{name} is written twice: the last one counts", Severity.WARNING)
         block.axes[name] = value, how
 
-    def _address(self, reader: Reader, block: Block, letter: str, extension: str, value: Value, how: str) -> None:
+    def _address(self, reader: Reader, block: Block, letter: str, extension: str, value: Value, how: How) -> None:
         if letter == "T" and extension in ("", "0", "1"):
             block.tool = value if isinstance(value, str) else f"{value:.10g}"
             return

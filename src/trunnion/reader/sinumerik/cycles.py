@@ -4,41 +4,14 @@ Heights are positions along the drilling axis, mm, in the frame of the program. 
 what newer controls append to them (``_GMODE``, ``_DMODE``, ``_AMODE``) is not needed for the motion.
 """
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-#: Faster feeds, mm/min, are none that a cycle means.
-FASTEST: Final = 1e9
-
-#: More pecks than this at one hole are a mistake.
-MOST_PECKS: Final = 1000
+from trunnion.reader.drilling import FASTEST, MOST_PECKS, CycleError, Step
 
 #: How far a chip-breaking peck backs off where the program does not say it, mm.
 CHIP_BREAK: Final = 1.0
-
-
-class CycleError(Exception):
-    """Why a cycle cannot be done, in words."""
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One motion at a hole.
-
-    rapid     G0 instead of G1
-    height    where to, along the drilling axis; None: stay
-    feed      mm/min, or None: the feed in force
-    aside     offsets in the first and second axis of the plane, mm, from the hole
-    dwell     seconds to wait afterwards, negative: spindle turns
-    """
-
-    rapid: bool
-    height: float | None
-    feed: float | None = None
-    aside: tuple[float, float] = (0.0, 0.0)
-    dwell: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,22 +237,3 @@ CYCLES: Final[dict[str, Callable[[Arguments, Heights, float], list[Step]]]] = {
     "CYCLE88": _drill,
     "CYCLE89": _bore_out,
 }
-
-
-def rotations(mode: int) -> list[int] | None:
-    """Axes of the three turns of CYCLE800's ``_MODE``, 0 for X; None if it counts angles in another way.
-
-    Bits 1 and 0 name the axis of the first turn, 3 and 2 of the second, 5 and 4 of the third (01 X, 10 Y, 11 Z);
-    bits 7 and 6 are 00 for turns one after another.
-    """
-    if mode >> 6:
-        return None
-    axes = [(mode >> shift) & 3 for shift in (0, 2, 4)]
-    return None if 0 in axes else [axis - 1 for axis in axes]
-
-
-def sane(value: float | None) -> float | None:
-    """Return a cycle's number, refusing what no program means."""
-    if value is not None and not math.isfinite(value):
-        raise CycleError("has a number that is none")
-    return value

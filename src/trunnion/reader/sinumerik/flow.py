@@ -5,29 +5,26 @@ Nothing is kept of a loop but its lines: an end goes back to its beginning, a co
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from trunnion.errors import Severity
-from trunnion.reader.sinumerik.block import Call, Note
+from trunnion.reader import interpreter
+from trunnion.reader.interpreter import End
+from trunnion.reader.rows import Note
+from trunnion.reader.sinumerik.block import Call
 from trunnion.reader.sinumerik.expressions import ExpressionError, Reader
-from trunnion.reader.sinumerik.text import Text
+from trunnion.reader.sinumerik.text import SinumerikText
 from trunnion.reader.sinumerik.tokens import Sort, split_comment, tokenize
 from trunnion.reader.sinumerik.variables import Variables
 from trunnion.reader.sinumerik.words import TYPES
 
 
-class End(Exception):  # noqa: N818 - the end of a program is no error
-    """The program has ended."""
-
-
 @dataclass(slots=True)
-class Activation:
+class Activation(interpreter.Activation):
     """A program or subprogram being executed, and the cycle that is modal in it."""
 
-    text: Text
-    file: int
-    variables: Variables
-    repeats: int = 1
+    text: SinumerikText
+    variables: Variables = field(default_factory=Variables)
     modal: Call | None = None
 
 

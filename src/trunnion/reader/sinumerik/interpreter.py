@@ -1,28 +1,25 @@
-"""Programs, block by block: what each one says goes to the virtual control, and where the program goes on.
-
-A program runs from chunks of its file, plain motion blocks inside the scan kernel. The first jump, loop or subprogram
-that needs it makes the whole text be held. Everything that a program could do without end has a limit.
-"""
+"""Sinumerik programs, block by block: what each one says goes to the virtual control, and where it goes on."""
 
 import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
-from trunnion.arrays import Ints
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import Severity
 from trunnion.machine import Machine
-from trunnion.reader.columns import Changes
-from trunnion.reader.run import Comment, Finding, Orientation, Run, State
+from trunnion.reader.control import LINEAR, RAPID
+from trunnion.reader.drilling import CycleError, sane
+from trunnion.reader.interpreter import STEPS, End, Interpreter
+from trunnion.reader.rows import FARTHEST
+from trunnion.reader.run import Orientation
 from trunnion.reader.sinumerik import cycles, scan
 from trunnion.reader.sinumerik.block import Block, BlockReader, Call, read_call
-from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, FARTHEST, LINEAR, RAPID, THROUGH, Control
+from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, THROUGH, SinumerikControl
 from trunnion.reader.sinumerik.expressions import ExpressionError, Reader, Value
-from trunnion.reader.sinumerik.flow import Activation, End, Flow
-from trunnion.reader.sinumerik.frames import Frame, statement, turn
-from trunnion.reader.sinumerik.text import Folder, Text, decode
+from trunnion.reader.sinumerik.flow import Activation, Flow
+from trunnion.reader.sinumerik.frames import statement
+from trunnion.reader.sinumerik.swivel import swivel
+from trunnion.reader.sinumerik.text import SUFFIXES, SinumerikText
 from trunnion.reader.sinumerik.tokens import LONGEST, Sort, Token, split_comment, tokenize
 from trunnion.reader.sinumerik.variables import Variables
 from trunnion.reader.sinumerik.words import (
@@ -44,60 +41,27 @@ from trunnion.reader.sinumerik.words import (
     M_SPINDLE,
     SILENT,
 )
-
-#: Blocks a program may execute besides going once through its files.
-STEPS: Final = 2_000_000
-
-#: Findings that are kept one by one; the rest is counted.
-MOST_FINDINGS: Final = 10_000
-
-#: So many characters of a block, or of a text that is kept, count as one more: real ones are shorter.
-LONG: Final = 128
-
-#: Subprograms that one program may call.
-MOST_FILES: Final = 1000
-
-#: Subprograms inside subprograms, as deep as the control itself allows.
-DEEPEST_CALL: Final = 16
+from trunnion.reader.text import Folder, Text
 
 #: Names with arguments that the interpreter knows; all others are subprograms.
 _BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SETAL"})
-
-#: Rows there is room for when the kernel starts, and fewer than which are too few.
-_ROOM: Final = 65536
-_LEAST_ROOM: Final = 4096
 
 #: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
 _PLAIN = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
 _LOOK: Final = 48
 
 
-class Interpreter:
-    """Runs one program on one machine; ``run`` may be called once."""
+class SinumerikInterpreter(Interpreter[Activation]):
+    """Runs one Sinumerik program on one machine."""
 
-    def __init__(self, path: Path, machine: Machine, *, step_limit: int, skip: bool, shortest: bool | None) -> None:
-        rotary = tuple(machine.axes[column].name.upper() for column in machine.rotary)
-        slides = {machine.axes[column].name for column in machine.linear}
-        if slides != {"X", "Y", "Z"}:
-            what = f"has slides {', '.join(sorted(slides))}"
-            raise InputError(Problem(machine.key, 0, what, "this reader needs X, Y and Z"))
-        self._machine = machine
-        self._path = path
-        self._skip = skip
-        self._limit = step_limit
-        self._steps = 0
-        self._kept = 0
-        self._events = 0
-        self._findings: list[Finding] = []
-        self._more = 0
-        self._comments: list[Comment] = []
-        self._texts: dict[Path, tuple[Text, int]] = {}
-        self._folder = Folder(path)
-        self._file = Changes(0)
-        self._files = [str(path)]
-        self._control = Control(machine, self._note, self._file, shortest=shortest)
-        self._reader = BlockReader(rotary, self._note)
-        self._stack: list[Activation] = []
+    text_type = SinumerikText
+
+    def __init__(
+        self, path: Path, machine: Machine, *, step_limit: int = STEPS, skip: bool = False, shortest: bool | None = None
+    ) -> None:
+        super().__init__(path, machine, Folder(path, SUFFIXES, "_N_"), step_limit=step_limit, skip=skip)
+        self._control = SinumerikControl(machine, self._note, self._file, shortest=shortest)
+        self._reader = BlockReader(self._control.names, self._note)
         self._flow = {
             **Flow(self._note).handlers,
             "RET": self._return,
@@ -106,78 +70,14 @@ class Interpreter:
             "CALL": self._extcall,
         }
 
-    def run(self) -> Run:
-        """Execute the program."""
-        main = Text(self._path)
-        try:
-            self._stack.append(Activation(main, 0, Variables()))
-            self._execute()
-        except End:
-            pass
-        finally:
-            main.close()
-            for text, _ in self._texts.values():
-                text.close()
-        self._control.settle()
-        return self._result()
+    @property
+    def control(self) -> SinumerikControl:
+        """The virtual control."""
+        return self._control
 
-    def _note(self, text: str, severity: Severity) -> None:
-        if len(self._findings) >= MOST_FINDINGS:
-            self._more += 1
-            return
-        file = self._files[self._file.now]
-        self._findings.append(Finding(self._control.line, text, severity, file))
-
-    # The loop
-
-    def _execute(self) -> None:
-        control = self._control
-        while self._stack:
-            call = self._stack[-1]
-            text = call.text
-            if not text.fill():
-                self._leave()
-                continue
-            if self._may_be_plain(text):
-                self._scan(call)
-                if not text.fill():
-                    continue
-            line = text.line
-            control.line, control.block_number = line, -1
-            raw = text.next_line()
-            self._count(1 + len(raw) // LONG)
-            self._line(call, line, raw)
-            self._keep_events()
-
-    def _count(self, blocks: int) -> None:
-        """Count executed blocks. Going once through each file is free."""
-        self._steps += blocks
-        if self._steps <= self._limit:
-            return
-        main = self._stack[0].text
-        texts = [text for text, _ in self._texts.values()]
-        allowed = self._limit + (main.lines if main.whole else main.line) + sum(text.lines for text in texts)
-        allowed += sum(text.size // LONG for text in (main, *texts))
-        if self._steps > allowed:
-            raise self._endless(f"executes more than {self._limit} blocks")
-
-    def _keep(self, texts: int, characters: int) -> None:
-        """Count comments and events, which are kept. What each file says once is free."""
-        self._kept += texts + characters // LONG
-        if self._kept <= self._limit:
-            return
-        files = (self._stack[0].text, *(text for text, _ in self._texts.values()))
-        if self._kept > self._limit + sum(text.size for text in files):
-            raise self._endless(f"makes more than {self._limit} comments and events")
-
-    def _keep_events(self) -> None:
-        new = self._control.events[self._events :]
-        if new:
-            self._events += len(new)
-            self._keep(len(new), sum(len(event.value) for event in new if isinstance(event.value, str | tuple)))
-
-    def _endless(self, what: str) -> InputError:
-        return self._stack[-1].text.problem(self._control.line, f"the program {what}", "does it end?")
+    def _first(self, text: Text) -> Activation:
+        assert isinstance(text, SinumerikText)
+        return Activation(text, 0, variables=Variables())
 
     def _may_be_plain(self, text: Text) -> bool:
         call = self._stack[-1]
@@ -186,48 +86,23 @@ class Interpreter:
         begin = text.buffer[text.position : text.position + _LOOK].tobytes()
         return _PLAIN.match(begin) is not None
 
-    def _scan(self, call: Activation) -> None:
-        """Let the kernel take plain blocks."""
-        control, text = self._control, call.text
-        columns = control.columns
-        while text.fill():
-            if columns.capacity - columns.n < _LEAST_ROOM:
-                # A little more than there will be if the program goes on as it began, once it is known how it does.
-                begun = columns.n > _ROOM // 2
-                columns.reserve(_ROOM, int(1.02 * text.expected(columns.n)) if begun else 0)
-            control.before_scan(text.position, text.line)
-            scan.scan(
-                text.buffer,
-                len(text.buffer),
-                control.table,
-                control.tips,
-                control.lengths,
-                control.feeds,
-                control.default_way,
-                control.map,
-                control.turn,
-                control.counts,
-                control.place,
-                control.target(),
-                control.notes,
-            )
-            control.after_scan()
-            self._take_comments(text, control.notes.comments[: control.counts[scan.COMMENTS]])
-            line = int(control.counts[scan.LINE])
-            taken = line - text.line
-            size = int(control.counts[scan.POSITION]) - text.position
-            text.position, text.line = int(control.counts[scan.POSITION]), line
-            control.line = line
-            self._count(taken + max(size - LONG * taken, 0) // LONG)
-            if text.position < len(text.buffer) and not control.full:
-                return
-
-    def _take_comments(self, text: Text, table: Ints) -> None:
-        file = self._file.now
-        self._keep(len(table), int((table[:, 3] - table[:, 2]).sum()))
-        for line, row, start, end in table.tolist():
-            words = decode(text.buffer[start:end].tobytes()).strip("\r")
-            self._comments.append(Comment(line, row, words, file))
+    def _kernel(self, text: Text) -> None:
+        control = self._control
+        scan.scan(
+            text.buffer,
+            len(text.buffer),
+            control.table,
+            control.tips,
+            control.lengths,
+            control.feeds,
+            control.default_way,
+            control.map,
+            control.turn,
+            control.counts,
+            control.place,
+            control.target(),
+            control.notes,
+        )
 
     def _line(self, call: Activation, line: int, raw: str) -> None:
         """Execute a line that is not plain."""
@@ -267,11 +142,6 @@ class Interpreter:
                 self._statement(call, line, tokens, at)
         finally:
             self._comment(line, comment)
-
-    def _comment(self, line: int, comment: str | None) -> None:
-        if comment is not None:
-            self._keep(1, len(comment))
-            self._comments.append(Comment(line, self._control.row, comment, self._file.now))
 
     def _statement(self, call: Activation, line: int, tokens: tuple[Token, ...], at: int) -> None:
         first = tokens[at]
@@ -331,8 +201,8 @@ class Interpreter:
                 self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.WARNING)
             control.move(
                 block.axes,
-                block.vector,
-                block.params,
+                block.tool_axis,
+                circle=control.circle(block.params, block.axes),
                 machine_frame=machine_frame,
                 feed_written=block.feed is not None,
             )
@@ -349,7 +219,7 @@ class Interpreter:
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER):
             control.kind = code
         elif code in G_PLANES:
-            control.plane = "XYZ".index(G_PLANES[code])
+            control.set_working_plane("XYZ".index(G_PLANES[code]))
         elif code in G_UNITS:
             control.set_units(*G_UNITS[code])
         elif code in (90, 91):
@@ -357,7 +227,7 @@ class Interpreter:
         elif code in G_FEEDS:
             control.feed_mode.set(control.row, G_FEEDS[code])
         elif code in G_OFFSETS:
-            control.set_offset(code)
+            control.set_offset(code, f"G{code}")
         elif code in G_NAMED:
             text, grave = G_NAMED[code]
             self._note(f"G{code}: {text}", Severity.ERROR if grave else Severity.WARNING)
@@ -382,7 +252,6 @@ class Interpreter:
             case "ORIVECT" | "ORIPLANE":
                 control.set_orientation(Orientation.GREAT_CIRCLE)
             case "ORIMKS" | "ORIWKS":
-                control.settle()
                 control.set_machine_vectors(word == "ORIMKS")
             case "SPOS":
                 control.event("spindle", "oriented")
@@ -451,7 +320,7 @@ class Interpreter:
             )
             control.event("cycle832", values)
         elif name == "CYCLE800":
-            self._swivel(made)
+            swivel(control, made)
         elif name == "MSG":
             first = made.arguments[0] if made.arguments else ""
             control.event("message", first if isinstance(first, str) else f"{first or 0:g}")
@@ -469,9 +338,9 @@ class Interpreter:
     def _drill(self, made: Call) -> None:
         control = self._control
         try:
-            numbers = [cycles.sane(self._plain_number(value)) for value in made.arguments]
+            numbers = [sane(self._plain_number(value)) for value in made.arguments]
             steps = cycles.steps(made.name, numbers, float(control.rpm.now))
-        except cycles.CycleError as error:
+        except CycleError as error:
             self._note(f"{made.name} {error}: it is not executed", Severity.ERROR)
             return
         self._count(len(steps))
@@ -480,48 +349,8 @@ class Interpreter:
     @staticmethod
     def _plain_number(value: Value | None) -> float | None:
         if isinstance(value, str):
-            raise cycles.CycleError("has a text where a number must stand")
+            raise CycleError("has a text where a number must stand")
         return value
-
-    def _swivel(self, made: Call) -> None:
-        control = self._control
-        control.event("cycle800", ",".join(made.written))
-        texts = [value if isinstance(value, str) else None for value in made.arguments]
-        if not made.arguments or (len(texts) > 1 and texts[1] == "0"):
-            control.unswivel()
-            return
-        if len(made.arguments) > 16:
-            self._note(f"CYCLE800 takes 16 values, not {len(made.arguments)}", Severity.ERROR)
-            return
-        numbers = [value if isinstance(value, float) else 0.0 for value in made.arguments]
-        numbers += [0.0] * (16 - len(numbers))
-        retract, _, style, mode = numbers[:4]
-        before, angles, after, direction = numbers[4:7], numbers[7:10], numbers[10:13], numbers[13]
-        if any(abs(value) > 1e7 for value in numbers):
-            self._note("CYCLE800 with numbers that no machine has: it is not executed", Severity.ERROR)
-            return
-        if retract:
-            self._note(f"CYCLE800 retracts first (_FR {retract:g}): where to is not simulated", Severity.WARNING)
-        origin = control.lengths * np.array(before)
-        offset = control.lengths * np.array(after)
-        linear = np.eye(3)
-        direct = None
-        axes = cycles.rotations(int(mode))
-        if int(mode) >> 6 == 3:
-            direct = angles[0], angles[1]
-            # Values come in the order of the machine's axes as written in the swivel data: first, second.
-        elif axes is None:
-            self._note(f"CYCLE800 with _MODE {mode:g} is not simulated", Severity.ERROR)
-            return
-        else:
-            for axis, angle in zip(axes, angles, strict=True):
-                linear = linear @ turn(axis, angle)
-        frame = Frame(linear, origin)
-        if direct is None:
-            frame = frame.then(Frame(np.eye(3), offset))
-        control.swivel(frame, add=int(style) % 10 == 1, direction=direction, direct=direct)
-        if direct is not None and offset.any():
-            self._note("CYCLE800 with direct angles: the offset after turning is not simulated", Severity.ERROR)
 
     def _enter(self, name: str, made: Call) -> None:
         """Call a subprogram that lies beside the program."""
@@ -531,42 +360,16 @@ class Interpreter:
             return
         if made.repeats < 1:
             return
-        if len(self._stack) >= DEEPEST_CALL:
-            raise self._stack[-1].text.problem(
-                self._control.line, f"calls subprograms deeper than {DEEPEST_CALL} levels", "does one call itself?"
-            )
+        self._check_depth()
         variables = Variables(self._stack[-1].variables)
-        self._stack.append(self._activation(path, variables, made.repeats))
+        text, file = self._open(path)
+        assert isinstance(text, SinumerikText)
+        self._stack.append(Activation(text, file, made.repeats, variables=variables))
         self._bind(made)
-
-    def _activation(self, path: Path, variables: Variables, repeats: int) -> Activation:
-        if path not in self._texts:
-            if len(self._texts) >= MOST_FILES:
-                raise self._endless(f"calls more than {MOST_FILES} subprograms")
-            self._files.append(str(path))
-            self._texts[path] = Text(path, whole=True), len(self._files) - 1
-        text, file = self._texts[path]
-        # The same file may be active more than once: each activation has its own place in it.
-        self._file.set(self._control.row, file)
-        return Activation(text.again(), file, variables, repeats)
 
     def _bind(self, made: Call) -> None:
         """Hand arguments to the PROC line, which reads them when it is executed."""
         self._stack[-1].variables.hand(made.arguments)
-
-    def _leave(self) -> None:
-        """End of a subprogram, or of the program."""
-        call = self._stack[-1]
-        call.repeats -= 1
-        if call.repeats > 0:
-            call.text.jump(1)
-            self._count(1)
-            return
-        self._stack.pop()
-        if not self._stack:
-            raise End
-        self._file.set(self._control.row, self._stack[-1].file)
-        self._control.line = self._stack[-1].text.line - 1
 
     def _return(self, reader: Reader, call: Activation, line: int) -> None:
         self._leave()
@@ -596,45 +399,3 @@ class Interpreter:
         if not isinstance(value, str):
             raise ExpressionError("takes the name of a program")
         self._enter(value, Call(value))
-
-    # The end
-
-    def _result(self) -> Run:
-        control = self._control
-        c = control.columns
-        c.clear()
-        n = c.n
-        findings = list(self._findings)
-        if self._more:
-            findings.append(Finding(0, f"and {self._more} findings more", Severity.ERROR, self._files[0]))
-        return Run(
-            machine=self._machine,
-            files=tuple(self._files),
-            blocks=c.blocks.ramps(),
-            numbers=c.numbers.ramps(),
-            kind=c.kind[:n],
-            programmed=c.programmed[:n],
-            place=c.place[:n],
-            rotary=c.rotary[:n],
-            state=State(
-                file=self._file.steps(n, np.uint16),
-                feed=control.feed.steps(n, np.float64),
-                feed_mode=control.feed_mode.steps(n, np.uint8),
-                rpm=control.rpm.steps(n, np.float64),
-                spindle=control.spindle.steps(n, np.int8),
-                tool=control.tool.steps(n, np.int32),
-                edge=control.edge.steps(n, np.int32),
-                offset=control.offset.steps(n, np.uint16),
-                tcp=control.tcp_rows.steps(n, np.bool_),
-                machine_frame=control.machine_rows.steps(n, np.bool_),
-                inches=control.inch_rows.steps(n, np.bool_),
-                orientation=control.orientation.steps(n, np.uint8),
-                by_tip=control.by_tip.steps(n, np.bool_),
-            ),
-            start=control.start,
-            arcs=control.finish_arcs(),
-            tools=tuple(control.tools),
-            comments=self._comments,
-            events=control.events,
-            findings=tuple(findings),
-        )

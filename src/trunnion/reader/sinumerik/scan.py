@@ -10,26 +10,19 @@ have at most 15 digits, so that mantissa and power of ten are exact and the quot
 that Python would read; longer ones are the interpreter's.
 """
 
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numba import njit
 
 from trunnion.arrays import Bytes, Codes, Floats, Ints
+from trunnion.reader.handover import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, Notes, Target
 
 NUMBER: Final = 1
 PREPARATORY: Final = 2
 FEED: Final = 3
 SLIDE: Final = 4  # and the two after it: X, Y, Z
 ROTARY: Final = 7  # and the one after it
-
-#: Fields of ``counts``: motion kind (0, 1, or more where plain blocks need a G word), rows, comments, place, feeds.
-KIND: Final = 0
-ROW: Final = 1
-COMMENTS: Final = 2
-POSITION: Final = 3
-LINE: Final = 4
-FEEDS: Final = 5
 
 _POWERS: Final = np.array([10.0**k for k in range(23)])
 
@@ -50,33 +43,6 @@ _SEMICOLON: Final = 59
 _EQUALS: Final = 61
 
 
-class Target(NamedTuple):
-    """Columns that rows go to; see ``Columns``. In those from ``block`` on, row r is at r - ``base``."""
-
-    kind: Codes
-    programmed: Codes
-    place: Floats
-    rotary: Floats
-    base: int
-    block: Ints
-    number: Ints
-    vector: Floats
-    way: Codes
-
-
-class Notes(NamedTuple):
-    """What the kernel notes besides rows, written from the top; ``counts`` says how many there are.
-
-    comments    (k, 4) int64   line, row, first byte and end of each comment
-    feed_rows   (k,) int64     rows from which another feed holds
-    feeds       (k,) float64   that feed
-    """
-
-    comments: Ints
-    feed_rows: Ints
-    feeds: Floats
-
-
 def letters(rotary: tuple[str, str]) -> Codes:
     """Table (256,) uint8 from a byte to what it means to ``scan``, for the names of the two rotary axes."""
     table = np.zeros(256, np.uint8)
@@ -89,7 +55,7 @@ def letters(rotary: tuple[str, str]) -> Codes:
     return table
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def scan(
     text: Bytes,
     end: int,

@@ -1,35 +1,12 @@
-"""The text of a program: in chunks as long as it runs from top to bottom, whole as soon as it jumps.
+"""Where the jumps of a Sinumerik program lead: its labels, block numbers and control structures."""
 
-Lines count from 1. Buffers always hold whole lines: the last one ends in a line feed even if the file does not.
-"""
-
-import os
 import re
 from bisect import bisect_left, bisect_right
-from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
-from trunnion.arrays import Bytes, Ints
-from trunnion.errors import InputError, Problem
-
-#: Bytes read at a time.
-CHUNK: Final = 1 << 18
-
-#: Longer lines belong to no program.
-LONGEST_LINE: Final = 1 << 16
-
-#: No block that moves is shorter.
-SHORTEST_ROW: Final = len("X1\n")
-
-#: Bytes looked at for the end of a line at first.
-_LINE: Final = 256
-
-#: The largest file that may jump or be a subprogram: it is held whole.
-LARGEST_WHOLE: Final = 256 << 20
+from trunnion.reader.text import Text
 
 # Blanks are matched in one place each: two runs of them side by side would take quadratic time on a line of blanks.
 _START = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[0-9]+[ \t]*)?"
@@ -49,6 +26,10 @@ _ENDS: Final = {"ENDIF": "IF", "ENDFOR": "FOR", "ENDWHILE": "WHILE", "ENDLOOP": 
 DEEPEST: Final = 64
 
 
+#: How names of programs end; a subprogram goes before a main program.
+SUFFIXES: Final = (".SPF", "_SPF", ".MPF", "_MPF", "")
+
+
 @dataclass(slots=True)
 class _Places:
     """Where the labels, block numbers and control words of a text stand, each found out when it is first asked for."""
@@ -58,159 +39,21 @@ class _Places:
     partners: dict[int, tuple[int, int]] | None = None
 
 
-class Text:
-    """A program file, the place where it is being read, and where its jumps lead.
-
-    buffer    (m,) uint8   whole lines
-    position  int          byte of the buffer where the next line begins
-    line      int          number of that line
-    """
+class SinumerikText(Text):
+    """A program file with the places where its jumps lead."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        self.path = path
-        self.name = path.name
-        try:
-            if not path.is_file():
-                raise InputError(Problem(str(path), 0, "is no file"))
-            # Held open while the program is read; ``close`` is called by whoever runs it.
-            self._file = path.open("rb")
-        except (OSError, ValueError) as error:
-            raise InputError(Problem(str(path), 0, f"cannot be read: {error}")) from None
-        self.whole = False
-        self._ended = False
-        self._tail = b""
-        self.buffer: Bytes = np.zeros(0, np.uint8)
-        self.position = 0
-        self.line = 1
-        self._starts: Ints | None = None
+        # Shared by all that run the same text: see ``again``.
         self._places = _Places()
-        if whole:
-            self.load()
-
-    def again(self) -> "Text":
-        """Return the same text, held whole, at its first line: what it knows of itself is shared."""
-        other = copy(self)
-        other.jump(1)
-        return other
-
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
-
-    def problem(self, line: int, what: str, cure: str = "") -> InputError:
-        """Return the error that says what is wrong at a line."""
-        return InputError(Problem(str(self.path), line, what, cure))
-
-    @property
-    def size(self) -> int:
-        """Bytes of the file."""
-        return len(self.buffer) if self.whole else os.fstat(self._file.fileno()).st_size
-
-    @property
-    def _behind(self) -> int:
-        """Bytes before the next line."""
-        return self.position + (0 if self.whole else self._file.tell() - len(self.buffer) - len(self._tail))
-
-    def expected(self, rows: int) -> int:
-        """How many rows there will be if the program goes on as it began, with ``rows`` up to here.
-
-        A loop makes many rows of few bytes: what lies ahead bounds what may be expected of it.
-        """
-        behind, size = self._behind, self.size
-        return min(rows * size // max(behind, 1), rows + (size - behind) // SHORTEST_ROW)
-
-    def fill(self) -> bool:
-        """See that the buffer holds a line; False at the end of the program."""
-        while self.position >= len(self.buffer):
-            if self.whole or self._ended:
-                return False
-            self._read()
-        return True
-
-    def next_line(self) -> str:
-        """Return the next line and step over it; only after ``fill``."""
-        size = _LINE
-        while True:
-            window = self.buffer[self.position : self.position + size].tobytes()
-            length = window.find(b"\n")
-            if length >= 0:
-                break
-            if size > LONGEST_LINE:
-                what = f"is longer than {LONGEST_LINE} characters"
-                raise self.problem(self.line, what, "this is no program")
-            size *= 8
-        self.position += length + 1
-        self.line += 1
-        return decode(window[:length])
-
-    def _read(self) -> None:
-        try:
-            chunk = self._file.read(CHUNK)
-        except OSError as error:
-            raise self.problem(0, f"cannot be read: {error}") from None
-        if not chunk:
-            self._ended = True
-            chunk = b"\n" if self._tail else b""
-        data = self._tail + chunk
-        cut = data.rfind(b"\n") + 1
-        self._tail = data[cut:]
-        if len(self._tail) > LONGEST_LINE:
-            raise self.problem(self.line, f"is longer than {LONGEST_LINE} characters", "this is no program")
-        self.buffer = np.frombuffer(data, np.uint8)[:cut]
-        self.position = 0
-
-    def load(self) -> None:
-        """Hold the whole program, at the same line: from now on it may jump."""
-        if self.whole:
-            return
-        size = self.size
-        if size > LARGEST_WHOLE:
-            what = f"has {size} bytes, more than the {LARGEST_WHOLE} that a program with jumps may have"
-            raise self.problem(0, what)
-        self._file.seek(0)
-        data = self._file.read(size)
-        self._file.close()
-        if not data.endswith(b"\n"):
-            data += b"\n"
-        self.whole = True
-        self.buffer = np.frombuffer(data, np.uint8)
-        self._starts = np.concatenate((np.zeros(1, np.int64), np.flatnonzero(self.buffer == 10) + 1))
-        self.jump(self.line)
-
-    @property
-    def _all(self) -> bytes:
-        self.load()
-        return self.buffer.tobytes()
-
-    @property
-    def lines(self) -> int:
-        """Number of lines; the program must be held whole."""
-        return len(self.starts) - 1
-
-    @property
-    def starts(self) -> Ints:
-        """First byte of each line, and one more; (lines + 1,) int64."""
-        if self._starts is None:
-            self.load()
-        assert self._starts is not None
-        return self._starts
-
-    def jump(self, line: int) -> None:
-        """Go on at a line."""
-        line = min(line, self.lines + 1)
-        self.line = line
-        self.position = int(self.starts[line - 1])
-
-    def _line_of(self, byte: int) -> int:
-        return int(np.searchsorted(self.starts, byte, side="right"))
+        super().__init__(path, whole=whole)
 
     def label(self, name: str, here: int, *, forward: bool, backward: bool) -> int | None:
         """Line of a label: the next one after ``here`` if ``forward``, else the last one before it."""
         labels = self._places.labels
         if labels is None:
             labels = self._places.labels = {}
-            for match in _LABEL.finditer(self._all):
-                labels.setdefault(match.group(1).decode().upper(), []).append(self._line_of(match.start(1)))
+            for match in _LABEL.finditer(self.all()):
+                labels.setdefault(match.group(1).decode().upper(), []).append(self.line_of(match.start(1)))
         return _pick(labels.get(name, []), here, forward=forward, backward=backward)
 
     def number(self, number: int, here: int, *, forward: bool, backward: bool) -> int | None:
@@ -218,8 +61,8 @@ class Text:
         numbers = self._places.numbers
         if numbers is None:
             numbers = self._places.numbers = {}
-            for match in _NUMBER.finditer(self._all):
-                numbers.setdefault(int(match.group(1)), []).append(self._line_of(match.start(1)))
+            for match in _NUMBER.finditer(self.all()):
+                numbers.setdefault(int(match.group(1)), []).append(self.line_of(match.start(1)))
         return _pick(numbers.get(number, []), here, forward=forward, backward=backward)
 
     def partner(self, line: int) -> tuple[int, int]:
@@ -234,10 +77,10 @@ class Text:
     def _match_structures(self) -> dict[int, tuple[int, int]]:
         partners: dict[int, tuple[int, int]] = {}
         open_: list[tuple[str, int, int]] = []
-        for match in _STRUCTURE.finditer(self._all):
+        for match in _STRUCTURE.finditer(self.all()):
             word = match.group(1).decode().upper()
             rest = match.group(2)
-            line = self._line_of(match.start(1))
+            line = self.line_of(match.start(1))
             if (word == "IF" and _JUMPS.search(rest)) or (word == "REPEAT" and rest.strip()):
                 continue
             if word == "ELSE":
@@ -271,66 +114,3 @@ def _pick(lines: list[int], here: int, *, forward: bool, backward: bool) -> int 
         if at > 0:
             return lines[at - 1]
     return None
-
-
-def decode(data: bytes) -> str:
-    """Return text: UTF-8, or one character a byte where it is none."""
-    try:
-        return data.decode()
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
-
-
-class Folder:
-    """The folder of a program, the only place where its subprograms are looked for."""
-
-    _ENTRIES: Final = 100_000
-
-    def __init__(self, program: Path) -> None:
-        self._folder = program.parent
-        self._files: dict[str, Path] | None = None
-
-    def find(self, name: str) -> Path | None:
-        """Return the subprogram of this name, whatever the case of its letters, or None.
-
-        A name may have the control's own forms, ``NAME``, ``NAME.SPF`` and ``_N_NAME_SPF``. Folders of the control are
-        not those of this computer: a file of another folder is looked for beside the program, and a name that climbs
-        out of its folder is refused. So is a link that leads elsewhere.
-        """
-        parts = [part for part in re.split(r"[/\\:]", name.strip()) if part]
-        if not parts or ".." in parts or len(name) > 200 or "\0" in name:
-            return None
-        stem = _stem(parts[-1])
-        if self._files is None:
-            self._files = self._list()
-        path = self._files.get(stem)
-        return path if path is not None and self._is_inside(path) else None
-
-    def _is_inside(self, path: Path) -> bool:
-        """Whether a file of the folder really lies in it; links that go in circles lie nowhere."""
-        try:
-            return path.resolve().parent == self._folder.resolve() and path.is_file()
-        except (OSError, RuntimeError):
-            return False
-
-    def _list(self) -> dict[str, Path]:
-        """Programs of the folder by stem; a subprogram goes before a main program."""
-        found: dict[str, Path] = {}
-        try:
-            with os.scandir(self._folder) as entries:
-                names = sorted(entry.name for entry, _ in zip(entries, range(self._ENTRIES), strict=False))
-        except OSError:
-            return found
-        for suffix in (".SPF", "_SPF", ".MPF", "_MPF", ""):
-            for name in names:
-                upper = name.upper()
-                if upper.endswith(suffix) if suffix else "." not in upper:
-                    found.setdefault(_stem(name), self._folder / name)
-        return found
-
-
-def _stem(name: str) -> str:
-    stem = name.upper()
-    for suffix in (".SPF", ".MPF", "_SPF", "_MPF"):
-        stem = stem.removesuffix(suffix)
-    return stem.removeprefix("_N_")

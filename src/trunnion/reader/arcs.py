@@ -1,4 +1,4 @@
-"""Circles as blocks say them: by centre, radius, opening angle or a point on the way.
+"""Circles as blocks say them: by centre, radius, opening angle or a point on the way; and how frames carry them.
 
 In and out in programmed coordinates, mm and degrees. A plane is the axis that stands on it: 2 for G17 (X, Y),
 1 for G18 (Z, X), 0 for G19 (Y, Z); seen from its positive end G3 turns counter-clockwise.
@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 
 #: How much the radius may differ between start and end: an amount, mm, or a part of the radius, whichever is more.
-#: These are the values that the control is delivered with.
+#: These are the values that a Sinumerik is delivered with.
 RADIUS_ERROR: Final = 0.01
 RADIUS_PART: Final = 0.001
 
@@ -39,6 +39,27 @@ class Arc:
     turns: int = 0
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Image:
+    """How circles come through an affine map: linear (3, 3), shift (3,), normals (3, 3) and scale."""
+
+    linear: Floats
+    shift: Floats
+    normals: Floats
+    scale: float
+
+    @staticmethod
+    def of(linear: Floats, shift: Floats) -> "Image":
+        """Return that of a map that keeps circles. Normals turn with the cofactors, which know mirrors."""
+        volume = float(np.linalg.det(linear))
+        scale = abs(volume) ** (1.0 / 3.0)
+        return Image(linear, shift, np.linalg.inv(linear).T * (scale * math.copysign(1.0, volume)), scale)
+
+    def place(self, arc: Arc) -> tuple[Floats, Floats, float]:
+        """Return centre, normal and radius of an arc behind the map."""
+        return self.linear @ arc.centre + self.shift, self.normals @ arc.normal, arc.radius * self.scale
+
+
 def normal_of(plane: int, clockwise: bool) -> Floats:
     """Unit vector about which the arc turns by the right-hand rule."""
     normal = np.zeros(3)
@@ -62,35 +83,35 @@ def by_centre(start: Floats, end: Floats, centre: Floats, plane: int, clockwise:
 
 
 def by_radius(start: Floats, end: Floats, radius: float, plane: int, clockwise: bool, turns: int) -> Arc:
-    """CR=: a negative radius takes the longer way."""
+    """Radius and end point: a negative radius takes the longer way."""
     chord = _chord(start, end, plane)
     length = float(np.linalg.norm(chord))
     if length < SAME:
-        raise ArcError("CR= cannot make a full circle: start and end are the same")
+        raise ArcError("a radius cannot make a full circle: start and end are the same")
     short = 0.5 * length - abs(radius)
     if short > max(RADIUS_ERROR, RADIUS_PART * abs(radius)):
-        raise ArcError(f"CR={radius:g} is too small for a chord of {length:.4f}")
+        raise ArcError(f"a radius of {radius:g} is too small for a chord of {length:.4f}")
     height = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0)) * math.copysign(1.0, radius)
     return _beside_chord(start, end, chord, height, plane, clockwise, turns)
 
 
 def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
-    """AR= and the end point."""
+    """Opening angle and end point."""
     chord = _chord(start, end, plane)
     length = float(np.linalg.norm(chord))
     if length < SAME or not 0.0 < angle < 360.0:
-        raise ArcError(f"AR={angle:g} makes no circle here")
+        raise ArcError(f"an opening angle of {angle:g} makes no circle here")
     half = math.radians(0.5 * angle)
     if length > 2.0 * LARGEST_RADIUS * math.sin(half):
-        raise ArcError(f"AR={angle:g} needs a radius that no machine has")
+        raise ArcError(f"an opening angle of {angle:g} needs a radius that no machine has")
     height = 0.5 * length * math.cos(half) / math.sin(half)
     return _beside_chord(start, end, chord, height, plane, clockwise, turns)
 
 
 def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
-    """AR= and the centre: the end follows."""
+    """Opening angle and centre: the end follows."""
     if not 0.0 < angle < 360.0:
-        raise ArcError(f"AR={angle:g} makes no circle here")
+        raise ArcError(f"an opening angle of {angle:g} makes no circle here")
     u, v = (plane + 1) % 3, (plane + 2) % 3
     radians = math.radians(-angle if clockwise else angle)
     a, b = start[u] - centre[u], start[v] - centre[v]
@@ -101,16 +122,16 @@ def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int,
 
 
 def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
-    """CIP: any plane in space, through a point on the way."""
+    """Any plane in space, through a point on the way."""
     a, b = through - start, end - start
     normal = np.cross(a, b)
     size = float(normal @ normal)
     if size < SAME * max(float(a @ a), float(b @ b), SAME):
-        raise ArcError("the three points of CIP lie on a line")
+        raise ArcError("the three points of the circle lie on a line")
     centre = start + (np.cross(normal, a) * float(b @ b) + np.cross(b, normal) * float(a @ a)) / (2.0 * size)
     radius = float(np.linalg.norm(start - centre))
     if not SAME < radius < LARGEST_RADIUS:
-        raise ArcError("the three points of CIP make no circle that a machine has")
+        raise ArcError("the three points of the circle make no circle that a machine has")
     return Arc(end, centre, normal / math.sqrt(size), radius, turns)
 
 

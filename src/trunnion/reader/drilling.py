@@ -1,0 +1,40 @@
+"""What a drilling cycle does at one hole, as the motions of the virtual control."""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+#: Faster feeds, mm/min, are none that a cycle means.
+FASTEST: Final = 1e9
+
+#: More pecks than this at one hole are a mistake.
+MOST_PECKS: Final = 1000
+
+
+class CycleError(Exception):
+    """Why a cycle cannot be done, in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One motion at a hole.
+
+    rapid     at rapid instead of at feed
+    height    where to, along the drilling axis; None: stay
+    feed      mm/min, or None: the feed in force; negative: that part of it
+    aside     offsets in the first and second axis of the plane, mm, from the hole
+    dwell     seconds to wait afterwards, negative: spindle turns
+    """
+
+    rapid: bool
+    height: float | None
+    feed: float | None = None
+    aside: tuple[float, float] = (0.0, 0.0)
+    dwell: float = 0.0
+
+
+def sane(value: float | None) -> float | None:
+    """Return a cycle's number, refusing what no program means."""
+    if value is not None and not math.isfinite(value):
+        raise CycleError("has a number that is none")
+    return value

@@ -1,0 +1,70 @@
+"""Which reader reads the programs of a machine."""
+
+from collections.abc import Callable
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.definition import extended
+from trunnion.errors import InputError, Problem
+from trunnion.machine import Machine
+from trunnion.reader.interpreter import STEPS, Interpreter
+from trunnion.reader.run import Run
+from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
+
+#: Readers by the family of the control.
+READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
+    "sinumerik_840d": SinumerikInterpreter,
+}
+
+#: The family of machines whose definition names no control.
+USUAL: Final = "sinumerik_840d"
+
+
+def run_program(
+    path: Path | str,
+    machine: Machine,
+    *,
+    family: str | None = None,
+    step_limit: int = STEPS,
+    skip: bool = False,
+    shortest: bool | None = None,
+) -> Run:
+    """Read a program and run it on a machine.
+
+    Parameters
+    ----------
+    path
+        The program. Subprograms are looked for in its folder, nowhere else.
+    machine
+        Three slides X, Y and Z, two rotary axes. Every tool has the length of ``machine.tool_length``, or 0: the
+        tip is then where the control takes it to be.
+    family
+        The control whose language it is, a key of ``READERS``; None: as the machine's definition has it.
+    step_limit
+        Blocks that loops and calls may execute, besides once through each file.
+    skip
+        Leave out blocks that begin with ``/``.
+    shortest
+        How endless rotary axes reach plain words: True the shorter way, False inside the turn displayed; None as the
+        control does. Axes whose values are written as they wind take the number as it is, but for True.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
+        control. What is only not understood is in ``Run.findings``.
+    """
+    name = family_of(machine) if family is None else family
+    if name not in READERS:
+        what = f"has the control {name!r}, whose programs cannot be read yet"
+        raise InputError(Problem(machine.key, 0, what, f"there are readers for {', '.join(READERS)}"))
+    return READERS[name](Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
+
+
+@lru_cache(maxsize=8)
+def family_of(machine: Machine) -> str:
+    """Return the family of a machine's control; of all that the control's definition says, this alone is asked."""
+    table = extended(machine.control.fresh(), files("trunnion").joinpath("control", "library"))
+    return table.text("family", USUAL)

@@ -1,0 +1,44 @@
+"""What a scan kernel and the virtual control hand to each other: counters, columns with room, and notes."""
+
+from typing import Final, NamedTuple
+
+from trunnion.arrays import Codes, Floats, Ints
+
+#: Fields of ``counts``: motion kind (0 rapid, 1 line, more for circles), rows, comments, place in the text, feeds.
+KIND: Final = 0
+ROW: Final = 1
+COMMENTS: Final = 2
+POSITION: Final = 3
+LINE: Final = 4
+FEEDS: Final = 5
+FIELDS: Final = 6
+
+#: Comments and feeds that a kernel may note before it comes back.
+ROOM: Final = 4096
+
+
+class Target(NamedTuple):
+    """Columns that rows go to; see ``Columns``. In those from ``block`` on, row r is at r - ``base``."""
+
+    kind: Codes
+    programmed: Codes
+    place: Floats
+    rotary: Floats
+    base: int
+    block: Ints
+    number: Ints
+    vector: Floats
+    way: Codes
+
+
+class Notes(NamedTuple):
+    """What the kernel notes besides rows, written from the top; ``counts`` says how many there are.
+
+    comments    (k, 4) int64   line, row, first byte and end of each comment
+    feed_rows   (k,) int64     rows from which another feed holds
+    feeds       (k,) float64   that feed
+    """
+
+    comments: Ints
+    feed_rows: Ints
+    feeds: Floats

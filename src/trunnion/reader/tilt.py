@@ -1,0 +1,42 @@
+"""Tilted planes: how the tool's frame lies with the rotary axes somewhere, and where they must be for a plane."""
+
+import math
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.machine import Machine, inverse
+from trunnion.reader.frames import about
+
+
+def tool_frame(machine: Machine, rotary: tuple[float, float]) -> Floats:
+    """(3, 3): the tool's frame as seen from the workpiece, with the rotary axes at these values, degrees."""
+    linear = np.eye(3)
+    for column, value in sorted(zip(machine.rotary, rotary, strict=True)):
+        axis = machine.axes[column]
+        linear = linear @ about(np.array(axis.direction), axis.sense * value)
+    return linear
+
+
+def solutions(machine: Machine, normal: Floats, held: Floats) -> list[tuple[float, float]]:
+    """Both rotary positions whose tool axis is ``normal`` (3,), degrees; none if there is no such position.
+
+    Where the first axis is free it stays as it is in ``held`` (5,).
+    """
+    solved = inverse(machine, np.zeros((1, 3)), normal[None])
+    columns = list(machine.rotary)
+    pairs = [(float(first), float(second)) for first, second in solved.joints[:, 0, columns]]
+    if not all(math.isfinite(value) for value in pairs[0]):
+        return []
+    if solved.pole[0]:
+        return [(float(held[columns[0]]), second) for _, second in pairs]
+    return pairs
+
+
+def fits(machine: Machine, rotary: tuple[float, float]) -> bool:
+    """Whether both rotary axes have the position in their travel, in some turn."""
+    axes = (machine.axes[column] for column in machine.rotary)
+    return all(
+        axis.endless or any(axis.low <= value + turn <= axis.high for turn in (0.0, -360.0, 360.0))
+        for axis, value in zip(axes, rotary, strict=True)
+    )
