@@ -1,5 +1,6 @@
 """Programs without TCP, read back by the reader's own control: tip and tool axis on the way, and how long it takes."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,10 +16,11 @@ from trunnion.arrays import Floats
 from trunnion.cli.post import write
 from trunnion.control import Program, check_program, load_control
 from trunnion.errors import Severity
-from trunnion.machine import Machine, load_machine, shipped
+from trunnion.machine import Machine, forward, load_machine, shipped
 from trunnion.plan import Plan, Wishes, plan
+from trunnion.plan.arcs import turned_evenly
 from trunnion.reader import Run, run_program, subdivide
-from trunnion.toolpath import Kind, LoadTool, Operation, SpindleOn, Toolpath
+from trunnion.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Toolpath
 from trunnion.verify import Verification, verify
 
 NAMES = sorted(shipped())
@@ -121,7 +123,8 @@ def minutes(run: Run, rows: Sequence[int]) -> float:
 
 
 steps = st.tuples(st.floats(-30.0, 30.0), st.floats(-30.0, 30.0), st.floats(-20.0, 20.0))
-lean = st.one_of(st.floats(-0.6, 0.6), st.just(0.0), st.floats(-1e-3, 1e-3))
+#: Nearer to the pole than a hundred thousandth it is the pole, or CL files cannot tell.
+lean = st.one_of(st.floats(-0.6, 0.6), st.just(0.0), st.floats(-1e-3, 1e-3)).map(lambda v: v if abs(v) > 1e-5 else 0.0)
 kinds = st.sampled_from([Kind.LINEAR, Kind.LINEAR, Kind.RAPID])
 rough = st.lists(st.tuples(steps, lean, lean, kinds), min_size=2, max_size=4)
 
@@ -167,3 +170,161 @@ def test_the_tool_stays_on_its_way_between_blocks(
         at_rest = np.linalg.norm(np.diff(done.run.tip[rows[k - 1] : rows[k] + 1], axis=0), axis=1) < 2e-4
         if not at_rest.any():
             assert minutes(done.run, blocks) == pytest.approx(way / 100.0, rel=2e-3)
+
+
+def smooth(form: str, turns: float, tilt: float, n: int) -> tuple[Floats, Floats]:
+    """A path and its tool axes: round a part, over the pole and back, or a spiral close by the pole."""
+    part = np.linspace(0.0, 1.0, n)
+    azimuth = np.radians(20.0 + 360.0 * turns * part)
+    lean = np.full(n, math.radians(tilt))
+    if form == "over the pole":
+        lean, azimuth = np.radians(tilt * (1.0 - 2.0 * part)), np.full(n, 0.4)
+    if form == "spiral":
+        lean = np.radians(tilt * part)
+    axis = np.column_stack((np.sin(lean) * np.cos(azimuth), np.sin(lean) * np.sin(azimuth), np.cos(lean)))
+    tip = 25.0 * axis + np.column_stack((60.0 * part, np.zeros((n, 2))))
+    return np.round(tip, 5), axis
+
+
+@settings(deadline=None, max_examples=25, phases=[Phase.generate])
+@given(
+    st.sampled_from(NAMES),
+    st.sampled_from(["round", "over the pole", "spiral"]),
+    st.floats(-2.4, 2.4),
+    st.floats(1.0, 25.0),
+    st.integers(5, 30),
+    st.sampled_from([0.001, 0.01, 0.1]),
+)
+def test_smooth_paths_also_past_the_pole_and_round_and_round(
+    name: str, form: str, turns: float, tilt: float, n: int, tip_tolerance: float
+) -> None:
+    tip, axis = smooth(form, turns, tilt, n)
+    done = post(
+        machine(name), toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False, tip_tolerance=tip_tolerance)
+    )
+    if any(problem.severity is Severity.ERROR for problem in done.plan.problems):
+        event("refused")
+        return
+    assert [str(check) for check in done.found.checks if not check.passed] == []
+    worst_tip, worst_axis = worst_off(done.run, tip, axis, [Kind.LINEAR] * n)
+    assert worst_tip <= tip_tolerance + 3e-5
+    assert worst_axis <= 0.05 + 2e-5
+
+
+# With TCP
+
+
+@settings(deadline=None, max_examples=25, phases=[Phase.generate])
+@given(st.sampled_from(NAMES), rough, st.sampled_from([0.01, 0.1, 1.0]))
+def test_with_tcp_points_keep_the_tool_axis_where_somebody_asks(
+    name: str, path: list[tuple[tuple[float, float, float], float, float, Kind]], tolerance: float
+) -> None:
+    tip = np.round(np.cumsum([step for step, _, _, _ in path], axis=0), 5)
+    assume(np.linalg.norm(np.diff(tip, axis=0), axis=1).min() > 0.1)
+    axis = np.array([[i, j, 1.0] for _, i, j, _ in path])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    assume(np.abs(axis - [0.0, 0.0, 1.0]).max() > 1e-6)
+    kind = np.array([Kind.RAPID, *(k for _, _, _, k in path[1:])], np.uint8)
+    asked = toolpath(operation_of(replace(moves_of(tip, axis), kind=kind)))
+    done = post(machine(name), asked, Wishes(axis_tolerance=tolerance))
+    if any(problem.severity is Severity.ERROR for problem in done.plan.problems):
+        event("refused")
+        return
+    assert [check.key for check in done.found.checks if not check.passed] == []
+    assert worst_off(done.run, tip, axis, kind.tolist())[1] <= tolerance + 2e-5
+    left_alone = plan([asked], machine(name), 0.001)
+    added = len(done.plan.motions[0].operation.moves) - len(left_alone.motions[0].operation.moves)
+    if done.found.passed and worst_of(left_alone, machine(name), tip, axis, kind) < 0.9 * tolerance:
+        assert added == 0, "nothing is put in where nothing bends"
+
+
+def worst_of(planned: Plan, model: Machine, tip: Floats, axis: Floats, kind: Floats) -> float:
+    """How far the tool axis bends between the points in cuts, degrees, if nothing is put in."""
+    rotary = planned.motions[0].rotary
+    worst = 0.0
+    for k in np.flatnonzero(kind[1:] != Kind.RAPID).tolist():
+        step = rotary[k + 1] - rotary[k]
+        for r, column in enumerate(model.rotary):
+            if model.axes[column].endless:
+                step[r] -= 360.0 * round(step[r] / 360.0)
+        joints = np.zeros((51, 5))
+        joints[:, list(model.rotary)] = rotary[k] + np.linspace(0.0, 1.0, 51)[:, None] * step
+        look = forward(model, joints)[1]
+        part = np.linspace(0.0, 1.0, 51)
+        worst = max(worst, float(apart(look, turned_evenly(axis[k], axis[k + 1], part)).max()))
+    return worst
+
+
+# What the numbers are, by hand
+
+
+def test_slides_of_a_tilting_head_follow_pivot_and_tool_length() -> None:
+    """X = x + R sin B and Z = z + R (cos B - 1), R from the pivot to the tip; the table's C turns what is asked for."""
+    model = replace(machine("generic_head_table_bc"), workpiece_zero=(0.0, 0.0, 50.0), tool_length=120.0)
+    tip, b = np.array([[10.0, 4.0, 2.0], [12.0, 4.0, 1.0]]), np.array([30.0, 40.0])
+    axis = np.column_stack((np.sin(np.radians(b)), np.zeros(2), np.cos(np.radians(b))))
+    done = post(model, toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False))
+    rows = rows_of_points(done.run, tip, axis)
+    places = [done.run.joints[row] for row in rows]
+    arm = 180.0 + 120.0
+    for point, joints, angle in zip(tip, places, np.radians(b), strict=True):
+        x, y, z = (joints[model.column(name)] for name in "XYZ")
+        assert x == pytest.approx(point[0] + arm * math.sin(angle), abs=2e-5)
+        assert y == pytest.approx(point[1], abs=2e-5)
+        assert z == pytest.approx(50.0 + 120.0 + point[2] + arm * (math.cos(angle) - 1.0), abs=2e-5)
+    blocks = [line for line in done.text.splitlines() if " B40." in line]
+    words = {word[0]: float(word[1:]) for word in blocks[-1].split(" ")[1:] if word[0] in "XYZB"}
+    assert words["X"] == pytest.approx(12.0 + arm * math.sin(math.radians(40.0)), abs=2e-5)
+    assert words["Z"] == pytest.approx(1.0 + arm * (math.cos(math.radians(40.0)) - 1.0), abs=2e-5)
+
+
+def test_slides_of_a_tilting_table_turn_with_the_part() -> None:
+    """YL569 with B alone: the part turns by -B about Y through the machine's zero."""
+    model = replace(machine("yl569"), workpiece_zero=(5.0, 0.0, 80.0))
+    tip, b = np.array([[10.0, 4.0, 2.0], [12.0, 4.0, 1.0]]), np.array([30.0, 35.0])
+    axis = np.column_stack((np.sin(np.radians(b)), np.zeros(2), np.cos(np.radians(b))))
+    done = post(model, toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False))
+    for point, row, angle in zip(tip, rows_of_points(done.run, tip, axis), np.radians(b), strict=True):
+        x, z = point[0] + 5.0, point[2] + 80.0
+        place = done.run.joints[row]
+        assert place[model.column("X")] == pytest.approx(x * math.cos(angle) - z * math.sin(angle), abs=2e-5)
+        assert place[model.column("Z")] == pytest.approx(x * math.sin(angle) + z * math.cos(angle), abs=2e-5)
+
+
+# Circles
+
+
+def arc_moves(normal: Floats, axis: Floats) -> tuple[Operation, Floats]:
+    """Half a circle of radius 10 about ``normal`` under a steady tool axis, after a rapid; and its end point."""
+    across = np.cross(normal, [0.3, 0.5, 0.8])
+    across /= np.linalg.norm(across)
+    tip = np.array([10.0 * across, -10.0 * across])
+    moves = replace(moves_of(tip, np.array([axis, axis])), kind=np.array([Kind.RAPID, Kind.ARC], np.uint8))
+    arcs = Arcs(np.array([1]), np.zeros((1, 3)), normal[None], np.array([10.0]), np.zeros(1, np.int64))
+    return replace(operation_of(moves), arcs=arcs), tip
+
+
+@pytest.mark.parametrize(
+    ("name", "normal", "axis", "circles"),
+    [
+        (
+            "generic_head_table_bc",
+            [0.0, 0.0, 1.0],
+            [0.5, 0.0, math.sqrt(0.75)],
+            1,
+        ),  # the head leans, the slides lie flat
+        ("generic_head_table_bc", [1.0, 0.0, 0.0], [0.5, 0.0, math.sqrt(0.75)], 0),  # not in the plane of X and Y
+        ("yl569", [0.0, 0.0, 1.0], [0.5, 0.0, math.sqrt(0.75)], 0),  # the table leans, and the circle with it
+        ("generic_head_head_ca", [0.0, 0.0, -1.0], [0.5, 0.2, math.sqrt(0.71)], 1),
+    ],
+)
+def test_circles_stay_where_the_slides_make_them(
+    name: str, normal: list[float], axis: list[float], circles: int
+) -> None:
+    operation, _ = arc_moves(np.array(normal), np.array(axis))
+    done = post(machine(name), toolpath(operation), Wishes(tcp=False))
+    assert [check.key for check in done.found.checks if not check.passed] == []
+    assert len(done.run.arcs.row) == circles
+    if not circles:
+        radius = np.linalg.norm(subdivide(done.run, 20).tip[-2000:], axis=1)
+        assert np.abs(radius[np.abs(radius - 10.0) < 0.1] - 10.0).max() < 0.001 + 0.005

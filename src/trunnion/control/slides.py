@@ -47,6 +47,9 @@ def slides_of(machine: Machine, motion: Motion, decimals: int) -> Slides:
         normal = np.outer(about, [0.0, 0.0, 1.0])
         centre = slide_positions(machine, arcs.centre, rotary[arcs.row])[:, columns] - zero
         arcs = replace(arcs, centre=centre, normal=normal)
+    for r, column in enumerate(machine.rotary):
+        top = machine.axes[column].display_low + 360.0  # which prints as the lower end
+        rotary[rotary[:, r] >= top - 0.5 * 10.0**-decimals, r] -= 360.0
     steps = np.diff(rotary, axis=0, prepend=rotary[:1])
     jumps = np.zeros(steps.shape, np.bool_)
     for r, column in enumerate(machine.rotary):
