@@ -151,7 +151,9 @@ def _divide(
             look[0, :], look[1, :], look[2, 0] = axis[row - 1], axis[row], _angle_between(axis[row - 1], axis[row])
             at[0, :], at[1, :] = tip[row - 1], tip[row]
             done = 0.0
-            while _error(chain, begin, end, done, 1.0, at, look, allowed, _CLOSE_LOOKS) > 1.0:
+            if _surely_within(chain, columns, begin, end, allowed):
+                done = 1.0
+            while done < 1.0 and _error(chain, begin, end, done, 1.0, at, look, allowed, _CLOSE_LOOKS) > 1.0:
                 step = _farthest(chain, packed, columns, at, look, done, branch, begin, end, allowed, here)
                 pieces = 1
                 if step == 0.0:  # nothing but a turn in its place is left: over it, and on
@@ -177,6 +179,32 @@ def _divide(
         else:
             counts[row] = made + 1
         at_row += made + 1
+
+
+@njit(cache=True)
+def _surely_within(chain: Chain, columns: Ints, begin: Floats, end: Floats, allowed: Floats) -> bool:
+    """Whether so little turns that nothing can be off by more than is allowed; most spans of a dense path are such.
+
+    A curve whose second derivative is at most s is off its chord by at most s/8. Here s is, of the tip, the square of
+    the angles turned together times its distance from the rotary axes, and twice the angles times the way of the
+    slides; of the tool axis the square alone, and the great circle may be as far off the chord on the other side.
+    """
+    turn, way, reach = 0.0, 0.0, 0.0
+    for k in range(5):
+        moved = abs(end[k] - begin[k])
+        if k == columns[0] or k == columns[1]:
+            turn += math.radians(moved)
+        else:
+            way += moved
+            reach += max(abs(begin[k]), abs(end[k]))
+    if not 0.25 * turn * turn <= allowed[1]:
+        return False
+    if allowed[0] == math.inf:
+        return True
+    for k in range(3):
+        one, two = chain.point[columns[0], k], chain.point[columns[1], k]
+        reach += abs(chain.tip_at_zero[k] - one) + abs(chain.tip_at_zero[k] - two) + 2.0 * abs(one - two)
+    return 0.125 * (turn * turn * reach + 2.0 * turn * way) <= allowed[0]
 
 
 @njit(cache=True)
