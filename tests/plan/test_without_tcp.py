@@ -12,7 +12,7 @@ from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
 from tests.plan.naive import moves_of, operation_of
-from trunnion.arrays import Floats
+from trunnion.arrays import Codes, Floats
 from trunnion.cli.post import write
 from trunnion.control import Program, check_program, load_control
 from trunnion.errors import Severity
@@ -238,7 +238,7 @@ def test_with_tcp_points_keep_the_tool_axis_where_somebody_asks(
         assert added == 0, "nothing is put in where nothing bends"
 
 
-def worst_of(planned: Plan, model: Machine, tip: Floats, axis: Floats, kind: Floats) -> float:
+def worst_of(planned: Plan, model: Machine, tip: Floats, axis: Floats, kind: Codes) -> float:
     """How far the tool axis bends between the points in cuts, degrees, if nothing is put in."""
     rotary = planned.motions[0].rotary
     worst = 0.0
@@ -295,11 +295,13 @@ def test_slides_of_a_tilting_table_turn_with_the_part() -> None:
 
 
 def arc_moves(normal: Floats, axis: Floats) -> tuple[Operation, Floats]:
-    """Half a circle of radius 10 about ``normal`` under a steady tool axis, after a rapid; and its end point."""
+    """Half a circle of radius 10 about ``normal`` under a steady tool axis, then on under another; and its points."""
     across = np.cross(normal, [0.3, 0.5, 0.8])
     across /= np.linalg.norm(across)
-    tip = np.array([10.0 * across, -10.0 * across])
-    moves = replace(moves_of(tip, np.array([axis, axis])), kind=np.array([Kind.RAPID, Kind.ARC], np.uint8))
+    tip = np.array([10.0 * across, -10.0 * across, -12.0 * across])
+    axes = np.array([axis, axis, axis + np.array([0.01, 0.02, 0.0])])
+    axes[2] /= np.linalg.norm(axes[2])
+    moves = replace(moves_of(tip, axes), kind=np.array([Kind.RAPID, Kind.ARC, Kind.LINEAR], np.uint8))
     arcs = Arcs(np.array([1]), np.zeros((1, 3)), normal[None], np.array([10.0]), np.zeros(1, np.int64))
     return replace(operation_of(moves), arcs=arcs), tip
 
@@ -321,10 +323,10 @@ def arc_moves(normal: Floats, axis: Floats) -> tuple[Operation, Floats]:
 def test_circles_stay_where_the_slides_make_them(
     name: str, normal: list[float], axis: list[float], circles: int
 ) -> None:
-    operation, _ = arc_moves(np.array(normal), np.array(axis))
+    operation, tip = arc_moves(np.array(normal), np.array(axis))
     done = post(machine(name), toolpath(operation), Wishes(tcp=False))
     assert [check.key for check in done.found.checks if not check.passed] == []
     assert len(done.run.arcs.row) == circles
-    if not circles:
-        radius = np.linalg.norm(subdivide(done.run, 20).tip[-2000:], axis=1)
-        assert np.abs(radius[np.abs(radius - 10.0) < 0.1] - 10.0).max() < 0.001 + 0.005
+    rows = rows_of_points(done.run, tip, operation.moves.axis)
+    radius = np.linalg.norm(subdivide(done.run, 50, slice(rows[0] + 1, rows[1] + 1)).tip, axis=1)
+    assert np.abs(radius - 10.0).max() < 0.001 + 0.005

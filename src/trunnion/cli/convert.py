@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.output import whole
 from trunnion.cli.post import RUN_SETTINGS, check_settings, planned_program, prove, say, set_up, wishes_of, write
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
 
 if TYPE_CHECKING:

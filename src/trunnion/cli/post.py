@@ -9,22 +9,30 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
+import numpy as np
+
 from trunnion.cl import read_cl
-from trunnion.cli.output import whole
 from trunnion.cli.progress import progress
-from trunnion.control import Control, Program, check_program, load_control, write_program
+from trunnion.control import CHOICES, Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Manner, Wishes, plan
+from trunnion.plan import Manner, Motion, Pole, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
-#: Settings that say how to read, to place and to plan rather than what to print.
-RUN_SETTINGS = (
-    "units", "zero", "tool_length", "tcp", "tip_tolerance", "axis_tolerance", "rewind", "clearance",
+#: Settings that say how to plan.
+PLANNING = (
+    "manner", "tcp", "tip_tolerance", "axis_tolerance", "rewind", "clearance", "pole", "pole_angle", "lower_feed",
 )  # fmt: skip
+
+#: Settings that say how to read, to place and to plan rather than what to print.
+RUN_SETTINGS = ("units", "zero", "tool_length", *PLANNING)
+
+#: What the setting ``manner`` may say.
+_MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -122,12 +130,12 @@ class Claim:
     settings: "Settings"
 
 
-def write(program: Program, sink: BinaryIO, wishes: Wishes) -> Claim:
+def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None) -> Claim:
     """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for."""
     rows = sum(len(motion.operation.moves) for motion in program.motions)
     with progress("writing", rows, "points") as advance:
         write_program(program, sink, advance)
-    return Claim(program.machine, rows, len(program.motions), _allowed(program), _asked(program, wishes))
+    return Claim(program.machine, rows, len(program.motions), _allowed(program), _asked(program, wishes or Wishes()))
 
 
 def prove(
@@ -184,20 +192,41 @@ def prove(
 
 
 def _allowed(program: Program) -> "list[Allowed]":
-    """Half the last digit that each operation prints."""
-    from trunnion.verify import Allowed
+    """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
+    from trunnion.verify import Agreed, Allowed
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
+    turning = control.number_formats(three_axis=False)["plane_angle"].decimals
     allowed = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
-        angle = max(half["primary"], half["secondary"])
-        # Three slides are rounded, and turned parts look at them aslant.
-        tip = half["X"] * (math.sqrt(3.0) if motion.manner is Manner.WITHOUT_TCP else 1.0)
-        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"]))
+        tip, angle = half["X"], max(half["primary"], half["secondary"])
+        if motion.plane is not None:
+            tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
+            tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
+        if motion.manner is Manner.WITHOUT_TCP:
+            tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
+        apart = motion.departures
+        agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
+        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed))
     return allowed
+
+
+def _in_plane(motion: Motion, half: float, tilt: float) -> float:
+    """How far a coordinate may be off where ``half`` is, in each coordinate of the plane and of its origin, mm, and
+    the plane itself by ``tilt`` degrees."""
+    assert motion.plane is not None
+    reach = float(np.abs(motion.as_written().moves.tip).max())
+    rounded = half * (1.0 + float(np.abs(motion.plane.matrix()).sum(axis=1).max()))
+    return rounded + float(np.radians(tilt)) * reach * math.sqrt(3.0)
+
+
+def _lever(motion: Motion, machine: Machine) -> float:
+    """How far a turn of the rotary axis next to the workpiece turns the tool axis: near its pole hardly at all."""
+    first = np.array(machine.axes[machine.rotary[0]].direction)
+    return max(float(np.linalg.norm(np.cross(first, motion.operation.moves.axis[0]))), 1e-3)
 
 
 def _asked(program: Program, wishes: Wishes) -> "Settings":
@@ -241,6 +270,19 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
     if settings.get("tcp", "on") not in ("on", "off"):
         problems.append(Problem("--set", 0, f"tcp is {settings['tcp']!r}", "write tcp=on or tcp=off"))
+    if settings.get("manner", "auto") not in _MANNERS:
+        cure = f"write one of {', '.join(_MANNERS)}"
+        problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
+    for name, choices in CHOICES.items():
+        if settings.get(name, choices[0]) not in choices:
+            cure = f"write one of {', '.join(choices)}"
+            problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
+    if settings.get("pole", "off") not in list(Pole):
+        what = f"pole is {settings['pole']!r}"
+        problems.append(Problem("--set", 0, what, f"write pole= and one of {', '.join(Pole)}"))
+    if settings.get("lower_feed", "no") not in ("yes", "no"):
+        what = f"lower_feed is {settings['lower_feed']!r}"
+        problems.append(Problem("--set", 0, what, "write lower_feed=yes or lower_feed=no"))
     if settings.get("units", "mm") not in ("mm", "inch"):
         problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
     if not settings.get("edge", "1").isdigit():
@@ -252,6 +294,7 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
 #: Settings that are numbers: their limits, and what to write.
 _NUMBERS = {
     "clearance": (0.1, 1e4, "clearance=MM, how far the tool draws back for a rewind, such as clearance=50"),
+    "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
     "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
     "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
     "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
@@ -288,13 +331,23 @@ def set_up(machine: Machine, settings: Mapping[str, str]) -> Machine:
 
 
 def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = False) -> Wishes:
-    """What the settings say to the planner."""
+    """What the settings, checked by ``check_settings``, say to the planner."""
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:
         raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
-    said = {key: number(settings, key) for key in ("clearance", "tip_tolerance", "axis_tolerance")}
+    if not tcp and settings.get("manner") == "tcp":
+        raise InputError(Problem("--set", 0, "manner is tcp, and there is no TCP", "leave the setting manner out"))
+    said = {key: number(settings, key) for key in ("clearance", "pole_angle", "tip_tolerance", "axis_tolerance")}
     known: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
-    return Wishes(rewind=settings.get("rewind", "insert") == "insert", explain=explain, tcp=tcp, **known)
+    return Wishes(
+        rewind=settings.get("rewind", "insert") == "insert",
+        explain=explain,
+        manner=_MANNERS[settings.get("manner", "auto")],
+        pole=Pole(settings.get("pole", "off")),
+        lower_feed=settings.get("lower_feed", "no") == "yes",
+        tcp=tcp,
+        **known,
+    )
 
 
 def point(text: str) -> tuple[float, float, float]:

@@ -204,7 +204,8 @@ def _surely_within(chain: Chain, columns: Ints, begin: Floats, end: Floats, allo
     for k in range(3):
         one, two = chain.point[columns[0], k], chain.point[columns[1], k]
         reach += abs(chain.tip_at_zero[k] - one) + abs(chain.tip_at_zero[k] - two) + 2.0 * abs(one - two)
-    return 0.125 * (turn * turn * reach + 2.0 * turn * way) <= allowed[0]
+    within: bool = 0.125 * (turn * turn * reach + 2.0 * turn * way) <= allowed[0]
+    return within
 
 
 @njit(cache=True)
@@ -227,7 +228,11 @@ def _write(
     axis: Floats,
     rotary: Floats,
 ) -> None:
-    """Write one added row: the place at ``done``, with the rotary axes at a share of the way between two positions."""
+    """Write one added row: the place at ``done``, with the rotary axes at a share of the way between two positions.
+
+    A turn at an end of the way is at rest right there.
+    """
+    done = 0.0 if done < 2.0 * _SHORT else 1.0 if done > 1.0 - 2.0 * _SHORT else done
     for k in range(3):
         tip[k] = at[0, k] + done * (at[1, k] - at[0, k])
     _slerp(look, done, axis)

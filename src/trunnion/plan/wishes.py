@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.plan.motion import Manner, Pole
+
 #: How far the tool axis may be off between CL points without TCP, degrees, unless something else is asked.
 AXIS_WITHOUT_TCP: Final = 0.05
 
@@ -16,6 +18,10 @@ class Wishes:
     clearance       how far the tool draws back along its axis for that, mm
     engage          share of the feed with which it comes back
     explain         compare with what the nearest neighbour would have done
+    manner          how every operation is to be made, whatever the rule says; None: by the rule
+    pole            what is done near the pole where a rotary axis would have to be too fast
+    pole_angle      by how much the tool axis may lean for that, degrees
+    lower_feed      lower the feed where a rotary axis would have to be too fast
     tcp             the control holds the tip (TCP); False: the slides and rotary axes themselves are led
     tip_tolerance   without TCP: how far the tip may be off its line between CL points, mm
     axis_tolerance  how far the tool axis may be off its great circle between CL points, degrees; None: with TCP it is
@@ -26,6 +32,10 @@ class Wishes:
     clearance: float = 50.0
     engage: float = 0.5
     explain: bool = False
+    manner: Manner | None = None
+    pole: Pole = Pole.OFF
+    pole_angle: float = 0.1
+    lower_feed: bool = False
     tcp: bool = True
     tip_tolerance: float = 0.005
     axis_tolerance: float | None = None

@@ -5,9 +5,10 @@ from trunnion.verify.compare import Comparison, Difference, compare
 from trunnion.verify.model import Check, Place, Verification
 from trunnion.verify.text import check_lines, failures, place_line, place_lines
 from trunnion.verify.verify import verify
-from trunnion.verify.wanted import Allowed
+from trunnion.verify.wanted import Agreed, Allowed
 
 __all__ = [
+    "Agreed",
     "Allowed",
     "Check",
     "Comparison",

@@ -75,6 +75,11 @@ class Pairs:
         for start in range(0, len(nc), CHUNK):
             yield nc[start : start + CHUNK], cl[start : start + CHUNK]
 
+    def leading(self, cl: Ints) -> Ints:
+        """How many motions between CL points lead to each of some CL rows, (k,)."""
+        to = self.between[1]
+        return np.searchsorted(to, cl, "right") - np.searchsorted(to, cl)
+
     def chunks(self, first: int = 0, end: int | None = None) -> Iterator[tuple[Ints, Ints]]:
         """Partners, many at a time, from pair ``first`` to the one before ``end``: rows of run and CL files."""
         end = len(self.nc) if end is None else end

@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
+from trunnion.verify.agreed import Believed, needless_feeds
 from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
@@ -150,7 +151,7 @@ def _circles(case: Case) -> list[Place]:
     return places
 
 
-def feed(case: Case) -> Check:
+def feed(case: Case, believed: Believed) -> Check:
     """Feeds of all rows that are not rapids."""
     wanted, pairs, run = case.wanted, case.pairs, case.run
     assert wanted is not None
@@ -195,7 +196,12 @@ def feed(case: Case) -> Check:
             count += 1
             text = f"moves with {rate[k]:g} mm/min; the CL file wants {asked_here:g}"
             places.append(case.place(int(pieces.nc[k]), float(rate[k]), text, pieces.cl))
+    broken = [*believed.feed, *needless_feeds(run, wanted, pairs)]
+    places = [*(case.answering(one.cl, one.value, one.text) for one in broken[:NAMED]), *places]
+    count += len(broken)
     good = "nothing is cut" if seen[0] > seen[1] else f"{seen[0]:g} to {seen[1]:g}, as the CL file says"
+    least, rows = believed.slowed
+    good += f"; lowered at {rows} rows, down to {least:.2f}, for the rotary axes" if rows else ""
     return judged("feed", "feeds as the CL file says", places, good, count)
 
 
