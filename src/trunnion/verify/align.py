@@ -263,7 +263,7 @@ class _Matcher:
         near, bend = self._limits(j), math.radians(self._bend)
         way = follow(
             is_.tip, is_.axis, self._run.kind[rows], wanted.tip(points), wanted.axis(points), wanted.kind(points), near,
-            bend + 2.0 * near[1],
+            part.allowed.tip, bend + 2.0 * near[1],
         )  # fmt: skip
         nc, cl = rows[: way.motions], j + way.partner
         there = np.flatnonzero(way.there)

@@ -58,6 +58,7 @@ def follow(
     want_axis: Floats,
     want_kind: Codes,
     near: tuple[float, float],
+    allowed: float,
     bend: float,
 ) -> Way:
     """Go along CL points as far as motions go to them, straight or by points between.
@@ -73,12 +74,16 @@ def follow(
     want_kind : (m,) uint8
         A ``Kind``; circles are gone to straight or not at all.
     near
-        How far a coordinate of the tip may be off, mm, and one of the tool axis.
+        How far a coordinate of the tip may be off, mm, and one of the tool axis, with a little more than is judged.
+    allowed
+        How far a coordinate of the tip may be off as it is judged, mm.
     bend
         How far the tool axis of points between may be off the great circle, rad.
     """
     partner, there = np.zeros(len(tip), np.int64), np.zeros(len(tip), np.bool_)
-    motions, points = _follow(tip, axis, kind, want_tip, want_axis, want_kind, near[0], near[1], bend, partner, there)
+    motions, points = _follow(
+        tip, axis, kind, want_tip, want_axis, want_kind, near[0], near[1], allowed, bend, partner, there
+    )
     return Way(motions, points, partner[:motions], there[:motions])
 
 
@@ -92,6 +97,7 @@ def _follow(
     want_kind: Codes,
     near_tip: float,
     near_axis: float,
+    allowed: float,
     bend: float,
     partner: Ints,
     there: Flags,
@@ -108,7 +114,7 @@ def _follow(
             again = (
                 i + 1 < tip.shape[0]
                 and kind[i + 1] == kind[i]
-                and _is_at(tip, axis, i + 1, want_tip, want_axis, j, near_tip, near_axis)
+                and _is_at(tip, axis, i + 1, want_tip, want_axis, j, allowed, near_axis)
             )
             i += 1
             if not again:
