@@ -59,7 +59,7 @@ def posted(folder: Path, wishes: Wishes) -> Posted:
     head = CL_HEAD.replace("GOTO/0.0,0.0,50.0,0.0,0.0,1.0\n", start).replace("500.0", "3000.0")
     source.write_text(head + "".join(points) + CL_FOOT, encoding="utf-8")
     path = read_cl(source)
-    program = planned_program([path], machine, load_control(machine.control), {}, False, wishes)
+    program, _ = planned_program([path], machine, load_control(machine.control), {}, False, wishes)
     target = folder / "pole.mpf"
     with target.open("wb") as sink:
         claim = write(program, sink)

@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
             _say_some(write_cl(converted.toolpath, sink, comments=comments))
         else:
             paths = [converted.toolpath]
-            program = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
+            program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
             prove(write(program, sink, wishes), paths, sink, target, program if arguments.force else None)
     if arguments.to_cl and carried:
         print(_hint(target, arguments.machine, carried), file=sys.stderr)

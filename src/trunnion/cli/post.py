@@ -17,7 +17,7 @@ from trunnion.control import CHOICES, Control, Program, check_program, load_cont
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Manner, Motion, Pole, Wishes, plan
+from trunnion.plan import Decision, Manner, Motion, Pole, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_settings(settings, control)
     machine = set_up(machine, settings)
     printed = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
-    wishes = wishes_of(settings, control, arguments.explain)
+    wishes = wishes_of(settings, control, arguments.explain or bool(arguments.report))
     targets = _targets(arguments, control)
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
@@ -55,12 +55,14 @@ def run(arguments: argparse.Namespace) -> int:
     for target, files in targets.items():
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
-            program = planned_program(paths, machine, control, printed, arguments.force, wishes)
+            program, decisions = planned_program(
+                paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
+            )
             claim = write(program, sink, wishes)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
-            prove(claim, paths, sink, target, again, arguments.report)
+            prove(claim, paths, sink, target, again, arguments.report, decisions)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
     return 0
@@ -89,8 +91,10 @@ def planned_program(
     settings: Mapping[str, str],
     force: bool,
     wishes: Wishes,
-) -> Program:
-    """The program of toolpaths, planned and checked; what speaks against it is said.
+    *,
+    say_why: bool = False,
+) -> tuple[Program, tuple[Decision, ...]]:
+    """The program of toolpaths, planned and checked, and why it is so; what speaks against it is said.
 
     Raises
     ------
@@ -98,7 +102,7 @@ def planned_program(
         When there can be no program, or when it must not run, unless ``force``: then its head says so.
     """
     planned = plan(paths, machine, control.chord_tolerance, wishes)
-    if wishes.explain:
+    if say_why:
         print(*planned.decisions, sep="\n", file=sys.stderr)
     program = Program(machine, control, planned.motions, settings, paths[0].file)
     lacking = check_program(program)
@@ -111,7 +115,7 @@ def planned_program(
         raise Refused((*planned.problems, Problem(paths[0].file, 0, "no program is written", "--force writes it")))
     say(planned.problems)
     notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in against]
-    return replace(program, notices=notices)
+    return replace(program, notices=notices), planned.decisions
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,6 +149,7 @@ def prove(
     target: str,
     again: Program | None = None,
     report: str | None = None,
+    decisions: Sequence[Decision] = (),
 ) -> None:
     """Read a program back, run it and compare it with its toolpaths; one line a check.
 
@@ -162,6 +167,8 @@ def prove(
         The program, if it is to be written though a check fails: then its head says which.
     report
         File of the report.
+    decisions
+        What the report says of the planning.
 
     Raises
     ------
@@ -170,16 +177,16 @@ def prove(
     """
     from trunnion.cli.verify import report as write_report
     from trunnion.reader import run_program
-    from trunnion.verify import check_lines, failures, place_lines, verify
+    from trunnion.verify import check_lines, failures, place_lines, time_lines, verify
 
     sink.flush()
     run = run_program(Path(sink.name), claim.machine)
     found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
     found = replace(found, program="the program" if target == "-" else target)
-    for line in (*check_lines(found), *place_lines(found, failed_only=True)):
+    for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
         print(line, file=sys.stderr)
     if report:
-        write_report(found, report)
+        write_report(found, report, decisions)
     failed = failures(found)
     if failed and again is None:
         what = f"the program does not do what this file asks for: {', '.join(check.key for check in failed)}"

@@ -164,8 +164,10 @@ def _lowered(asked: Asked, rows: Ints, feed: Floats) -> Iterator[Decision]:
 
 
 def _too_fast(asked: Asked, poses: Poses, loose: Ints) -> Iterator[Decision]:
-    """Where a rotary axis would have to be faster than it can, and what helps."""
+    """Where a rotary axis would have to be faster than it can, and what helps; looked for if somebody asks."""
     machine, operation, wishes = asked.machine, asked.operation, asked.wishes
+    if not (wishes.explain or wishes.lower_feed or wishes.pole is not Pole.OFF):
+        return
     worst = fastest(machine, operation, poses.rotary, loose)
     if not worst.count:
         return

@@ -1,7 +1,7 @@
 """One program, all checks."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +15,7 @@ from trunnion.verify.align import Pairs, in_order, matched
 from trunnion.verify.arcs import Arc, turned
 from trunnion.verify.between import Spans
 from trunnion.verify.case import NAMED, Case, Settings
-from trunnion.verify.model import Check, Place, Verification
+from trunnion.verify.model import Check, Place, Share, Verification
 from trunnion.verify.points import Deviations, Off
 from trunnion.verify.turns import turns
 from trunnion.verify.walk import Walk, Walker, Worst
@@ -76,7 +76,21 @@ def verify(
     checks += [_span(case, way, spans), _travel(case, way), _speed(case, way), _acceleration(case, way)]
     checks += [turns(case), modal.modal(case), modal.words(case)]
     cl_line = _cl_lines(case) if columns else np.zeros(0, np.int32)
-    return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line)
+    operations = tuple(_operations(case))
+    return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line, operations)
+
+
+def _operations(case: Case) -> Iterator[Share]:
+    """Which rows belong to which operation; an operation that no motion answers to has none."""
+    if case.wanted is None or case.pairs is None:
+        return
+    first, last = 0, len(case.wanted.parts) - 1
+    for number, part in enumerate(case.wanted.parts):
+        k = case.pairs.cl.before(part.end)
+        end = max(first, case.pairs.nc[k - 1] + 1) if k else first
+        end = len(case.run) if number == last else end
+        yield Share(part.operation.name, part.operation.tool.name, part.file, first, end)
+        first = end
 
 
 def _spans(run: Run, settings: Settings, wanted: Wanted | None = None, pairs: Pairs | None = None) -> tuple[Spans, ...]:
