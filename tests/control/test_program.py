@@ -208,10 +208,10 @@ def test_a_missing_spindle_speed_is_said(post: Post) -> None:
     assert "part.cls:1: warning: operation OP1 has no spindle speed" in err
 
 
-def test_a_cycle_is_refused_rather_than_dropped(post: Post) -> None:
-    code, out, err = post.all(HEAD + "CYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100\nGOTO/20,0,0\nCYCLE/OFF\n" + FOOT)
+def test_a_cycle_that_begins_below_its_height_is_refused(post: Post) -> None:
+    code, out, err = post.all(HEAD + "CYCLE/DRILL,RAPTO,8,FEDTO,-10,MMPM,100\nGOTO/20,0,0\nCYCLE/OFF\n" + FOOT)
     assert (code, out) == (2, [])
-    assert "part.cls:12: error: hole-making cycles cannot be written yet" in err
+    assert "part.cls:12: error: CYCLE while the tool is below the height of RAPTO" in err
 
 
 def test_a_tool_change_within_an_operation_is_refused(post: Post) -> None:

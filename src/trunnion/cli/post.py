@@ -139,7 +139,8 @@ def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None) -> Cla
     rows = sum(len(motion.operation.moves) for motion in program.motions)
     with progress("writing", rows, "points") as advance:
         write_program(program, sink, advance)
-    return Claim(program.machine, rows, len(program.motions), _allowed(program), _asked(program, wishes or Wishes()))
+    operations = sum(motion.begins for motion in program.motions)
+    return Claim(program.machine, rows, operations, _allowed(program), _asked(program, wishes or Wishes()))
 
 
 def prove(
@@ -205,7 +206,7 @@ def _allowed(program: Program) -> "list[Allowed]":
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
     turning = control.number_formats(three_axis=False)["plane_angle"].decimals
-    allowed = []
+    allowed: list[Allowed] = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
@@ -215,6 +216,9 @@ def _allowed(program: Program) -> "list[Allowed]":
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
         if motion.manner is Manner.WITHOUT_TCP:
             tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
+        if not motion.begins:
+            before = allowed.pop()
+            tip, angle = max(tip, before.tip), max(angle, before.angle)
         apart = motion.departures
         agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
         allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed))

@@ -13,6 +13,7 @@ from trunnion.plan.between import check_without_tcp, with_points
 from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower, source_rows
 from trunnion.plan.frames import into_frame, into_plane, seen_from
+from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
 from trunnion.plan.kinds import contradictions, manner_of, plane_of
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
@@ -60,19 +61,23 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     stretches: list[_Stretch] = []
     against: list[Problem] = []
     for path, original in pairs:
-        operation = into_frame(original, program_frame)
-        manner = manner_of(operation, wishes.manner)
-        if manner is Manner.TCP and not wishes.tcp:
-            manner = Manner.WITHOUT_TCP
+        try:
+            operation = into_frame(with_holes(original), program_frame)
+        except CycleError as error:
+            against.append(Problem(path.file, error.line, error.what, error.cure))
+            continue
+        manner, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
         against += contradictions(path.file, operation, manner)
-        plane = None
-        if manner is Manner.TILTED:
-            plane = plane_of(operation.moves.axis[0], seen_from(original.frame, program_frame))
+        plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
         kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         source = source_rows(original, operation)
         stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
-        stretches.append(replace(stretch, manner=manner, plane=plane))
+        parts = by_axis(operation) if manner is Manner.TCP and wishes.manner is None else None
+        if manner is Manner.TCP and not wishes.tcp:
+            manner = Manner.WITHOUT_TCP
+        kind = replace(stretch, manner=manner, plane=plane)
+        stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own, parts=parts))
     if against:
         raise Refused(against)
     problems = [*_unknown_speeds(pairs[0][0].file, machine, wishes)]
@@ -81,22 +86,23 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         raise Refused(problems)
     if machine.workpiece_zero is None:
         problems += _fit_problems(stretches, machine)
-    motions = [stretch.motion(wishes) for stretch in stretches]
-    lacking = [motion.operation for motion in motions if motion.manner is Manner.WITHOUT_TCP]
+    motions = [(stretch, motion) for stretch in stretches for motion in stretch.motions(wishes)]
+    lacking = [motion.operation for _, motion in motions if motion.manner is Manner.WITHOUT_TCP]
     if lacking:
         check_without_tcp(pairs[0][0].file, lacking, machine)
-    led = [
-        with_points(stretch.file, motion, machine, wishes, chord_tolerance)
-        for stretch, motion in zip(stretches, motions, strict=True)
-    ]
+    log = [decision for stretch in stretches for decision in stretch.log]
+    led = [with_points(stretch.file, motion, machine, wishes, chord_tolerance) for stretch, motion in motions]
     problems += [problem for one in led for problem in one.problems]
-    log = [decision for stretch, one in zip(stretches, led, strict=True) for decision in (*stretch.log, *one.log)]
+    log += [decision for one in led for decision in one.log]
     return Plan(tuple(one.motion for one in led), tuple(problems), tuple(log))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stretch:
-    """An operation with its poses, as it is before rewinds are put in, the file that it came from, and its kind."""
+    """An operation with its poses, as it is before rewinds are put in, the file that it came from, and its kind.
+
+    ``parts`` are the rows of its planes, where holes make it one in several of them; ``plane`` is then its own frame.
+    """
 
     file: str
     operation: Operation
@@ -107,11 +113,24 @@ class _Stretch:
     departures: Departures
     manner: Manner = Manner.TCP
     plane: Frame | None = None
+    parts: Sequence[tuple[int, int]] = ()
 
-    def motion(self, wishes: Wishes) -> Motion:
+    def motions(self, wishes: Wishes) -> list[Motion]:
         """What is to be written."""
-        operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
-        return Motion(operation, rotary, self.manner, self.plane, self.departures)
+        if not self.parts:
+            operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
+            return [Motion(operation, rotary, self.manner, self.plane, self.departures)]
+        assert self.plane is not None
+        return [
+            Motion(
+                part_of(self.operation, first, end),
+                self.poses.rotary[first:end].copy(),
+                self.manner,
+                plane_of(self.operation.moves.axis[first], self.plane),
+                begins=first == 0,
+            )
+            for first, end in self.parts
+        ]
 
 
 def _stretch(asked: Asked) -> _Stretch:

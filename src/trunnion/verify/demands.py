@@ -13,6 +13,8 @@ from trunnion.verify.agreed import Believed, needless_feeds
 from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
+from trunnion.verify.cycles import made_in
+from trunnion.verify.holes import leads
 from trunnion.verify.model import Check, Place
 from trunnion.verify.retreats import retreats
 from trunnion.verify.rows import Rows
@@ -47,6 +49,7 @@ def order(case: Case) -> Check:
     count = len(pairs.missing)
     back = retreats(case.run, pairs.extra, max(part.allowed.tip for part in wanted.parts))
     lawful = {row for retreat in back for row in range(retreat.first, retreat.end)}
+    lawful |= leads(case.run, pairs.extra, made_in(case.run))
     for retreat in back:
         text = f"draws back {retreat.distance:.3f} mm along the tool axis, turns, and comes back"
         told.append(case.place(retreat.first, retreat.distance, text))

@@ -30,6 +30,7 @@ from trunnion.toolpath import (
     SpindleOn,
     Toolpath,
 )
+from trunnion.verify.cycles import Hole, Spin, holes_of, spindle_at, without_holes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,7 +124,7 @@ class Point:
 
 
 class Wanted:
-    """All operations of a program, end to end. Their columns stay where they are."""
+    """All operations of a program, end to end. Their columns stay where they are; holes are kept apart."""
 
     def __init__(self, toolpaths: Sequence[Toolpath], allowed: Allowed | Sequence[Allowed]) -> None:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
@@ -135,11 +136,18 @@ class Wanted:
             raise ValueError(f"{len(limits)} limits for {len(moving)} operations")
         frame = moving[0][1].frame
         parts: list[Part] = []
+        found: list[Hole] = []
         first = 0
-        for (path, operation), limit in zip(moving, limits, strict=True):
-            parts.append(Part(path.file, seen_from(frame, operation), first, limit))
+        spindle: Spin | None = None
+        for (path, whole), limit in zip(moving, limits, strict=True):
+            seen = seen_from(frame, whole)
+            operation, rows = without_holes(seen)
+            found += holes_of(seen, rows, first, path.file, limit.tip, spindle)
+            spindle = spindle_at(seen, len(seen.moves), spindle)
+            parts.append(Part(path.file, operation, first, limit))
             first += len(operation.moves)
         self.parts: tuple[Part, ...] = tuple(parts)
+        self.holes: tuple[Hole, ...] = tuple(found)
         self.firsts: Ints = np.array([part.first for part in parts], np.int64)
 
     def __len__(self) -> int:
