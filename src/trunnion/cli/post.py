@@ -13,11 +13,11 @@ import numpy as np
 
 from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
-from trunnion.control import CHOICES, Control, Program, check_program, load_control, write_program
+from trunnion.control import CHOICES, Control, Program, check_program, is_lift, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Decision, Manner, Motion, Pole, Wishes, plan
+from trunnion.plan import Clearance, Decision, Manner, Motion, Pole, Surface, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
@@ -25,11 +25,15 @@ if TYPE_CHECKING:
 
 #: Settings that say how to plan.
 PLANNING = (
-    "manner", "tcp", "tip_tolerance", "axis_tolerance", "rewind", "clearance", "pole", "pole_angle", "lower_feed",
+    "manner", "tcp", "tip_tolerance", "axis_tolerance", "frame", "rewind", "clearance", "pole", "pole_angle",
+    "lower_feed",
 )  # fmt: skip
 
 #: Settings that say how to read, to place and to plan rather than what to print.
-RUN_SETTINGS = ("units", "zero", "tool_length", *PLANNING)
+RUN_SETTINGS = ("units", "zero", "tool_length", "numbers", *PLANNING)
+
+#: What the setting ``frame`` may say: whose coordinate system the program's is.
+_FRAMES = ("first", "absolute")
 
 #: What the setting ``manner`` may say.
 _MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
@@ -45,6 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     control = load_control(machine.control)
     settings = dict(arguments.settings)
     check_settings(settings, control)
+    if settings.get("numbers") == "off":
+        control = replace(control, numbers=replace(control.numbers, letter=""))
     machine = set_up(machine, settings)
     printed = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
     wishes = wishes_of(settings, control, arguments.explain or bool(arguments.report))
@@ -255,6 +261,7 @@ def _asked(program: Program, wishes: Wishes) -> "Settings":
         edge=int(values["edge"]),
         span=axis,
         span_tip=wishes.tip_tolerance if led else None,
+        absolute=wishes.absolute,
     )
 
 
@@ -281,6 +288,14 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
     if settings.get("tcp", "on") not in ("on", "off"):
         problems.append(Problem("--set", 0, f"tcp is {settings['tcp']!r}", "write tcp=on or tcp=off"))
+    if not is_lift(settings.get("bore_lift", "")):
+        cure = "write millimetres, such as bore_lift=0.5"
+        problems.append(Problem("--set", 0, f"bore_lift is {settings['bore_lift']!r}", cure))
+    if settings.get("numbers", "on") not in ("on", "off"):
+        problems.append(Problem("--set", 0, f"numbers is {settings['numbers']!r}", "write numbers=on or numbers=off"))
+    if settings.get("frame", "first") not in _FRAMES:
+        cure = f"write one of {', '.join(_FRAMES)}"
+        problems.append(Problem("--set", 0, f"frame is {settings['frame']!r}", cure))
     if settings.get("manner", "auto") not in _MANNERS:
         cure = f"write one of {', '.join(_MANNERS)}"
         problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
@@ -304,12 +319,25 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
 
 #: Settings that are numbers: their limits, and what to write.
 _NUMBERS = {
-    "clearance": (0.1, 1e4, "clearance=MM, how far the tool draws back for a rewind, such as clearance=50"),
     "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
     "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
     "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
     "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
 }
+
+
+def _clearance(text: str) -> Clearance:
+    """The setting ``clearance``."""
+    kind, _, length = text.rpartition(":")
+    try:
+        surface, value = Surface(kind or Surface.DISTANCE), float(length)
+    except ValueError:
+        surface, value = Surface.DISTANCE, math.nan
+    least = -10000.0 if surface is Surface.PLANE else 0.1
+    if least <= value <= 10000.0:
+        return Clearance(value, surface)
+    cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
+    raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
 
 
 def number(settings: Mapping[str, str], key: str) -> float | None:
@@ -348,13 +376,16 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
     if not tcp and settings.get("manner") == "tcp":
         raise InputError(Problem("--set", 0, "manner is tcp, and there is no TCP", "leave the setting manner out"))
-    said = {key: number(settings, key) for key in ("clearance", "pole_angle", "tip_tolerance", "axis_tolerance")}
+    said = {key: number(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
     known: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+    if "clearance" in settings:
+        known["clearance"] = _clearance(settings["clearance"])
     return Wishes(
         rewind=settings.get("rewind", "insert") == "insert",
         explain=explain,
         manner=_MANNERS[settings.get("manner", "auto")],
         pole=Pole(settings.get("pole", "off")),
+        absolute=settings.get("frame", "first") == "absolute",
         lower_feed=settings.get("lower_feed", "no") == "yes",
         tcp=tcp,
         **known,

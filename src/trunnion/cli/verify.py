@@ -46,6 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
             edge=1 if arguments.edge is None and paths else arguments.edge,
             span=arguments.span,
             span_tip=arguments.span_tip,
+            absolute=arguments.frame == "absolute",
         ),
         columns=bool(arguments.report),
     )

@@ -24,6 +24,7 @@ class Settings:
     edge         number of the cutting edge (D) under which the tool works; None: whichever
     span         degrees that the tool axis may be off between points; None: it is told, not judged
     span_tip     mm that the tip may be off its line between points without TCP; None: it is told, not judged
+    absolute     the program's coordinate system is the CAM's absolute one, not that of the first operation
     """
 
     tool: str = ""
@@ -31,6 +32,7 @@ class Settings:
     edge: int | None = None
     span: float | None = None
     span_tip: float | None = None
+    absolute: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
