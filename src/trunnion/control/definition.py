@@ -20,14 +20,15 @@ FAMILIES = ("sinumerik_840d",)
 FIELDS = frozenset(
     {
         "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
-        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine",
-        "time", "total_time",
+        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine", "gauge_length",
+        "zero_x", "zero_y", "zero_z", "time", "total_time",
         "plane_x", "plane_y", "plane_z", "plane_first", "plane_second", "plane_third", "plane_mode", "plane_side",
     }
 )  # fmt: skip
 
 TEMPLATES = (
     "program_start", "operation_start", "first_tool", "tool_change", "approach_five_axis", "approach_three_axis",
+    "approach_without_tcp", "operation_end_without_tcp",
     "operation_end_five_axis", "operation_end_three_axis", "program_end",
     "approach_cycle800", "plane_on_cycle800", "next_plane_cycle800", "operation_end_cycle800",
     "approach_frames", "plane_on_frames", "next_plane_frames", "operation_end_frames",
@@ -41,14 +42,17 @@ CHOICES = {"plane": ("cycle800", "frames"), "swivel_mode": ("57", "27", "39", "4
 
 CODES = (
     "rapid", "linear", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz",
-    "feed_per_minute", "feed_per_revolution", "comp_off", "comp_left", "comp_right",
+    "feed_per_minute", "feed_per_revolution", "feed_inverse_time", "comp_off", "comp_left", "comp_right",
     "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop", "optional_stop",
 )  # fmt: skip
 
 WORDS = (
-    "cutter_comp", "feed_mode", "plane", "motion", "X", "Y", "Z", "primary", "secondary", "I", "J", "K", "turns",
-    "speed", "edge", "spindle", "coolant", "feed",
+    "cutter_comp", "feed_mode", "plane", "motion", "X", "Y", "Z", "primary", "secondary", "primary_shortest",
+    "secondary_shortest", "I", "J", "K", "turns", "speed", "edge", "spindle", "coolant", "feed", "inverse_feed",
 )  # fmt: skip
+
+#: How feeds can be said where nobody holds the tip.
+FEEDS_WITHOUT_TCP = ("inverse_time",)
 
 PHASES = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 COOLANTS = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
@@ -65,17 +69,22 @@ class Format:
 
 @dataclass(frozen=True, slots=True)
 class WordRule:
-    """A word of a motion block; ``letter`` is empty for the rotary axes, which the machine names."""
+    """A word of a motion block; for the rotary axes, which the machine names, ``letter`` is what follows the name."""
 
     name: str
     letter: str
     format: str
     modal: bool
+    closing: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """A control's language, read and checked."""
+    """A control's language, read and checked.
+
+    tcp               it can hold the tip of the tool while rotary axes turn
+    feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
+    """
 
     name: str
     family: str
@@ -91,6 +100,8 @@ class Control:
     tool_types: Mapping[str, str]
     phases: Mapping[str, str]
     chord_tolerance: float
+    tcp: bool
+    feed_without_tcp: str
     templates: Mapping[str, Template] = field(repr=False)
 
     def number_formats(self, three_axis: bool) -> dict[str, NumberFormat]:
@@ -100,8 +111,11 @@ class Control:
     def block_words(self, primary: str, secondary: str, three_axis: bool) -> list[Word]:
         """The words of a motion block in their order; ``primary`` and ``secondary`` are the rotary axes' letters."""
         formats = self.number_formats(three_axis)
-        letters = {"primary": primary, "secondary": secondary}
-        return [Word(w.name, letters.get(w.name, w.letter), formats[w.format], w.modal) for w in self.words]
+        axes = dict.fromkeys(("primary", "primary_shortest"), primary)
+        axes |= dict.fromkeys(("secondary", "secondary_shortest"), secondary)
+        return [
+            Word(w.name, axes.get(w.name, "") + w.letter, formats[w.format], w.modal, w.closing) for w in self.words
+        ]
 
 
 def library() -> Traversable:
@@ -147,6 +161,8 @@ def load_control(own: Table) -> Control:
         tool_types=_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_texts(table.table("phases"), PHASES),
         chord_tolerance=_chord_tolerance(table.table("arcs")),
+        tcp=table.flag("tcp", True),
+        feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
         templates=_templates(table.table("templates")),
     )
     _check_templates(table.table("templates"), control)
@@ -176,12 +192,16 @@ def _format(entry: Table) -> Format:
 
 def _word(entry: Table, formats: Mapping[str, Format]) -> WordRule:
     name = entry.text("name", one_of=WORDS)
-    rotary = name in ("primary", "secondary")
-    letter = entry.text("letter", "") if rotary else entry.text("letter")
-    if len(letter.encode()) > 8:
-        entry.problem("letter", f"is {letter!r}", "write at most 8 characters")
+    rotary = name.startswith(("primary", "secondary"))
+    letter, closing = entry.text("letter", "") if rotary else entry.text("letter"), entry.text("closing", "")
+    most = 4 if rotary else 8
+    if len(letter.encode()) > most:
+        entry.problem("letter", f"is {letter!r}", f"write at most {most} characters")
         letter = letter[:1]
-    rule = WordRule(name, letter, entry.text("format", one_of=tuple(formats)), entry.flag("modal", True))
+    if len(closing.encode()) > 1:
+        entry.problem("closing", f"is {closing!r}", "write one character")
+        closing = ""
+    rule = WordRule(name, letter, entry.text("format", one_of=tuple(formats)), entry.flag("modal", True), closing)
     entry.finish()
     return rule
 

@@ -10,10 +10,11 @@ from typing import BinaryIO
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control import sinumerik
 from trunnion.control.definition import Control
 from trunnion.control.holes import Heights, cycle_call, feed_of
+from trunnion.control.slides import Slides, inverse_time, slides_of
 from trunnion.control.template import Value
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.machine import Machine, inverse
@@ -53,6 +54,7 @@ _PHASE_TEXT = {
     Phase.TRAVERSE: "traverse",
 }
 _COMP = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
+_UNKNOWN = (None, None, None)
 _COMP_PLANE = {"XYPLAN": "plane_xy", "ZXPLAN": "plane_zx", "YZPLAN": "plane_yz"}
 
 
@@ -101,6 +103,8 @@ def check_program(program: Program) -> list[Problem]:
         in_spindle = operation.tool.name
         for event in operation.events:
             problems += _event_problems(program, operation, event)
+        if motion.manner is Manner.WITHOUT_TCP:
+            problems += _problems_without_tcp(program, motion)
         tolerance = operation.intol is not None and operation.outtol is not None
         fine = not motion.three_axis and not (motion.plane and _setting(program, "plane") == "cycle800")
         if fine and not tolerance and not _setting(program, "tolerance"):
@@ -125,6 +129,36 @@ def _event_problems(program: Program, operation: Operation, event: Event) -> lis
     return []
 
 
+def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
+    """What cannot be said where nobody holds the tip."""
+    operation, problems = motion.operation, []
+    moves = operation.moves
+    if any(isinstance(event, CutterComp) and event.side != "OFF" for event in operation.events):
+        what = "cutter radius compensation without TCP would be that of the slides"
+        problems.append(Problem(program.file, operation.line, what, "output the path without CUTCOM"))
+    formats = program.control.number_formats(motion.three_axis)
+    slides = slides_of(program.machine, motion, formats["angle"].decimals)
+    cuts = slides.turns & (moves.kind != Kind.RAPID) & (moves.feed > 0)
+    turned = np.flatnonzero(cuts & moves.per_rev)
+    if len(turned):
+        what = "a feed per revolution without TCP while rotary axes turn"
+        problems.append(Problem(program.file, int(moves.line[turned[0]]), what, "output it in mm/min (FEDRAT/MMPM)"))
+    form = formats["inverse_time"]
+    _, slow, fast = inverse_time(slides.length[cuts], moves.feed[cuts], form)
+    rows = np.flatnonzero(cuts)
+    if slow.any():
+        row = int(rows[np.argmax(slow)])
+        took = slides.length[row] / moves.feed[row]
+        what = f"a block takes {took:.0f} minutes; inverse time has room for {1.0 / form.least:g}"
+        cure = "output the toolpath with points nearer to each other, or a higher feed"
+        problems.append(Problem(program.file, int(moves.line[row]), what, cure))
+    if fast.any():
+        what = f"{int(fast.sum())} blocks so short that F would be above {form.greatest:g}: they take as long as that"
+        place = program.file, int(moves.line[rows[np.argmax(fast)]])
+        problems.append(Problem(*place, what, "a wider tolerance puts fewer points in", Severity.WARNING))
+    return problems
+
+
 def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
     """What the cycles of a motion ask for and this control cannot be told."""
     operation, problems = motion.as_written(), []
@@ -134,7 +168,7 @@ def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
             continue
         try:
             cycle = cycle_of(event)
-            if motion.manner is Manner.TCP:
+            if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP):
                 cure = "leave the setting manner out, or end the cut before the tool axis changes"
                 raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
             spindle = turning(operation.events, event.row, Turning(1.0, Sense.CLW))
@@ -198,6 +232,8 @@ class _Author:
         self._spindle: SpindleOn | None = None
         self._coolant = "OFF"
         self._seconds: list[float] = []
+        self._slides: Slides | None = None
+        self._feed_mode = ABSENT
         self._height = 0.0  # of the tool along Z of the frame, at the last row written
 
     def write(self) -> None:
@@ -218,6 +254,11 @@ class _Author:
 
     def _operation(self, motion: Motion, ends: bool) -> None:
         """An operation, or what there is of it in one plane; ``ends``: there is no more of it."""
+        self._slides = None
+        if motion.manner is Manner.WITHOUT_TCP:
+            angle = self._control.number_formats(motion.three_axis)["angle"]
+            self._slides = slides_of(self._program.machine, motion, angle.decimals)
+            motion = self._slides.motion
         kind, values = self._kind(motion), self._values(motion)
         if motion.begins:
             self._expand("operation_start", values, motion)
@@ -230,6 +271,7 @@ class _Author:
         self._writer.forget()
         for word, code in self._control.in_force.items():
             self._writer.remember(word, code)
+        self._feed_mode = ABSENT
         self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
         if motion.plane is not None:
             self._expand(f"plane_on_{kind}", values, motion)
@@ -244,6 +286,8 @@ class _Author:
         """What the templates of this kind of operation are called."""
         if motion.manner is Manner.TILTED:
             return _setting(self._program, "plane")
+        if motion.manner is Manner.WITHOUT_TCP:
+            return "without_tcp"
         return "three_axis" if motion.three_axis else "five_axis"
 
     def _plane(self, motion: Motion) -> dict[str, Value]:
@@ -307,6 +351,8 @@ class _Author:
             "tool_diameter": tool.diameter if known else None,
             "tool_length": tool.length if known else None,
             "tool_corner_radius": tool.corner_radius if known else None,
+            "gauge_length": self._program.machine.tool_length,
+            **dict(zip(("zero_x", "zero_y", "zero_z"), self._program.machine.workpiece_zero or _UNKNOWN, strict=True)),
             "intol": operation.intol,
             "outtol": operation.outtol,
         }
@@ -517,6 +563,8 @@ class _Author:
         mode = np.where(moves.per_rev[part], control.codes["feed_per_revolution"], control.codes["feed_per_minute"])
         columns["feed_mode"] = np.where(rapid, ABSENT, mode).astype(np.int64)
         forced: dict[str, bool | Ints] = {}
+        if self._slides is not None:
+            forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
         if len(inside):
             words, ends = sinumerik.arc_words(arcs, moves.tip, inside, start, decimals["I"], control)
@@ -526,7 +574,7 @@ class _Author:
             for word, flag in ends.items():
                 every = np.zeros(stop - start, np.int64)
                 every[at] = flag
-                forced[word] = every
+                forced[word] = every | forced.get(word, 0)
         if start == 0:
             self._join(columns, 0, {"edge": int(_setting(self._program, "edge"))})
         for event in joining:
@@ -536,6 +584,33 @@ class _Author:
         before = np.concatenate(([text], wanted[:-1]))
         self._writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts)
         return int(wanted[-1])
+
+    def _words_of_slides(
+        self, slides: Slides, feed: Floats, part: slice, rapid: Flags, columns: dict[str, Ints]
+    ) -> dict[str, bool | Ints]:
+        """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
+
+        Returns which words are said though they may print as before: F wherever its meaning changes, and X in rapids,
+        which without a slide would only place the rotary axes.
+        """
+        turning = slides.turns[part] & ~rapid
+        word = self._writer.word("inverse_feed")
+        rate = np.full(len(feed), np.nan)
+        rate[turning] = inverse_time(slides.length[part][turning], feed[turning], word.format)[0]
+        columns["inverse_feed"] = counts(rate, word.format.decimals)
+        columns["feed"][turning] = ABSENT
+        columns["feed_mode"][turning] = self._control.codes["feed_inverse_time"]
+        for which, key in ((self._primary, "primary"), (self._secondary, "secondary")):
+            jumps = slides.shortest[part, self._column[which]]
+            columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
+            columns[key][jumps] = ABSENT
+        cuts = np.flatnonzero(~rapid)
+        changes = np.zeros(len(feed), np.int64)
+        if len(cuts):
+            modes = columns["feed_mode"][cuts]
+            changes[cuts] = modes != np.concatenate(([self._feed_mode], modes[:-1]))
+            self._feed_mode = int(modes[-1])
+        return {"feed": changes, "X": rapid.astype(np.int64)}
 
     def _join(self, columns: dict[str, Ints], row: int, words: Mapping[str, int]) -> None:
         """Put words onto a row."""

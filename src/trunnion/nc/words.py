@@ -62,17 +62,19 @@ class NumberFormat:
 class Word:
     """An address and its number: ``key`` names it in definitions, ``letter`` is what is printed before the number.
 
-    A modal word is left out of a block when it would print as it last did.
+    A modal word is left out of a block when it would print as it last did. ``closing`` is what stands behind the
+    number, one character or none.
     """
 
     key: str
     letter: str
     format: NumberFormat
     modal: bool = True
+    closing: str = ""
 
     def text(self, value: float) -> str:
         """The whole word, such as ``X-.31289``."""
-        return self.letter + self.format.text(value)
+        return self.letter + self.format.text(value) + self.closing
 
 
 @njit(cache=True, nogil=True)

@@ -19,11 +19,11 @@ from trunnion.nc.words import ABSENT, Word
 CHUNK = 16384
 
 _DIGITS = 20  # of an int64, with sign and point
-_LETTERS = 8
+_LETTERS = 12
 _NUMBER = 12  # N99999999 and a blank, with room to spare
 
 # columns of the table that describes the words to the kernel
-_MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH = range(9)
+_MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH, _CLOSING = range(10)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,8 +146,9 @@ def _write_blocks(
     forced       (n,)   int64   bit k set: word k is written even if it prints as before
     text_before  (n,)   int64   index of the text line that stands before the row, -1 for none
     text_bytes, text_ends       the text lines, end to end
-    rule         (w, 9) int64   modal, decimals, 10**decimals, point, leading, trailing, plus, length of letter, of zero
-    spelling     (w, 16) uint8  letter in the first 8 bytes, spelling of zero in the last 8
+    rule         (w, 10) int64  modal, decimals, 10**decimals, point, leading, trailing, plus, length of letter, of
+                                zero, byte that closes the word or 0
+    spelling     (w, 24) uint8  letter in the first 12 bytes, spelling of zero in the last 12
     last         (w,)   int64   what was last printed; kept up to date
     number       (4,)   int64   next block number, step, first, highest; the first is kept up to date
     """
@@ -202,6 +203,9 @@ def _write_blocks(
                             out,
                             at,
                         )
+                    if rule[word, _CLOSING]:
+                        out[at] = rule[word, _CLOSING]
+                        at += 1
                     out[at] = 32
                     at += 1
             if at == content_start:
@@ -240,7 +244,7 @@ class BlockWriter:
         self._words = {word.key: word for word in words}
         self._keys = [word.key for word in words]
         self._last = np.array([kept.get(key, ABSENT) for key in self._keys], np.int64)
-        self._rule = np.array([_rule(word) for word in words], np.int64).reshape(len(words), 9)
+        self._rule = np.array([_rule(word) for word in words], np.int64).reshape(len(words), _CLOSING + 1)
         self._spelling = np.zeros((len(words), 2 * _LETTERS), np.uint8)
         for row, word in zip(self._spelling, words, strict=True):
             row[: len(word.letter)] = np.frombuffer(word.letter.encode(), np.uint8)
@@ -315,7 +319,7 @@ class BlockWriter:
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
         heads = _NUMBER + len(self._letter) + 1
-        width = heads + len(rule) * (_DIGITS + _LETTERS + 1) + 1
+        width = heads + len(rule) * (_DIGITS + _LETTERS + 2) + 1
         text_room = sum(len(encoded[k]) + heads + 1 for k in before[before >= 0])
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
         written = _write_blocks(
@@ -351,4 +355,5 @@ def _rule(word: Word) -> list[int]:
         int(number.plus),
         len(word.letter.encode()),
         len(number.zero.encode()),
+        ord(word.closing or "\0"),
     ]

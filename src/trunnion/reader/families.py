@@ -38,7 +38,8 @@ def run_program(
     path
         The program. Subprograms are looked for in its folder, nowhere else.
     machine
-        Three slides X, Y and Z, two rotary axes. Tools have length 0: the tip is where the control takes it to be.
+        Three slides X, Y and Z, two rotary axes. Every tool has the length of ``machine.tool_length``, or 0: the
+        tip is then where the control takes it to be.
     family
         The control whose language it is, a key of ``READERS``; None: as the machine's definition has it.
     step_limit

@@ -108,10 +108,12 @@ def needless_feeds(run: Run, wanted: Wanted, pairs: Pairs) -> list[Broken]:
         for nc, cl in pairs.chunks(pairs.cl.before(part.first), pairs.cl.before(part.end)):
             here, k = _among(cl - part.first, agreed.slowed)
             here, k = here[wanted.kind(cl[here]) != Kind.ARC], k[wanted.kind(cl[here]) != Kind.ARC]
-            here, k = here[nc[here] > 0], k[nc[here] > 0]
+            # Points between lead there as well: the way is that from the CL point before.
+            first = nc[here] - 1 - pairs.leading(cl[here])
+            here, k, first = here[first >= 0], k[first >= 0], first[first >= 0]
             if not len(here):
                 continue
-            now, before = run.poses(nc[here]), run.poses(nc[here] - 1)
+            now, before = run.poses(nc[here]), run.poses(first)
             turned = np.abs(now.joints - before.joints)[:, list(run.machine.rotary)]
             length = np.linalg.norm(now.tip - before.tip, axis=1)
             length = np.where(length < 1e-9, turned.max(axis=1), length)
