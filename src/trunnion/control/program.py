@@ -102,7 +102,8 @@ def check_program(program: Program) -> list[Problem]:
         for event in operation.events:
             problems += _event_problems(program, operation, event)
         tolerance = operation.intol is not None and operation.outtol is not None
-        if not motion.three_axis and not tolerance and not _setting(program, "tolerance"):
+        fine = not motion.three_axis and not (motion.plane and _setting(program, "plane") == "cycle800")
+        if fine and not tolerance and not _setting(program, "tolerance"):
             fallback = _setting(program, "fallback_tolerance")
             what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
             problems.append(Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING))

@@ -51,6 +51,10 @@ _MAKINGS = {
 }
 
 
+#: No length, feed or angle of a cycle is so large.
+_FARTHEST = 1e6
+
+
 class CycleError(Exception):
     """Why a cycle cannot be made: what, and what would put it right. ``line``: where, if that is known."""
 
@@ -93,6 +97,8 @@ def cycle_of(event: CycleOn) -> Cycle:
         When it asks for what is not known, or leaves out what must be said.
     """
     values, words = dict(event.values), dict(event.words)
+    if any(not abs(number) < _FARTHEST for given in values.values() for number in given):
+        raise CycleError("CYCLE with a number that no machine has", "write lengths in mm or inches, feeds per minute")
     making = _MAKINGS.get(event.mode)
     if making is None:
         what = f"CYCLE/{','.join(event.mode)} is a cycle that cannot be written"

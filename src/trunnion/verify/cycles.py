@@ -41,6 +41,7 @@ class Hole:
     steps     strokes: the first, how much each next is shorter, the shortest; empty for one stroke
     feed      mm/min, or mm/rev where per_rev
     dwell     seconds, or spindle turns where dwell_turns
+    tools     what the tool may be called; empty: nobody says
     rpm, sense  the spindle: rev/min and 1 clockwise, -1 the other way, 0 standing; None: nobody says
     """
 
@@ -61,6 +62,7 @@ class Hole:
     rpm: float | None
     sense: int
     allowed: float
+    tools: tuple[str, ...] = ()
 
 
 def without_holes(operation: Operation) -> tuple[Operation, Flags]:
@@ -97,11 +99,10 @@ def holes_of(
     rows = np.flatnonzero(holes).tolist()
     place = first + np.concatenate(([0], np.cumsum(~holes)))
     found: list[Hole] = []
+    begins = -1
     for row in rows:
         cycle = next(e for e in reversed(operation.events) if isinstance(e, CycleOn) and e.row <= row)
-        begins = max(cycle.row, row)
-        while begins > cycle.row and holes[begins - 1]:
-            begins -= 1
+        begins = begins if begins >= cycle.row and holes[row - 1] else row
         spindle = spindle_at(operation, row, before)
         found.append(_hole(moves, row, begins, cycle, int(place[row]), file, allowed, spindle))
     return found

@@ -13,6 +13,7 @@ from trunnion.verify.align import PLACES
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.cycles import Hole, Made, made_in
 from trunnion.verify.model import Check, Place
+from trunnion.verify.wanted import is_called
 
 #: A spindle speed is printed without decimals.
 _RPM = 0.5 + 1e-6
@@ -174,6 +175,11 @@ def holes(case: Case) -> Check:
     count = 0
     for hole, there in zip(wanted.holes, made, strict=False):
         found = list(faults(run, hole, there, waits))
+        names = (case.settings.tool,) if case.settings.tool else hole.tools
+        has = run.tools[run.state.tool[there.first]]
+        if names and not is_called(has, names):
+            text = f"tool {has or 'none'} is in the spindle; the CL file wants {names[0]}"
+            found.append((there.first, 0.0, text))
         k = pairs.cl.before(hole.row)
         if (k and pairs.nc[k - 1] >= there.first) or (k < len(pairs.nc) and pairs.nc[k] < there.end):
             found.append((there.first, 0.0, "the hole is made before or after its turn"))

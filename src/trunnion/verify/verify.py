@@ -56,7 +56,7 @@ def verify(
     """
     settings = settings or Settings()
     checks: list[Check] = []
-    wanted = Wanted(toolpaths, allowed or Allowed()) if toolpaths else None
+    wanted = Wanted(toolpaths, allowed or Allowed(), settings.absolute) if toolpaths else None
     walker = Walker(run, NAMED, math.inf if settings.span is None else settings.span, times=columns)
     pairs = None
     if wanted is not None:
