@@ -223,13 +223,13 @@ def _allowed(program: Program) -> "list[Allowed]":
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
-    turning = control.number_formats(three_axis=False)["plane_angle"].decimals
     allowed: list[Allowed] = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
         tip, angle = half["X"], max(half["primary"], half["secondary"])
         if motion.plane is not None:
+            turning = control.number_formats(three_axis=False)["plane_angle"].decimals
             tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
         if motion.manner is Manner.WITHOUT_TCP:
