@@ -9,6 +9,7 @@ from typing import Any, Final
 from trunnion.definition import extended
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
+from trunnion.reader.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.reader.interpreter import STEPS, Interpreter
 from trunnion.reader.run import Run
 from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
@@ -16,6 +17,8 @@ from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 #: Readers by the family of the control.
 READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
     "sinumerik_840d": SinumerikInterpreter,
+    "heidenhain_itnc530": HeidenhainInterpreter,
+    "heidenhain_tnc640": HeidenhainInterpreter,
 }
 
 #: The family of machines whose definition names no control.
