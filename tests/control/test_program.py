@@ -64,12 +64,16 @@ def test_a_counterclockwise_spindle_is_m4_and_a_new_speed_joins_the_next_block(p
     text = HEAD.replace("CLW", "CCLW") + "SPINDL/RPM,2000,CCLW\nGOTO/20,0,5\nSPINDL/OFF\nGOTO/30,0,5\n" + FOOT
     lines = motion(post(text))
     assert lines[0].endswith("M4")
-    assert lines[2:] == ["X20. S2000", "X30. M5"]
+    assert lines[2:] == ["X20. S2000", "M5", "X30."]
 
 
-@pytest.mark.parametrize(("word", "code"), [("ON", 8), ("FLOOD", 8), ("MIST", 7), ("THRU", 26), ("TAP", 8), ("OFF", 9)])
+@pytest.mark.parametrize(("word", "code"), [("ON", 8), ("FLOOD", 8), ("MIST", 7), ("THRU", 26), ("TAP", 8)])
 def test_coolant_joins_the_next_motion(word: str, code: int, post: Post) -> None:
     assert motion(post(HEAD + f"COOLNT/{word}\nGOTO/20,0,5\n" + FOOT))[2] == f"X20. M{code}"
+
+
+def test_what_is_switched_off_is_off_before_the_next_motion(post: Post) -> None:
+    assert motion(post(HEAD + "COOLNT/OFF\nGOTO/20,0,5\n" + FOOT))[2:] == ["M9", "X20."]
 
 
 def test_two_coolants_before_one_motion_are_both_said(post: Post) -> None:

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from tests.plan.naive import EveryWay, moves_of, nearest_neighbour, rapids_at
 from trunnion.arrays import Floats
 from trunnion.machine import Machine, forward, load_machine, shipped, slide_positions
-from trunnion.plan.optimum import REWIND, REWOUND, STATE
-from trunnion.plan.poses import Poses, choose, choose_nearest, follow, least_cost, take
-from trunnion.plan.states import MOST_TURNS, states_of
+from trunnion.plan.placing import REWIND
+from trunnion.plan.poses import Poses, choose, choose_nearest, follow, least_cost, settled, sides_travel_alike, take
+from trunnion.plan.states import MOST_TURNS, REWOUND, STATE, states_of
 from trunnion.toolpath import Moves
 
 
@@ -121,6 +121,42 @@ def test_on_the_yl569_the_optimum_is_the_nearest_neighbour_where_that_will_do(mo
     assume(not naive.beyond and not naive.changes and len(set(naive.branch)) == 1)
     wound = naive.rotary[:, 0] - 360.0 * np.floor(naive.rotary[:, 0] / 360.0)
     assert np.array_equal(posed(machine, moves).rotary, np.column_stack((wound, naive.rotary[:, 1])))
+
+
+ALIKE = {name: machine for name in shipped() if sides_travel_alike(machine := load_machine(name))} | {
+    name: SMALL[name] for name in SMALL if sides_travel_alike(SMALL[name])
+}
+
+
+def test_most_shipped_machines_have_sides_that_travel_alike() -> None:
+    assert {"yl569", "ucp800", "dmu65", "hs664rt", "mikron_600u", "fork head"} <= set(ALIKE)
+    assert not any("nutated" in name for name in ALIKE)
+
+
+@settings(deadline=None, max_examples=400)
+@given(st.sampled_from(sorted(ALIKE)), smooth_paths(100.0) | smooth_paths(4.0) | short_paths(30), st.booleans())
+def test_where_nothing_is_to_be_chosen_one_pass_finds_the_optimum(name: str, moves: Moves, keep_slides: bool) -> None:
+    machine = ALIKE[name]
+    found = settled(machine, moves, keep_slides)
+    assume(found is not None)
+    assert found is not None
+    wanted = take(machine, moves, choose(machine, moves, keep_slides), keep_slides)
+    assert np.array_equal(found.state, wanted.state)
+    assert np.array_equal(found.rotary, wanted.rotary)
+    assert np.array_equal(found.extremes, wanted.extremes)
+    assert np.array_equal(found.where, wanted.where)
+    assert np.array_equal(found.changes, wanted.changes)
+    assert not wanted.outcome.any()
+
+
+@pytest.mark.parametrize("name", sorted(ALIKE))
+def test_one_pass_is_enough_for_a_path_like_most(name: str) -> None:
+    machine = ALIKE[name]
+    rows = np.linspace(0.0, 1.0, 300)
+    moves = moves_of(np.zeros((300, 3)), directions(20.0 + 10.0 * np.sin(9.0 * rows), 20.0 + 40.0 * rows))
+    upright = moves_of(np.zeros((9, 3)), directions(np.zeros(9), np.zeros(9)))
+    for path in (moves, upright):
+        assert settled(machine, path, False) is not None
 
 
 @settings(deadline=None, max_examples=120)

@@ -54,7 +54,7 @@ _TEXTS = (
 )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def scan(
     data: Bytes,
     start: int,
@@ -278,7 +278,7 @@ def _is_text(data: Bytes, begin: int, end: int) -> bool:
     return False
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def settle_axes(axis: Floats, start: int, stop: int, seed: Floats, bad: Ints) -> int:
     """Give the rows without a vector the one before them, and every vector the length 1.
 

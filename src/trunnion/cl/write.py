@@ -393,7 +393,7 @@ def _long_point(moves: Moves, row: int, in_force: Floats, sink: BinaryIO) -> Non
     sink.write(_lines([f"GOTO/{','.join(numbers)}"]))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _write_points(tip: Floats, axis: Floats, row: int, stop: int, in_force: Floats, out: Bytes) -> tuple[int, int]:
     """Write GOTO lines; return the row where it ended, ``stop`` or one whose numbers need a slower way, and the bytes.
 

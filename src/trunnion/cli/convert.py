@@ -8,10 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.output import whole
 from trunnion.cli.post import check_settings, planned_program, point, prove, say, wishes_of, write
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
 
 if TYPE_CHECKING:

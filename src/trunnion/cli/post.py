@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from trunnion.cl import read_cl
-from trunnion.cli.output import whole
 from trunnion.cli.progress import progress
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
 from trunnion.plan import Wishes, plan
 from trunnion.toolpath import Toolpath

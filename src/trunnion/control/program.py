@@ -274,16 +274,19 @@ class _Author:
         joining = self._spindle_again(motion.operation)
         done, text = 0, -1
         for event in motion.operation.events:
-            joins = isinstance(event, SpindleOn | SpindleOff | Coolant | CutterComp)
+            off = isinstance(event, SpindleOff) or (isinstance(event, Coolant) and event.kind == "OFF")
+            joins = isinstance(event, SpindleOn | Coolant | CutterComp) and not off
             if joins and not any(type(e) is type(event) and e.row == event.row for e in joining):
                 joining.append(event)
-            elif joins or isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
+            elif joins or off or isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
                 text = self._rows(motion, done, event.row, joining, text)
                 for earlier in (e for e in joining if e.row == event.row):
                     self._event_block(earlier)  # what is said twice before one row is said in order
                 done, joining = event.row, [e for e in joining if e.row > event.row]
                 if joins:
                     joining.append(event)
+                elif off:
+                    self._event_block(event)  # with the next motion the control would switch off after it
                 else:
                     self._own_block(motion, event)
         self._rows(motion, done, rows, joining, text)

@@ -4,7 +4,7 @@
 other rooms use ``trunnion.machine.inverse.pack`` with ``solve_point`` and ``solve_slides``.
 """
 
-from trunnion.machine.chain import forward
+from trunnion.machine.chain import forward, tool_axes
 from trunnion.machine.inverse import Packed, Solutions, inverse, pack, slide_positions
 from trunnion.machine.load import load_machine, shipped
 from trunnion.machine.model import Axis, AxisKind, Carries, Facts, Machine, Output, Positive, Prefer
@@ -26,4 +26,5 @@ __all__ = [
     "pack",
     "shipped",
     "slide_positions",
+    "tool_axes",
 ]

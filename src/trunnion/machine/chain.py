@@ -51,6 +51,21 @@ def forward(machine: Machine, joints: Floats, tool_length: float = 0.0) -> tuple
     return tip, axis
 
 
+def tool_axes(machine: Machine, joints: Floats) -> tuple[Floats, Floats]:
+    """Tool axes of consecutive rows (n, 5) as ``forward`` gives them, and those half-way between each two rows.
+
+    Returns
+    -------
+    axis : (n, 3) float64
+        Unit vectors from tip to holder, in workpiece coordinates.
+    half_way : (n - 1, 3) float64
+        The same where every joint is half-way from a row to the next; a rotary axis goes as its values say.
+    """
+    axis, half_way = np.empty((len(joints), 3)), np.empty((max(len(joints) - 1, 0), 3))
+    axis_rows(pack_chain(machine), machine.rotary, joints, axis, half_way)
+    return axis, half_way
+
+
 class Chain(NamedTuple):
     """A chain as kernels take it.
 
@@ -83,7 +98,7 @@ def pack_chain(machine: Machine, tool_length: float = 0.0) -> Chain:
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def chain_rows(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
     """Write tip and tool axis (n, 3) of each row of ``joints`` (n, 5)."""
     for row in range(joints.shape[0]):
@@ -121,3 +136,57 @@ def chain_row(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
         )
     tip[0], tip[1], tip[2] = x - chain.zero[0], y - chain.zero[1], z - chain.zero[2]
     axis[0], axis[1], axis[2] = i, j, k
+
+
+@njit(cache=True, nogil=True)
+def axis_rows(chain: Chain, turning: tuple[int, int], joints: Floats, axis: Floats, half_way: Floats) -> None:
+    """Write the tool axis (n, 3) of rows of ``joints`` (n, 5), and ``half_way`` (n - 1, 3) between each two rows.
+
+    Half-way are the middles of both axis positions. The rotary axes are the columns ``turning``.
+    """
+    one, two = turning
+    cos_1, sin_1, cos_2, sin_2 = 1.0, 0.0, 1.0, 0.0
+    for row in range(joints.shape[0]):
+        was = cos_1, sin_1, cos_2, sin_2
+        cos_1, sin_1 = _cos_sin(joints[row, one])
+        cos_2, sin_2 = _cos_sin(joints[row, two])
+        i, j, k = _turned_about(chain, two, cos_2, sin_2, chain.spindle[0], chain.spindle[1], chain.spindle[2])
+        axis[row, 0], axis[row, 1], axis[row, 2] = _turned_about(chain, one, cos_1, sin_1, i, j, k)
+        if row == 0:
+            continue
+        cos, sin = _middle(joints[row - 1, two], joints[row, two], was[2], was[3], cos_2, sin_2)
+        i, j, k = _turned_about(chain, two, cos, sin, chain.spindle[0], chain.spindle[1], chain.spindle[2])
+        cos, sin = _middle(joints[row - 1, one], joints[row, one], was[0], was[1], cos_1, sin_1)
+        i, j, k = _turned_about(chain, one, cos, sin, i, j, k)
+        half_way[row - 1, 0], half_way[row - 1, 1], half_way[row - 1, 2] = i, j, k
+
+
+@njit(cache=True)
+def _cos_sin(q: float) -> tuple[float, float]:
+    """Cosine and sine of degrees; whole turns drop out exactly."""
+    angle = math.radians(q - 360.0 * math.floor(q / 360.0 + 0.5))
+    return math.cos(angle), math.sin(angle)
+
+
+@njit(cache=True)
+def _middle(a: float, b: float, cos_a: float, sin_a: float, cos_b: float, sin_b: float) -> tuple[float, float]:
+    """Cosine and sine of the middle of two angles, degrees, whose own are known: along the sum of both directions."""
+    if abs(b - a) > 90.0:
+        return _cos_sin(0.5 * (a + b))
+    cos, sin = cos_a + cos_b, sin_a + sin_b
+    length = math.sqrt(cos * cos + sin * sin)
+    return cos / length, sin / length
+
+
+@njit(cache=True)
+def _turned_about(
+    chain: Chain, joint: int, cos: float, sin: float, i: float, j: float, k: float
+) -> tuple[float, float, float]:
+    """A direction turned about a rotary joint, by Rodrigues: v cos + (w x v) sin + w (w.v)(1 - cos)."""
+    a, b, c = chain.direction[joint, 0], chain.direction[joint, 1], chain.direction[joint, 2]
+    along = (a * i + b * j + c * k) * (1.0 - cos)
+    return (
+        i * cos + (b * k - c * j) * sin + a * along,
+        j * cos + (c * i - a * k) * sin + b * along,
+        k * cos + (a * j - b * i) * sin + c * along,
+    )

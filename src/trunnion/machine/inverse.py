@@ -74,6 +74,7 @@ class Packed(NamedTuple):
     phase     (2,) float    cosine and sine of the second angle from where the spindle leans most towards w1 to zero
     spindle   (3,) float    the spindle in ``frame_2``
     slides    (9,) float    rows: directions of the slides
+    across    (9,) float    rows: the reciprocal of ``slides``; NaN where they do not span space
     inside    (3,) int      how many rotary axes stand between the slide and the workpiece
     base      (3,) float    point of the first rotary axis, from workpiece zero, mm
     link      (3,) float    from there to the point of the second rotary axis, mm
@@ -89,6 +90,7 @@ class Packed(NamedTuple):
     phase: Numbers
     spindle: Numbers
     slides: Numbers
+    across: Numbers
     inside: tuple[int, ...]
     base: Numbers
     link: Numbers
@@ -134,11 +136,18 @@ def pack(machine: Machine, tool_length: float = 0.0) -> Packed:
         phase=_flat(spindle[:2] / math.hypot(spindle[0], spindle[1])),
         spindle=_flat(spindle),
         slides=_flat(directions[list(slides)]),
+        across=_flat(_reciprocal(directions[list(slides)])),
         inside=tuple(int(first < k) + int(second < k) for k in slides),
         base=_flat(points[first] - zero),
         link=_flat(points[second] - points[first]),
         reach=_flat(tip - points[second]),
     )
+
+
+def _reciprocal(slides: Floats) -> Floats:
+    """(3, 3): rows whose products with a vector are its parts along the slides."""
+    flat = abs(float(np.linalg.det(slides))) < _FLAT
+    return np.full((3, 3), np.nan) if flat else np.asarray(np.linalg.inv(slides.T))
 
 
 def _flat(array: Floats) -> Numbers:
@@ -215,14 +224,14 @@ def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: 
     return joints
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def slide_rows(packed: Packed, tip: Floats, rotary: Floats, joints: Floats) -> None:
     """Call ``solve_slides`` for each row; joints (n, 5) is written."""
     for row in range(tip.shape[0]):
         solve_slides(packed, rotary[row, 0], rotary[row, 1], tip[row, 0], tip[row, 1], tip[row, 2], joints[row])
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_rows(packed: Packed, tip: Floats, axis: Floats, joints: Floats, status: Codes) -> None:
     """Call ``solve_point`` for each row; joints (2, n, 5) and status (n,) uint8 are written."""
     for row in range(tip.shape[0]):
@@ -364,6 +373,18 @@ def place_slides(
     px, py, pz = turned(two, cos_2, sin_2, packed.reach[0], packed.reach[1], packed.reach[2])
     px, py, pz = turned(one, cos_1, sin_1, px + packed.link[0], py + packed.link[1], pz + packed.link[2])
     px, py, pz = x - px - packed.base[0], y - py - packed.base[1], z - pz - packed.base[2]
+    inside = packed.inside
+    if inside[0] == inside[1] and inside[1] == inside[2] and not math.isnan(packed.across[0]):
+        # All slides stand on one side of each rotary axis, and always as at zero to each other.
+        if inside[0] >= 1:
+            px, py, pz = turned(one, cos_1, -sin_1, px, py, pz)
+        if inside[0] == 2:
+            px, py, pz = turned(two, cos_2, -sin_2, px, py, pz)
+        across = packed.across
+        out[packed.columns[2]] = across[0] * px + across[1] * py + across[2] * pz + 0.0
+        out[packed.columns[3]] = across[3] * px + across[4] * py + across[5] * pz + 0.0
+        out[packed.columns[4]] = across[6] * px + across[7] * py + across[8] * pz + 0.0
+        return 0
     ax, ay, az = slide_direction(packed, 0, cos_1, sin_1, cos_2, sin_2)
     bx, by, bz = slide_direction(packed, 1, cos_1, sin_1, cos_2, sin_2)
     cx, cy, cz = slide_direction(packed, 2, cos_1, sin_1, cos_2, sin_2)

@@ -75,7 +75,7 @@ class Word:
         return self.letter + self.format.text(value)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _count_column(value: Floats, scale: float, out: Ints) -> None:
     """Round ``value * scale`` to whole numbers as if the product were exact.
 

@@ -125,7 +125,7 @@ def _put_number(
     return at
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _write_blocks(
     table: Ints,
     forced: Ints,

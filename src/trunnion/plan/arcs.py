@@ -113,8 +113,9 @@ def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> t
     angle = (part * sweep)[:, None]
     tip = centre + np.cos(angle) * radial + np.sin(angle) * np.cross(normal, radial)
     tip = tip + (rise_start + part * (rise_end - rise_start))[:, None] * normal
-    # the file rounds centre and end: spread what is missing at the end over the arc, so that the end is met exactly
+    # the file rounds centre and end: spread what is missing at the end over the arc, so that the end is met
     tip += part[:, None] * (moves.tip[row] - tip[-1])
+    tip[-1] = moves.tip[row]  # to the last digit, too
     return tip, _turned_evenly(moves.axis[row - 1], moves.axis[row], part)
 
 

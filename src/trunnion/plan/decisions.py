@@ -8,9 +8,9 @@ from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machine import Machine, forward, inverse
 from trunnion.plan.ahead import DeadEnd, continued, dead_end
 from trunnion.plan.motion import Decision, Why
-from trunnion.plan.optimum import IDLE, REWOUND, STATE
+from trunnion.plan.optimum import IDLE
 from trunnion.plan.poses import choose_nearest, cutting, take
-from trunnion.plan.states import BEND, POLE_JUMP, states_of
+from trunnion.plan.states import BEND, POLE_JUMP, REWOUND, STATE, states_of
 from trunnion.toolpath import Operation
 
 

@@ -20,14 +20,15 @@ why they are handed all that they work with: calls and counting took longer than
 """
 
 import math
-from typing import Any, Final, NamedTuple, TypeAlias, TypeVar
+from typing import Any, Final, TypeAlias, TypeVar
 
 import numpy as np
 from numba import njit
 
 from trunnion.arrays import Codes, Floats, Ints
 from trunnion.machine import Packed
-from trunnion.machine.inverse import POLE, UNREACHABLE, Numbers, branch_angles, place_slides, solve_tilt, turned
+from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, place_slides, solve_tilt, turned
+from trunnion.plan.placing import beyond, first_of, folded
 from trunnion.plan.states import (
     AT_LIMITS,
     BEND,
@@ -37,13 +38,12 @@ from trunnion.plan.states import (
     POLE_JUMP,
     POLE_PASS,
     REVERSAL,
+    REWOUND,
     SIDE_CHANGE,
+    STATE,
+    STUCK_FAST,
+    Choice,
 )
-
-#: Bits of a backpointer: the state before; whether the step from there is a rewind; and one that is blocked.
-STATE: Final = 0x3F
-REWOUND: Final = 0x80
-STUCK_FAST: Final = 0x40
 
 #: What the move into a row does: nothing to the part; touches it; cuts.
 IDLE: Final = 0
@@ -62,12 +62,6 @@ _CLEARLY: Final = 1e-3
 #: Motion below this, degrees, has no direction: vectors of CL files are rounded.
 _STILL: Final = 1e-3
 
-#: What became of a row: nothing to say; 1 + index of the axis that is beyond its limit; or one of these.
-FINE: Final = 0
-REWIND: Final = 100
-BLOCKED: Final = 101
-OUT_OF_REACH: Final = 200
-
 Kernel = TypeVar("Kernel")
 
 #: What ``solve_tilt`` returns.
@@ -78,15 +72,9 @@ _COS_BEND: Final = math.cos(math.radians(BEND))
 
 def _without_counting(kernel: Kernel) -> Kernel:
     """Compile a kernel that counts no references: by an option of Numba's that its type hints do not know."""
-    options: dict[str, Any] = {"cache": True, "_nrt": False}
+    options: dict[str, Any] = {"cache": True, "nogil": True, "_nrt": False}
     compiled: Kernel = njit(**options)(kernel)
     return compiled
-
-
-@njit(cache=True)
-def beyond(value: float, low: float, high: float) -> bool:
-    """Whether a value lies outside of its limits for good."""
-    return value < low - LIMIT_TOLERANCE or value > high + LIMIT_TOLERANCE
 
 
 @njit(cache=True)
@@ -105,26 +93,6 @@ def bends(packed: Packed, first: float, second: float, i: float, j: float, k: fl
     angle = packed.sense_1 * math.radians(first)
     x, y, z = turned(packed.frame_1, math.cos(angle), math.sin(angle), x, y, z)
     return x * i + y * j + z * k < _COS_BEND * math.sqrt(i * i + j * j + k * k)
-
-
-class Choice(NamedTuple):
-    """What there is to choose from, in numbers that a kernel keeps in registers.
-
-    low, high  (5,) float  limits by column, infinite where none is to be kept
-    slides     bool        a slide has a limit to be kept
-    span       (4,) int    ``States.span``
-    start      (2,) float  rotary positions before the first row, degrees
-    side       (2,) float  the sign that each rotary axis is to have, 0: either
-    both       float       sum of the second angles of both branches, degrees, whole turns left out
-    """
-
-    low: Numbers
-    high: Numbers
-    slides: bool
-    span: tuple[int, ...]
-    start: Numbers
-    side: Numbers
-    both: float
 
 
 # What the forward pass works with besides; ``WAS`` is the last row, ``NOW`` this one.
@@ -197,7 +165,7 @@ def _is_closed(packed: Packed, choice: Choice, states: Ints, angle: Floats, side
     one, two = packed.columns[0], packed.columns[1]
     low_1, high_1, low_2, high_2 = choice.low[one], choice.high[one], choice.low[two], choice.high[two]
     first, second = angle[NOW, 0, 0], angle[NOW, 0, 1]
-    other = _folded(choice.both - second)
+    other = folded(choice.both - second)
     inside, surely = False, True
     for t in range(len(states)):
         if states[t, 0] == 0:
@@ -393,20 +361,6 @@ def _half(move: float) -> float:
     return max(min(0.5 * move, 180.0), -180.0)
 
 
-@njit(cache=True)
-def _folded(value: float) -> float:
-    """A value without its whole turns, degrees in [-180, 180]."""
-    turns: float = np.rint(value / 360.0)
-    return value - 360.0 * turns
-
-
-@njit(cache=True)
-def _first_of(packed: Packed, i: float, j: float, k: float, branch: int) -> float:
-    """Angle of the first rotary axis under a tool axis off the pole, in a branch, degrees."""
-    status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
-    return branch_angles(packed, u0, u1, cos, sin if branch == 0 else -sin, status)[0]
-
-
 def workspace(states: int) -> tuple[Floats, Ints, Floats, Floats, Ints, Ints, Floats]:
     """What the forward pass works with, empty: cost, count, angle, step, around, side, and five joints."""
     return (
@@ -440,7 +394,7 @@ def cheapest(
     cost, count, angle, step, around, side, joints    of ``workspace``
     """
     for b in range(2):
-        angle[WAS, b, 0], angle[WAS, b, 1] = _folded(choice.start[0]), _folded(choice.start[1])
+        angle[WAS, b, 0], angle[WAS, b, 1] = folded(choice.start[0]), folded(choice.start[1])
     per_row = AT_LIMITS / max(len(tip), 1)
     begun, was_pole, cut_before = False, False, False
     tilt, solid = (0, 0.0, 0.0, 0.0, 0.0), -1
@@ -458,7 +412,7 @@ def cheapest(
         if fresh or choice.slides:
             pole = tilt[0] & POLE != 0
             if pole and side[1, OUTSIDE] == _SKIPPED and solid >= 0:
-                angle[WAS, 1, 0] = _first_of(packed, axis[solid, 0], axis[solid, 1], axis[solid, 2], 1)
+                angle[WAS, 1, 0] = first_of(packed, axis[solid, 0], axis[solid, 1], axis[solid, 2], 1)
             if not pole:
                 solid = row
             x, y, z = tip[row, 0], tip[row, 1], tip[row, 2]
@@ -508,7 +462,7 @@ def nearest(
 ) -> int:
     """As ``cheapest``, but from row to row the state with the least travel, whatever comes after."""
     for b in range(2):
-        angle[WAS, b, 0], angle[WAS, b, 1] = _folded(choice.start[0]), _folded(choice.start[1])
+        angle[WAS, b, 0], angle[WAS, b, 1] = folded(choice.start[0]), folded(choice.start[1])
     now, begun = 0, False
     for row in range(len(tip)):
         tilt = solve_tilt(packed, axis[row, 0], axis[row, 1], axis[row, 2])
@@ -533,7 +487,7 @@ def nearest(
     return now
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def trace(back: Codes, end: int, state: Codes) -> None:
     """Read the way back: ``state`` (n,) is the state of each row, with the bits of the step into it."""
     now = end
@@ -541,83 +495,3 @@ def trace(back: Codes, end: int, state: Codes) -> None:
         pointer = back[row, now]
         state[row] = now | (pointer & ~STATE)
         now = pointer & STATE
-
-
-@njit(cache=True)
-def place(
-    packed: Packed,
-    choice: Choice,
-    states: Ints,
-    display_low: Floats,
-    tip: Floats,
-    axis: Floats,
-    state: Codes,
-    found: Floats,
-    outcome: Codes,
-    excess: Floats,
-    extremes: Floats,
-    where: Ints,
-    changes: Ints,
-) -> None:
-    """Fill the columns of ``Poses`` for the states of all rows.
-
-    display_low  (5,) float64   lower end of the 360 degrees that an axis displays, NaN: as it is
-    """
-    columns, low, high, start, span = packed.columns, choice.low, choice.high, choice.start, choice.span
-    joints = np.empty(5)
-    last_1, last_2 = start[0], start[1]
-    held, solid, before = _folded(start[0]), -1, 0
-    status, u0, u1, cos, sin = 0, 0.0, 0.0, 0.0, 0.0
-    for row in range(tip.shape[0]):
-        i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
-        if row == 0 or i != axis[row - 1, 0] or j != axis[row - 1, 1] or k != axis[row - 1, 2]:
-            status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
-        if status & UNREACHABLE:
-            outcome[row] = OUT_OF_REACH
-            found[row, :] = np.nan
-            continue
-        t = state[row] & STATE
-        b = states[t, 0]
-        first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(packed, u0, u1, cos, sin if b == 0 else -sin, status)
-        if status & POLE:
-            if b != before and solid >= 0:
-                held = _first_of(packed, axis[solid, 0], axis[solid, 1], axis[solid, 2], b)
-            first = held
-            cos_1, sin_1 = math.cos(math.radians(first)), packed.sense_1 * math.sin(math.radians(first))
-        else:
-            held, solid = first, row
-        was_1, was_2 = last_1, last_2
-        last_1 = wound(first, states[t, 1], span[1] == 0, last_1)
-        last_2 = wound(second, states[t, 2], span[3] == 0, last_2)
-        if row > 0 and (b != before or abs(last_1 - was_1) > POLE_JUMP or abs(last_2 - was_2) > POLE_JUMP):
-            changes[0], changes[1] = changes[0] + 1, row
-            if changes[0] + 1 < len(changes):
-                changes[changes[0] + 1] = row
-        before = b
-        joints[columns[0]], joints[columns[1]] = last_1, last_2
-        place_slides(packed, cos_1, sin_1, cos_2, sin_2, tip[row, 0], tip[row, 1], tip[row, 2], joints)
-        for column in range(5):
-            value = joints[column]
-            if beyond(value, low[column], high[column]):
-                outcome[row], excess[row] = column + 1, value
-            elif value < low[column]:
-                joints[column] = low[column]
-            elif value > high[column]:
-                joints[column] = high[column]
-            if joints[column] < extremes[column, 0]:
-                extremes[column, 0], where[column, 0] = joints[column], row
-            if joints[column] > extremes[column, 1]:
-                extremes[column, 1], where[column, 1] = joints[column], row
-        if outcome[row] == FINE and state[row] & REWOUND:
-            outcome[row] = BLOCKED if state[row] & STUCK_FAST else REWIND
-        last_1, last_2 = joints[columns[0]], joints[columns[1]]
-        for r in range(2):
-            value, begin = joints[columns[r]], display_low[columns[r]]
-            found[row, r] = value if np.isnan(begin) else value - 360.0 * np.floor((value - begin) / 360.0)
-
-
-@njit(cache=True)
-def wound(angle: float, turn: int, endless: bool, last: float) -> float:
-    """An angle with its turns: those of its state, or those that bring it nearest to the last value."""
-    turns: float = np.rint((last - angle) / 360.0) if endless else turn
-    return angle + 360.0 * turns

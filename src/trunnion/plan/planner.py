@@ -12,8 +12,8 @@ from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
 from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.motion import Decision, Manner, Motion, Plan
-from trunnion.plan.optimum import BLOCKED, OUT_OF_REACH, REWIND
-from trunnion.plan.poses import Poses, beyond_fit, choose, take
+from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
+from trunnion.plan.poses import Poses, beyond_fit, follow
 from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.plan.wishes import Wishes
@@ -88,11 +88,10 @@ class _Stretch:
 def _stretch(file: str, operation: Operation, machine: Machine, wishes: Wishes) -> _Stretch:
     """Plan one operation in the program's coordinate system."""
     moves, keep_slides = operation.moves, machine.workpiece_zero is not None
-    state = choose(machine, moves, keep_slides)
-    poses = take(machine, moves, state, keep_slides)
+    poses = follow(machine, moves, keep_slides)
     if (poses.outcome == OUT_OF_REACH).any():
         return _Stretch(file, operation, poses, (), tuple(_row_problems(file, moves, poses, machine)), ())
-    planned = Planned(machine, file, operation, poses.rotary, state, keep_slides)
+    planned = Planned(machine, file, operation, poses.rotary, poses.state, keep_slides)
     needed = _rewinds(planned, poses)
     problems = [*_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes)]
     if wishes.rewind:

@@ -10,8 +10,9 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machine import Machine, Packed, pack
-from trunnion.plan.optimum import CUTS, IDLE, STATE, TOUCHES, Choice, cheapest, nearest, place, trace, workspace
-from trunnion.plan.states import LIMIT_TOLERANCE, States, limits_of, states_of
+from trunnion.plan.optimum import CUTS, IDLE, TOUCHES, cheapest, nearest, trace, workspace
+from trunnion.plan.placing import place, straight_on
+from trunnion.plan.states import LIMIT_TOLERANCE, STATE, Choice, States, limits_of, states_of
 from trunnion.toolpath import Kind, Moves, Phase
 
 
@@ -21,7 +22,7 @@ class Poses:
 
     rotary    (n, 2) float64  positions of the rotary axes as they display them, degrees
     state     (n,) uint8      the state of each row, with the bit REWOUND where the step into it is a rewind
-    outcome   (n,) uint8      as listed in ``trunnion.plan.optimum``
+    outcome   (n,) uint8      as listed in ``trunnion.plan.placing``
     beyond    (n,) float64    where an axis is beyond its limit: its value, mm or degrees; not written elsewhere
     extremes  (5, 2) float64  least and greatest value of every axis, mm or degrees
     where     (5, 2) int64    the rows where they are
@@ -40,6 +41,9 @@ class Poses:
 
 #: Changes that are kept one by one.
 _NAMED = 50
+
+#: Axes at right angles, or parallel, within this sine.
+_SQUARE = 1e-12
 
 
 def cutting(moves: Moves) -> Codes:
@@ -66,13 +70,6 @@ def choose(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
 
     The preferred side is the definition's, or else the one on which most cutting stretches begin when none is
     preferred. Where all begin on one side, preferring it changes nothing.
-
-    On a machine whose two sides travel the same in a cut, as all with two axes at right angles under a spindle along
-    the first one do (the YL569 among them), the optimum is the nearest neighbour's choice wherever that needs no
-    rewind, keeps its side and no side is preferred by the definition. Any other way has no less travel to its start,
-    and as much on its side. For each row where it leaves that side the nearest neighbour found the travel no shorter; a
-    return saves at most 180 degrees, and nothing if the side that it leaves is open, and costs ``SIDE_CHANGE`` unless
-    that side is open and the pole near. In the cut all other changes are rewinds. So every change makes it dearer.
     """
     state = least_cost(machine, moves, keep_slides)
     cuts = cutting(moves)
@@ -109,12 +106,7 @@ def choose_nearest(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
 
 
 def follow(machine: Machine, moves: Moves, keep_slides: bool) -> Poses:
-    """Axis positions for every row, in the states that ``choose`` takes."""
-    return take(machine, moves, choose(machine, moves, keep_slides), keep_slides)
-
-
-def take(machine: Machine, moves: Moves, state: Codes, keep_slides: bool) -> Poses:
-    """Axis positions for every row in its state, starting from the home position of the rotary axes.
+    """Axis positions for every row in the states that cost least, from the home position of the rotary axes on.
 
     Parameters
     ----------
@@ -122,26 +114,70 @@ def take(machine: Machine, moves: Moves, state: Codes, keep_slides: bool) -> Pos
         Its limits are judged; those of the slides only with ``keep_slides``.
     moves
         In the workpiece frame.
-    state : (n,) uint8
-        From ``choose``.
     """
+    return settled(machine, moves, keep_slides) or take(
+        machine, moves, choose(machine, moves, keep_slides), keep_slides
+    )
+
+
+def settled(machine: Machine, moves: Moves, keep_slides: bool) -> Poses | None:
+    """As ``follow``, in a single pass; None if there is anything to choose.
+
+    Where both sides of a machine travel the same in a cut, the optimum is the nearest neighbour's choice if that needs
+    no rewind, keeps its side and no side is preferred by the definition. Any other way has no less travel to its start,
+    and as much on its side. For each row where it leaves that side the nearest neighbour found the travel no shorter; a
+    return saves at most 180 degrees, and nothing if the side that it leaves is open, and costs ``SIDE_CHANGE`` unless
+    that side is open and the pole near. In the cut all other changes are rewinds. So every change makes it dearer.
+    """
+    if any(axis.preferred_sign for axis in machine.axes) or not sides_travel_alike(machine):
+        return None
+    packed, poses = pack(machine), _empty(np.empty(len(moves), np.uint8))
+    choice = choice_of(machine, packed, states_of(machine), keep_slides)
+    done = straight_on(
+        packed, choice, _display_low(machine), moves.tip, moves.axis,
+        poses.state, poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where, poses.changes,
+    )  # fmt: skip
+    return poses if done else None
+
+
+def sides_travel_alike(machine: Machine) -> bool:
+    """Whether both branches always travel the same: the rotary axes at right angles, the spindle along the first one.
+
+    Then the first angle of one branch is half a turn on from that of the other one, and the second one its negative.
+    """
+    first, second = (np.array(machine.axes[column].direction) for column in machine.rotary)
+    across = np.linalg.norm(np.cross(first, machine.spindle_direction))
+    return bool(abs(float(first @ second)) < _SQUARE and across < _SQUARE)
+
+
+def take(machine: Machine, moves: Moves, state: Codes, keep_slides: bool) -> Poses:
+    """Axis positions as ``follow`` gives them, for states (n,) uint8 of ``choose``."""
     states, packed = states_of(machine), pack(machine)
     choice = choice_of(machine, packed, states, keep_slides)
-    poses = Poses(
-        rotary=np.empty((len(moves), 2)),
+    poses = _empty(state)
+    place(
+        packed, choice, states.table, _display_low(machine), moves.tip, moves.axis, state,
+        poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where, poses.changes,
+    )  # fmt: skip
+    return poses
+
+
+def _empty(state: Codes) -> Poses:
+    """Columns to be filled, for these states."""
+    return Poses(
+        rotary=np.empty((len(state), 2)),
         state=state,
-        outcome=np.zeros(len(moves), np.uint8),
-        beyond=np.empty(len(moves)),
+        outcome=np.zeros(len(state), np.uint8),
+        beyond=np.empty(len(state)),
         extremes=np.tile([np.inf, -np.inf], (5, 1)),
         where=np.zeros((5, 2), np.int64),
         changes=np.zeros(2 + _NAMED, np.int64),
     )
-    place(
-        packed, choice, states.table, np.array([a.display_low for a in machine.axes]),
-        moves.tip, moves.axis, state,
-        poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where, poses.changes,
-    )  # fmt: skip
-    return poses
+
+
+def _display_low(machine: Machine) -> Floats:
+    """(5,) lower end of the 360 degrees that each axis displays, NaN: as it is."""
+    return np.array([axis.display_low for axis in machine.axes])
 
 
 def beyond_fit(machine: Machine, extremes: Floats) -> Flags:

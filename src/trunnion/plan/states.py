@@ -10,12 +10,18 @@ stands, and so it does when one of the constants changes.
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machine import Axis, Machine
+from trunnion.machine.inverse import Numbers
+
+#: Bits of a backpointer: the state before; whether the step from there is a rewind; and one that is blocked.
+STATE: Final = 0x3F
+REWOUND: Final = 0x80
+STUCK_FAST: Final = 0x40
 
 #: A value beyond a limit by less than this, mm or degrees, prints as the limit and is put onto it.
 LIMIT_TOLERANCE: Final = 1e-5
@@ -66,6 +72,26 @@ class States:
 
     def __len__(self) -> int:
         return len(self.table)
+
+
+class Choice(NamedTuple):
+    """What there is to choose from, in numbers that a kernel keeps in registers.
+
+    low, high  (5,) float  limits by column, infinite where none is to be kept
+    slides     bool        a slide has a limit to be kept
+    span       (4,) int    ``States.span``
+    start      (2,) float  rotary positions before the first row, degrees
+    side       (2,) float  the sign that each rotary axis is to have, 0: either
+    both       float       sum of the second angles of both branches, degrees, whole turns left out
+    """
+
+    low: Numbers
+    high: Numbers
+    slides: bool
+    span: tuple[int, ...]
+    start: Numbers
+    side: Numbers
+    both: float
 
 
 def states_of(machine: Machine) -> States:

@@ -5,7 +5,7 @@ This room is written from the language of the controls. It shares nothing with w
 
 from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.families import run_program
-from trunnion.reader.run import Comment, Finding, Happening, Orientation, Poses, Run, State, Written
+from trunnion.reader.run import Comment, Finding, Happening, Orientation, Poses, Run, State, Stretch, Written
 from trunnion.reader.subdivide import Samples, subdivide
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "Samples",
     "State",
     "Steps",
+    "Stretch",
     "Written",
     "run_program",
     "subdivide",

@@ -121,7 +121,7 @@ def xyz(machine: Machine) -> list[int]:
     return [machine.column(name) for name in "XYZ"]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def wind(
     rotary: Floats,
     way: Codes,
@@ -207,7 +207,7 @@ def nearest(held: float, value: float, endless: bool, low: float, high: float) -
     return close
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def joint_rows(
     packed: Packed,
     slides: tuple[int, int, int],

@@ -10,22 +10,27 @@ swivelled planes are already resolved to it.
 """
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, fields
 from enum import IntEnum, IntFlag
 from functools import cached_property
+from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import Severity
-from trunnion.machine import Machine, Packed, forward, pack
+from trunnion.machine import Machine, Packed, forward, pack, tool_axes
 from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.poses import joints_of
 from trunnion.toolpath import Arcs
 
 #: Rows that are worked out at a time: what is needed for them stays in the processor's cache.
 CHUNK = 8192
+
+#: Stretches from which on a second thread is worth its start.
+_WORTH_A_THREAD = 4
 
 
 class Written(IntFlag):
@@ -129,6 +134,13 @@ class Poses:
             column.setflags(write=False)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Stretch(Poses):
+    """Consecutive rows: ``half_way`` (k - 1, 3) is the tool axis where every joint is half-way from row to row."""
+
+    half_way: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """A program as a machine's control ran it; columns have n rows and are read-only.
@@ -216,7 +228,7 @@ class Run:
         tip[by_tip] = place[by_tip]
         return Poses(joints, tip, axis)
 
-    def stretch(self, first: int, end: int) -> Poses:
+    def stretch(self, first: int, end: int) -> Stretch:
         """Where axes and tool are in consecutive rows, led by the place before them: (end - first + 1) rows."""
         rows = slice(max(first - 1, 0), end)
         by_tip = self.state.by_tip.part(rows.start, end)
@@ -224,18 +236,29 @@ class Run:
         joints = joints_of(self.machine, self._packed, by_tip, place, self.rotary[rows])
         if first == 0:
             joints = np.concatenate((self.start[None], joints))
-        tip, axis = forward(self.machine, joints)
         if first and by_tip.all():
-            return Poses(joints, place, axis)
+            return Stretch(joints, place, *tool_axes(self.machine, joints))
+        tip, _ = forward(self.machine, joints)
         reached = tip[1:] if first == 0 else tip
         reached[by_tip] = place[by_tip]
-        return Poses(joints, tip, axis)
+        return Stretch(joints, tip, *tool_axes(self.machine, joints))
 
-    def stretches(self) -> Iterator[tuple[int, int, Poses]]:
-        """All rows, ``CHUNK`` at a time: first row, the row after the last, and ``stretch`` of them."""
-        for first in range(0, len(self), CHUNK):
-            end = min(first + CHUNK, len(self))
-            yield first, end, self.stretch(first, end)
+    def stretches(self) -> Iterator[tuple[int, int, Stretch]]:
+        """All rows, ``CHUNK`` at a time: first row, the row after the last, and ``stretch`` of them.
+
+        While one stretch is looked at the next one is worked out, on another core if there is one.
+        """
+        bounds = [(first, min(first + CHUNK, len(self))) for first in range(0, len(self), CHUNK)]
+        if len(bounds) < _WORTH_A_THREAD:
+            yield from ((first, end, self.stretch(first, end)) for first, end in bounds)
+            return
+        with ThreadPoolExecutor(1) as aside:
+            coming = aside.submit(self.stretch, *bounds[0])
+            for (first, end), after in zip_longest(bounds, bounds[1:]):
+                ready = coming.result()
+                if after is not None:
+                    coming = aside.submit(self.stretch, *after)
+                yield first, end, ready
 
     def oriented(self, first: int, end: int) -> Codes:
         """Column ``orientation`` of consecutive rows."""

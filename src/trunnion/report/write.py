@@ -4,14 +4,11 @@ In:     a ``Verification`` and a path.
 Out:    the file.
 """
 
-import os
-import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
 
 from trunnion.errors import InputError, Problem
+from trunnion.files import whole
 from trunnion.report.data import data
 from trunnion.report.facts import facts
 from trunnion.report.page import page
@@ -41,7 +38,7 @@ def write_report(verification: Verification, path: Path, *, control: str = "", m
     form = FORMS.get(path.suffix.lower())
     if form is None:
         raise InputError(Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json"))
-    with _whole(path) as sink:
+    with whole(str(path)) as sink:
         for piece in form(verification, control, made):
             sink.write(piece)
 
@@ -56,31 +53,3 @@ def _data(verification: Verification, control: str, made: str) -> Iterator[bytes
 
 #: Suffix -> what makes the bytes, piece by piece.
 FORMS: dict[str, Callable[[Verification, str, str], Iterator[bytes]]] = {".html": _page, ".json": _data}
-
-
-@contextmanager
-def _whole(path: Path) -> Iterator[BinaryIO]:
-    """A sink whose bytes stand under ``path`` once the block has ended without an error."""
-    try:
-        if path.exists() and not os.access(path, os.W_OK):
-            raise PermissionError(13, "Permission denied")
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise _cannot_write(path, error) from None
-    part = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as sink:
-            yield sink
-        if os.name == "posix":
-            umask = os.umask(0)
-            os.umask(umask)
-            part.chmod(0o666 & ~umask)  # mkstemp makes files that nobody else may read
-        part.replace(path)
-    except OSError as error:
-        raise _cannot_write(path, error) from None
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def _cannot_write(path: Path, error: OSError) -> InputError:
-    return InputError(Problem(str(path), 0, f"cannot be written: {error.strerror or error}", "name another file"))

@@ -24,6 +24,9 @@ from trunnion.verify.wanted import Wanted
 #: Rows compared at a time: what is needed for them stays in the processor's cache.
 CHUNK = 8192
 
+#: Partners handed out at a time: for the checks that look at little of each.
+_MANY = 65536
+
 #: How far ahead the two sides are searched for a place at which they fit again.
 _WINDOWS = (8, 48, 384)
 
@@ -59,10 +62,10 @@ class Pairs:
     pieces: tuple[Pieces, ...] = ()
 
     def chunks(self, first: int = 0, end: int | None = None) -> Iterator[tuple[Ints, Ints]]:
-        """Partners ``CHUNK`` at a time, from pair ``first`` to the one before ``end``: rows of run and CL files."""
+        """Partners, many at a time, from pair ``first`` to the one before ``end``: rows of run and CL files."""
         end = len(self.nc) if end is None else end
-        for start in range(first, end, CHUNK):
-            stop = min(start + CHUNK, end)
+        for start in range(first, end, _MANY):
+            stop = min(start + _MANY, end)
             yield self.nc.part(start, stop), self.cl.part(start, stop)
 
 

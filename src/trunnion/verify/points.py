@@ -145,7 +145,7 @@ class Tilt:
         return Tilt(first, one.sense, np.array(one.direction), np.array(two.direction))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def compare_rows(
     nc_tip: Floats,
     nc_axis: Floats,

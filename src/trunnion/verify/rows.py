@@ -48,6 +48,8 @@ class Rows:
     def part(self, start: int, end: int) -> Ints:
         """The numbers from the ``start``-th to the one before the ``end``-th, (k,); fewer if there are fewer."""
         first, count = self._cut(start, end)
+        if len(first) == 1:
+            return np.arange(first[0], first[0] + count[0])
         behind = np.cumsum(count)
         return np.arange(behind[-1] if len(behind) else 0) + np.repeat(first - behind + count, count)
 
@@ -61,10 +63,10 @@ class Rows:
         start, end = max(start, 0), min(end, len(self))
         if start >= end:
             return np.zeros(0, np.int64), np.zeros(0, np.int64)
-        low = int(np.searchsorted(self.begin, start, "right")) - 1
-        high = int(np.searchsorted(self.begin, end))
-        bounds = np.clip(self.begin[low : high + 1], start, end)
-        return self.first[low:high] + bounds[:-1] - self.begin[low:high], np.diff(bounds)
+        low = int(self.begin.searchsorted(start, "right")) - 1
+        high = int(self.begin.searchsorted(end))
+        bounds = np.minimum(np.maximum(self.begin[low : high + 1], start), end)
+        return self.first[low:high] + bounds[:-1] - self.begin[low:high], bounds[1:] - bounds[:-1]
 
     def before(self, row: int) -> int:
         """How many of the numbers are less than a number."""

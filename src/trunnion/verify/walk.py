@@ -13,20 +13,18 @@ that rounds corners needs less, one that stops exactly needs more.
 
 import math
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machine import Machine, forward
-from trunnion.reader import Orientation, Poses, Run
+from trunnion.reader import Orientation, Run, Stretch
 from trunnion.toolpath import Kind
 
 #: Rotary motion below this, degrees, bends nothing.
-_STILL = 1e-9
-
-#: Rows of a chunk that are worked out before the others.
-_FIRST = 256
+_STILL: Final = 1e-9
 
 
 @dataclass(slots=True)
@@ -108,7 +106,7 @@ class Walker:
             np.full((5, 2), -1, np.int64),
         )
 
-    def take(self, first: int, end: int, poses: Poses) -> None:
+    def take(self, first: int, end: int, poses: Stretch) -> None:
         """Add rows, in order; ``poses`` is the ``Run.stretch`` of them."""
         run, walk, count = self._run, self._walk, end - first
         state, kind, programmed = run.state, run.kind[first:end], run.programmed[first:end]
@@ -116,8 +114,9 @@ class Walker:
         angles = run.oriented(first, end) == Orientation.ANGLES
         times, shares, bend = np.empty((2, count)), np.empty((2, 5, count)), np.empty(count)
         walk_rows(
-            first, poses.joints, poses.tip, kind, programmed, tcp, machine_frame, state.feed.part(first, end),
-            state.feed_mode.part(first, end), state.rpm.part(first, end), run.arcs.row, self._arc_length, self._rotary,
+            first, poses.joints, poses.tip, poses.axis, poses.half_way, kind, programmed, tcp, machine_frame,
+            state.feed.part(first, end), state.feed_mode.part(first, end), state.rpm.part(first, end), run.arcs.row,
+            self._arc_length, self._rotary,
             self._rapid, self._acceleration, self._state, walk.extremes, walk.places, times, shares, angles, bend,
         )  # fmt: skip
         if self._times:
@@ -127,9 +126,10 @@ class Walker:
                 walk.speed[k].take(first, shares[0, k])
             if axis.acceleration is not None:
                 walk.acceleration[k].take(first, shares[1, k])
-        _bend_axis(run.machine, walk.bend_axis, first, poses, bend)
-        free = np.flatnonzero((bend > _STILL) & ~tcp & (kind == Kind.LINEAR))
-        if len(free):
+        walk.bend_axis.take(first, bend)
+        if not tcp.all():
+            turned = np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > _STILL
+            free = np.flatnonzero(turned & ~tcp & (kind == Kind.LINEAR))
             walk.bend_tip.take(first, _off_tip(run.machine, poses, free, count))
 
     def walked(self) -> Walk:
@@ -153,33 +153,7 @@ def _arc_lengths(run: Run) -> Floats:
     return np.asarray(np.hypot((angle + 2.0 * np.pi * run.arcs.turns) * run.arcs.radius, rise))
 
 
-def _bend_axis(machine: Machine, worst: Worst, first: int, poses: Poses, most: Floats) -> None:
-    """How far the tool axis is off half-way through rows that cut and turn a rotary axis.
-
-    ``most`` (k,) is more than the tool axis can be off, degrees: rows that cannot be the worst are not worked out.
-    """
-    needed = min(worst.limit, worst.value)
-    if len(most) > _FIRST:
-        # The likeliest ones first: they raise what is needed.
-        likely = np.argpartition(most, -_FIRST)[-_FIRST:]
-        needed = min(worst.limit, max(worst.value, float(_off_axis(machine, poses, likely).max())))
-    rows = np.flatnonzero(most >= max(needed, _STILL))
-    off = np.zeros(len(most))
-    off[rows] = _off_axis(machine, poses, rows)
-    worst.take(first, off)
-
-
-def _off_axis(machine: Machine, poses: Poses, rows: Ints) -> Floats:
-    """Degrees between the tool axis half-way through rows and the great circle from end to end, (k,)."""
-    joints = poses.joints[rows]
-    joints += poses.joints[rows + 1]
-    joints *= 0.5
-    off = np.empty(len(rows))
-    beside_rows(poses.axis, rows, forward(machine, joints)[1], off)
-    return off
-
-
-def _off_tip(machine: Machine, poses: Poses, rows: Ints, count: int) -> Floats:
+def _off_tip(machine: Machine, poses: Stretch, rows: Ints, count: int) -> Floats:
     """Mm between the tip half-way through ``rows`` and its straight line; of all ``count`` rows, 0 in the others."""
     middle = forward(machine, 0.5 * (poses.joints[rows] + poses.joints[rows + 1]))[0]
     away = middle - 0.5 * (forward(machine, poses.joints[rows])[0] + poses.tip[rows + 1])
@@ -189,26 +163,28 @@ def _off_tip(machine: Machine, poses: Poses, rows: Ints, count: int) -> Floats:
 
 
 @njit(cache=True)
-def beside_rows(axis: Floats, rows: Ints, half_way: Floats, off: Floats) -> None:
-    """Write ``off`` (k,): degrees from ``half_way`` (k, 3) to the middle of the great circle between two axes.
+def beside(axis: Floats, half_way: Floats, row: int) -> float:
+    """Degrees from ``half_way`` (k, 3) at a row to the middle of the great circle from ``axis`` there to the next one.
 
-    They are ``axis`` (n + 1, 3) at ``rows`` (k,) and at the rows after them. Opposite ones have no middle: 0.
+    Opposite tool axes have no middle: 0.
     """
-    for k in range(rows.shape[0]):
-        row = rows[k]
-        x, y, z = axis[row, 0] + axis[row + 1, 0], axis[row, 1] + axis[row + 1, 1], axis[row, 2] + axis[row + 1, 2]
-        length = math.sqrt(x * x + y * y + z * z)
-        off[k] = 0.0
-        if length > 0.0:
-            x, y, z = half_way[k, 0] - x / length, half_way[k, 1] - y / length, half_way[k, 2] - z / length
-            off[k] = math.degrees(2.0 * math.asin(min(1.0, 0.5 * math.sqrt(x * x + y * y + z * z))))
+    x, y, z = axis[row, 0] + axis[row + 1, 0], axis[row, 1] + axis[row + 1, 1], axis[row, 2] + axis[row + 1, 2]
+    length = math.sqrt(x * x + y * y + z * z)
+    if not length > 0.0:
+        return 0.0
+    x, y, z = half_way[row, 0] - x / length, half_way[row, 1] - y / length, half_way[row, 2] - z / length
+    chord = math.sqrt(x * x + y * y + z * z)
+    # The angle of a small chord is the chord itself, to its last digit.
+    return math.degrees(chord if chord < 1e-8 else 2.0 * math.asin(min(1.0, 0.5 * chord)))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def walk_rows(
     first: int,
     joints: Floats,
     tip: Floats,
+    axis: Floats,
+    half_way: Floats,
     kind: Codes,
     programmed: Codes,
     tcp: Flags,
@@ -231,16 +207,13 @@ def walk_rows(
 ) -> None:
     """Go through k rows from row ``first`` on.
 
-    joints, tip   (k + 1, …)     with the place before the rows in front; all other columns have k rows
+    joints, tip, axis (k + 1, …) with the place before the rows in front; all other columns have k rows
     rapid, most   (5,) float64   mm/min or deg/min, mm/s^2 or deg/s^2; infinite where not stated
     state         (7,) float64   minutes of the row before if it was at feed (else 0), next arc, speeds of that row (5)
     times         (2, k) float64 written: seconds, and speed of the tip, mm/min
     shares        (2, 5, k) float64  written: shares of ``rapid`` and ``most``, 0 for rapids
     angles        (k,) bool      rotary axes go linearly, not the tool axis on a great circle
-    bend          (k,) float64   written: more than the tool axis can be off half-way, degrees
-
-    A curve whose second derivative is at most s is off its chord by at most s/8 half-way; here s is the square of the
-    angles turned together, in radians. A little more allows for the chord's middle being nearer than the circle's.
+    bend          (k,) float64   written: how far the tool axis is off half-way in rows that cut, degrees
     """
     velocity = state[2:]
     minutes_before = state[0]
@@ -250,7 +223,6 @@ def walk_rows(
         slowest = 0.0
         slides = 0.0
         turned = 0.0
-        both = 0.0
         placed = not machine_frame[at] and (tcp[at] or programmed[at] & 7)
         for k in range(5):
             value = joints[at + 1, k]
@@ -258,7 +230,6 @@ def walk_rows(
             slowest = max(slowest, moved / rapid[k])
             if rotary[k]:
                 turned = max(turned, moved)
-                both += moved
             else:
                 slides += moved * moved
             if rotary[k] or placed:
@@ -291,8 +262,8 @@ def walk_rows(
         times[0, at] = 60.0 * took
         times[1, at] = way / took if took > 0.0 else 0.0
         bend[at] = 0.0
-        if kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
-            bend[at] = both * both * (math.pi / 180.0) / 6.0 if both < 60.0 else 180.0
+        if turned > _STILL and kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
+            bend[at] = beside(axis, half_way, at)
         for k in range(5):
             shares[0, k, at] = 0.0
             shares[1, k, at] = 0.0

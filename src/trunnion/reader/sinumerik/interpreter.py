@@ -26,6 +26,7 @@ from trunnion.reader.sinumerik.words import (
     CONSTANTS,
     FRAMES,
     G_FEEDS,
+    G_LIMITS,
     G_MACHINE,
     G_NAMED,
     G_NO_MOTION,
@@ -176,7 +177,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
             return
         if block.feed is not None:
             control.place[3] = block.feed * control.feeds
-        if block.speed is not None:
+        if block.speed is not None and not G_LIMITS.intersection(block.g):
             control.rpm.set(control.row, abs(block.speed))
             control.event("speed", abs(block.speed))
         if block.tool is not None:

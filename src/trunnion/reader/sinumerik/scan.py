@@ -55,7 +55,7 @@ def letters(rotary: tuple[str, str]) -> Codes:
     return table
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def scan(
     text: Bytes,
     end: int,
