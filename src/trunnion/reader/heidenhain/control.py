@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Machine, forward
+from trunnion.machine import Axis, Machine, forward
 from trunnion.machine.inverse import solve_slides
 from trunnion.reader import poses, tilt
 from trunnion.reader.columns import Changes
@@ -70,8 +70,7 @@ class HeidenhainControl(Control):
         """What letters mean to the kernel now: rotary words only where they are positions and nothing else moves."""
         return self._tables[self.by_angles or (self.tilted and not self.tcp)]
 
-    @property
-    def shorter(self) -> bool:
+    def shorter(self, axis: Axis) -> bool:
         """With M126."""
         return self.shortest_path
 
