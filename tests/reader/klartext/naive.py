@@ -93,7 +93,7 @@ def shift(draw: st.DrawFn, program: Program) -> None:
 def arc(draw: st.DrawFn, program: Program) -> None:
     """CC and a half circle by C, or whole turns of a helix by CP; both end where whole micrometres are."""
     radius = draw(st.integers(1000, 50_000))
-    x, y, z = program.place
+    x, y, _ = program.place
     sense = draw(st.sampled_from(["+", "-"]))
     if draw(st.booleans()):
         program.lines.append(f"CC X{number(draw, x + radius)} Y{number(draw, y)}")

@@ -16,8 +16,8 @@ from trunnion.toolpath import Kind
 
 def test_block_numbers_comments_structure_and_both_separators(run: Runner) -> None:
     text = (
-        "0 BEGIN PGM 11 MM\n;all\n* - Face\n1 L X+1,5 Y-2.25 ;there\n  L Z 25.000 FMAX\n4L X2\nl y+3 f100\n5 END PGM 11 MM\n"
-        "L X+99"
+        "0 BEGIN PGM 11 MM\n;all\n* - Face\n1 L X+1,5 Y-2.25 ;there\n  L Z 25.000 FMAX\n4L X2\nl y+3 f100\n"
+        "5 END PGM 11 MM\nL X+99"
     )
     found = run(text)
     assert found.findings == ()
@@ -224,8 +224,8 @@ def test_presets_are_one(run: Runner) -> None:
 
 
 def test_tolerance_and_dwell(run: Runner) -> None:
-    text = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.02\nCYCL DEF 32.2 HSC-MODE:0 TA0.5\nCYCL DEF 9.0 DWELL TIME\nCYCLE DEF 9.1 5"
-    found = run(text)
+    tolerance = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.02\nCYCL DEF 32.2 HSC-MODE:0 TA0.5\n"
+    found = run(tolerance + "CYCL DEF 9.0 DWELL TIME\nCYCLE DEF 9.1 5")
     assert found.findings == ()
     assert [(e.kind, e.value) for e in found.events] == [
         ("cycle32", "T0.02"), ("cycle32", "HSC-MODE:0 TA0.5"), ("dwell", 5.0),
