@@ -5,16 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.control.definition import library
-from trunnion.definition import extended
 from trunnion.errors import InputError, Problem
-from trunnion.machine import Machine, load_machine
+from trunnion.machine import load_machine
 
 if TYPE_CHECKING:
     from trunnion.verify import Verification
-
-#: Families of controls whose programs can be read.
-READERS = ("sinumerik_840d",)
 
 #: What a report's name may end in.
 _REPORTS = (".html", ".json")
@@ -24,13 +19,13 @@ def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
     from trunnion.cli.post import point
-    from trunnion.reader import run_program
+    from trunnion.reader import reader_of, run_program
     from trunnion.verify import Allowed, Settings, check_lines, place_lines, verify
 
     if arguments.report:
         check_report(arguments.report)
     machine = load_machine(arguments.machine)
-    check_reader(machine)
+    reader_of(machine)
     if arguments.zero:
         machine = replace(machine, workpiece_zero=point(arguments.zero))
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
@@ -51,15 +46,6 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report:
         report(found, arguments.report)
     return 0 if found.passed else 1
-
-
-def check_reader(machine: Machine) -> None:
-    """Raise ``InputError`` for machines whose programs nobody can read yet."""
-    table = extended(machine.control, library())
-    family = table.text("family", READERS[0])
-    if family not in READERS:
-        what = f"its control is a {family}, whose programs cannot be read yet"
-        raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
 
 
 def check_report(file: str) -> None:

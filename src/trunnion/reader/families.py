@@ -58,11 +58,23 @@ def run_program(
         If the file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
         control. What is only not understood is in ``Run.findings``.
     """
+    reader = reader_of(machine, family)
+    return reader(Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
+
+
+def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Interpreter[Any]]:
+    """Return the interpreter of a family, by default that of the machine's control.
+
+    Raises
+    ------
+    InputError
+        If nobody can read its programs yet.
+    """
     name = family_of(machine) if family is None else family
     if name not in READERS:
-        what = f"has the control {name!r}, whose programs cannot be read yet"
-        raise InputError(Problem(machine.key, 0, what, f"there are readers for {', '.join(READERS)}"))
-    return READERS[name](Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
+        what = f"its control is a {name}, whose programs cannot be read yet"
+        raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
+    return READERS[name]
 
 
 @lru_cache(maxsize=8)

@@ -31,7 +31,6 @@ class Program:
     place: list[int] = field(default_factory=lambda: [0, 0, 0])
     shift: list[int] = field(default_factory=lambda: [0, 0, 0])
     feed: float = math.nan
-    parameters: dict[int, int] = field(default_factory=dict)
 
     def row(self, place: list[float], rapid: bool) -> None:
         """Note where a block leads to, in the program's coordinates, um."""
@@ -58,7 +57,7 @@ def line(draw: st.DrawFn, program: Program) -> None:
         value = draw(microns)
         how = draw(st.sampled_from(["", "I", "Q"]))
         if how == "Q":
-            which = draw(st.integers(1, 20))
+            which = draw(st.integers(1, 9)) + 10 * axis
             program.lines.append(f"Q{which} = {number(draw, value)}")
             words.append(f"{'XYZ'[axis]}{draw(st.sampled_from(['+', '', '-']))}Q{which}")
             program.place[axis] = -value if "-" in words[-1] else value

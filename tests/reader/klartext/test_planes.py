@@ -210,6 +210,8 @@ def test_m140_goes_back_along_the_tool(run: Runner) -> None:
     at = slides(found)[3]
     assert ((at >= limits[:, 0] - 1e-9) & (at <= limits[:, 1] + 1e-9)).all()
     assert np.isclose(at, limits[:, 1]).any()
+    # The end of the travel is a position of the machine.
+    assert found.machine_frame.tolist() == [False, False, False, True]
 
 
 def test_a_retract_before_a_plane_is_made_first(run: Runner) -> None:

@@ -60,7 +60,8 @@ def test_extents_and_holes_are_those_of_the_text(name: str) -> None:
 def scanned(text: str) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], list[list[float]]]:
     """Ends of all blocks with axes that are no machine positions, and bottoms of holes."""
     place, shift = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
-    ends, holes = [], []
+    ends: list[list[float]] = []
+    holes: list[list[float]] = []
     distance = depth = 0.0
     for raw in text.splitlines():
         line = re.sub(r"^\s*\d+\s+(?=\S)", "", raw).split(";")[0].strip()

@@ -250,7 +250,9 @@ class HeidenhainControl(Control):
             self.note("M140: the slides cannot go along the tool axis", Severity.ERROR)
             return
         per_mm = one - slides
-        if math.isinf(distance):
+        # To the end of the travel is a position of the machine, wherever the workpiece sits.
+        to_the_end = math.isinf(distance)
+        if to_the_end:
             distance = self._room(slides, per_mm)
             if math.isinf(distance):
                 self.note("M140 MB MAX: the travel of the slides is not known, the tool stays", Severity.WARNING)
@@ -260,7 +262,9 @@ class HeidenhainControl(Control):
             self.place[3] = feed
         bits = sum(1 << axis for axis in range(3) if abs(per_mm[axis]) > 1e-9)
         still = [math.nan, math.nan]
+        self.machine_rows.set(self.row, to_the_end)
         self.move_axes(Kind.RAPID if rapid else Kind.LINEAR, slides + distance * per_mm, still, 0, bits)
+        self.machine_rows.set(self.row, False)
         self.place[3] = kept
 
     def _room(self, slides: Floats, per_mm: Floats) -> float:

@@ -16,31 +16,12 @@ from trunnion.reader.heidenhain.blocks import LONGEST, Line, split_line, words
 from trunnion.reader.heidenhain.control import HeidenhainControl
 from trunnion.reader.heidenhain.definitions import Definitions
 from trunnion.reader.heidenhain.functions import ASSIGNED, assign, execute
-from trunnion.reader.heidenhain.motion import FASTEST, Block, circle_of, polar_end, read_block, value_of
+from trunnion.reader.heidenhain.machine import Functions, tool_block
+from trunnion.reader.heidenhain.motion import Block, circle_of, polar_end, read_block
 from trunnion.reader.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.reader.heidenhain.text import SUFFIXES, KlartextText
 from trunnion.reader.heidenhain.tilting import plane_block, tcpm_block
-from trunnion.reader.heidenhain.words import (
-    BLOCKS_NAMED,
-    M_CALL,
-    M_CALL_MODAL,
-    M_ENDS,
-    M_EVENTS,
-    M_LATE,
-    M_MACHINE,
-    M_NAMED,
-    M_NOT_SHORTEST,
-    M_PER_MINUTE,
-    M_PER_TURN,
-    M_RETRACT,
-    M_SECOND_MACHINE,
-    M_SHORTEST,
-    M_SILENT,
-    M_SPINDLE,
-    M_TCP,
-    M_TCP_OFF,
-    PATHS,
-)
+from trunnion.reader.heidenhain.words import BLOCKS_NAMED, M_CALL, M_MACHINE, M_SECOND_MACHINE, PATHS
 from trunnion.reader.interpreter import STEPS, End, Interpreter
 from trunnion.reader.text import Folder, Text
 from trunnion.reader.word import How
@@ -51,18 +32,11 @@ DEEPEST_LABEL: Final = 20
 #: Feeds of inch programs count tenths of an inch.
 _TENTH: Final = 0.1 * INCH
 
-#: M words that are looked at in other places, or change only how the control drives.
-_ELSEWHERE: Final = frozenset({M_MACHINE, M_SECOND_MACHINE, M_CALL, *M_EVENTS, *M_SILENT})
-
 #: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
 _PLAIN = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][ \t])")
 _LOOK: Final = 32
 
 _LABEL = re.compile(r"(Q[LR]?[0-9]{1,4})|([0-9]{1,5})")
-_TOOL = re.compile(
-    r"[ \t]*(?P<kind>CALL|DEF)[ \t]*"
-    r'(?:"(?P<name>[^"]*)"|(?P<number>[0-9]+(?:[.,][0-9]+)?)|(?P<parameter>Q[LR]?[0-9]{1,4}))?(?![0-9.,])'
-)
 _CYCLE = re.compile(r"[ \t]*(DEF|CALL)(?![A-Z])")
 _CALL = re.compile(r"[ \t]*(LBL|PGM)(?![A-Z])")
 _HEAD = re.compile(r"([A-Z]+)")
@@ -97,7 +71,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         #: Parts of a block that goes on over several lines.
         self._begun: list[str] = []
         self._began = 0, -1
-        self._modal = False
+        self._functions = Functions(self._control, self._note)
         self._tool_feed: float | None = None
         self._heads: dict[str, Callable[[Activation, str], None]] = {
             "BEGIN": self._begin,
@@ -125,7 +99,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         return Activation(text, 0)
 
     def _may_be_plain(self, text: Text) -> bool:
-        if self._begun or self._modal:
+        if self._begun or self._functions.modal_call:
             return False
         return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
 
@@ -227,9 +201,9 @@ class HeidenhainInterpreter(Interpreter[Activation]):
 
     def _stop(self, call: Activation, rest: str) -> None:
         block = read_block(words(rest), call.parameters)
-        self._early(block)
+        self._functions.early(block)
         self._control.event("stop")
-        self._late(call, block)
+        self._functions.late(block)
 
     # Motion
 
@@ -245,11 +219,10 @@ class HeidenhainInterpreter(Interpreter[Activation]):
             raise KlartextError(f"{head} has no polar coordinates")
         circle = circle_of(control, head, block) if head[0] == "C" else None
         vector = block.tool_axis
-        self._early(block)
-        if block.feed is not None:
-            control.place[3] = block.feed * control.feeds
-        elif block.feed_of_tool:
-            self._feed_of_tool()
+        feed = self._feed(block)
+        self._functions.early(block)
+        if feed is not None:
+            control.place[3] = feed
         control.kind = RAPID if block.rapid else LINEAR
         if block.side:
             text = "radius compensation is not simulated: the path is that of the tool centre as programmed"
@@ -268,11 +241,11 @@ class HeidenhainInterpreter(Interpreter[Activation]):
                 feed_written=block.feed is not None and not block.rapid,
             )
         calls = any(code == M_CALL for code, _ in block.m)
-        if calls or (self._modal and moves and not machine):
+        if calls or (self._functions.modal_call and moves and not machine):
             self._drill(call)
         if calls:
-            self._modal = False
-        self._late(call, block)
+            self._functions.modal_call = False
+        self._functions.late(block)
 
     def _check_axes(self, block: Block) -> None:
         """Say which axes the machine does not have, and take them out."""
@@ -281,10 +254,13 @@ class HeidenhainInterpreter(Interpreter[Activation]):
             self._note(f"the machine has no axis {name}: its word is not executed", Severity.ERROR)
             del block.axes[name]
 
-    def _feed_of_tool(self) -> None:
-        if self._tool_feed is None:
+    def _feed(self, block: Block) -> float | None:
+        """Feed of a block in mm/min, None if it has none."""
+        if block.feed is not None:
+            return block.feed * self._control.feeds
+        if block.feed_of_tool and self._tool_feed is None:
             raise KlartextError("F AUTO, and TOOL CALL has no F")
-        self._control.place[3] = self._tool_feed
+        return self._tool_feed if block.feed_of_tool else None
 
     def _pole(self, call: Activation, rest: str) -> None:
         control = self._control
@@ -308,93 +284,12 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         self._count(len(made))
         self._control.drill(made)
 
-    # M words
-
-    def _early(self, block: Block) -> None:
-        for code, arguments in block.m:
-            if code not in M_LATE:
-                self._m(code, arguments)
-
-    def _late(self, call: Activation, block: Block) -> None:
-        for code, arguments in block.m:
-            if code in M_LATE:
-                self._m(code, arguments)
-
-    def _m(self, code: int, arguments: dict[str, float | None]) -> None:
-        control = self._control
-        if code in M_SPINDLE:
-            control.spindle.set(control.row, M_SPINDLE[code])
-        for kind, value in M_EVENTS.get(code, ()):
-            control.event(kind, value)
-        if code in (M_SHORTEST, M_NOT_SHORTEST):
-            control.shortest_path = code == M_SHORTEST
-        elif code in (M_TCP, M_TCP_OFF):
-            control.by_angles = False
-            control.set_tcp(code == M_TCP)
-        elif code in (M_PER_TURN, M_PER_MINUTE):
-            control.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
-        elif code == M_RETRACT:
-            self._retract(arguments)
-        elif code == M_CALL_MODAL:
-            self._modal = True
-        elif code in M_ENDS:
-            control.event("end", f"M{code}")
-            raise End
-        elif code in M_NAMED:
-            text, grave = M_NAMED[code]
-            self._note(f"M{code}: {text}", Severity.ERROR if grave else Severity.WARNING)
-        elif code not in _ELSEWHERE:
-            control.event("m", float(code))
-
-    def _retract(self, arguments: dict[str, float | None]) -> None:
-        control = self._control
-        distance = arguments.get("MB")
-        if distance is None and "MAX" not in arguments:
-            raise KlartextError("M140 needs MB and how far")
-        feed = arguments.get("F")
-        control.retract(
-            float("inf") if distance is None else distance * control.lengths,
-            rapid=feed is None,
-            feed=None if feed is None else feed * control.feeds,
-        )
-
     # Tools and cycles
 
     def _tool(self, call: Activation, rest: str) -> None:
-        control = self._control
-        match = _TOOL.match(rest)
-        if match is None:
-            raise KlartextError("TOOL needs CALL or DEF")
-        said = words(rest, match.end())
-        name = match["name"]
-        if match["number"]:
-            name = f"{float(match['number'].replace(',', '.')):.10g}"
-        elif match["parameter"]:
-            name = f"{call.parameters[canonical(match['parameter'])]:.10g}"
-        if match["kind"] == "DEF":
-            if name is not None and not said:
-                control.choose(name)
-            return
-        values = {word.name: value_of(word.operand, call.parameters) for word in said if word.operand is not None}
-        flags = [word.name for word in said if word.operand is None]
-        unknown = [*(set(flags) - {"X", "Y", "Z"}), *(values.keys() - {"S", "F", "DL", "DR", "DR2"})]
-        if unknown or any(word.text is not None for word in said):
-            raise KlartextError(f"unknown word {unknown[0] if unknown else 'in quotes'}")
-        if flags:
-            control.plane = "XYZ".index(flags[-1])
-        if name is not None:
-            control.choose(name)
-            control.change_tool()
-        if "S" in values:
-            control.rpm.set(control.row, abs(values["S"]))
-            control.event("speed", abs(values["S"]))
-        if "F" in values:
-            if not 0.0 <= values["F"] <= FASTEST:
-                raise KlartextError(f"a feed is not from 0 to {FASTEST:g}")
-            self._tool_feed = control.place[3] = values["F"] * control.feeds
-        deltas = tuple(values.get(key) for key in ("DL", "DR", "DR2"))
-        if any(deltas):
-            control.event("delta", deltas)
+        feed = tool_block(self._control, rest, call.parameters)
+        if feed is not None:
+            self._tool_feed = feed
 
     def _cycle(self, call: Activation, rest: str) -> None:
         match = _CYCLE.match(rest)
@@ -413,14 +308,14 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         block = read_block(said[1:] if position else said, call.parameters)
         if block.axes and not position:
             raise KlartextError("CYCL CALL takes no positions")
-        self._early(block)
+        self._functions.early(block)
         if block.feed is not None:
             self._control.place[3] = block.feed * self._control.feeds
         if position:
             self._control.kind = LINEAR if block.feed is not None and not block.rapid else RAPID
             self._control.move(block.axes, None, feed_written=block.feed is not None)
         self._drill(call)
-        self._late(call, block)
+        self._functions.late(block)
 
     # Planes
 

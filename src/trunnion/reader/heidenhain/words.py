@@ -7,7 +7,7 @@ def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-#: How path blocks begin; the last four are known and not simulated.
+#: How path blocks begin.
 PATHS: Final = _words("L LN LP C CR CP CT CTP")
 
 #: Blocks that are known and whose effect on the path is not simulated: what the reader says instead.
@@ -31,9 +31,6 @@ BLOCKS_NAMED: Final = {
     "CONTOUR": "contour cycles are not simulated",
     "OPEN": "files are not written",
 }
-
-#: Blocks without an effect on the path.
-BLOCKS_SILENT: Final = _words("BLK")
 
 #: M words that act on the path, on the cycles or on the program.
 M_MACHINE: Final = 91
