@@ -36,7 +36,7 @@ def test_it_also_looks_at_a_program_alone(capfd: pytest.CaptureFixture[str]) -> 
     code, out, _ = verify(capfd, PROGRAM)
     assert code == 0
     assert [line.split()[0] for line in out.splitlines() if " ok " in line] == [
-        "offset", "span", "travel", "speed", "acceleration", "modal", "words",
+        "offset", "span", "travel", "speed", "acceleration", "turns", "modal", "words",
     ]  # fmt: skip
 
 
@@ -127,7 +127,7 @@ def machine_without_tcp(folder: Path) -> Path:
 
 CHECKS = [
     "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "span", "travel", "speed",
-    "acceleration", "modal", "words",
+    "acceleration", "turns", "modal", "words",
 ]  # fmt: skip
 
 

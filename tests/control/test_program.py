@@ -149,8 +149,8 @@ def test_an_oblique_arc_becomes_lines(post: Post) -> None:
 
 
 def test_an_arc_under_a_tilted_steady_tool_axis_stays_an_arc(post: Post) -> None:
-    lines = motion(post(OFF_AXIS + ARC.format(centre="20,0,5", normal="0,0,1", end="30,0,5") + FOOT))
-    assert lines[2] == "G3 X30. Y0.0 I10. J0.0"
+    arc = ARC.format(centre="20,0,5", normal="0,0,1", end="30,0,5")
+    assert motion(post(OFF_AXIS + arc + FOOT, "--set", "manner=tcp"))[2] == "G3 X30. Y0.0 I10. J0.0"
 
 
 def test_a_second_operation_with_the_same_tool_changes_no_tool_and_starts_the_spindle_again(post: Post) -> None:
@@ -171,7 +171,7 @@ def test_a_second_tool_is_changed_after_coolant_off_and_from_home(post: Post) ->
 
 
 def test_rotary_axes_are_placed_before_traori(post: Post) -> None:
-    lines = post(OFF_AXIS + FOOT)
+    lines = post(OFF_AXIS + FOOT, "--set", "manner=tcp")
     assert lines.index("G0 B30. C0.0") < lines.index("TRAORI")
     assert "TRAFOOF" in lines[lines.index(";End of Path") :]
 

@@ -52,7 +52,7 @@ def _post(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",
-        help="what templates print (title, part, date, method, …), units, zero, rewind, clearance; may be repeated",
+        help="what templates print (title, part, date, method, …), or how to read, place and plan; may be repeated",
     )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")

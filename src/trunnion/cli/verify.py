@@ -1,12 +1,14 @@
 """``trunnion verify``: an NC program, read back by an author of its own, run, and compared with its CL files."""
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.errors import InputError, Problem
 from trunnion.machine import load_machine
+from trunnion.plan import Decision
 
 if TYPE_CHECKING:
     from trunnion.verify import Verification
@@ -20,7 +22,7 @@ def run(arguments: argparse.Namespace) -> int:
     from trunnion.cl import read_cl
     from trunnion.cli.post import point
     from trunnion.reader import reader_of, run_program
-    from trunnion.verify import Allowed, Settings, check_lines, place_lines, verify
+    from trunnion.verify import Allowed, Settings, check_lines, place_lines, time_lines, verify
 
     if arguments.report:
         check_report(arguments.report)
@@ -42,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
         ),
         columns=bool(arguments.report),
     )
-    print(*check_lines(found), *place_lines(found), sep="\n")
+    print(*check_lines(found), *place_lines(found), *time_lines(found), sep="\n")
     if arguments.report:
         report(found, arguments.report)
     return 0 if found.passed else 1
@@ -54,11 +56,11 @@ def check_report(file: str) -> None:
         raise InputError(Problem(file, 0, "a report is a page or data", f"let its name end in {' or '.join(_REPORTS)}"))
 
 
-def report(found: "Verification", file: str) -> None:
-    """Write the report of a verification."""
-    from trunnion.report import write_report
+def report(found: "Verification", file: str, decisions: Sequence[Decision] = ()) -> None:
+    """Write the report of a verification, with what the planner decided."""
+    from trunnion.report import Decided, write_report
 
-    write_report(found, Path(file))
+    write_report(found, Path(file), decisions=[Decided(d.operation, d.file, d.line, d.why, d.text) for d in decisions])
 
 
 def _offset(text: str | None, with_cl: bool) -> int | None:

@@ -15,9 +15,9 @@ from trunnion.control import sinumerik
 from trunnion.control.definition import Control
 from trunnion.control.template import Value
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.machine import Machine
+from trunnion.machine import Machine, inverse
 from trunnion.nc import ABSENT, CHUNK, BlockWriter, counts
-from trunnion.plan import Motion
+from trunnion.plan import Manner, Motion
 from trunnion.toolpath import (
     BlockSkip,
     Coolant,
@@ -177,8 +177,7 @@ class _Author:
         self._writer.lines(self._control.templates[name].expand(values, formats))
 
     def _operation(self, motion: Motion) -> None:
-        kind = "three_axis" if motion.three_axis else "five_axis"
-        values = self._values(motion)
+        kind, values = self._kind(motion), self._values(motion)
         self._expand("operation_start", values, motion)
         tool = str(values["tool"])
         if tool != self._tool:
@@ -190,11 +189,42 @@ class _Author:
         for word, code in self._control.in_force.items():
             self._writer.remember(word, code)
         self._expand(f"approach_{kind}", values, motion)
+        if motion.plane is not None:
+            self._expand(f"plane_on_{kind}", values, motion)
         for word, column in (("primary", self._primary), ("secondary", self._secondary)):
             self._writer.remember(word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word)[0]))
-        self._motion(motion)
+        self._motion(replace(motion, operation=motion.as_written()))
         self._back_in_force()
         self._expand(f"operation_end_{kind}", values, motion)
+
+    def _kind(self, motion: Motion) -> str:
+        """What the templates of this kind of operation are called."""
+        if motion.manner is Manner.TILTED:
+            return _setting(self._program, "plane")
+        return "three_axis" if motion.three_axis else "five_axis"
+
+    def _plane(self, motion: Motion) -> dict[str, Value]:
+        """What templates may print of a tilted plane: its origin, its turning angles and the side of the machine.
+
+        The side is -1 or 1: of the two solutions that stand the tool on the plane, the one with the lower or the higher
+        value of the rotary axis farther from the workpiece. Where there is only one, either word means it.
+        """
+        names = "plane_x", "plane_y", "plane_z", "plane_first", "plane_second", "plane_third"
+        if motion.plane is None:
+            return dict.fromkeys((*names, "plane_mode", "plane_side"))
+        mode = _setting(self._program, "swivel_mode") if _setting(self._program, "plane") == "cycle800" else "57"
+        angles = sinumerik.turns(motion.plane.matrix(), sinumerik.sequence(int(mode)))
+        moves, column = motion.operation.moves, self._program.machine.rotary[1]
+        both = inverse(self._program.machine, moves.tip[:1], moves.axis[:1]).joints[:, 0, column]
+        apart = both - motion.rotary[0, 1]
+        apart -= 360.0 * np.rint(apart / 360.0)
+        lower = np.argmin(np.abs(apart)) == np.argmin(both)
+        side = "-1" if lower else "1"
+        return {
+            **dict(zip(names, (*motion.plane.origin, *angles), strict=True)),
+            "plane_mode": mode,
+            "plane_side": side,
+        }
 
     def _values(self, motion: Motion) -> dict[str, Value]:
         """What templates may print in this operation."""
@@ -222,6 +252,7 @@ class _Author:
         return {
             **values,
             **angles,
+            **self._plane(motion),
             "primary": self._letters[0],
             "secondary": self._letters[1],
             "machine": self._program.machine.name,
@@ -354,8 +385,9 @@ class _Author:
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
-        columns["primary"] = self._angle_counts(motion.rotary[part, self._column[self._primary]], "primary")
-        columns["secondary"] = self._angle_counts(motion.rotary[part, self._column[self._secondary]], "secondary")
+        if motion.plane is None:  # in a plane the rotary axes stand where they were put
+            columns["primary"] = self._angle_counts(motion.rotary[part, self._column[self._primary]], "primary")
+            columns["secondary"] = self._angle_counts(motion.rotary[part, self._column[self._secondary]], "secondary")
         columns["motion"] = np.where(rapid, control.codes["rapid"], control.codes["linear"]).astype(np.int64)
         columns["feed"] = np.where(rapid, ABSENT, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"]))
         mode = np.where(moves.per_rev[part], control.codes["feed_per_revolution"], control.codes["feed_per_minute"])

@@ -5,22 +5,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
 from trunnion.plan.decisions import Planned, decisions, pose_words
-from trunnion.plan.motion import Decision, Manner, Motion, Plan
+from trunnion.plan.departures import Asked, near_pole, slower, source_rows
+from trunnion.plan.frames import into_frame, into_plane, seen_from
+from trunnion.plan.kinds import contradictions, manner_of, plane_of
+from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
 from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.plan.wishes import Wishes
-from trunnion.toolpath import Frame, From, Moves, Operation, Toolpath
-
-#: An operation is three-axis when no component of its tool axis differs from +Z by more than this.
-_UPRIGHT = 1e-7
+from trunnion.toolpath import Frame, Moves, Operation, Toolpath
 
 #: How many rows of one kind of trouble are named one by one.
 _NAMED = 5
@@ -46,19 +45,33 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     InputError
         When there is nothing to plan.
     Refused
-        When no position of the machine gives a tool axis; of that no program can be made at all.
+        When no position of the machine gives a tool axis, or an operation cannot be made in the manner that is wished
+        for; of that no program can be made at all.
     """
     wishes = wishes or Wishes()
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
     program_frame = pairs[0][1].frame
+    keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
+    against: list[Problem] = []
     for path, original in pairs:
         operation = into_frame(original, program_frame)
-        operation = lines_for_arcs(operation, plain_arcs(operation), chord_tolerance)
-        stretches.append(_stretch(path.file, operation, machine, wishes))
-    problems = [problem for stretch in stretches for problem in stretch.problems]
+        manner = manner_of(operation, wishes.manner)
+        against += contradictions(path.file, operation, manner)
+        plane = None
+        if manner is Manner.TILTED:
+            plane = plane_of(operation.moves.axis[0], seen_from(original.frame, program_frame))
+        kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
+        operation = lines_for_arcs(operation, kept, chord_tolerance)
+        source = source_rows(original, operation)
+        stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
+        stretches.append(replace(stretch, manner=manner, plane=plane))
+    if against:
+        raise Refused(against)
+    problems = [*_unknown_speeds(pairs[0][0].file, machine, wishes)]
+    problems += [problem for stretch in stretches for problem in stretch.problems]
     if any((stretch.poses.outcome == OUT_OF_REACH).any() for stretch in stretches):
         raise Refused(problems)
     if machine.workpiece_zero is None:
@@ -69,7 +82,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stretch:
-    """An operation with its poses, as it is before rewinds are put in, and the file that it came from."""
+    """An operation with its poses, as it is before rewinds are put in, the file that it came from, and its kind."""
 
     file: str
     operation: Operation
@@ -77,27 +90,43 @@ class _Stretch:
     rewinds: tuple[Rewind, ...]
     problems: tuple[Problem, ...]
     log: tuple[Decision, ...]
+    departures: Departures
+    manner: Manner = Manner.TCP
+    plane: Frame | None = None
 
     def motion(self, wishes: Wishes) -> Motion:
         """What is to be written."""
         operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
-        upright = _is_upright(self.operation.moves.axis)
-        return Motion(operation, rotary, Manner.THREE_AXIS if upright else Manner.TCP)
+        return Motion(operation, rotary, self.manner, self.plane, self.departures)
 
 
-def _stretch(file: str, operation: Operation, machine: Machine, wishes: Wishes) -> _Stretch:
+def _stretch(asked: Asked) -> _Stretch:
     """Plan one operation in the program's coordinate system."""
-    moves, keep_slides = operation.moves, machine.workpiece_zero is not None
-    poses = follow(machine, moves, keep_slides)
+    file, operation, machine, wishes = asked.file, asked.operation, asked.machine, asked.wishes
+    moves = operation.moves
+    poses = follow(machine, moves, asked.keep_slides)
     if (poses.outcome == OUT_OF_REACH).any():
-        return _Stretch(file, operation, poses, (), tuple(_row_problems(file, moves, poses, machine)), ())
-    planned = Planned(machine, file, operation, poses.rotary, poses.state, keep_slides)
+        problems = tuple(_row_problems(file, moves, poses, machine))
+        return _Stretch(file, operation, poses, (), problems, (), Departures.none())
+    operation, poses, leaned, log, lacking = near_pole(asked, poses)
+    operation, slowed, too_fast = slower(replace(asked, operation=operation), poses)
+    departures = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
+    planned = Planned(machine, file, operation, poses.rotary, poses.state, asked.keep_slides)
     needed = _rewinds(planned, poses)
-    problems = [*_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes)]
+    problems = (*lacking, *_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes))
     if wishes.rewind:
         _widen(poses, machine, moves, needed, wishes.clearance)
-    log = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
-    return _Stretch(file, operation, poses, needed if wishes.rewind else (), tuple(problems), tuple(log))
+    said = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
+    log = [*said, *log, *too_fast]
+    return _Stretch(file, operation, poses, needed if wishes.rewind else (), problems, tuple(log), departures)
+
+
+def _unknown_speeds(file: str, machine: Machine, wishes: Wishes) -> Iterable[Problem]:
+    """What was wished for and cannot be done, for nobody says how fast the rotary axes are."""
+    names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
+    if names and (wishes.pole is not Pole.OFF or wishes.lower_feed):
+        what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: it is never too fast"
+        yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING)
 
 
 def _rewinds(planned: Planned, poses: Poses) -> tuple[Rewind, ...]:
@@ -151,37 +180,6 @@ def _widen(poses: Poses, machine: Machine, moves: Moves, rewinds: Sequence[Rewin
                 poses.extremes[column, 0], poses.where[column, 0] = least, rewind.row - 1
             if most > poses.extremes[column, 1]:
                 poses.extremes[column, 1], poses.where[column, 1] = most, rewind.row - 1
-
-
-def _is_upright(axis: Floats) -> bool:
-    if axis[0, 2] < 1.0 - _UPRIGHT:  # the usual case decides itself at the first row
-        return False
-    return bool(np.abs(axis - [0.0, 0.0, 1.0]).max() < _UPRIGHT)
-
-
-def into_frame(operation: Operation, frame: Frame) -> Operation:
-    """The operation as seen from another coordinate system; itself when it is the same one.
-
-    With M the matrix and o the origin of a frame in the CAM's absolute system, a point is
-    M_to^T (M_from p + o_from - o_to) and a direction M_to^T M_from u.
-    """
-    if operation.frame == frame:
-        return operation
-    turn = frame.matrix().T @ operation.frame.matrix()
-    shift = frame.matrix().T @ (np.array(operation.frame.origin) - np.array(frame.origin))
-    moves, arcs = operation.moves, operation.arcs
-    return replace(
-        operation,
-        frame=frame,
-        moves=replace(moves, tip=moves.tip @ turn.T + shift, axis=moves.axis @ turn.T),
-        arcs=replace(arcs, centre=arcs.centre @ turn.T + shift, normal=arcs.normal @ turn.T),
-        events=tuple(
-            replace(event, tip=tuple(turn @ event.tip + shift), axis=tuple(turn @ event.axis))
-            if isinstance(event, From)
-            else event
-            for event in operation.events
-        ),
-    )
 
 
 def _row_problems(file: str, moves: Moves, poses: Poses, machine: Machine) -> Iterable[Problem]:

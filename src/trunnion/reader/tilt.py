@@ -8,6 +8,7 @@ from trunnion.arrays import Floats
 from trunnion.machine import Machine, inverse
 from trunnion.machine.inverse import POLE_TOLERANCE
 from trunnion.reader.frames import about
+from trunnion.reader.poses import SLACK, nearest
 
 
 def tool_frame(machine: Machine, rotary: tuple[float, float]) -> Floats:
@@ -56,6 +57,16 @@ def fits(machine: Machine, rotary: tuple[float, float]) -> bool:
     """Whether both rotary axes have the position in their travel, in some turn."""
     axes = (machine.axes[column] for column in machine.rotary)
     return all(
-        axis.endless or any(axis.low <= value + turn <= axis.high for turn in (0.0, -360.0, 360.0))
+        axis.endless or any(axis.low - SLACK <= value + turn <= axis.high + SLACK for turn in (0.0, -360.0, 360.0))
         for axis, value in zip(axes, rotary, strict=True)
     )
+
+
+def turned_inside(machine: Machine, rotary: tuple[float, float], held: Floats) -> tuple[float, float]:
+    """The turns of a rotary position that lie inside the travel, nearest to where the axes stand in ``held`` (5,)."""
+    first, second = (
+        float(nearest(float(held[column]), value, axis.endless, axis.low - SLACK, axis.high + SLACK))
+        for column, value in zip(machine.rotary, rotary, strict=True)
+        for axis in (machine.axes[column],)
+    )
+    return first, second

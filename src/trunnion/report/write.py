@@ -4,19 +4,21 @@ In:     a ``Verification`` and a path.
 Out:    the file.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem
 from trunnion.files import whole
 from trunnion.report.data import data
-from trunnion.report.facts import facts
+from trunnion.report.facts import Decided, Facts, facts
 from trunnion.report.page import page
-from trunnion.report.series import series
+from trunnion.report.series import Series, series
 from trunnion.verify.model import Verification
 
 
-def write_report(verification: Verification, path: Path, *, control: str = "", made: str = "") -> None:
+def write_report(
+    verification: Verification, path: Path, *, control: str = "", made: str = "", decisions: Sequence[Decided] = ()
+) -> None:
     """Write a report: a page for ``.html``, data for ``.json``. The same input makes the same bytes.
 
     Parameters
@@ -29,6 +31,8 @@ def write_report(verification: Verification, path: Path, *, control: str = "", m
         Name of the control as the report shows it; by default the key that the machine's definition names.
     made
         Text that says when, or by whom, the report was made. Nothing is said by default.
+    decisions
+        Why the program was planned as it is, in the order of its operations.
 
     Raises
     ------
@@ -39,17 +43,9 @@ def write_report(verification: Verification, path: Path, *, control: str = "", m
     if form is None:
         raise InputError(Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json"))
     with whole(str(path)) as sink:
-        for piece in form(verification, control, made):
+        for piece in form(facts(verification, control, made, decisions), series(verification)):
             sink.write(piece)
 
 
-def _page(verification: Verification, control: str, made: str) -> Iterator[bytes]:
-    return page(facts(verification, control, made), series(verification))
-
-
-def _data(verification: Verification, control: str, made: str) -> Iterator[bytes]:
-    return data(facts(verification, control, made), series(verification))
-
-
 #: Suffix -> what makes the bytes, piece by piece.
-FORMS: dict[str, Callable[[Verification, str, str], Iterator[bytes]]] = {".html": _page, ".json": _data}
+FORMS: dict[str, Callable[[Facts, Series], Iterator[bytes]]] = {".html": page, ".json": data}

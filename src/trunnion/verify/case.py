@@ -51,6 +51,13 @@ class Case:
             return Place(line, number, value, text)
         return Place(line, number, value, text, self.wanted.part_of(cl).file, self.wanted.point(cl).line)
 
+    def answering(self, cl: int, value: float, text: str) -> Place:
+        """A place by its row of the CL files, at the motion that answers to it."""
+        assert self.pairs is not None
+        if cl not in self.pairs.cl:
+            return replace(self.missing(cl, text), value=value)
+        return self.place(self.pairs.nc[self.pairs.cl.before(cl)], value, text, cl)
+
     def missing(self, cl: int, text: str) -> Place:
         """A place by its row of the CL files, where no motion answers to it: the block before which it should stand."""
         assert self.pairs is not None

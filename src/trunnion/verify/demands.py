@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
+from trunnion.verify.agreed import Believed, needless_feeds
 from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
@@ -141,7 +142,7 @@ def _circles(case: Case) -> list[Place]:
     return places
 
 
-def feed(case: Case) -> Check:
+def feed(case: Case, believed: Believed) -> Check:
     """Feeds of all rows that are not rapids."""
     wanted, pairs, run = case.wanted, case.pairs, case.run
     assert wanted is not None
@@ -180,7 +181,12 @@ def feed(case: Case) -> Check:
             has_here = run.state.feed[row]
             text = f"moves with F{has_here:g}; the CL file wants {asked_here:g}"
             places.append(case.place(row, has_here, text, pieces.cl))
+    broken = [*believed.feed, *needless_feeds(run, wanted, pairs)]
+    places = [*(case.answering(one.cl, one.value, one.text) for one in broken[:NAMED]), *places]
+    count += len(broken)
     good = "nothing is cut" if seen[0] > seen[1] else f"{seen[0]:g} to {seen[1]:g}, as the CL file says"
+    least, rows = believed.slowed
+    good += f"; lowered at {rows} rows, down to {least:.2f}, for the rotary axes" if rows else ""
     return judged("feed", "feeds as the CL file says", places, good, count)
 
 

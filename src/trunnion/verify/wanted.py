@@ -32,18 +32,38 @@ from trunnion.toolpath import (
 )
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Agreed:
+    """Rows of an operation at which a program says that it is not as the CL file has it (``trunnion.verify.agreed``).
+
+    lean    degrees by which the tool axis may lean at the rows ``leaned``, as it was asked for
+    leaned  (k,) int64      rows, growing
+    rotary  (k, 2) float64  positions of the rotary axes there, degrees
+    slowed  (m,) int64      rows with a lower feed, growing
+    feed    (m,) float64    that feed, in the unit of the CL file's
+    """
+
+    lean: float
+    leaned: Ints
+    rotary: Floats
+    slowed: Ints
+    feed: Floats
+
+
 @dataclass(frozen=True, slots=True)
 class Allowed:
     """How far a program may be from its CL points: mm in each coordinate, degrees in each rotary axis.
 
     chord   distance of lines from the arc that they stand for, mm
     feed    of a feed from the CL file's, in its own unit
+    agreed  where it may be otherwise
     """
 
     tip: float = 0.001
     angle: float = 0.001
     chord: float = 0.001
     feed: float = 0.005
+    agreed: Agreed | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

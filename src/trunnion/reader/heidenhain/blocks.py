@@ -62,18 +62,18 @@ def split_line(raw: str) -> Line:
     head = _HEAD.match(raw)
     assert head is not None
     number = int(head.group(2)) if head.group(2) else -1
-    rest = raw[head.end() :].rstrip()
-    goes_on = rest.endswith("~")
+    rest = raw[head.end() :]
+    goes_on = rest.rstrip().endswith("~")
     if goes_on:
-        rest = rest[:-1].rstrip()
+        rest = rest.rstrip()[:-1].rstrip()
     comment = None
     if rest.startswith("*"):
-        return Line(number, bool(head.group(1) or head.group(3)), "", rest[1:], False)
+        return Line(number, bool(head.group(1) or head.group(3)), "", rest[1:].strip("\r"), False)
     if ";" in rest:
         words = _COMMENT.match(rest)
         assert words is not None
         if words.end() < len(rest):
-            comment, rest = rest[words.end() + 1 :], rest[: words.end()]
+            comment, rest = rest[words.end() + 1 :].strip("\r"), rest[: words.end()]
     statement = rest.strip()
     if '"' not in statement:
         statement = statement.upper()

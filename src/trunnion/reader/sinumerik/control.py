@@ -140,7 +140,7 @@ class SinumerikControl(Control):
             self.note("CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return None
         wanted = sorted(pairs, key=lambda pair: pair[1], reverse=direction > 0)[0]
-        if wanted in inside:
-            return wanted
-        self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
-        return inside[0]
+        if wanted not in inside:
+            self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
+            wanted = inside[0]
+        return tilt.turned_inside(self.machine, wanted, self.held)

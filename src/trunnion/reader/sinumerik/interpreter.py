@@ -306,6 +306,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
                 self._note(f"{word}: {name} is not simulated", Severity.ERROR)
         frame = statement(base, values, control.plane)
         control.set_program_frame(control.program_frame.then(frame) if adds else frame)
+        control.event("frame", "" if not adds and not values else word)
 
     # Cycles and calls
 
