@@ -48,6 +48,9 @@ class Control(Rows, ABC):
     #: The work offset that is none: positions count from the machine's zero.
     no_offset = -1
 
+    #: Rotary words are positions as they wind, whatever the machine's definition says of its display.
+    winds = False
+
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, file)
         self.shortest = shortest
@@ -97,7 +100,7 @@ class Control(Rows, ABC):
             return poses.PLAIN
         if self.shortest or (self.shortest is None and self.shorter(axis)):
             return poses.SHORTEST
-        return poses.PLAIN if axis.output is Output.NONE else poses.SAME_TURN
+        return poses.PLAIN if self.winds or axis.output is Output.NONE else poses.SAME_TURN
 
     @abstractmethod
     def shorter(self, axis: Axis) -> bool:

@@ -11,6 +11,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
 from trunnion.reader.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.reader.interpreter import STEPS, Interpreter
+from trunnion.reader.linuxcnc.interpreter import LinuxCNCInterpreter
 from trunnion.reader.run import Run
 from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 
@@ -19,6 +20,7 @@ READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
     "sinumerik_840d": SinumerikInterpreter,
     "heidenhain_itnc530": HeidenhainInterpreter,
     "heidenhain_tnc640": HeidenhainInterpreter,
+    "linuxcnc": LinuxCNCInterpreter,
 }
 
 #: The family of machines whose definition names no control.

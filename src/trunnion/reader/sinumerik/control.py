@@ -15,7 +15,7 @@ from trunnion.reader.control import LINEAR, Circle, Control
 from trunnion.reader.frames import Frame
 from trunnion.reader.rows import FARTHEST, Note
 from trunnion.reader.run import Written
-from trunnion.reader.sinumerik.scan import letters
+from trunnion.reader.scan import letters
 from trunnion.reader.word import How, Word
 from trunnion.toolpath import Kind
 
