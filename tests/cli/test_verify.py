@@ -126,8 +126,8 @@ def machine_without_tcp(folder: Path) -> Path:
 
 
 CHECKS = [
-    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "span", "travel", "speed",
-    "acceleration", "turns", "modal", "words",
+    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "holes", "span", "travel",
+    "speed", "acceleration", "turns", "modal", "words",
 ]  # fmt: skip
 
 

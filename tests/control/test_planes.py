@@ -151,7 +151,10 @@ def test_no_rotary_words_stand_in_a_plane_even_after_a_text_of_the_cl_files_own(
     assert not any(" B" in line or " C" in line for line in part)
 
 
-@pytest.mark.parametrize(("key", "value"), [("plane", "euler"), ("swivel_mode", "58"), ("manner", "3+2")])
+NONSENSE = {"plane": "euler", "swivel_mode": "58", "manner": "3+2", "frame": "own", "bore_lift": "nan"}
+
+
+@pytest.mark.parametrize(("key", "value"), NONSENSE.items())
 def test_settings_that_make_no_sense_are_errors(key: str, value: str, post: Post) -> None:
     code, out, err = post.all(OFF_AXIS + FOOT, "--set", f"{key}={value}")
     assert (code, out) == (2, [])
@@ -233,3 +236,18 @@ def test_blocks_of_the_safe_order_that_change_places_are_seen(
     two = next(k for k in range(one, len(blocks)) if blocks[k].startswith(second))
     blocks[one], blocks[two] = blocks[two], blocks[one]
     assert proven(blocks, cl, tmp_path), (way, first, second)
+
+
+def test_a_lone_operation_in_a_tilted_coordinate_system_is_tilted_against_the_absolute_one(tmp_path: Path) -> None:
+    cl, nc = tmp_path / "one.cls", tmp_path / "one.mpf"
+    cl.write_text(tilted("OP1", 1, 30.0, 20.0), encoding="utf-8")
+    command = ["post", str(cl), "--machine", "yl569", "--output", str(nc)]
+    assert main(command) == 0
+    assert "CYCLE800" not in nc.read_text(encoding="utf-8"), "the first operation's coordinate system is the program's"
+    assert main([*command, "--set", "frame=absolute"]) == 0
+    text = nc.read_text(encoding="utf-8")
+    assert "G0 B30. C20." in text
+    assert 'CYCLE800(0,"",0,57,12.5,-7.,3.,' in text
+    check = ["verify", str(nc), "--machine", "yl569", "--cl", str(cl)]
+    assert main([*check, "--frame", "absolute"]) == 0
+    assert main(check) == 1

@@ -81,6 +81,10 @@ def _verify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--offset", metavar="G", help="work offset of the program; G54 where there is a CL file")
     parser.add_argument("--edge", type=int, metavar="D", help="cutting edge under which the tool works; with --cl 1")
     parser.add_argument("--units", choices=("mm", "inch"), help="units of CL files that do not say them")
+    parser.add_argument(
+        "--frame", choices=("first", "absolute"), default="first",
+        help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",
+    )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
     parser.set_defaults(run=run)

@@ -13,21 +13,24 @@ import numpy as np
 
 from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
-from trunnion.control import CHOICES, Control, Program, check_program, load_control, write_program
+from trunnion.control import CHOICES, Control, Program, check_program, is_lift, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Decision, Manner, Motion, Pole, Wishes, plan
+from trunnion.plan import Clearance, Decision, Manner, Motion, Pole, Surface, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
 #: Settings that say how to plan.
-PLANNING = ("manner", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
+PLANNING = ("manner", "frame", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
 
 #: Settings that say how to read, to place and to plan rather than what to print.
-_RUN_SETTINGS = ("units", "zero", *PLANNING)
+_RUN_SETTINGS = ("units", "zero", "numbers", *PLANNING)
+
+#: What the setting ``frame`` may say: whose coordinate system the program's is.
+_FRAMES = ("first", "absolute")
 
 #: What the setting ``manner`` may say.
 _MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
@@ -43,6 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     control = load_control(machine.control)
     settings = dict(arguments.settings)
     check_settings(settings, control)
+    if settings.get("numbers") == "off":
+        control = replace(control, numbers=replace(control.numbers, letter=""))
     if "zero" in settings:
         machine = replace(machine, workpiece_zero=point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
@@ -58,6 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
                 paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
             )
             claim = write(program, sink)
+            claim = replace(claim, settings=replace(claim.settings, absolute=wishes.absolute))
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
@@ -138,7 +144,8 @@ def write(program: Program, sink: BinaryIO) -> Claim:
     rows = sum(len(motion.operation.moves) for motion in program.motions)
     with progress("writing", rows, "points") as advance:
         write_program(program, sink, advance)
-    return Claim(program.machine, rows, len(program.motions), _allowed(program), _asked(program))
+    operations = sum(motion.begins for motion in program.motions)
+    return Claim(program.machine, rows, operations, _allowed(program), _asked(program))
 
 
 def prove(
@@ -204,7 +211,7 @@ def _allowed(program: Program) -> "list[Allowed]":
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
     turning = control.number_formats(three_axis=False)["plane_angle"].decimals
-    allowed = []
+    allowed: list[Allowed] = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
@@ -212,6 +219,9 @@ def _allowed(program: Program) -> "list[Allowed]":
         if motion.plane is not None:
             tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
+        if not motion.begins:
+            before = allowed.pop()
+            tip, angle = max(tip, before.tip), max(angle, before.angle)
         apart = motion.departures
         agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
         allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed))
@@ -267,6 +277,14 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
+    if not is_lift(settings.get("bore_lift", "")):
+        cure = "write millimetres, such as bore_lift=0.5"
+        problems.append(Problem("--set", 0, f"bore_lift is {settings['bore_lift']!r}", cure))
+    if settings.get("numbers", "on") not in ("on", "off"):
+        problems.append(Problem("--set", 0, f"numbers is {settings['numbers']!r}", "write numbers=on or numbers=off"))
+    if settings.get("frame", "first") not in _FRAMES:
+        cure = f"write one of {', '.join(_FRAMES)}"
+        problems.append(Problem("--set", 0, f"frame is {settings['frame']!r}", cure))
     if settings.get("manner", "auto") not in _MANNERS:
         cure = f"write one of {', '.join(_MANNERS)}"
         problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
@@ -292,18 +310,32 @@ def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
     """What the settings, checked by ``check_settings``, say to the planner."""
     usual = Wishes()
     cures = {
-        "clearance": "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50",
         "pole_angle": "write pole_angle=DEG, by how much the tool axis may lean near the pole, such as pole_angle=0.1",
     }
     return Wishes(
         rewind=settings.get("rewind", "insert") == "insert",
-        clearance=_number(settings, "clearance", usual.clearance, (0.1, 10000.0), cures),
+        clearance=_clearance(settings["clearance"]) if "clearance" in settings else usual.clearance,
         explain=explain,
         manner=_MANNERS[settings.get("manner", "auto")],
+        absolute=settings.get("frame", "first") == "absolute",
         pole=Pole(settings.get("pole", "off")),
         pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),
         lower_feed=settings.get("lower_feed", "no") == "yes",
     )
+
+
+def _clearance(text: str) -> Clearance:
+    """The setting ``clearance``."""
+    kind, _, number = text.rpartition(":")
+    try:
+        surface, value = Surface(kind or Surface.DISTANCE), float(number)
+    except ValueError:
+        surface, value = Surface.DISTANCE, math.nan
+    least = -10000.0 if surface is Surface.PLANE else 0.1
+    if least <= value <= 10000.0:
+        return Clearance(value, surface)
+    cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
+    raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
 
 
 def _number(

@@ -41,6 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
             work_offset=_offset(arguments.offset, bool(paths)),
             edge=1 if arguments.edge is None and paths else arguments.edge,
             span=arguments.span,
+            absolute=arguments.frame == "absolute",
         ),
         columns=bool(arguments.report),
     )

@@ -32,6 +32,9 @@ TEMPLATES = (
     "approach_frames", "plane_on_frames", "next_plane_frames", "operation_end_frames",
 )  # fmt: skip
 
+#: mm; NaN is no less.
+_FARTHEST_LIFT = 100.0
+
 #: What some settings may say: the way to say a tilted plane, and the axes of CYCLE800's three turns.
 CHOICES = {"plane": ("cycle800", "frames"), "swivel_mode": ("57", "27", "39", "45", "30", "54")}
 
@@ -210,8 +213,18 @@ def _settings(table: Table) -> dict[str, str]:
     for name, choices in CHOICES.items():
         if found.setdefault(name, choices[0]) not in choices:
             table.problem(name, f"is {found[name]!r}", f"write one of {', '.join(choices)}")
+    if not is_lift(found.get("bore_lift", "")):
+        table.problem("bore_lift", f"is {found['bore_lift']!r}", "write millimetres, or nothing")
     table.finish()
     return found
+
+
+def is_lift(text: str) -> bool:
+    """Whether the setting ``bore_lift`` is empty, or millimetres that a tool could lift off in a bore."""
+    try:
+        return not text or abs(float(text)) < _FARTHEST_LIFT
+    except ValueError:
+        return False
 
 
 def _kind(entry: Table) -> tuple[str, str]:

@@ -67,6 +67,7 @@ class Motion:
     plane        the tilted plane as seen from the program's coordinate system, for that manner only. Its Z is the tool
                  axis
     departures   where it is not made as its CL file has it
+    begins       False: it goes on with the operation of the motion before it, in another plane
     """
 
     operation: Operation
@@ -74,6 +75,7 @@ class Motion:
     manner: Manner
     plane: Frame | None = None
     departures: Departures = field(default_factory=Departures.none)
+    begins: bool = True
 
     def __post_init__(self) -> None:
         self.rotary.setflags(write=False)

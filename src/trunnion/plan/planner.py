@@ -1,5 +1,6 @@
 """From operations to motions: the stages, in their order."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -9,9 +10,11 @@ from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
+from trunnion.plan.clearance import Clearance
 from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower, source_rows
 from trunnion.plan.frames import into_frame, into_plane, seen_from
+from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
 from trunnion.plan.kinds import contradictions, manner_of, plane_of
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
@@ -52,22 +55,26 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
-    program_frame = pairs[0][1].frame
+    program_frame = Frame() if wishes.absolute else pairs[0][1].frame
     keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
     against: list[Problem] = []
     for path, original in pairs:
-        operation = into_frame(original, program_frame)
-        manner = manner_of(operation, wishes.manner)
+        try:
+            operation = into_frame(with_holes(original), program_frame)
+        except CycleError as error:
+            against.append(Problem(path.file, error.line, error.what, error.cure))
+            continue
+        manner, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
         against += contradictions(path.file, operation, manner)
-        plane = None
-        if manner is Manner.TILTED:
-            plane = plane_of(operation.moves.axis[0], seen_from(original.frame, program_frame))
+        plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
         kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         source = source_rows(original, operation)
         stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
-        stretches.append(replace(stretch, manner=manner, plane=plane))
+        parts = by_axis(operation) if manner is Manner.TCP and wishes.manner is None else None
+        kind = replace(stretch, manner=manner, plane=plane)
+        stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own, parts=parts))
     if against:
         raise Refused(against)
     problems = [*_unknown_speeds(pairs[0][0].file, machine, wishes)]
@@ -77,12 +84,16 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     if machine.workpiece_zero is None:
         problems += _fit_problems(stretches, machine)
     log = [decision for stretch in stretches for decision in stretch.log]
-    return Plan(tuple(stretch.motion(wishes) for stretch in stretches), tuple(problems), tuple(log))
+    motions = [motion for stretch in stretches for motion in stretch.motions(wishes)]
+    return Plan(tuple(motions), tuple(problems), tuple(log))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stretch:
-    """An operation with its poses, as it is before rewinds are put in, the file that it came from, and its kind."""
+    """An operation with its poses, as it is before rewinds are put in, the file that it came from, and its kind.
+
+    ``parts`` are the rows of its planes, where holes make it one in several of them; ``plane`` is then its own frame.
+    """
 
     file: str
     operation: Operation
@@ -93,11 +104,24 @@ class _Stretch:
     departures: Departures
     manner: Manner = Manner.TCP
     plane: Frame | None = None
+    parts: Sequence[tuple[int, int]] = ()
 
-    def motion(self, wishes: Wishes) -> Motion:
+    def motions(self, wishes: Wishes) -> list[Motion]:
         """What is to be written."""
-        operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
-        return Motion(operation, rotary, self.manner, self.plane, self.departures)
+        if not self.parts:
+            operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
+            return [Motion(operation, rotary, self.manner, self.plane, self.departures)]
+        assert self.plane is not None
+        return [
+            Motion(
+                part_of(self.operation, first, end),
+                self.poses.rotary[first:end].copy(),
+                self.manner,
+                plane_of(self.operation.moves.axis[first], self.plane),
+                begins=first == 0,
+            )
+            for first, end in self.parts
+        ]
 
 
 def _stretch(asked: Asked) -> _Stretch:
@@ -112,10 +136,10 @@ def _stretch(asked: Asked) -> _Stretch:
     operation, slowed, too_fast = slower(replace(asked, operation=operation), poses)
     departures = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
     planned = Planned(machine, file, operation, poses.rotary, poses.state, asked.keep_slides)
-    needed = _rewinds(planned, poses)
+    needed = _rewinds(planned, poses, wishes.clearance)
     problems = (*lacking, *_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes))
     if wishes.rewind:
-        _widen(poses, machine, moves, needed, wishes.clearance)
+        _widen(poses, machine, moves, needed)
     said = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
     log = [*said, *log, *too_fast]
     return _Stretch(file, operation, poses, needed if wishes.rewind else (), problems, tuple(log), departures)
@@ -129,7 +153,7 @@ def _unknown_speeds(file: str, machine: Machine, wishes: Wishes) -> Iterable[Pro
         yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING)
 
 
-def _rewinds(planned: Planned, poses: Poses) -> tuple[Rewind, ...]:
+def _rewinds(planned: Planned, poses: Poses, clearance: Clearance) -> tuple[Rewind, ...]:
     """All rewinds of an operation, with the limit that asks for each."""
     rewinds = []
     for row in np.flatnonzero(poses.outcome == REWIND).tolist():
@@ -137,7 +161,7 @@ def _rewinds(planned: Planned, poses: Poses) -> tuple[Rewind, ...]:
         end = planned.ahead(row, before, poses.rotary[row - 1])
         moves = planned.operation.moves
         reason = "the path asks for it" if end is None else f"otherwise {end.words(planned.machine, moves)}"
-        found = rewind_at(planned.machine, moves, row, after, poses.rotary)
+        found = rewind_at(planned.machine, moves, row, after, poses.rotary, clearance)
         turn = f"{planned.words(found.before)} to {planned.words(found.after)}, {reason}"
         rewinds.append(replace(found, reason=turn, end=end))
     return tuple(rewinds)
@@ -156,12 +180,16 @@ def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes
             cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
             yield Problem(planned.file, at, what, cure)
             continue
-        what = f"the tool draws back {wishes.clearance:g} mm in the cut to rewind, {rewind.reason}"
+        if not math.isfinite(rewind.way):
+            what = f"the tool must rewind here, and its axis does not lead to the clearance {wishes.clearance}"
+            yield Problem(planned.file, line, what, "--set clearance=MM draws back by a distance")
+            continue
+        what = f"the tool draws back {rewind.way:g} mm in the cut to rewind, {rewind.reason}"
         yield Problem(planned.file, line, what, "--set rewind=none refuses it", Severity.WARNING)
         if compensated(operation, rewind.row):
             what = "a rewind within cutter radius compensation"
             yield Problem(planned.file, line, what, "output the path without CUTCOM, or split the operation")
-        joints = joints_of(machine, operation.moves, rewind, wishes.clearance)
+        joints = joints_of(machine, operation.moves, rewind)
         column = lacks_room(machine, joints) if planned.keep_slides else None
         if column is not None:
             values = joints[:, column]
@@ -170,10 +198,10 @@ def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes
             yield Problem(planned.file, line, what, "--set clearance=MM draws back less; or move the workpiece")
 
 
-def _widen(poses: Poses, machine: Machine, moves: Moves, rewinds: Sequence[Rewind], clearance: float) -> None:
+def _widen(poses: Poses, machine: Machine, moves: Moves, rewinds: Sequence[Rewind]) -> None:
     """Take the retreats into the extremes of the slides, at the rows where they begin."""
     for rewind in rewinds:
-        joints = joints_of(machine, moves, rewind, clearance)
+        joints = joints_of(machine, moves, rewind)
         for column in machine.linear:
             least, most = float(joints[:, column].min()), float(joints[:, column].max())
             if least < poses.extremes[column, 0]:

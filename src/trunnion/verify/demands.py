@@ -12,10 +12,12 @@ from trunnion.verify.agreed import Believed, needless_feeds
 from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
+from trunnion.verify.cycles import made_in
+from trunnion.verify.holes import leads
 from trunnion.verify.model import Check, Place
 from trunnion.verify.retreats import retreats
 from trunnion.verify.rows import Rows
-from trunnion.verify.wanted import Call, Spindle, Stretch
+from trunnion.verify.wanted import Call, Spindle, Stretch, is_called
 
 _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
 
@@ -40,6 +42,7 @@ def order(case: Case) -> Check:
     count = len(pairs.missing)
     back = retreats(case.run, pairs.extra, max(part.allowed.tip for part in wanted.parts))
     lawful = {row for retreat in back for row in range(retreat.first, retreat.end)}
+    lawful |= leads(case.run, pairs.extra, made_in(case.run))
     for retreat in back:
         text = f"draws back {retreat.distance:.3f} mm along the tool axis, turns, and comes back"
         told.append(case.place(retreat.first, retreat.distance, text))
@@ -282,7 +285,7 @@ def tool(case: Case) -> Check:
         if (call.number is None and not settings.tool) or first == end:
             continue
         known.append(names)
-        right = [k for k, text in enumerate(run.tools) if _is_tool(text, names)]
+        right = [k for k, text in enumerate(run.tools) if is_called(text, names)]
         bad = _first_wrong(pairs, first, end, partial(_holds_another, run, right))
         if bad is not None:
             row, cl = bad
@@ -297,7 +300,7 @@ def tool(case: Case) -> Check:
     for event in run.events if known else ():
         if event.kind == "tool_change":
             text = str(event.value or "")
-            if text and text != "0" and not any(_is_tool(text, names) for names in known):
+            if text and text != "0" and not any(is_called(text, names) for names in known):
                 places.append(case.at(event, 0.0, f"changes to tool {text}, which the CL file never asks for"))
     good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in known)) or "the CL file names no tool"
     return judged("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
@@ -322,10 +325,6 @@ def _edges(case: Case, pairs: Pairs, asked: int) -> list[Place]:
         row = int(strange[0])
         places.append(case.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{asked}"))
     return places
-
-
-def _is_tool(text: str, names: tuple[str, ...]) -> bool:
-    return text in names or (text.isdigit() and str(int(text)) in names)
 
 
 def coolant(case: Case) -> Check:

@@ -14,6 +14,7 @@ from trunnion.verify.agreed import Believed, believe, broken_poses
 from trunnion.verify.align import Pairs, in_order, matched
 from trunnion.verify.arcs import Arc, turned
 from trunnion.verify.case import NAMED, Case, Settings
+from trunnion.verify.holes import holes
 from trunnion.verify.model import Check, Place, Share, Verification
 from trunnion.verify.points import Deviations, Off
 from trunnion.verify.turns import turns
@@ -55,7 +56,7 @@ def verify(
     """
     settings = settings or Settings()
     checks: list[Check] = []
-    wanted = Wanted(toolpaths, allowed or Allowed()) if toolpaths else None
+    wanted = Wanted(toolpaths, allowed or Allowed(), settings.absolute) if toolpaths else None
     walker = Walker(run, NAMED, math.inf if settings.span is None else settings.span, times=columns)
     pairs = None
     if wanted is not None:
@@ -64,7 +65,7 @@ def verify(
         case = Case(run, wanted, pairs, settings)
         checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis, believed)]
         checks += [demands.kind(case), demands.feed(case, believed), demands.spindle(case), demands.tool(case)]
-        checks += [demands.coolant(case), demands.offset(case), demands.home(case)]
+        checks += [demands.coolant(case), demands.offset(case), demands.home(case), holes(case)]
     else:
         _go_by(run, walker)
         case = Case(run, None, None, settings)
@@ -195,7 +196,7 @@ def _axis(case: Case, off: Off, believed: Believed) -> Check:
 
 def _measured(key: str, title: str, case: Case, off: Off, unit: str, places: list[Place], count: int) -> Check:
     assert case.pairs is not None
-    if not len(case.pairs.nc):
+    if not len(case.pairs.nc) and case.wanted is not None and len(case.wanted):
         return Check(key, title, False, "no block answers to any CL point", unit=unit)
     each, whole = ("X, Y or Z", "distance") if unit == "mm" else ("a rotary axis", "angle")
     summary = f"largest {off.largest:.6f} {unit} in {each}, rms {whole} {off.rms:.6f}, allowed {off.limit:.6f}"

@@ -12,7 +12,8 @@ NAMED = set(re.findall(r"`([^`\n]+)`", PAGE))
 
 G_WORDS = {
     *words.MOTIONS, *words.PLANES, *words.UNITS, *words.DISTANCES, *words.ARC_DISTANCES, *words.FEED_MODES,
-    *words.OFFSETS, *words.RETURNS, *words.CYCLES, *words.SILENT, *words.NAMED, words.DWELL, words.MACHINE, words.CANCEL,
+    *words.OFFSETS, *words.RETURNS, *words.CYCLES, *words.SILENT, *words.NAMED, words.DWELL,
+    words.MACHINE, words.CANCEL,
 }  # fmt: skip
 M_WORDS = {
     *words.M_EVENTS, *words.M_ENDS, *words.M_SILENT, *words.M_NAMED, *words.M_CALLS, words.M_CHANGE, words.M_TCP,
