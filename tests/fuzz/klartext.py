@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Final
 
 from tests.fuzz import oracle, pieces
@@ -137,6 +138,12 @@ SOUND: Final[tuple[bytes, ...]] = (
 25 END PGM TILT MM
 """,
 )
+
+
+def prepare(folder: Path) -> None:
+    """Put the subprograms into a folder."""
+    for name, text in SUBPROGRAMS.items():
+        (folder / name).write_text(text)
 
 
 def program(lines: int, pick: pieces.Pick) -> str:

@@ -20,8 +20,7 @@ from trunnion.reader import run_program
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with subprograms in it."""
     path = tmp_path_factory.mktemp("klartext")
-    for name, text in klartext.SUBPROGRAMS.items():
-        (path / name).write_text(text)
+    klartext.prepare(path)
     (path.parent / "SECRET.H").write_text("L X+666\n")
     return path
 
