@@ -101,6 +101,12 @@ def test_tcp_and_inverse_time(run: Runner) -> None:
     assert found.feed_mode.tolist() == [93] * 4 + [94]
 
 
+def test_inverse_time_counts_no_inches(run: Runner) -> None:
+    found = run("G20 G93 G1 X1 F7\nX2 F8\nX[3] F9\nG94 X4 F10")
+    assert found.findings == ()
+    close(found.feed, [7, 8, 9, 254])
+
+
 def test_tools_and_machine(run: Runner) -> None:
     found = run("T5 M6 G43 H5\nS600 M3 M8\nG0 X1\nM9 M5\nM101\nG4 P0.5\nM0\nG0 X2 M30\nX3")
     assert found.findings == ()

@@ -79,7 +79,7 @@ class LinuxCNCInterpreter(Interpreter[Activation]):
             False,
             False,
             control.lengths,
-            control.feeds,
+            self._per_feed,
             control.default_way,
             control.map,
             control.turn,
@@ -90,6 +90,11 @@ class LinuxCNCInterpreter(Interpreter[Activation]):
         )
         if control.feed_mode.now == 93:
             self._check_inverse_time(before, int(control.counts[ROW]))
+
+    @property
+    def _per_feed(self) -> float:
+        """Millimetres of the length in a feed; inverse time has none."""
+        return 1.0 if self._control.feed_mode.now == 93 else self._control.feeds
 
     def _check_inverse_time(self, first: int, end: int) -> None:
         """Under G93 every line and circle has its own F."""
@@ -186,8 +191,7 @@ class LinuxCNCInterpreter(Interpreter[Activation]):
         if "F" in said:
             if not 0.0 <= said["F"] <= FASTEST:
                 raise BlockError(f"a feed is not from 0 to {FASTEST:g}")
-            # Inverse time is no length.
-            control.place[3] = said["F"] * (1.0 if control.feed_mode.now == 93 else control.feeds)
+            control.place[3] = said["F"] * self._per_feed
         if "S" in said:
             if not abs(said["S"]) <= FASTEST:
                 raise BlockError("a speed that no spindle has")
