@@ -81,11 +81,10 @@ words = st.sampled_from(
     [
         "L", "L ", "X1", "Y-2.5", "Z+.5", "Z,5", "Z 25.000", "X", "X+", "A-30", "C+45", "C 7", "B2", "F100", "F 100",
         "FMAX", "F MAX", "FAUTO", "R0", "RL", "R5", "R0.", "IX1", "M3", "M99", ";c", "; a ~", "~", "X1.2.3", "x4",
-        "fmax", "FQ1", "X1234567890123456", "X123456", "Y1,2,3", "1", "12", "/", "*", "-", "DR+", "LN", "TX.6", "TY-.8", "TZ 1", "TX0",
-        "NZ1", "NX.5", "CC X1", "X1Y2",
-        "F9Z1",
-        "M128", "M129", "M126", "M89", "PLANE SPATIAL SPA-9 SPB0 SPC30 STAY", "PLANE RESET STAY", "BEGIN PGM A INCH",
-        "CYCL DEF 7.1 X+3", "CYCL DEF 10.1 ROT30",
+        "fmax", "FQ1", "X1234567890123456", "X123456", "Y1,2,3", "1", "12", "/", "*", "-", "DR+", "LN", "TX.6",
+        "TY-.8", "TZ 1", "TX0", "NZ1", "NX.5", "CC X1", "X1Y2", "F9Z1", "M128", "M129", "M126", "M89",
+        "PLANE SPATIAL SPA-9 SPB0 SPC30 STAY", "PLANE RESET STAY", "BEGIN PGM A INCH", "CYCL DEF 7.1 X+3",
+        "CYCL DEF 10.1 ROT30",
     ]
 )  # fmt: skip
 
