@@ -21,7 +21,7 @@ from trunnion.plan import Clearance, Decision, Manner, Motion, Pole, Surface, Wi
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
-    from trunnion.verify import Allowed, Settings
+    from trunnion.verify import Allowed, Settings, Verification
 
 #: Settings that say how to plan.
 PLANNING = ("manner", "frame", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
@@ -67,7 +67,8 @@ def run(arguments: argparse.Namespace) -> int:
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
-            prove(claim, paths, sink, target, again, arguments.report, decisions)
+            said = decisions if wishes.explain else ()
+            prove(claim, paths, sink, target, again, arguments.report, said)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
     return 0
@@ -191,6 +192,11 @@ def prove(
     found = replace(found, program="the program" if target == "-" else target)
     for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
         print(line, file=sys.stderr)
+    if not decisions and _too_fast(found):
+        print(
+            f"{found.program}: a rotary axis cannot follow the feed everywhere; --explain says where, and what helps",
+            file=sys.stderr,
+        )
     if report:
         write_report(found, report, decisions)
     failed = failures(found)
@@ -202,6 +208,12 @@ def prove(
         sink.seek(0)
         sink.truncate()
         write_program(replace(again, notices=[*again.notices, *notices]), sink)
+
+
+def _too_fast(found: "Verification") -> bool:
+    """Whether a rotary axis would have to be faster than it can."""
+    names = tuple(f"{axis.name} " for axis in found.machine.axes if axis.is_rotary)
+    return any(c.key == "speed" and any(place.text.startswith(names) for place in c.places) for c in found.checks)
 
 
 def _allowed(program: Program) -> "list[Allowed]":

@@ -21,6 +21,7 @@ FIELDS = frozenset(
     {
         "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
         "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine",
+        "time", "total_time",
         "plane_x", "plane_y", "plane_z", "plane_first", "plane_second", "plane_third", "plane_mode", "plane_side",
     }
 )  # fmt: skip

@@ -17,8 +17,9 @@ from trunnion.control.holes import Heights, cycle_call, feed_of
 from trunnion.control.template import Value
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.machine import Machine, inverse
+from trunnion.machine.pace import clock
 from trunnion.nc import ABSENT, CHUNK, BlockWriter, counts
-from trunnion.plan import Manner, Motion
+from trunnion.plan import Manner, Motion, seconds
 from trunnion.plan.holes import Cycle, CycleError, Turning, cycle_of, turning
 from trunnion.toolpath import (
     BlockSkip,
@@ -196,6 +197,7 @@ class _Author:
         self._tool = self._tool_name = ""
         self._spindle: SpindleOn | None = None
         self._coolant = "OFF"
+        self._seconds: list[float] = []
         self._height = 0.0  # of the tool along Z of the frame, at the last row written
 
     def write(self) -> None:
@@ -293,6 +295,7 @@ class _Author:
         return {
             **values,
             **angles,
+            **self._times(motion),
             **self._plane(motion),
             "primary": self._letters[0],
             "secondary": self._letters[1],
@@ -307,6 +310,15 @@ class _Author:
             "intol": operation.intol,
             "outtol": operation.outtol,
         }
+
+    def _times(self, motion: Motion) -> dict[str, Value]:
+        """What the operation and all of them take, as people read it; worked out only where a template prints it."""
+        if not any(name in ("time", "total_time") for t in self._control.templates.values() for name, _ in t.fields()):
+            return {"time": None, "total_time": None}
+        if not self._seconds:
+            self._seconds = [seconds(self._program.machine, each) for each in self._program.motions]
+        own = next(s for each, s in zip(self._program.motions, self._seconds, strict=True) if each is motion)
+        return {"time": clock(own), "total_time": clock(sum(self._seconds))}
 
     def _tool_call(self, motion: Motion) -> str:
         """The tool as ``T=`` takes it: the run's setting, the number of LOAD/TOOL, or else the tool's name."""

@@ -133,10 +133,10 @@ def _stretch(asked: Asked) -> _Stretch:
         problems = tuple(_row_problems(file, moves, poses, machine))
         return _Stretch(file, operation, poses, (), problems, (), Departures.none())
     operation, poses, leaned, log, lacking = near_pole(asked, poses)
-    operation, slowed, too_fast = slower(replace(asked, operation=operation), poses)
-    departures = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
     planned = Planned(machine, file, operation, poses.rotary, poses.state, asked.keep_slides)
     needed = _rewinds(planned, poses, wishes.clearance)
+    operation, slowed, too_fast = slower(replace(asked, operation=operation), poses, needed)
+    departures = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
     problems = (*lacking, *_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes))
     if wishes.rewind:
         _widen(poses, machine, moves, needed)
