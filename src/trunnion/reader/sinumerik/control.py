@@ -12,14 +12,14 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Machine
+from trunnion.machine import Axis, Machine, Output
 from trunnion.reader import arcs, tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.control import LINEAR, Circle, Control
 from trunnion.reader.frames import Frame
 from trunnion.reader.rows import FARTHEST, Note
 from trunnion.reader.run import Written
-from trunnion.reader.sinumerik.scan import letters
+from trunnion.reader.scan import letters
 from trunnion.reader.word import How, Word
 from trunnion.toolpath import Kind
 
@@ -39,10 +39,9 @@ class SinumerikControl(Control):
         super().__init__(machine, note, file, shortest=shortest)
         self.table = letters((self.names[0], self.names[1]))
 
-    @property
-    def shorter(self) -> bool:
-        """With TRAORI."""
-        return self.tcp
+    def shorter(self, axis: Axis) -> bool:
+        """With TRAORI, but for axes whose values are written as they wind."""
+        return self.tcp and axis.output is not Output.NONE
 
     def _vectors(self, frame: Frame) -> Floats:
         return np.eye(3) if self._machine_vectors else super()._vectors(frame)

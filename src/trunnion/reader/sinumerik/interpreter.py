@@ -12,7 +12,8 @@ from trunnion.reader.drilling import CycleError, sane
 from trunnion.reader.interpreter import STEPS, End, Interpreter
 from trunnion.reader.rows import FARTHEST
 from trunnion.reader.run import Orientation
-from trunnion.reader.sinumerik import cycles, scan
+from trunnion.reader.scan import scan
+from trunnion.reader.sinumerik import cycles
 from trunnion.reader.sinumerik.block import Block, BlockReader, Call, read_call
 from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, THROUGH, SinumerikControl
 from trunnion.reader.sinumerik.expressions import ExpressionError, Reader, Value
@@ -89,11 +90,12 @@ class SinumerikInterpreter(Interpreter[Activation]):
 
     def _kernel(self, text: Text) -> None:
         control = self._control
-        scan.scan(
+        scan(
             text.buffer,
             len(text.buffer),
             control.table,
             control.tips,
+            True,
             control.lengths,
             control.feeds,
             control.default_way,
