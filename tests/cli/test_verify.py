@@ -79,7 +79,7 @@ def test_what_cannot_be_used_has_exit_code_2(
 
 
 def test_a_machine_whose_programs_cannot_be_read_yet_says_so(capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["verify", str(PROGRAM), "--machine", "dmu65"]) == 2
+    assert main(["verify", str(PROGRAM), "--machine", "hs664rt"]) == 2
     assert "cannot be read yet" in capfd.readouterr().err
 
 

@@ -2,21 +2,15 @@
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.control.definition import library
-from trunnion.definition import extended
 from trunnion.errors import InputError, Problem
-from trunnion.machine import Machine, load_machine
+from trunnion.machine import load_machine
 from trunnion.plan import Decision
 
 if TYPE_CHECKING:
     from trunnion.verify import Verification
-
-#: Families of controls whose programs can be read.
-READERS = ("sinumerik_840d",)
 
 #: What a report's name may end in.
 _REPORTS = (".html", ".json")
@@ -25,16 +19,16 @@ _REPORTS = (".html", ".json")
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
-    from trunnion.cli.post import point
-    from trunnion.reader import run_program
+    from trunnion.cli.post import set_up
+    from trunnion.reader import reader_of, run_program
     from trunnion.verify import Allowed, Settings, check_lines, place_lines, time_lines, verify
 
     if arguments.report:
         check_report(arguments.report)
     machine = load_machine(arguments.machine)
-    check_reader(machine)
-    if arguments.zero:
-        machine = replace(machine, workpiece_zero=point(arguments.zero))
+    reader_of(machine)
+    given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
+    machine = set_up(machine, {key: value for key, value in given.items() if value})
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
     done = run_program(Path(arguments.file), machine)
     found = verify(
@@ -46,6 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
             work_offset=_offset(arguments.offset, bool(paths)),
             edge=1 if arguments.edge is None and paths else arguments.edge,
             span=arguments.span,
+            span_tip=arguments.span_tip,
             absolute=arguments.frame == "absolute",
         ),
         columns=bool(arguments.report),
@@ -54,15 +49,6 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report:
         report(found, arguments.report)
     return 0 if found.passed else 1
-
-
-def check_reader(machine: Machine) -> None:
-    """Raise ``InputError`` for machines whose programs nobody can read yet."""
-    table = extended(machine.control, library())
-    family = table.text("family", READERS[0])
-    if family not in READERS:
-        what = f"its control is a {family}, whose programs cannot be read yet"
-        raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
 
 
 def check_report(file: str) -> None:

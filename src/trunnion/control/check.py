@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.control.definition import Control
 from trunnion.control.family import UnsayableError
 from trunnion.control.program import Program, kind_of, setting_of, settings_of
+from trunnion.control.slides import inverse_time, slides_of
 from trunnion.errors import Problem, Severity
 from trunnion.plan import Manner, Motion
 from trunnion.plan.holes import CycleError, Turning, cycle_of, feed_of, turning
@@ -61,6 +62,8 @@ def check_program(program: Program) -> list[Problem]:
         for event in operation.events:
             rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
             problems += _event_problems(program, motion, event, rpm)
+        if motion.manner is Manner.WITHOUT_TCP and kind_of(program, motion):
+            problems += _problems_without_tcp(program, motion)
         if not kind_of(program, motion):
             what = f"operation {operation.name}: {program.control.name} has no words for {motion.manner}"
             problems.append(Problem(program.file, operation.line, what, "--set manner=… says another manner"))
@@ -112,6 +115,41 @@ def _event_problems(program: Program, motion: Motion, event: Event, rpm: float |
     return []
 
 
+def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
+    """What cannot be said where nobody holds the tip."""
+    operation, problems = motion.operation, []
+    moves = operation.moves
+    if any(isinstance(event, CutterComp) and event.side != "OFF" for event in operation.events):
+        what = "cutter radius compensation without TCP would be that of the slides"
+        problems.append(Problem(program.file, operation.line, what, "output the path without CUTCOM"))
+    formats = program.control.number_formats(motion.three_axis)
+    slides = slides_of(program.machine, motion, formats["angle"].decimals)
+    cuts = slides.turns & (moves.kind != Kind.RAPID) & (moves.feed > 0)
+    turned = np.flatnonzero(cuts & moves.per_rev)
+    if len(turned):
+        what = "a feed per revolution without TCP while rotary axes turn"
+        problems.append(Problem(program.file, int(moves.line[turned[0]]), what, "output it in mm/min (FEDRAT/MMPM)"))
+    form = formats["inverse_time"]
+    _, slow, fast = inverse_time(slides.length[cuts], moves.feed[cuts], form)
+    rows = np.flatnonzero(cuts)
+    if slow.any():
+        row = int(rows[np.argmax(slow)])
+        took = slides.length[row] / moves.feed[row]
+        what = f"a block takes {took:.0f} minutes; inverse time has room for {1.0 / form.least:g}"
+        cure = "output the toolpath with points nearer to each other, or a higher feed"
+        problems.append(Problem(program.file, int(moves.line[row]), what, cure))
+    if fast.any():
+        what = f"{int(fast.sum())} blocks so short that F would be above {form.greatest:g}: they take as long as that"
+        place = program.file, int(moves.line[rows[np.argmax(fast)]])
+        problems.append(Problem(*place, what, "a wider tolerance puts fewer points in", Severity.WARNING))
+    shorter = np.flatnonzero(slides.shortest.any(axis=1))
+    if len(shorter) and "primary_shortest" not in program.control.family.WORDS:
+        what = "a rotary axis goes past the end of the turn that it displays, and would go the longer way"
+        cure = 'write output = "none" for the axis in the machine\'s definition'
+        problems.append(Problem(program.file, int(moves.line[shorter[0]]), what, cure))
+    return problems
+
+
 def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
     """What the cycles of a motion ask for and this control cannot be told."""
     operation, problems = motion.as_written(), []
@@ -121,7 +159,7 @@ def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
             continue
         try:
             cycle = cycle_of(event)
-            if motion.manner is Manner.TCP:
+            if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP):
                 cure = "leave the setting manner out, or end the cut before the tool axis changes"
                 raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
             spindle = turning(operation.events, event.row, Turning(1.0, Sense.CLW))

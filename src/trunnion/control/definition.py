@@ -21,7 +21,8 @@ from trunnion.plan import Manner
 FIELDS = frozenset(
     {
         "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
-        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine",
+        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine", "gauge_length",
+        "zero_x", "zero_y", "zero_z", "time", "total_time",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
         "plane_x", "plane_y", "plane_z", "plane_side",
     }
@@ -36,11 +37,17 @@ TEMPLATES = (
 #: How the templates of operations with TCP are called.
 FIVE_AXIS = "five_axis"
 
+#: Those without.
+WITHOUT_TCP = "without_tcp"
+
 #: Words of a motion block that all families have.
 AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
 
 #: The format of words that print no number.
 _NO_NUMBER = NumberFormat(0)
+
+#: How feeds can be said where nobody holds the tip.
+FEEDS_WITHOUT_TCP = ("inverse_time",)
 
 PHASES = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 COOLANTS = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
@@ -57,7 +64,7 @@ class Format:
 
 @dataclass(frozen=True, slots=True)
 class WordRule:
-    """A word of a motion block; ``letter`` is empty for the rotary axes, which the machine names.
+    """A word of a motion block; for the rotary axes, which the machine names, ``letter`` is what follows the name.
 
     A ``bare`` word is letters without a number, and has no format.
     """
@@ -66,6 +73,7 @@ class WordRule:
     letter: str
     format: str
     modal: bool
+    closing: str = ""
     bare: bool = False
 
 
@@ -73,9 +81,11 @@ class WordRule:
 class Control:
     """A control's language, read and checked.
 
-    longest_line  bytes of a line, at most
-    by_method  settings that follow from the method's name where nobody gave them: setting -> (part of the name, value),
-               the first that is found in it
+    longest_line      bytes of a line, at most
+    by_method         settings that follow from the method's name where nobody gave them: setting -> (part of the name,
+                      value), the first that is found in it
+    tcp               it can hold the tip of the tool while rotary axes turn
+    feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
     """
 
     name: str
@@ -93,6 +103,8 @@ class Control:
     tool_types: Mapping[str, str]
     phases: Mapping[str, str]
     chord_tolerance: float
+    tcp: bool
+    feed_without_tcp: str
     templates: Mapping[str, Template] = field(repr=False)
 
     def usual(self, setting: str, method: str) -> str | None:
@@ -103,8 +115,8 @@ class Control:
     def kind(self, manner: Manner, settings: Mapping[str, str]) -> str:
         """What the templates of operations made in a manner are called; empty where the definition has none."""
         plane = settings.get("plane") or self.settings.get("plane") or next(iter(self.family.PLANES), "")
-        names = {Manner.THREE_AXIS: "three_axis", Manner.TCP: FIVE_AXIS, Manner.TILTED: plane}
-        name = names.get(manner, "")
+        names = {Manner.THREE_AXIS: "three_axis", Manner.TILTED: plane, Manner.WITHOUT_TCP: WITHOUT_TCP}
+        name = names.get(manner, FIVE_AXIS if self.tcp else "")
         return name if f"approach_{name}" in self.templates else ""
 
     def manners(self, settings: Mapping[str, str]) -> frozenset[Manner]:
@@ -118,9 +130,10 @@ class Control:
     def block_words(self, primary: str, secondary: str, three_axis: bool) -> list[Word]:
         """The words of a motion block in their order; ``primary`` and ``secondary`` are the rotary axes' letters."""
         formats = self.number_formats(three_axis)
-        letters = {"primary": primary, "secondary": secondary}
+        axes = dict.fromkeys(("primary", "primary_shortest"), primary)
+        axes |= dict.fromkeys(("secondary", "secondary_shortest"), secondary)
         return [
-            Word(w.name, letters.get(w.name, w.letter), formats.get(w.format, _NO_NUMBER), w.modal, w.bare)
+            Word(w.name, axes.get(w.name, "") + w.letter, formats.get(w.format, _NO_NUMBER), w.modal, w.closing, w.bare)
             for w in self.words
         ]
 
@@ -171,6 +184,8 @@ def load_control(own: Table) -> Control:
         tool_types=_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_texts(table.table("phases"), PHASES),
         chord_tolerance=_chord_tolerance(table.table("arcs")),
+        tcp=table.flag("tcp", True),
+        feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
         templates=_templates(table.table("templates"), family),
     )
     for lacking in dict.fromkeys(name for name in words if name not in {word.name for word in control.words}):
@@ -202,14 +217,18 @@ def _format(entry: Table) -> Format:
 
 def _word(entry: Table, formats: Mapping[str, Format], words: Sequence[str]) -> WordRule:
     name = entry.text("name", one_of=words)
-    rotary = name in ("primary", "secondary")
-    letter = entry.text("letter", "") if rotary else entry.text("letter")
-    if len(letter.encode()) > 8:
-        entry.problem("letter", f"is {letter!r}", "write at most 8 characters")
+    rotary = name.startswith(("primary", "secondary"))
+    letter, closing = entry.text("letter", "") if rotary else entry.text("letter"), entry.text("closing", "")
+    most = 4 if rotary else 8
+    if len(letter.encode()) > most:
+        entry.problem("letter", f"is {letter!r}", f"write at most {most} characters")
         letter = letter[:1]
+    if len(closing.encode()) > 1:
+        entry.problem("closing", f"is {closing!r}", "write one character")
+        closing = ""
     bare = entry.flag("bare", False)
     form = "" if bare else entry.text("format", one_of=tuple(formats))
-    rule = WordRule(name, letter, form, not bare and entry.flag("modal", True), bare)
+    rule = WordRule(name, letter, form, not bare and entry.flag("modal", True), closing, bare)
     entry.finish()
     return rule
 
@@ -268,8 +287,8 @@ def _chord_tolerance(table: Table) -> float:
 def _templates(table: Table, family: Family) -> dict[str, Template]:
     """Those that every definition has, and those of the kinds of operations that this one has any for."""
     found = {}
-    kinds = {FIVE_AXIS: _of_kind(FIVE_AXIS), **{plane: _of_kind(plane, plane=True) for plane in family.PLANES}}
-    wanted = [name for names in kinds.values() if any(name in table for name in names) for name in names]
+    kinds = [_of_kind(FIVE_AXIS), _of_kind(WITHOUT_TCP), *(_of_kind(plane, plane=True) for plane in family.PLANES)]
+    wanted = [name for names in kinds if any(name in table for name in names) for name in names]
     for name in (*TEMPLATES, *wanted):
         text = table.text(name)
         file, line = table.origin(name)

@@ -8,23 +8,13 @@ from trunnion.nc import ABSENT, counts
 from trunnion.toolpath import Arcs, Coolant, Sense, SpindleOff, SpindleOn
 
 WORDS: tuple[str, ...] = (
-    "cutter_comp",
-    "feed_mode",
-    "plane",
-    "motion",
-    "I",
-    "J",
-    "K",
-    "turns",
-    "speed",
-    "spindle",
-    "coolant",
-    "feed",
-)
+    "cutter_comp", "feed_mode", "plane", "motion", "I", "J", "K", "turns", "speed", "spindle", "coolant", "feed",
+    "inverse_feed",
+)  # fmt: skip
 
 CODES: tuple[str, ...] = (
     "rapid", "linear", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz",
-    "feed_per_minute", "feed_per_revolution", "comp_off", "comp_left", "comp_right",
+    "feed_per_minute", "feed_per_revolution", "feed_inverse_time", "comp_off", "comp_left", "comp_right",
     "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop", "optional_stop",
 )  # fmt: skip
 

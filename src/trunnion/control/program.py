@@ -10,14 +10,16 @@ from typing import BinaryIO
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.definition import Control
 from trunnion.control.family import WordEvent
+from trunnion.control.slides import Slides, inverse_time, slides_of
 from trunnion.control.template import Value
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine, inverse
+from trunnion.machine.pace import clock
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
-from trunnion.plan import Motion
+from trunnion.plan import Manner, Motion, seconds
 from trunnion.plan.holes import Cycle, Turning, cycle_of, feed_of
 from trunnion.toolpath import (
     BlockSkip,
@@ -48,6 +50,7 @@ _PHASE_TEXT = {
     Phase.DEPARTURE: "departure",
     Phase.TRAVERSE: "traverse",
 }
+_UNKNOWN = (None, None, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +116,9 @@ class _Author:
         self._tool = self._tool_name = ""
         self._spindle: SpindleOn | None = None
         self._coolant = "OFF"
+        self._seconds: list[float] = []
+        self._slides: Slides | None = None
+        self._feed_mode = ABSENT
         self._height = 0.0  # of the tool along Z of the frame, at the last row written
 
     def write(self) -> None:
@@ -142,6 +148,11 @@ class _Author:
 
     def _operation(self, motion: Motion, ends: bool) -> None:
         """An operation, or what there is of it in one plane; ``ends``: there is no more of it."""
+        self._slides = None
+        if motion.manner is Manner.WITHOUT_TCP:
+            angle = self._control.number_formats(motion.three_axis)["angle"]
+            self._slides = slides_of(self._program.machine, motion, angle.decimals)
+            motion = self._slides.motion
         kind, values = kind_of(self._program, motion), self._values(motion)
         if motion.begins:
             self._expand("operation_start", values, motion)
@@ -155,6 +166,7 @@ class _Author:
         self._writer.forget()
         for word, code in self._control.in_force.items():
             self._writer.remember(word, code)
+        self._feed_mode = ABSENT
         self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
         if motion.plane is not None:
             self._expand(f"plane_on_{kind}", values, motion)
@@ -218,6 +230,7 @@ class _Author:
         found: dict[str, Value] = {
             **values,
             **angles,
+            **self._times(motion),
             **self._plane(motion),
             "primary": self._letters[0],
             "secondary": self._letters[1],
@@ -230,10 +243,21 @@ class _Author:
             "tool_diameter": tool.diameter if known else None,
             "tool_length": tool.length if known else None,
             "tool_corner_radius": tool.corner_radius if known else None,
+            "gauge_length": self._program.machine.tool_length,
+            **dict(zip(("zero_x", "zero_y", "zero_z"), self._program.machine.workpiece_zero or _UNKNOWN, strict=True)),
             "intol": operation.intol,
             "outtol": operation.outtol,
         }
         return {name: self._family.inside(value) if isinstance(value, str) else value for name, value in found.items()}
+
+    def _times(self, motion: Motion) -> dict[str, Value]:
+        """What the operation and all of them take, as people read it; worked out only where a template prints it."""
+        if not any(name in ("time", "total_time") for t in self._control.templates.values() for name, _ in t.fields()):
+            return {"time": None, "total_time": None}
+        if not self._seconds:
+            self._seconds = [seconds(self._program.machine, each) for each in self._program.motions]
+        own = next(s for each, s in zip(self._program.motions, self._seconds, strict=True) if each is motion)
+        return {"time": clock(own), "total_time": clock(sum(self._seconds))}
 
     def _tool_call(self, motion: Motion) -> str:
         """The tool as ``T=`` takes it: the run's setting, the number of LOAD/TOOL, or else the tool's name."""
@@ -425,6 +449,8 @@ class _Author:
         columns["feed"] = np.where(rapid, ABSENT, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"]))
         columns |= self._family.row_words(rapid, moves.per_rev[part], control.codes)
         forced: dict[str, bool | Ints] = {}
+        if self._slides is not None:
+            forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
         lines: dict[int, str] = {}
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
         if len(inside):
@@ -436,7 +462,7 @@ class _Author:
             for word, flag in words.forced.items():
                 every = np.zeros(stop - start, np.int64)
                 every[at] = flag
-                forced[word] = every
+                forced[word] = every | forced.get(word, 0)
             lines = dict(zip(at.tolist(), words.lines or (), strict=False))
         if start == 0:
             self._join(columns, 0, self._edge())
@@ -451,6 +477,34 @@ class _Author:
     def _edge(self) -> dict[str, int]:
         """The cutting edge, on controls that have any."""
         return {"edge": int(setting_of(self._program, "edge"))} if "edge" in self._control.settings else {}
+
+    def _words_of_slides(
+        self, slides: Slides, feed: Floats, part: slice, rapid: Flags, columns: dict[str, Ints]
+    ) -> dict[str, bool | Ints]:
+        """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
+
+        Returns which words are said though they may print as before: F wherever its meaning changes, and X in rapids,
+        which without a slide would only place the rotary axes.
+        """
+        turning = slides.turns[part] & ~rapid
+        word = self._writer.word("inverse_feed")
+        rate = np.full(len(feed), np.nan)
+        rate[turning] = inverse_time(slides.length[part][turning], feed[turning], word.format)[0]
+        columns["inverse_feed"] = counts(rate, word.format.decimals)
+        columns["feed"][turning] = ABSENT
+        columns["feed_mode"][turning] = self._control.codes["feed_inverse_time"]
+        for which, key in ((self._primary, "primary"), (self._secondary, "secondary")):
+            jumps = slides.shortest[part, self._column[which]]
+            if jumps.any():  # which only controls do that have the word
+                columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
+                columns[key][jumps] = ABSENT
+        cuts = np.flatnonzero(~rapid)
+        changes = np.zeros(len(feed), np.int64)
+        if len(cuts):
+            modes = columns["feed_mode"][cuts]
+            changes[cuts] = modes != np.concatenate(([self._feed_mode], modes[:-1]))
+            self._feed_mode = int(modes[-1])
+        return {"feed": changes, "X": rapid.astype(np.int64)}
 
     def _join(self, columns: dict[str, Ints], row: int, words: Mapping[str, int]) -> None:
         """Put words onto a row."""

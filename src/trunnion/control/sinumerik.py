@@ -18,7 +18,7 @@ from trunnion.control.turns import about_three
 from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Dwell, Message, Operation, Stop
 
-WORDS: tuple[str, ...] = (*iso.WORDS, "edge")
+WORDS: tuple[str, ...] = (*iso.WORDS, "edge", "primary_shortest", "secondary_shortest")
 CODES: tuple[str, ...] = iso.CODES
 PLANES: tuple[str, ...] = ("cycle800", "frames")
 CHOICES: Mapping[str, tuple[str, ...]] = {"plane": PLANES, "swivel_mode": ("57", "27", "39", "45", "30", "54")}

@@ -19,14 +19,13 @@ from trunnion.nc.words import ABSENT, Word
 CHUNK = 16384
 
 _DIGITS = 20  # of an int64, with sign and point
-_LETTERS = 8
+_LETTERS = 12
 
 #: Bytes that a block number takes at most, with its blank and the sign of skipped blocks.
 ROOM_OF_NUMBER = 12
 
-
 # columns of the table that describes the words to the kernel
-_MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH, _BARE = range(10)
+_MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH, _CLOSING, _BARE = range(11)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,9 +152,9 @@ def _write_blocks(
     line_before  (n + 1,) int64 how many lines stand before the row and all rows above it, from 0
     line_of      (l,)   int64   which text each of these lines is
     text_bytes, text_ends       the texts, end to end
-    rule         (w, 10) int64  modal, decimals, 10**decimals, point, leading, trailing, plus, length of letter, of
-                                zero, bare
-    spelling     (w, 16) uint8  letter in the first 8 bytes, spelling of zero in the last 8
+    rule         (w, 11) int64  modal, decimals, 10**decimals, point, leading, trailing, plus, length of letter, of
+                                zero, byte that closes the word or 0, bare
+    spelling     (w, 24) uint8  letter in the first 12 bytes, spelling of zero in the last 12
     last         (w,)   int64   what was last printed; kept up to date
     number       (4,)   int64   next block number, step, first, highest; the first is kept up to date
     """
@@ -215,6 +214,9 @@ def _write_blocks(
                             out,
                             at,
                         )
+                    if rule[word, _CLOSING]:
+                        out[at] = rule[word, _CLOSING]
+                        at += 1
                     out[at] = 32
                     at += 1
             if not has_number:
@@ -340,7 +342,7 @@ class BlockWriter:
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
         heads = ROOM_OF_NUMBER + len(self._letter) + 1
-        width = heads + len(rule) * (_DIGITS + _LETTERS + 1) + 1
+        width = heads + len(rule) * (_DIGITS + _LETTERS + 2) + 1
         text_room = sum(len(encoded[k]) + heads + 1 for k in line_of)
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
         written = _write_blocks(
@@ -403,5 +405,6 @@ def _rule(word: Word) -> list[int]:
         int(number.plus),
         len(word.letter.encode()),
         len(number.zero.encode()),
+        ord(word.closing or "\0"),
         int(word.bare),
     ]

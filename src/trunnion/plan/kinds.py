@@ -40,13 +40,18 @@ def manner_of(operation: Operation, wish: Manner | None) -> Manner:
 
 
 def in_other_words(
-    file: str, operation: Operation, manner: Manner, manners: frozenset[Manner]
+    file: str, operation: Operation, manner: Manner, manners: frozenset[Manner], tcp: bool
 ) -> tuple[Manner, list[Problem]]:
-    """The manner that the control has words for, and what there is to say when it is not the one that was asked for."""
-    if manner is Manner.TILTED and manner not in manners and Manner.TCP in manners:
+    """The manner that the control has words for, and what there is to say when it is not the one that was asked for.
+
+    ``tcp`` says whether the control is to hold the tip where rotary axes turn.
+    """
+    simultaneous = Manner.TCP if tcp else Manner.WITHOUT_TCP
+    if manner is Manner.TILTED and manner not in manners and simultaneous in manners:
         what = f"operation {operation.name} stands in a {manner}, for which the control has no words"
-        return Manner.TCP, [Problem(file, operation.line, what, f"it is made with {Manner.TCP}", Severity.WARNING)]
-    return manner, []
+        how = f"it is made {'with TCP' if tcp else 'without TCP'}"
+        return simultaneous, [Problem(file, operation.line, what, how, Severity.WARNING)]
+    return simultaneous if manner is Manner.TCP else manner, []
 
 
 def contradictions(

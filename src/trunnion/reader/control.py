@@ -11,14 +11,15 @@ says, with turned axes it is where the machine takes it.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Machine, Output, forward
-from trunnion.machine.inverse import solve_slides
+from trunnion.machine import Axis, Machine, Output, forward
+from trunnion.machine.inverse import pack, solve_slides
 from trunnion.reader import arcs, poses
 from trunnion.reader.columns import Changes, affine
 from trunnion.reader.drilling import Step
@@ -47,6 +48,9 @@ class Control(Rows, ABC):
 
     #: The work offset that is none: positions count from the machine's zero.
     no_offset = -1
+
+    #: Rotary words are positions as they wind, whatever the machine's definition says of its display.
+    winds = False
 
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, file)
@@ -95,16 +99,16 @@ class Control(Rows, ABC):
             return {How.SHORTEST: poses.SHORTEST, How.GROWING: poses.POSITIVE, How.FALLING: poses.NEGATIVE}[how]
         if not axis.endless:
             return poses.PLAIN
-        if self.shortest:
+        if self.shortest or (self.shortest is None and self.shorter(axis)):
             return poses.SHORTEST
-        if axis.output is Output.NONE:
-            return poses.PLAIN
-        return poses.SHORTEST if self.shorter and self.shortest is None else poses.SAME_TURN
+        return poses.PLAIN if self.winds or axis.output is Output.NONE else poses.SAME_TURN
 
-    @property
     @abstractmethod
-    def shorter(self) -> bool:
-        """Whether plain words for an endless rotary axis take the shorter way now, else they stay inside the turn."""
+    def shorter(self, axis: Axis) -> bool:
+        """Whether plain words for an endless rotary axis take the shorter way now.
+
+        Else they stay inside the turn, or are taken as they are where values are written as they wind.
+        """
 
     # Frames
 
@@ -114,10 +118,14 @@ class Control(Rows, ABC):
         return self._plane.then(self._program)
 
     def _origins(self) -> tuple[Floats, Floats]:
-        """Slide values at the work offset's zero, and the tip where the machine's zero is; rotary axes at zero."""
+        """Slide values at the work offset's zero, and the tip where the machine's zero is; rotary axes at zero.
+
+        Both without a tool.
+        """
+        bare = replace(self.machine, tool_length=None)
         joints = np.zeros(5)
-        solve_slides(self._packed, 0.0, 0.0, 0.0, 0.0, 0.0, joints)
-        tip = forward(self.machine, np.zeros((1, 5)))[0][0]
+        solve_slides(pack(bare), 0.0, 0.0, 0.0, 0.0, 0.0, joints)
+        tip = forward(bare, np.zeros((1, 5)))[0][0]
         return np.nan_to_num(joints[self._slides]), tip
 
     def _remap(self) -> None:
@@ -129,9 +137,14 @@ class Control(Rows, ABC):
         if self.tips:
             origin = self._origin_tip if none else np.zeros(3)
         else:
-            origin = np.zeros(3) if none else self._origin_slides
+            origin = self._length + (0.0 if none else self._origin_slides)
         self.map = affine(frame.linear, frame.shift + origin)
         self.turn = self._vectors(frame)
+
+    @property
+    def _length(self) -> Floats:
+        """What is added to the slides X Y Z for the length of the tool where positions are theirs, (3,) mm."""
+        return np.zeros(3)
 
     def _vectors(self, frame: Frame) -> Floats:
         """From programmed vectors to the workpiece frame, (3, 3)."""

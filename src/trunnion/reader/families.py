@@ -9,13 +9,18 @@ from typing import Any, Final
 from trunnion.definition import extended
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
+from trunnion.reader.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.reader.interpreter import STEPS, Interpreter
+from trunnion.reader.linuxcnc.interpreter import LinuxCNCInterpreter
 from trunnion.reader.run import Run
 from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 
 #: Readers by the family of the control.
 READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
     "sinumerik_840d": SinumerikInterpreter,
+    "heidenhain_itnc530": HeidenhainInterpreter,
+    "heidenhain_tnc640": HeidenhainInterpreter,
+    "linuxcnc": LinuxCNCInterpreter,
 }
 
 #: The family of machines whose definition names no control.
@@ -38,7 +43,8 @@ def run_program(
     path
         The program. Subprograms are looked for in its folder, nowhere else.
     machine
-        Three slides X, Y and Z, two rotary axes. Tools have length 0: the tip is where the control takes it to be.
+        Three slides X, Y and Z, two rotary axes. Every tool has the length of ``machine.tool_length``, or 0: the
+        tip is then where the control takes it to be.
     family
         The control whose language it is, a key of ``READERS``; None: as the machine's definition has it.
     step_limit
@@ -55,11 +61,23 @@ def run_program(
         If the file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
         control. What is only not understood is in ``Run.findings``.
     """
+    reader = reader_of(machine, family)
+    return reader(Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
+
+
+def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Interpreter[Any]]:
+    """Return the interpreter of a family, by default that of the machine's control.
+
+    Raises
+    ------
+    InputError
+        If nobody can read its programs yet.
+    """
     name = family_of(machine) if family is None else family
     if name not in READERS:
-        what = f"has the control {name!r}, whose programs cannot be read yet"
-        raise InputError(Problem(machine.key, 0, what, f"there are readers for {', '.join(READERS)}"))
-    return READERS[name](Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
+        what = f"its control is a {name}, whose programs cannot be read yet"
+        raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
+    return READERS[name]
 
 
 def can_read(machine: Machine) -> bool:

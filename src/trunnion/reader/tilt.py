@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machine import Machine, inverse
+from trunnion.machine.inverse import POLE_TOLERANCE
 from trunnion.reader.frames import about
 from trunnion.reader.poses import SLACK, nearest
 
@@ -32,6 +33,24 @@ def solutions(machine: Machine, normal: Floats, held: Floats) -> list[tuple[floa
     if solved.pole[0]:
         return [(float(held[columns[0]]), second) for _, second in pairs]
     return pairs
+
+
+def aligned(machine: Machine, rotary: tuple[float, float], along: Floats) -> tuple[float, float]:
+    """Return the position with the first axis, which is free there, turned so that the tool's X looks ``along`` (3,).
+
+    ``along`` is seen from the workpiece. Only turns about the first axis are looked at.
+    """
+    axis = machine.axes[machine.rotary[0]]
+    about_first = np.array(axis.direction)
+    x = tool_frame(machine, (0.0, rotary[1]))[:, 0]
+    sine, cosine = float(np.cross(x, along) @ about_first), float(x @ along - (x @ about_first) * (along @ about_first))
+    return axis.sense * math.degrees(math.atan2(sine, cosine)), rotary[1]
+
+
+def free(machine: Machine, rotary: tuple[float, float]) -> bool:
+    """Whether the tool axis stands along the first rotary axis, so that this one does not tilt it."""
+    tool = tool_frame(machine, rotary) @ np.array(machine.spindle_direction)
+    return float(np.linalg.norm(np.cross(tool, np.array(machine.axes[machine.rotary[0]].direction)))) < POLE_TOLERANCE
 
 
 def fits(machine: Machine, rotary: tuple[float, float]) -> bool:

@@ -12,7 +12,8 @@ from trunnion.reader.drilling import CycleError, sane
 from trunnion.reader.interpreter import STEPS, End, Interpreter
 from trunnion.reader.rows import FARTHEST
 from trunnion.reader.run import Orientation
-from trunnion.reader.sinumerik import cycles, scan
+from trunnion.reader.scan import scan
+from trunnion.reader.sinumerik import cycles
 from trunnion.reader.sinumerik.block import Block, BlockReader, Call, read_call
 from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, THROUGH, SinumerikControl
 from trunnion.reader.sinumerik.expressions import ExpressionError, Reader, Value
@@ -89,11 +90,12 @@ class SinumerikInterpreter(Interpreter[Activation]):
 
     def _kernel(self, text: Text) -> None:
         control = self._control
-        scan.scan(
+        scan(
             text.buffer,
             len(text.buffer),
             control.table,
             control.tips,
+            True,
             control.lengths,
             control.feeds,
             control.default_way,
@@ -183,7 +185,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
         if block.tool is not None:
             control.choose(block.tool)
         if block.edge is not None:
-            control.edge.set(control.row, block.edge)
+            control.set_edge(block.edge)
         late = [code for code in block.m if code in M_LATE]
         for code in block.m:
             if code not in late:
@@ -220,7 +222,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER):
             control.kind = code
         elif code in G_PLANES:
-            control.plane = "XYZ".index(G_PLANES[code])
+            control.set_working_plane("XYZ".index(G_PLANES[code]))
         elif code in G_UNITS:
             control.set_units(*G_UNITS[code])
         elif code in (90, 91):

@@ -1,4 +1,4 @@
-"""Plain motion blocks straight from bytes to columns.
+"""Plain motion blocks of the ISO languages straight from bytes to columns.
 
 In:     bytes of a program, whole lines; where the control stands; columns with room.
 Out:    rows for the blocks that hold nothing but N, G0 or G1, X Y Z, rotary words, A3= B3= C3= and F with plain
@@ -61,6 +61,7 @@ def scan(
     end: int,
     table: Codes,
     vectors: bool,
+    equals: bool,
     lengths: float,
     feeds: float,
     way: int,
@@ -76,6 +77,7 @@ def scan(
     text      (m,) uint8       the program; whole lines up to ``end``
     table     (256,) uint8     from ``letters``
     vectors   bool             A3= B3= C3= are allowed
+    equals    bool             X= is X
     frame     (3, 4) float64   from programmed position to ``target.place``
     turn      (3, 3) float64   from programmed vector to ``target.vector``
     counts    (6,) int64       KIND, ROW, COMMENTS, POSITION (byte), LINE (of the next block) and FEEDS, updated
@@ -120,12 +122,14 @@ def scan(
             elif what == 0:
                 plain = False
                 break
-            elif what >= SLIDE and text[at] == _EQUALS:
+            elif equals and what >= SLIDE and text[at] == _EQUALS:
                 at += 1
             if seen & (1 << slot) or (what == NUMBER and seen != 0):
                 plain = False
                 break
             seen |= 1 << slot
+            while text[at] == _SPACE or text[at] == _TAB:
+                at += 1
             # The number: sign, digits, point, digits.
             negative = False
             if what >= SLIDE and (text[at] == _PLUS or text[at] == _MINUS):

@@ -1,0 +1,1 @@
+"""Reader of LinuxCNC programs (RS274/NGC): the language, and a control that executes it."""
