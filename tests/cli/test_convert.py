@@ -2,6 +2,7 @@
 
 import re
 import shlex
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -146,7 +147,10 @@ def test_a_machine_that_is_not_there_is_named_with_those_that_are(tmp_path: Path
 
 
 def test_a_machine_whose_control_cannot_be_written_says_so(tmp_path: Path, capfd: Capture) -> None:
-    err = failed(tmp_path, capfd, str(HUB), "--machine", "yl569", "--to-machine", "dmu65")
+    text = files("trunnion.machine").joinpath("library", "ucp800.toml").read_text(encoding="utf-8")
+    machine = tmp_path / "other.toml"
+    machine.write_text(text.replace('extends = "heidenhain_itnc530"', 'family = "unheard_of"'), encoding="utf-8")
+    err = failed(tmp_path, capfd, str(HUB), "--machine", "yl569", "--to-machine", str(machine))
     assert "no programs can be written yet" in err
 
 

@@ -414,6 +414,8 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         explain=explain,
         manner=_MANNERS[settings.get("manner", "auto")],
         manners=control.manners(settings),
+        arcs_about_z=control.arcs_about_z,
+        machine_x=control.plane_along_machine,
         pole=Pole(settings.get("pole", "off")),
         absolute=settings.get("frame", "first") == "absolute",
         lower_feed=settings.get("lower_feed", "no") == "yes",

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from typing import TypedDict
 
 from trunnion.control.families import FAMILIES
 from trunnion.control.family import Family
@@ -24,7 +25,8 @@ FIELDS = frozenset(
         "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine", "gauge_length",
         "zero_x", "zero_y", "zero_z", "time", "total_time",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
-        "plane_x", "plane_y", "plane_z", "plane_side",
+        "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",
+        "spindle_speed", "new_speed", "spindle_code",
     }
 )  # fmt: skip
 
@@ -39,6 +41,9 @@ FIVE_AXIS = "five_axis"
 
 #: Those without.
 WITHOUT_TCP = "without_tcp"
+
+#: The template of a control on which the spindle is started by blocks of its own; others have words for it.
+SPINDLE_ON = "spindle_on"
 
 #: Words of a motion block that all families have.
 AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
@@ -82,8 +87,11 @@ class Control:
     """A control's language, read and checked.
 
     longest_line      bytes of a line, at most
+    continued         what ends a line that goes on in the next, in the same block; empty: there is none
     by_method         settings that follow from the method's name where nobody gave them: setting -> (part of the name,
                       value), the first that is found in it
+    arcs_about_z      only arcs about Z can be said; others become lines
+    plane_along_machine  X of a tilted plane is that of the machine once it has turned, unless the CL file has an own one
     tcp               it can hold the tip of the tool while rotary axes turn
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
     """
@@ -92,6 +100,7 @@ class Control:
     family: Family
     extension: str
     longest_line: int
+    continued: str
     numbers: BlockNumbers
     formats: Mapping[str, Format]
     words: tuple[WordRule, ...]
@@ -103,6 +112,8 @@ class Control:
     tool_types: Mapping[str, str]
     phases: Mapping[str, str]
     chord_tolerance: float
+    arcs_about_z: bool
+    plane_along_machine: bool
     tcp: bool
     feed_without_tcp: str
     templates: Mapping[str, Template] = field(repr=False)
@@ -136,6 +147,11 @@ class Control:
             Word(w.name, axes.get(w.name, "") + w.letter, formats.get(w.format, _NO_NUMBER), w.modal, w.closing, w.bare)
             for w in self.words
         ]
+
+
+class _Arcs(TypedDict):
+    chord_tolerance: float
+    arcs_about_z: bool
 
 
 def library() -> Traversable:
@@ -173,6 +189,7 @@ def load_control(own: Table) -> Control:
         family=family,
         extension=table.text("extension"),
         longest_line=table.integer("longest_line", 1 << 20, at_least=40, at_most=1 << 20),
+        continued=table.text("continued", ""),
         numbers=_numbers(table.table("block_numbers")),
         formats=formats,
         words=tuple(_word(entry, formats, words) for entry in table.tables("word")),
@@ -183,7 +200,8 @@ def load_control(own: Table) -> Control:
         by_method=_by_method(table.tables("by_method"), table.table("settings")),
         tool_types=_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_texts(table.table("phases"), PHASES),
-        chord_tolerance=_chord_tolerance(table.table("arcs")),
+        **_arcs(table.table("arcs")),
+        plane_along_machine=table.text("plane_x", "program", one_of=("program", "machine")) == "machine",
         tcp=table.flag("tcp", True),
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
         templates=_templates(table.table("templates"), family),
@@ -278,17 +296,18 @@ def _by_method(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tup
     return found
 
 
-def _chord_tolerance(table: Table) -> float:
+def _arcs(table: Table) -> _Arcs:
     tolerance = table.number("chord_tolerance", 0.001, above=0.0)
+    about = table.text("about", "XYZ", one_of=("XYZ", "Z"))
     table.finish()
-    return tolerance
+    return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z"}
 
 
 def _templates(table: Table, family: Family) -> dict[str, Template]:
     """Those that every definition has, and those of the kinds of operations that this one has any for."""
     found = {}
     kinds = [_of_kind(FIVE_AXIS), _of_kind(WITHOUT_TCP), *(_of_kind(plane, plane=True) for plane in family.PLANES)]
-    wanted = [name for names in kinds if any(name in table for name in names) for name in names]
+    wanted = [name for names in ((SPINDLE_ON,), *kinds) if any(name in table for name in names) for name in names]
     for name in (*TEMPLATES, *wanted):
         text = table.text(name)
         file, line = table.origin(name)

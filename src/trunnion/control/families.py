@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from typing import Final
 
-from trunnion.control import linuxcnc, sinumerik
+from trunnion.control import heidenhain, linuxcnc, sinumerik
 from trunnion.control.family import Family
 
 FAMILIES: Final[Mapping[str, Family]] = {
     "sinumerik_840d": sinumerik,
     "linuxcnc": linuxcnc,
+    "heidenhain_itnc530": heidenhain,
+    "heidenhain_tnc640": heidenhain,
 }

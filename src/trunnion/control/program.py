@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.control.definition import Control
+from trunnion.control.definition import SPINDLE_ON, Control
 from trunnion.control.family import WordEvent
 from trunnion.control.slides import Slides, inverse_time, slides_of
 from trunnion.control.template import Value
@@ -35,6 +35,7 @@ from trunnion.toolpath import (
     Message,
     Operation,
     Phase,
+    Sense,
     SpindleOff,
     SpindleOn,
     Stop,
@@ -119,6 +120,7 @@ class _Author:
         self._seconds: list[float] = []
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
+        self._speed: Value = None  # of the spindle, as a text said it last
         self._height = 0.0  # of the tool along Z of the frame, at the last row written
 
     def write(self) -> None:
@@ -128,23 +130,33 @@ class _Author:
         self._expand("program_start", self._values(motions[0]), motions[0])
         for k, motion in enumerate(motions):
             self._operation(motion, k + 1 == len(motions) or motions[k + 1].begins)
+            off = f"M{self._control.coolant['OFF']}"
             if self._coolant != "OFF" and k + 1 < len(motions) and motions[k + 1].begins:
-                self._writer.lines([f"M{self._control.coolant['OFF']}"])
+                end = self._control.templates[f"operation_end_{kind_of(self._program, motion)}"]
+                self._writer.lines([] if off in end.lines else [off])
                 self._coolant = "OFF"
         self._expand("program_end", self._values(motions[-1]), motions[-1])
 
     def _expand(self, name: str, values: Mapping[str, Value], motion: Motion) -> None:
         formats = self._control.number_formats(motion.three_axis)
-        self._lines(self._control.templates[name].expand(values, formats))
+        template = self._control.templates[name]
+        speed = values["spindle_speed"]
+        self._lines(template.expand({**values, "new_speed": None if speed == self._speed else speed}, formats))
+        if any(field in ("spindle_speed", "new_speed") for field, _ in template.fields()):
+            self._speed = speed
 
     def _lines(self, lines: Sequence[str]) -> None:
-        """Lines of text, none longer than the control reads."""
+        """Lines of text, none longer than the control reads; what goes on in the next line is one block with it."""
         room = self._control.longest_line - ROOM_OF_NUMBER
         for line in lines:
             if len(line.encode()) > room:
                 what = f"a line has more than the {self._control.longest_line} bytes that {self._control.name} reads"
                 raise InputError(Problem(self._program.file, 0, f"{what}: {line[:60]}…", "shorten the text"))
-        self._writer.lines(lines)
+        sign, blocks, goes_on = self._control.continued, list[str](), False
+        for line in lines:
+            blocks[len(blocks) - goes_on :] = [f"{blocks[-1]}\n{line}" if goes_on else line]
+            goes_on = bool(sign) and line.endswith(sign)
+        self._writer.lines(blocks)
 
     def _operation(self, motion: Motion, ends: bool) -> None:
         """An operation, or what there is of it in one plane; ``ends``: there is no more of it."""
@@ -181,18 +193,20 @@ class _Author:
         """What templates of all families may print of a tilted plane: its origin and the side of the machine.
 
         The side is -1 or 1: of the two solutions that stand the tool on the plane, the one with the lower or the higher
-        value of the rotary axis farther from the workpiece. Where there is only one, either word means it.
+        value of the rotary axis farther from the workpiece. Where there is only one, either word means it. The sign is
+        that of this axis: "+" or "-".
         """
         names = "plane_x", "plane_y", "plane_z"
         if motion.plane is None:
-            return dict.fromkeys((*names, "plane_side"))
+            return dict.fromkeys((*names, "plane_side", "plane_sign"))
         moves, column = motion.operation.moves, self._program.machine.rotary[1]
         both = inverse(self._program.machine, moves.tip[:1], moves.axis[:1]).joints[:, 0, column]
         apart = both - motion.rotary[0, 1]
         apart -= 360.0 * np.rint(apart / 360.0)
         lower = np.argmin(np.abs(apart)) == np.argmin(both)
         side = "-1" if lower else "1"
-        return {**dict(zip(names, motion.plane.origin, strict=True)), "plane_side": side}
+        sign = "-" if motion.rotary[0, 1] < 0.0 else "+"
+        return {**dict(zip(names, motion.plane.origin, strict=True)), "plane_side": side, "plane_sign": sign}
 
     def _home(self) -> dict[str, Value]:
         """The machine's home, for templates that say it in positions of the machine."""
@@ -232,6 +246,7 @@ class _Author:
             **angles,
             **self._times(motion),
             **self._plane(motion),
+            **self._spindle_values(self._spindle_at_start(operation)),
             "primary": self._letters[0],
             "secondary": self._letters[1],
             "machine": self._program.machine.name,
@@ -295,6 +310,10 @@ class _Author:
         """All rows, broken where an event is a block of its own."""
         rows = len(motion.operation.moves)
         joining = self._spindle_again(motion.operation)
+        if SPINDLE_ON in self._control.templates:
+            for again in joining:
+                self._own_block(motion, again)
+            joining = []
         done, text = 0, -1
         cycle: CycleOn | None = None
         for event in motion.operation.events:
@@ -305,9 +324,11 @@ class _Author:
                 continue
             off = isinstance(event, SpindleOff) or (isinstance(event, Coolant) and event.kind == "OFF")
             joins = event if isinstance(event, SpindleOn | Coolant | CutterComp) and not off else None
+            if isinstance(event, SpindleOn) and SPINDLE_ON in self._control.templates:
+                joins = None
             if joins and not any(type(e) is type(event) and e.row == event.row for e in joining):
                 joining.append(joins)
-            elif joins or off or isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
+            elif joins or off or isinstance(event, SpindleOn | Dwell | Stop | Message | Insert | BlockSkip):
                 text = self._stretch(motion, done, event.row, joining, text, cycle)
                 for earlier in (e for e in joining if e.row == event.row):
                     self._event_block(earlier)  # what is said twice before one row is said in order
@@ -323,6 +344,18 @@ class _Author:
             if event.row == rows:
                 self._event_block(event)
 
+    def _spindle_at_start(self, operation: Operation) -> SpindleOn | None:
+        """What the spindle does at the first row; None: nobody said so."""
+        said = [event for event in operation.events if isinstance(event, SpindleOn) and event.row == 0]
+        return said[-1] if said else self._spindle
+
+    def _spindle_values(self, event: SpindleOn | None) -> dict[str, Value]:
+        """Speed, also where it is not the one that was said last, and the M code of the sense."""
+        if event is None:
+            return dict.fromkeys(("spindle_speed", "new_speed", "spindle_code"))
+        code = "spindle_clockwise" if event.sense is Sense.CLW else "spindle_counterclockwise"
+        return {"spindle_speed": event.rpm, "new_speed": event.rpm, "spindle_code": str(self._control.codes[code])}
+
     def _spindle_again(self, operation: Operation) -> list[WordEvent]:
         """The last operation's end stopped the spindle: what was in force is said again unless something new is."""
         said = any(isinstance(event, SpindleOn) and event.row == 0 for event in operation.events)
@@ -334,7 +367,10 @@ class _Author:
 
     def _own_block(self, motion: Motion, event: Event) -> None:
         """Events that are no words of a motion block."""
-        if isinstance(event, Dwell):
+        if isinstance(event, SpindleOn):
+            self._spindle = event
+            self._expand(SPINDLE_ON, self._spindle_values(event), motion)
+        elif isinstance(event, Dwell):
             rpm = None if self._spindle is None else self._spindle.rpm
             self._lines(self._family.dwell(event, rpm, self._control.number_formats(motion.three_axis)))
         elif isinstance(event, Stop):
@@ -452,6 +488,7 @@ class _Author:
         if self._slides is not None:
             forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
         lines: dict[int, str] = {}
+        elsewhere = np.zeros(stop - start, np.bool_)
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
         if len(inside):
             formats = {word.key: word.format for word in self._words}
@@ -464,6 +501,9 @@ class _Author:
                 every[at] = flag
                 forced[word] = every | forced.get(word, 0)
             lines = dict(zip(at.tolist(), words.lines or (), strict=False))
+            elsewhere = columns["X"] == ABSENT
+            for word in "XYZ":  # where an arc's end was said by other words, the next block says its own whole
+                forced[word] = np.concatenate(([0], elsewhere[:-1])).astype(np.int64) | forced.get(word, 0)
         if start == 0:
             self._join(columns, 0, self._edge())
         for event in joining:
@@ -472,6 +512,8 @@ class _Author:
         wanted = ids[moves.phase[part]]
         before = np.concatenate(([text], wanted[:-1]))
         self._writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
+        if elsewhere[-1]:
+            self._writer.forget("X", "Y", "Z")
         return int(wanted[-1])
 
     def _edge(self) -> dict[str, int]:

@@ -1,7 +1,8 @@
 """Text templates: lines with ``{name}`` and ``{name:format}`` in them.
 
 A template can print values and nothing else: it computes nothing and reads nothing. A line that names a value which
-is absent is left out whole, so that a program without a date has no line for one.
+is absent is left out whole, so that a program without a date has no line for one; a part in double brackets, such as
+``TOOL CALL {tool}[[ S{speed}]]``, is left out alone.
 """
 
 import re
@@ -13,6 +14,7 @@ from trunnion.nc import NumberFormat
 
 Value = str | float | None
 
+_PART = re.compile(r"\[\[(.*?)\]\]")
 _FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
 
 
@@ -30,7 +32,7 @@ class Template:
         return {(name, form or "") for text in self.lines for name, form in _FIELD.findall(text)}
 
     def expand(self, values: Mapping[str, Value], formats: Mapping[str, NumberFormat]) -> list[str]:
-        """The lines with their values; those that name an absent value are left out.
+        """The lines with their values; those that name an absent value are left out, and so are such parts of them.
 
         Raises
         ------
@@ -44,11 +46,11 @@ class Template:
                 return formats[match[2]].text(self._number(match[1], value))
             return f"{value:g}" if isinstance(value, float) else str(value)
 
-        return [
-            _FIELD.sub(printed, text)
-            for text in self.lines
-            if all(values[name] not in (None, "") for name, _ in _FIELD.findall(text))
-        ]
+        def known(text: str) -> bool:
+            return all(values[name] not in (None, "") for name, _ in _FIELD.findall(text))
+
+        lines = [_PART.sub(lambda part: part[1] if known(part[1]) else "", text) for text in self.lines]
+        return [_FIELD.sub(printed, text) for text in lines if known(text)]
 
     def _number(self, name: str, value: Value) -> float:
         try:

@@ -38,14 +38,15 @@ def arc_sweeps(operation: Operation) -> Floats:
     return np.asarray(np.where(closed, 2.0 * np.pi, angle) + 2.0 * np.pi * arcs.turns)
 
 
-def plain_arcs(operation: Operation) -> Flags:
+def plain_arcs(operation: Operation, only_about_z: bool = False) -> Flags:
     """(m,) bool: the arc may be left to a control.
 
-    It turns about X, Y or Z, and the tool axis is the same at its start and its end. It also ends clear of its start,
+    It turns about X, Y or Z, or about Z where a control knows no others, and the tool axis is the same at its start and its end. It also ends clear of its start,
     or right at it: a control takes an arc whose end prints as its start for a full circle, be it a tiny one in truth.
     """
     arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
-    about_axis = np.sort(np.abs(arcs.normal), axis=1)[:, 1] < _ALONG
+    aside = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
+    about_axis = (aside if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _ALONG
     steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _ALONG
     apart = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
     in_plane = np.linalg.norm(np.cross(tip[arcs.row] - tip[arcs.row - 1], arcs.normal), axis=1)

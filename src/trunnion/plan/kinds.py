@@ -12,6 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Problem, Severity
+from trunnion.machine import Machine, forward
 from trunnion.plan.frames import frame_of
 from trunnion.plan.motion import Manner
 from trunnion.toolpath import Frame, Operation
@@ -73,7 +74,7 @@ def contradictions(
     return [Problem(file, int(line[wrong[0]]), f"operation {operation.name}: {what}", cure)] if len(wrong) else []
 
 
-def plane_of(axis: Floats, own: Frame) -> Frame:
+def plane_of(axis: Floats, own: Frame, along: Floats | None = None) -> Frame:
     """The tilted plane under a tool axis, in the program's coordinate system.
 
     Parameters
@@ -82,16 +83,27 @@ def plane_of(axis: Floats, own: Frame) -> Frame:
         The tool axis, which becomes exactly the plane's Z.
     own
         The operation's own coordinate system. If it stands on the tool axis, the plane has its origin and its X;
-        otherwise the program's zero, and X as the program's X falls onto the plane.
+        otherwise the program's zero, and X as ``along`` falls onto the plane.
+    along : (3,) float64, optional
+        A direction; without it that of the program's X.
     """
     if float(np.linalg.norm(np.cross(own.matrix()[:, 2], axis))) < _ALONG and own.matrix()[:, 2] @ axis > 0.0:
         y, origin = np.cross(axis, np.array(own.x)), np.array(own.origin)
     else:
-        y, origin = np.cross(axis, [1.0, 0.0, 0.0]), np.zeros(3)
+        y, origin = np.cross(axis, [1.0, 0.0, 0.0] if along is None else along), np.zeros(3)
         if float(np.linalg.norm(y)) < _CLOSE:
             y = np.cross(axis, [0.0, 0.0, -1.0])
     y = y / np.linalg.norm(y)
     return frame_of(np.round(origin, _WHOLE) + 0.0, np.cross(y, axis), y)
+
+
+def machine_x(machine: Machine, rotary: Floats) -> Floats:
+    """(3,): the machine's X as the workpiece sees it, with the rotary axes at positions (2,), degrees."""
+    joints = np.zeros((2, len(machine.axes)))
+    joints[:, list(machine.rotary)] = rotary
+    joints[1, machine.column("X")] = 1.0
+    tip, _ = forward(machine, joints)
+    return np.asarray(tip[1] - tip[0])
 
 
 def _steady(axis: Floats, wanted: Floats) -> bool:

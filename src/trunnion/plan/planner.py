@@ -16,7 +16,7 @@ from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower, source_rows
 from trunnion.plan.frames import into_frame, into_plane, seen_from
 from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
-from trunnion.plan.kinds import contradictions, in_other_words, manner_of, plane_of
+from trunnion.plan.kinds import contradictions, in_other_words, machine_x, manner_of, plane_of
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
@@ -74,11 +74,13 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         said += reworded
         against += contradictions(path.file, operation, manner, wishes.manners)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
-        kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
+        kept = plain_arcs(operation if plane is None else into_plane(operation, plane), wishes.arcs_about_z)
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         source = source_rows(original, operation)
         stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
         planes = Manner.TILTED in wishes.manners and wishes.manner is None
+        if plane is not None and wishes.machine_x:
+            plane = plane_of(operation.moves.axis[0], own, machine_x(machine, stretch.poses.rotary[0]))
         parts = by_axis(operation) if manner in (Manner.TCP, Manner.WITHOUT_TCP) and planes else None
         kind = replace(stretch, manner=manner, plane=plane)
         stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own, parts=parts))
@@ -90,7 +92,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         raise Refused(problems)
     if machine.workpiece_zero is None:
         problems += _fit_problems(stretches, machine)
-    motions = [(stretch, motion) for stretch in stretches for motion in stretch.motions(wishes)]
+    motions = [(stretch, motion) for stretch in stretches for motion in stretch.motions(machine, wishes)]
     lacking = [motion.operation for _, motion in motions if motion.manner is Manner.WITHOUT_TCP]
     if lacking:
         check_without_tcp(pairs[0][0].file, lacking, machine)
@@ -119,7 +121,7 @@ class _Stretch:
     plane: Frame | None = None
     parts: Sequence[tuple[int, int]] = ()
 
-    def motions(self, wishes: Wishes) -> list[Motion]:
+    def motions(self, machine: Machine, wishes: Wishes) -> list[Motion]:
         """What is to be written."""
         if not self.parts:
             operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
@@ -130,7 +132,11 @@ class _Stretch:
                 part_of(self.operation, first, end),
                 self.poses.rotary[first:end].copy(),
                 self.manner,
-                plane_of(self.operation.moves.axis[first], self.plane),
+                plane_of(
+                    self.operation.moves.axis[first],
+                    self.plane,
+                    machine_x(machine, self.poses.rotary[first]) if wishes.machine_x else None,
+                ),
                 begins=first == 0,
             )
             for first, end in self.parts

@@ -22,6 +22,8 @@ class Wishes:
     explain         say more in the log: what the nearest neighbour would have done, where a rotary axis is too fast
     manner          how every operation is to be made, whatever the rule says; None: by the rule
     manners         those that the control has words for
+    arcs_about_z    the control knows arcs about Z only
+    machine_x       X of a tilted plane is that of the machine once it has turned, unless the CL file has an own one
     pole            what is done near the pole where a rotary axis would have to be too fast
     pole_angle      by how much the tool axis may lean for that, degrees
     absolute        the program's coordinate system is the CAM's absolute one, not that of the first operation
@@ -38,6 +40,8 @@ class Wishes:
     explain: bool = False
     manner: Manner | None = None
     manners: frozenset[Manner] = frozenset(Manner)
+    arcs_about_z: bool = False
+    machine_x: bool = False
     absolute: bool = False
     pole: Pole = Pole.OFF
     pole_angle: float = 0.1

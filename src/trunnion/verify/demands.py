@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.machine import Machine
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
 from trunnion.verify.agreed import Believed, needless_feeds
@@ -443,6 +444,15 @@ def _offset(code: int) -> str:
     return "no work offset" if code == 0 else f"G{code}"
 
 
+def _only_turns(run: Run, machine: Machine, first: int, end: int) -> bool:
+    """Whether rows ``first`` to ``end`` turn rotary axes alone, and the slides stay where they are at home."""
+    if (run.programmed[first:end] & 7).any():
+        return False
+    slides = list(machine.linear)
+    apart = run.poses(np.arange(first, end)).joints[:, slides] - machine.home[slides]
+    return bool((np.abs(apart) <= _HOME).all())
+
+
 def home(case: Case) -> Check:
     """Motions in the machine's frame: at rapid, back along one slide first, and to the machine's home positions.
 
@@ -492,8 +502,8 @@ def home(case: Case) -> Check:
         if event.kind not in ("tool_change", "end") or not 0 < event.before_row <= len(run):
             continue
         row = event.before_row - 1
-        k = int(np.searchsorted(rows, row))
-        stands = k < len(rows) and rows[k] == row and there[k, slides].all()
+        k = int(np.searchsorted(rows, row, "right")) - 1
+        stands = k >= 0 and there[k, slides].all() and _only_turns(run, machine, int(rows[k]) + 1, row + 1)
         if not stands:
             what = "changes the tool" if event.kind == "tool_change" else "ends"
             text = f"{what} in line {event.line} while the slides are not at home; this is the last motion before"

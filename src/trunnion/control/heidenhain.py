@@ -1,0 +1,222 @@
+"""What the Klartext of iTNC 530 and TNC 640 says that words and templates alone cannot.
+
+Circles about a centre, helices, dwells, comments, the angles of a plane. Facts: the manuals of both controls;
+docs/controls/heidenhain.md has them one by one.
+"""
+
+import re
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.control.family import ArcWords, Codes, Formats, UnsayableError, WordEvent
+from trunnion.control.template import Value
+from trunnion.control.turns import about_three
+from trunnion.nc import ABSENT, counts
+from trunnion.plan.holes import Cycle, CycleError, Turning
+from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
+
+WORDS: tuple[str, ...] = (
+    "line", "arc", "helix", "arc_angle", "arc_rise", "counterclockwise", "clockwise",
+    "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant", "feed_mode",
+)  # fmt: skip
+
+CODES: tuple[str, ...] = (
+    "feed_per_minute", "feed_per_revolution", "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop",
+    "optional_stop",
+)  # fmt: skip
+
+PLANES: tuple[str, ...] = ("spatial", "vector", "cycle19")
+
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "plane": PLANES,
+    "plane_move": ("turn", "move", "stay"),
+    "plane_solution": ("SEQ", "SYM"),
+    "tcpm": ("m128", "function"),
+}
+
+_VECTOR: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
+
+FIELDS: frozenset[str] = frozenset(
+    {"tcp_on", "tcp_off", "positioning", "spatial_a", "spatial_b", "spatial_c", *_VECTOR, "blank_low", "blank_high"}
+)
+
+#: Bytes of a comment in one line.
+_ROOM: Final = 100
+
+_TCPM: Final = {
+    "m128": ("M128", "M129"),
+    "function": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "FUNCTION RESET TCPM"),
+}
+_POSITIONING: Final = {"turn": "TURN FMAX", "move": "MOVE ABST0 FMAX", "stay": "STAY"}
+_COMP: Final = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
+
+
+def comment(text: str) -> list[str]:
+    """A semicolon begins a comment; a long one goes on in the next line."""
+    pieces = [""]
+    for character in inside(text):
+        if len((pieces[-1] + character).encode()) > _ROOM:
+            pieces.append("")
+        pieces[-1] += character
+    return [f"; {piece}" for piece in pieces]
+
+
+def inside(text: str) -> str:
+    """A tilde at the end of a line would take the next one into the block."""
+    return text.replace("~", "-")
+
+
+def tool_call(number: int, name: str, by_name: bool) -> str:
+    """What stands after ``TOOL CALL``: a number, or a name in quotation marks, in which none can stand."""
+    if by_name and '"' in name:
+        raise UnsayableError(f"the tool name {name} has a quotation mark in it", "write --set tool=NUMBER")
+    return f'"{name}"' if by_name else str(number)
+
+
+def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
+    """Cycle 9 waits seconds; turns of the spindle become the seconds that they take."""
+    amount = event.amount
+    if event.revolutions:
+        if rpm is None or not rpm > 0.0:
+            raise UnsayableError("a dwell in spindle revolutions while the spindle stands", "put SPINDL before it")
+        amount = 60.0 * amount / rpm
+    form = formats["dwell"]
+    if not form.least <= amount <= form.greatest:
+        what = f"a dwell of {amount:g} s, and the control waits {form.least:g} to {form.greatest:g} s"
+        raise UnsayableError(what, "write a dwell within that")
+    return ["CYCL DEF 9.0 DWELL TIME", f"CYCL DEF 9.1 DWELL {form.text(amount)}"]
+
+
+def stop(event: Stop, codes: Codes) -> list[str]:
+    """M0 or M1, after the text that the operator is to see."""
+    code = codes["optional_stop" if event.optional else "stop"]
+    return [*(comment(event.text) if event.text else ()), f"M{code}"]
+
+
+def message(event: Message) -> list[str]:
+    """A comment, which the operator sees as it runs by; one to be displayed as a structure line."""
+    lines = comment(event.text)
+    return [f"* - {line[2:]}" for line in lines] if event.display else lines
+
+
+def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
+    """M for coolant, R0, RL or RR for the radius compensation; the spindle has blocks of its own."""
+    if isinstance(event, Coolant):
+        return {"coolant": coolant[event.kind]}
+    if isinstance(event, CutterComp):
+        return {_COMP[event.side]: 1} if event.side in _COMP else {}
+    return {"spindle": codes["spindle_off"]}
+
+
+def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
+    """Radius compensation in another plane than that of the tool axis."""
+    return [
+        (event.line, UnsayableError(f"radius compensation in the plane {event.plane}", "write XYPLAN, or no CUTCOM"))
+        for event in operation.events
+        if isinstance(event, CutterComp) and event.plane not in ("", "XYPLAN")
+    ]
+
+
+def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+    """A program name that no file of the control has, a block form that is none."""
+    wrong = []
+    name, blank = settings.get("program", ""), settings.get("blank", "")
+    if name and not re.fullmatch(r"[A-Za-z0-9_#$%&-]{1,24}", name):
+        wrong.append(("program", "write up to 24 letters, digits and _ # $ % & -"))
+    if not settings.get("work_offset", "1").isdigit():
+        wrong.append(("work_offset", "write the number of the preset, such as 1"))
+    if blank and _corners(blank) is None:
+        wrong.append(("blank", "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first"))
+    return wrong
+
+
+def hole_call(
+    cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
+) -> list[str]:
+    """Not yet."""
+    raise CycleError("hole-making cycles cannot be written in Klartext yet", "output the holes as motion")
+
+
+def hole_end() -> list[str]:
+    """Nothing: a cycle is called hole by hole."""
+    return []
+
+
+def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
+    """``L``, ``FMAX`` in rapids, and what F means wherever there is one."""
+    mode = np.where(per_rev, codes["feed_per_revolution"], codes["feed_per_minute"])
+    return {
+        "line": np.ones(len(rapid), np.int64),
+        "rapid": np.where(rapid, 1, ABSENT).astype(np.int64),
+        "feed_mode": np.where(rapid, ABSENT, mode).astype(np.int64),
+    }
+
+
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats) -> ArcWords:
+    """``CC X Y`` in a line before, and ``C X Y DR``, or for a helix and for more than a turn ``CP IPA IZ DR``.
+
+    All arcs are about Z, which is the tool axis. DR+ is counter-clockwise as seen against Z. IPA has the sign of DR.
+    """
+    start, end, centre = tip[arcs.row[rows] - 1], tip[arcs.row[rows]], arcs.centre[rows]
+    sense = np.sign(arcs.normal[rows, 2])
+    place, decimals = formats["Z"].decimals, formats["arc_angle"].decimals
+    rise = counts(np.ascontiguousarray(end[:, 2]), place) - counts(np.ascontiguousarray(start[:, 2]), place)
+    helix = (rise != 0) | (arcs.turns[rows] > 0)
+    columns = {
+        "line": np.full(len(rows), ABSENT),
+        "arc": np.where(helix, ABSENT, 1),
+        "helix": np.where(helix, 1, ABSENT),
+        "arc_angle": np.where(helix, counts(_sweep(start, end, centre, sense, arcs.turns[rows]), decimals), ABSENT),
+        "arc_rise": np.where(helix & (rise != 0), rise, ABSENT),
+        "counterclockwise": np.where(sense > 0, 1, ABSENT),
+        "clockwise": np.where(sense < 0, 1, ABSENT),
+        "Z": np.full(len(rows), ABSENT),
+    }
+    for c, word in enumerate("XY"):
+        columns[word] = np.where(helix, ABSENT, counts(np.ascontiguousarray(end[:, c]), place))
+    said = np.ones(len(rows), np.int64)
+    number = formats["X"].text
+    lines = [f"CC X{number(x)} Y{number(y)}" for x, y in centre[:, :2].tolist()]
+    return ArcWords(columns, {"X": said, "Y": said}, lines)
+
+
+def _sweep(start: Floats, end: Floats, centre: Floats, sense: Floats, turns: Ints) -> Floats:
+    """(a,) degrees, with the sign of DR; an arc that ends where it starts is a full turn."""
+    a, b = start[:, :2] - centre[:, :2], end[:, :2] - centre[:, :2]
+    angle = np.degrees(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.einsum("ij,ij->i", a, b)))
+    part = np.mod(sense * angle, 360.0)
+    closed = np.linalg.norm(a - b, axis=1) < 1e-4
+    return np.asarray(sense * (np.where(closed, 360.0, part) + 360.0 * turns))
+
+
+def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
+    """TCP on and off as ``tcpm`` says it, the words and angles of a plane, the corners of the block form.
+
+    SPA, SPB and SPC turn about fixed axes X, then Y, then Z: the same as about Z, the new Y and the newest X.
+    """
+    on, off = _TCPM[str(settings["tcpm"])]
+    low, high = _corners(str(settings.get("blank") or "")) or (None, None)
+    found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
+    found["positioning"] = _POSITIONING[str(settings["plane_move"])]
+    spatial = "spatial_c", "spatial_b", "spatial_a"
+    if plane is None:
+        return {**found, **dict.fromkeys((*spatial, *_VECTOR))}
+    turns = [180.0 if angle < -179.99999999 else angle for angle in about_three(plane, (2, 1, 0))]
+    angles = dict(zip(spatial, turns, strict=True))
+    return {**found, **angles, **dict(zip(_VECTOR, [*plane[:, 0].tolist(), *plane[:, 2].tolist()], strict=True))}
+
+
+def _corners(blank: str) -> tuple[str, str] | None:
+    """The two corners of the block form as words, None where the text is none."""
+    try:
+        numbers = [float(part) for part in blank.split(",")]
+    except ValueError:
+        return None
+    if len(numbers) != 6 or any(not a < b or not abs(a) + abs(b) < 1e5 for a, b in zip(numbers, numbers[3:], strict=False)):
+        return None
+    texts = [f"{number:+.4f}".rstrip("0").rstrip(".") for number in numbers]
+    low, high = (" ".join(f"{axis}{text}" for axis, text in zip("XYZ", part, strict=True)) for part in (texts[:3], texts[3:]))
+    return low, high
