@@ -345,7 +345,7 @@ def circles(draw: st.DrawFn) -> tuple[Moves, Arcs]:
     for _ in range(n):
         r, at, side = draw(st.floats(0.5, 200.0)), draw(st.floats(-np.pi, np.pi)), draw(st.sampled_from([-1.0, 1.0]))
         sweep = draw(st.one_of(st.floats(0.05, 6.2), st.just(2.0 * np.pi)))
-        rise = draw(st.one_of(st.just(0.0), st.floats(-5.0, 5.0)))
+        rise = draw(st.integers(-500, 500)) / 100.0 if draw(st.booleans()) else 0.0
         middle = tip[-1] - r * np.array([np.cos(at), np.sin(at), 0.0])
         angle = at + side * sweep
         end = middle + r * np.array([np.cos(angle), np.sin(angle), 0.0]) + [0.0, 0.0, rise]
@@ -355,7 +355,7 @@ def circles(draw: st.DrawFn) -> tuple[Moves, Arcs]:
         sense.append([0.0, 0.0, side])
         turns.append(draw(st.integers(0, 3)))
     rows = np.arange(1, n + 1)
-    points = np.array([*tip, tip[-1] + [1.0, 0.0, 0.0]])
+    points = np.round([*tip, tip[-1] + [1.0, 0.0, 0.0]], 4)  # as CL files print them
     kind = np.full(n + 2, Kind.ARC, np.uint8)
     kind[[0, -1]] = Kind.LINEAR
     moves = replace(operation_of_points(points), kind=kind)

@@ -250,6 +250,8 @@ def _allowed(program: Program) -> "list[Allowed]":
             turning = control.number_formats(three_axis=False)["plane_angle"].decimals
             tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
+        if "arc_angle" in half:
+            tip += _by_angles(motion, half["X"], half["arc_angle"])
         if motion.manner is Manner.WITHOUT_TCP:
             tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
         if not motion.begins:
@@ -259,6 +261,20 @@ def _allowed(program: Program) -> "list[Allowed]":
         agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
         allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed))
     return allowed
+
+
+def _by_angles(motion: Motion, half: float, angle: float) -> float:
+    """How much farther the ends of helices may be off that are said by a centre and an angle, mm.
+
+    Start and centre are rounded by ``half`` mm, of which the end has that of the centre twice, once turned; the angle
+    by ``angle`` degrees.
+    """
+    operation = motion.as_written()
+    arcs, tip = operation.arcs, operation.moves.tip
+    rises = (arcs.turns > 0) | (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.5 * half)
+    if not rises.any():
+        return 0.0
+    return half * (1.0 + math.sqrt(2.0)) + math.radians(angle) * float(arcs.radius[rises].max())
 
 
 def _in_plane(motion: Motion, half: float, tilt: float) -> float:

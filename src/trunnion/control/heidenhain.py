@@ -178,9 +178,16 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Format
     for c, word in enumerate("XY"):
         columns[word] = np.where(helix, ABSENT, counts(np.ascontiguousarray(end[:, c]), place))
     said = np.ones(len(rows), np.int64)
-    number = formats["X"].text
-    lines = [f"CC X{number(x)} Y{number(y)}" for x, y in centre[:, :2].tolist()]
+    number = formats["X"].of_count
+    lines = [f"CC X{number(x)} Y{number(y)}" for x, y in _centres(start, centre, place).tolist()]
     return ArcWords(columns, {"X": said, "Y": said}, lines)
+
+
+def _centres(start: Floats, centre: Floats, decimals: int) -> Ints:
+    """(a, 2) counts: the centres as seen from where the circles start in print, so that nothing is rounded twice."""
+    ways = [counts(np.ascontiguousarray((centre - start)[:, c]), decimals) for c in range(2)]
+    starts = [counts(np.ascontiguousarray(start[:, c]), decimals) for c in range(2)]
+    return np.column_stack([a + b for a, b in zip(ways, starts, strict=True)])
 
 
 def _sweep(start: Floats, end: Floats, centre: Floats, sense: Floats, turns: Ints) -> Floats:
