@@ -10,12 +10,14 @@ from trunnion.definition import extended
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
 from trunnion.reader.interpreter import STEPS, Interpreter
+from trunnion.reader.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.reader.run import Run
 from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 
 #: Readers by the family of the control.
 READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
     "sinumerik_840d": SinumerikInterpreter,
+    "linuxcnc": LinuxcncInterpreter,
 }
 
 #: The family of machines whose definition names no control.

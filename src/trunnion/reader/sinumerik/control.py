@@ -15,7 +15,7 @@ from trunnion.reader.control import LINEAR, Circle, Control
 from trunnion.reader.frames import Frame
 from trunnion.reader.rows import FARTHEST, Note
 from trunnion.reader.run import Written
-from trunnion.reader.sinumerik.scan import letters
+from trunnion.reader.scan import letters
 from trunnion.reader.word import How, Word
 from trunnion.toolpath import Kind
 
@@ -33,7 +33,7 @@ class SinumerikControl(Control):
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         self._machine_vectors = False
         super().__init__(machine, note, file, shortest=shortest)
-        self.table = letters((self.names[0], self.names[1]))
+        self.table = letters((self.names[0], self.names[1]), comment=";", assign="=")
 
     @property
     def shorter(self) -> bool:

@@ -7,12 +7,13 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machine import Machine
+from trunnion.reader import scan
 from trunnion.reader.control import LINEAR, RAPID
 from trunnion.reader.drilling import CycleError, sane
 from trunnion.reader.interpreter import STEPS, End, Interpreter
 from trunnion.reader.rows import FARTHEST
 from trunnion.reader.run import Orientation
-from trunnion.reader.sinumerik import cycles, scan
+from trunnion.reader.sinumerik import cycles
 from trunnion.reader.sinumerik.block import Block, BlockReader, Call, read_call
 from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, THROUGH, SinumerikControl
 from trunnion.reader.sinumerik.expressions import ExpressionError, Reader, Value

@@ -1,0 +1,651 @@
+"""LinuxCNC programs, block by block: what each one says goes to the virtual control, and where it goes on."""
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Codes
+from trunnion.errors import Severity
+from trunnion.machine import Machine
+from trunnion.reader.control import RAPID
+from trunnion.reader.drilling import CycleError, Step
+from trunnion.reader.frames import turn
+from trunnion.reader.interpreter import STEPS
+from trunnion.reader.linuxcnc import cycles
+from trunnion.reader.linuxcnc.control import ORDER, LinuxcncControl, Offset
+from trunnion.reader.linuxcnc.parameters import ARITHMETIC, LOCAL, Parameters
+from trunnion.reader.linuxcnc.text import SUFFIXES, LinuxcncText
+from trunnion.reader.linuxcnc.words import (
+    LINES,
+    NAMED,
+    NAMED_M,
+    NO_MOTION,
+    OFFSETS,
+    SILENT,
+    SILENT_M,
+    TCP_OFF,
+    TCP_ON,
+    TCP_USER,
+    USERS,
+    WORDS,
+)
+from trunnion.reader.rows import FARTHEST
+from trunnion.reader.rs274 import interpreter
+from trunnion.reader.rs274.block import Block, read_block, reader_of, split
+from trunnion.reader.rs274.expressions import BlockError, Reader
+from trunnion.reader.rs274.interpreter import CANCEL, MOTIONS, Rs274Interpreter
+from trunnion.reader.text import Folder, Text
+from trunnion.reader.word import How, Word
+from trunnion.toolpath import Kind
+
+_KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE|CALL|RETURN")
+
+#: M codes that act after the motion of their block.
+_LATE: Final = frozenset({0, 1, 2, 30, 60})
+
+#: G codes, in tenths, whose axis words are no goal of the motion in force.
+_DWELL: Final = 40
+_SETUP: Final = 100
+_HOMES: Final = {280: 281, 300: 301}
+_AXIS_OFFSETS: Final = frozenset({520, 920})
+
+
+@dataclass(slots=True)
+class Activation(interpreter.Activation):
+    """A program or subprogram being executed, and how often its REPEAT loops have still to run, by line."""
+
+    text: LinuxcncText
+    counters: dict[int, int] = field(default_factory=dict)
+
+
+class LinuxcncInterpreter(Rs274Interpreter[Activation]):
+    """Runs one LinuxCNC program on one machine."""
+
+    text_type = LinuxcncText
+    semicolon = True
+    motion = CANCEL
+
+    def __init__(
+        self, path: Path, machine: Machine, *, step_limit: int = STEPS, skip: bool = False, shortest: bool | None = None
+    ) -> None:
+        super().__init__(path, machine, Folder(path, SUFFIXES), step_limit=step_limit, skip=skip)
+        self._control = LinuxcncControl(machine, self._note, self._file, shortest=shortest)
+        self._control.set_offset(54, "G54")
+        self._parameters = Parameters(self._system)
+        self._returned: float | None = None
+        self._to_initial = False
+        self._initial: float | None = None
+        self._sticky: dict[str, float] = {}
+        self._homes = {code: self._home_of(machine) for code in _HOMES}
+
+    @staticmethod
+    def _home_of(machine: Machine) -> dict[str, float]:
+        return {axis.name: float(axis.home) for axis in machine.axes}
+
+    @property
+    def control(self) -> LinuxcncControl:
+        """The virtual control."""
+        return self._control
+
+    @property
+    def _table(self) -> Codes:
+        return self._control.plain_table
+
+    def _first(self, text: Text) -> Activation:
+        assert isinstance(text, LinuxcncText)
+        return Activation(text, 0)
+
+    def _may_be_plain(self, text: Text) -> bool:
+        return super()._may_be_plain(text) and not any(self._control.turned.values())
+
+    # Parameters
+
+    def _system(self, key: int | str) -> float | None:
+        """Return what the control itself puts behind a number or name; None if it is none of its own."""
+        control = self._control
+        if isinstance(key, int):
+            if 5420 <= key < 5426:
+                return self._position(key - 5420)
+            if 5210 < key <= 5216:
+                value = float(control.shift[key - 5211])
+                return value / control.lengths if key <= 5213 else value
+            return {5210: float(control.shifted), 5220: float(control.system)}.get(key)
+        if len(key) == 2 and key[0] == "_" and key[1] in ORDER:
+            return self._position(ORDER.index(key[1]))
+        feed = float(control.place[3])
+        found: dict[str, float | None] = {
+            "_VALUE": self._returned or 0.0,
+            "_VALUE_RETURNED": float(self._returned is not None),
+            "_LINE": float(control.line),
+            "_FEED": 0.0 if np.isnan(feed) else feed / control.feeds,
+            "_RPM": float(control.rpm.now),
+            "_METRIC": float(control.lengths == 1.0),
+            "_IMPERIAL": float(control.lengths != 1.0),
+            "_ABSOLUTE": float(control.absolute),
+            "_INCREMENTAL": float(not control.absolute),
+            "_MOTION_MODE": float(self.motion),
+            "_PLANE": {2: 170.0, 1: 180.0, 0: 190.0}[control.plane],
+            "_COORD_SYSTEM": float(OFFSETS[control.system - 1]),
+        }
+        return found.get(key)
+
+    def _position(self, axis: int) -> float:
+        value = float(self._control.position()[axis])
+        return value / self._control.lengths if axis < 3 else value
+
+    # Blocks
+
+    def _text(self, call: Activation, line: int, text: str) -> None:
+        reader = reader_of(text, ARITHMETIC, self._parameters)
+        if reader.takes("O"):
+            self._o_word(call, line, reader)
+            return
+        block = read_block(reader, self._twice)
+        self._carry_out(block)
+        for key, value in block.settings:
+            self._parameters.set(key, value or 0.0)
+
+    def _carry_out(self, block: Block) -> None:
+        control = self._control
+        for code in block.g:
+            if code in (930, 940, 950):
+                self._modal(code)
+                if code != 930:
+                    # LinuxCNC forgets the feed, even where the mode stays what it was.
+                    control.place[3] = np.nan
+        self._feed_and_speed(block)
+        tool = block.take("T")
+        if tool is not None:
+            control.choose(f"{tool:g}")
+        for code in block.m:
+            if code not in _LATE:
+                self._m_word(code, block)
+        special = -1
+        machine_frame = False
+        explicit = False
+        for code in block.g:
+            if code in MOTIONS or code in cycles.CYCLES or code in LINES or code == CANCEL:
+                explicit = code != CANCEL
+            if code in (_DWELL, _SETUP, *_HOMES, *_HOMES.values(), *_AXIS_OFFSETS, 921, 922, 923):
+                special = code
+            elif code == 530:
+                machine_frame = True
+            elif code in cycles.CYCLES or code in (CANCEL, 930, 940, 950):
+                continue
+            else:
+                self._g(code, block)
+        takes_axes = special in (_SETUP, *_HOMES, *_AXIS_OFFSETS)
+        if takes_axes and explicit:
+            raise BlockError("two G words want the axis words")
+        self._special(special, block)
+        begun = [code for code in block.g if code in cycles.CYCLES or code == CANCEL]
+        if takes_axes or any(code in NO_MOTION for code in block.g):
+            self.motion = CANCEL if CANCEL in begun else self.motion
+        else:
+            self._drive(block, begun[-1] if begun else None, machine_frame, explicit)
+        late = [code for code in block.m if code in _LATE]
+        self._name_unused(block)
+        for code in late:
+            self._m_word(code, block)
+
+    def _g(self, code: int, block: Block) -> None:
+        control = self._control
+        for letter in WORDS.get(code, ""):
+            block.take(letter)
+        if code in OFFSETS:
+            control.system = OFFSETS.index(code) + 1
+            control.set_offset(_offset_code(control.system), f"G{code / 10:g}")
+            control.refresh()
+        elif code in (980, 990):
+            self._to_initial = code == 980
+        elif code in (901, 911):
+            control.relative_centres = code == 911
+        elif code in LINES:
+            self._name_code(code, NAMED, SILENT)
+            self.motion = code
+        elif code == 960:
+            control.feed_mode.set(control.row, 95)
+            self._name_code(code, NAMED, SILENT)
+        elif not self._modal(code):
+            self._name_code(code, NAMED, SILENT)
+
+    def _m_word(self, code: int, block: Block) -> None:
+        control = self._control
+        if code in (TCP_ON, TCP_OFF):
+            control.set_tcp(code == TCP_ON)
+        elif code in SILENT_M:
+            for letter in SILENT_M[code]:
+                block.take(letter)
+        elif code == 61:
+            tool = block.take("Q")
+            control.choose(f"{tool or 0:g}")
+            control.change_tool()
+        elif code == 60:
+            control.event("stop", "pallet")
+        elif code == 19:
+            for letter in "RQP":
+                block.take(letter)
+            self._m(code)
+        elif code in USERS:
+            for letter in "PQ":
+                block.take(letter)
+            control.event("m", float(code))
+            self._note(f"M{code} belongs to the machine: what it does is not known", Severity.WARNING)
+        elif code in NAMED_M:
+            self._note(f"M{code}: {NAMED_M[code]}", Severity.ERROR)
+        elif code == TCP_USER:
+            self._note("M430: kinematics of the user are not known", Severity.ERROR)
+        elif not self._m(code):
+            self._note(f"unknown word M{code}", Severity.ERROR)
+
+    # What takes the axis words of its block
+
+    def _special(self, code: int, block: Block) -> None:
+        control = self._control
+        if code == _DWELL:
+            seconds = block.take("P")
+            if seconds is None:
+                self._note("G4 without a time P", Severity.ERROR)
+            else:
+                control.event("dwell", seconds)
+        elif code == _SETUP:
+            self._set_up(block)
+        elif code in _AXIS_OFFSETS:
+            self._axis_offset(code, block)
+        elif code in (921, 922, 923):
+            if code == 921:
+                control.shift = np.zeros(6)
+            control.shifted = code == 923
+            control.refresh()
+        elif code in _HOMES:
+            self._go_home(code, block)
+        elif code in _HOMES.values():
+            stored = control.machine_position()
+            kept = next(go for go, keep in _HOMES.items() if keep == code)
+            self._homes[kept] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
+
+    def _axis_offset(self, code: int, block: Block) -> None:
+        """G92: the present position gets new numbers; G52: the offset itself is said."""
+        control = self._control
+        position = control.position()
+        shift = control.shift.copy()
+        for axis, name in enumerate(ORDER):
+            value = self._scaled(block, name, axis)
+            if value is not None:
+                shift[axis] = value if code == 520 else shift[axis] * control.shifted + position[axis] - value
+            elif not control.shifted:
+                shift[axis] = 0.0
+        if float(np.abs(shift).max()) > FARTHEST:
+            raise BlockError("an offset is larger than any machine")
+        control.shift, control.shifted = shift, True
+        control.refresh()
+
+    def _set_up(self, block: Block) -> None:
+        """G10: a work offset, or a tool's data."""
+        control = self._control
+        kind = block.take("L")
+        system = block.take("P")
+        if kind in (0.0, 1.0, 10.0, 11.0):
+            for letter in "XYZABCUVWRIJQ":
+                block.take(letter)
+            return
+        if kind not in (2.0, 20.0) or system is None or system != int(system) or not 0 <= system <= 9:
+            raise BlockError("G10 needs L2 or L20, and P from 0 to 9")
+        number = int(system) or control.system
+        old = control.offset_of(number)
+        values, rotation = old.values.copy(), old.rotation
+        turned = block.take("R")
+        if turned is not None and kind == 2.0:
+            rotation = turned
+        elif turned is not None:
+            raise BlockError("G10 L20 takes no R")
+        point = control.machine_position()
+        shift = control.shift if control.shifted else np.zeros(6)
+        unturned = turn(2, -rotation)
+        inside = point - values
+        inside[:3] = unturned @ inside[:3]
+        inside -= shift
+        change = np.zeros(6)
+        for axis, name in enumerate(ORDER):
+            value = self._scaled(block, name, axis)
+            if value is None:
+                continue
+            if kind == 2.0:
+                values[axis] = value
+            else:
+                change[axis] = inside[axis] - value
+        change[:3] = turn(2, rotation) @ change[:3]
+        values = values + change
+        if float(np.abs(values).max()) > FARTHEST or abs(rotation) > FARTHEST:
+            raise BlockError("an offset is larger than any machine")
+        control.set_values(number, Offset(values, rotation))
+
+    def _scaled(self, block: Block, name: str, axis: int) -> float | None:
+        """Return the value of an axis word in mm or degrees."""
+        value = block.take(name)
+        if value is None:
+            return None
+        if axis > 2 and name not in self._control.names:
+            if value:
+                self._note(f"{name}: the machine has no such axis", Severity.ERROR)
+            return None
+        return value * self._control.lengths if axis < 3 else value
+
+    def _go_home(self, code: int, block: Block) -> None:
+        """G28 and G30: over the point that the block says to the stored one, all axes or those of the block."""
+        control = self._control
+        axes = self._programmed(self._axis_words(block))
+        kind, control.kind = control.kind, RAPID
+        control.move(axes, None)
+        names = axes or dict.fromkeys((*"XYZ", *control.names))
+        stored = self._homes[code]
+        scale = control.lengths
+        goal: dict[str, Word] = {
+            name: (stored.get(name, 0.0) / (scale if name in "XYZ" else 1.0), How.ABSOLUTE) for name in names
+        }
+        control.machine_move(goal, feed_written=False)
+        control.kind = kind
+
+    # Motion
+
+    def _programmed(self, axes: dict[str, Word]) -> dict[str, Word]:
+        """Axis words with the offsets of rotary axes in them."""
+        if not self._control.absolute:
+            return axes
+        turned = self._control.turned
+        return {name: (word[0] + turned.get(name, 0.0), word[1]) for name, word in axes.items()}
+
+    def _drive(self, block: Block, begun: int | None, machine_frame: bool, explicit: bool) -> None:
+        """Make the motion that the words of the block ask for."""
+        control = self._control
+        if begun == CANCEL:
+            self.motion = CANCEL
+        code = begun if begun is not None else self.motion
+        if code != CANCEL and code not in cycles.CYCLES:
+            self._initial = None
+        axes = self._axis_words(block)
+        centre = "I" in block.words or "J" in block.words or "K" in block.words or "R" in block.words
+        if not axes and not (code in (20, 30) and (centre or explicit)):
+            if explicit and code in cycles.CYCLES:
+                self._note("a cycle without a position", Severity.ERROR)
+                self.motion = code
+            return
+        if code == CANCEL:
+            self._initial = None
+            self._note("a position without a G word that goes there: the block is not executed", Severity.ERROR)
+            return
+        if code in cycles.CYCLES:
+            self._cycle(code, block, axes)
+            return
+        turns = block.take("P") if code in (20, 30) else None
+        if machine_frame:
+            if code not in (0, 10) or not control.absolute:
+                raise BlockError("G53 needs G0 or G1, and G90")
+            control.kind = MOTIONS[code]
+            written = "F" in block.words
+            self._check_feed(written)
+            control.machine_move({name: (word[0], How.ABSOLUTE) for name, word in axes.items()}, feed_written=written)
+            return
+        here = self.motion
+        if code in LINES:
+            self.motion = 10
+        if turns is not None and not 1 <= turns == int(turns):
+            raise BlockError("P of a circle is the number of its turns")
+        self._move(block, self._programmed(axes), turns=int(turns) - 1 if turns else 0)
+        self.motion = here
+
+    def _cycle(self, code: int, block: Block, axes: dict[str, Word]) -> None:
+        """Drill at the positions of a block."""
+        control = self._control
+        if set(axes) - set("XYZ"):
+            self._note("rotary words in a cycle: they are not executed", Severity.ERROR)
+        words = {letter: value for letter in cycles.STICKY if (value := block.take(letter)) is not None}
+        words |= {"Z": axes["XYZ"[control.plane]][0]} if "XYZ"[control.plane] in axes else {}
+        fresh = code != self.motion
+        self.motion = code
+        held = {} if fresh else self._sticky
+        needed = "ZR" + "Q" * (code in cycles.NEED_Q) + "P" * (code in cycles.NEED_P)
+        missing = [letter for letter in needed if letter not in words and letter not in held]
+        if missing:
+            raise BlockError(f"the cycle has no {missing[0]}")
+        self._sticky = held | words
+        repeats = block.take("L")
+        d = block.take("D")
+        times = 1 if repeats is None else int(repeats)
+        if not 1 <= times <= 10_000:
+            raise BlockError("L of a cycle is how often it drills")
+        self._check_cycle()
+        self._drill(code, axes, dict(self._sticky) | ({"D": d} if d is not None else {}), times)
+
+    def _check_cycle(self) -> None:
+        control = self._control
+        if control.feed_mode.now == 93:
+            raise BlockError("a cycle cannot be in inverse time")
+        if not control.place[3] > 0.0:
+            self._note("a cycle without a feed", Severity.ERROR)
+
+    def _drill(self, code: int, axes: dict[str, Word], words: dict[str, float], times: int) -> None:
+        """Drill so many times: at one place, or with G91 at places ever further on."""
+        control = self._control
+        normal = control.plane
+        scale = control.lengths
+        height = float(control.place[normal]) / scale
+        if self._initial is None:
+            self._initial = height * scale
+        old = self._initial / scale
+        retract, bottom = words["R"], words["Z"]
+        if not control.absolute:
+            retract += old
+            bottom += retract
+            if "K" in words:
+                words["K"] += bottom
+        if retract < bottom:
+            raise BlockError("R of the cycle lies below its depth")
+        still = [np.nan, np.nan]
+        if old < retract:
+            control.drill([Step(True, retract)])
+            old = height = retract
+        hole = cycles.Hole(
+            retract, bottom, old if self._to_initial else retract, cycles.CLEARANCE * 25.4 / scale, words
+        )
+        made = self._motions(code, hole)
+        place = control.place[:3].copy()
+        bits = 0
+        for count in range(times):
+            for axis in range(3):
+                name = "XYZ"[axis]
+                if axis == normal or name not in axes:
+                    continue
+                value = axes[name][0] * scale
+                place[axis] = value if control.absolute else place[axis] + value
+                bits |= 1 << axis
+            first = height if count == 0 and height > retract else hole.clear
+            self._count(len(made) + 2)
+            place[normal] = first * scale
+            if not control.emit(Kind.RAPID, place, bits, still, 0, None):
+                return
+            control.drill([Step(True, retract), *made] if first > retract else made)
+
+    @staticmethod
+    def _motions(code: int, hole: cycles.Hole) -> list[Step]:
+        try:
+            return cycles.steps(code, hole)
+        except CycleError as error:
+            raise BlockError(f"the cycle {error}") from None
+
+    # O words
+
+    def _o_word(self, call: Activation, line: int, reader: Reader) -> None:
+        label = self._label(reader)
+        match = _KEYWORD.match(reader.text, reader.at)
+        if match is None:
+            if not reader.ended:
+                raise BlockError(f"no O word: {reader.rest!r}")
+            return
+        # The longest word that fits: the text goes on with a bracket or not at all.
+        word = re.match("[A-Z]+", reader.text[reader.at :])
+        assert word is not None
+        name = word.group()
+        reader.at += len(name)
+        handler = {
+            "SUB": self._skip_sub,
+            "ENDSUB": self._return,
+            "RETURN": self._return,
+            "CALL": self._call,
+            "IF": self._if,
+            "ELSEIF": self._past_branches,
+            "ELSE": self._past_branches,
+            "ENDIF": self._nothing,
+            "WHILE": self._while,
+            "ENDWHILE": self._again,
+            "DO": self._nothing,
+            "REPEAT": self._repeat,
+            "ENDREPEAT": self._end_repeat,
+            "BREAK": self._break,
+            "CONTINUE": self._continue,
+        }.get(name)
+        if handler is None:
+            raise BlockError(f"no O word: {name[:40]}")
+        handler(call, line, reader, label)
+        if not reader.ended:
+            self._note(f"not understood behind {name}: {reader.rest!r}", Severity.ERROR)
+
+    @staticmethod
+    def _label(reader: Reader) -> str:
+        begin = reader.at
+        if reader.takes("<"):
+            end = reader.text.find(">", begin)
+            if end < 0:
+                raise BlockError("the name of an O word does not end")
+            reader.at = end + 1
+            return reader.text[begin : end + 1]
+        value, _ = reader.real()
+        if value is None or value != int(value) or not 0 <= value < 1e9:
+            raise BlockError("an O word needs a whole number or a name")
+        return str(int(value))
+
+    def _nothing(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        call.text.structure(line)
+
+    def _skip_sub(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        call.text.jump(call.text.structure(line).end + 1)
+
+    def _return(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        if len(self._stack) < 2:
+            raise BlockError("the end of a subprogram outside one")
+        self._returned = None
+        if not reader.ended:
+            self._returned = reader.sum()
+        self._leave()
+
+    def _leave(self) -> None:
+        deep = len(self._stack)
+        super()._leave()
+        if len(self._stack) < deep:
+            self._parameters.leave()
+
+    def _call(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        arguments: list[float] = []
+        while not reader.ended and len(arguments) < LOCAL:
+            arguments.append(reader.sum())
+        self._check_depth()
+        here = call.text.subprogram(label)
+        if here is not None:
+            self._file.set(self._control.row, call.file)
+            entered = Activation(call.text.again(), call.file)
+            begin = here.begin
+        else:
+            path = self._folder.find(label.strip("<>"))
+            if path is None:
+                raise BlockError(f"missing subprogram O{label[:80]}")
+            text, file = self._open(path)
+            assert isinstance(text, LinuxcncText)
+            found = text.subprogram(label)
+            if found is None:
+                self._file.set(self._control.row, call.file)
+                raise BlockError(f"{path.name} holds no O{label[:80]} SUB")
+            entered, begin = Activation(text, file), found.begin
+        entered.row = self._control.row
+        entered.text.jump(begin + 1)
+        self._parameters.enter(arguments)
+        self._stack.append(entered)
+
+    def _if(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        structure = call.text.structure(line)
+        if self._holds(reader):
+            return
+        for branch in structure.branches:
+            head = self._head(call, branch)
+            if head is None or (head.takes("ELSEIF") and self._holds(head)):
+                call.text.jump(branch + 1)
+                return
+
+    def _head(self, call: Activation, line: int) -> Reader | None:
+        """Return a reader at the ELSEIF of a line; None at an ELSE or at the end."""
+        here = call.text.line
+        call.text.jump(line)
+        text = split(call.text.next_line(), semicolon=True).text
+        call.text.jump(here)
+        reader = reader_of(text, ARITHMETIC, self._parameters)
+        reader.expect("O")
+        self._label(reader)
+        return reader if reader.text.startswith("ELSEIF", reader.at) else None
+
+    def _holds(self, reader: Reader) -> bool:
+        """Return a condition; one that cannot be worked out does not hold."""
+        try:
+            return bool(reader.sum())
+        except BlockError as error:
+            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR)
+            reader.at = len(reader.text)
+            return False
+
+    def _past_branches(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        """A branch that was executed ends here."""
+        reader.at = len(reader.text)
+        call.text.jump(call.text.structure(line).end + 1)
+
+    def _while(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        structure = call.text.structure(line)
+        holds = self._holds(reader)
+        if structure.word == "DO":
+            if holds:
+                call.text.jump(structure.begin + 1)
+        elif not holds:
+            call.text.jump(structure.end + 1)
+
+    def _again(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        call.text.jump(call.text.structure(line).begin)
+
+    def _repeat(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        structure = call.text.structure(line)
+        times = 0
+        try:
+            times = int(min(max(reader.sum(), 0.0), 1e12))
+        except BlockError as error:
+            self._note(f"not understood: {error}: not repeated", Severity.ERROR)
+            reader.at = len(reader.text)
+        if times < 1:
+            call.text.jump(structure.end + 1)
+        call.counters[line] = times
+
+    def _end_repeat(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        begin = call.text.structure(line).begin
+        call.counters[begin] = call.counters.get(begin, 0) - 1
+        if call.counters[begin] > 0:
+            call.text.jump(begin + 1)
+
+    def _break(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        call.text.jump(call.text.structure(line).end + 1)
+
+    def _continue(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        structure = call.text.structure(line)
+        call.text.jump(structure.begin if structure.word == "WHILE" else structure.end)
+
+
+def _offset_code(system: int) -> int:
+    """Column ``offset`` of the work offsets: 54 to 59, and 591 to 593 for G59.1 to G59.3."""
+    return 53 + system if system <= 6 else 584 + system
