@@ -1,27 +1,24 @@
 """Which reader reads the programs of a machine."""
 
 from collections.abc import Callable
-from functools import lru_cache
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.definition import extended
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
+from trunnion.reader.fanuc.interpreter import FanucInterpreter
 from trunnion.reader.interpreter import STEPS, Interpreter
 from trunnion.reader.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.reader.run import Run
+from trunnion.reader.settings import family_of
 from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 
 #: Readers by the family of the control.
 READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
     "sinumerik_840d": SinumerikInterpreter,
     "linuxcnc": LinuxcncInterpreter,
+    "fanuc_30i": FanucInterpreter,
 }
-
-#: The family of machines whose definition names no control.
-USUAL: Final = "sinumerik_840d"
 
 
 def run_program(
@@ -62,10 +59,3 @@ def run_program(
         what = f"has the control {name!r}, whose programs cannot be read yet"
         raise InputError(Problem(machine.key, 0, what, f"there are readers for {', '.join(READERS)}"))
     return READERS[name](Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
-
-
-@lru_cache(maxsize=8)
-def family_of(machine: Machine) -> str:
-    """Return the family of a machine's control; of all that the control's definition says, this alone is asked."""
-    table = extended(machine.control.fresh(), files("trunnion").joinpath("control", "library"))
-    return table.text("family", USUAL)

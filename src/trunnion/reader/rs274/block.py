@@ -114,8 +114,7 @@ def read_block(reader: Reader, twice: Callable[[str], None]) -> Block:
         letter = reader.letter()
         if letter == "#":
             key = reader.key()
-            reader.expect("=")
-            block.settings.append((key, reader.real()[0]))
+            block.settings.append((key, reader.assigned()))
             continue
         if not "A" <= letter <= "Z":
             raise BlockError(f"{letter!r} is no word")

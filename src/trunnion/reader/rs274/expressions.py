@@ -47,6 +47,7 @@ class Arithmetic:
     operate     what an operator does with two numbers
     functions   functions of one number in brackets
     pairs       functions of two numbers, ``NAME[a]/[b]`` or ``NAME[a,b]``
+    bare        what follows the sign = may be an expression without brackets
     empty       how operators that compare see a value that nobody set; None: values always count as numbers
     """
 
@@ -54,6 +55,7 @@ class Arithmetic:
     operate: Callable[[str, float, float], float]
     functions: Mapping[str, Callable[[float], float]]
     pairs: Mapping[str, Callable[[float, float], float]]
+    bare: bool = False
     empty: Callable[[str, Value, Value], float | None] | None = None
 
 
@@ -146,6 +148,11 @@ class Reader:
         value = self._level(0)
         self.expect("]")
         return value
+
+    def assigned(self) -> Value:
+        """Return what follows the sign of an assignment."""
+        self.expect("=")
+        return self._level(0) if self._arithmetic.bare else self.real()[0]
 
     def sum(self) -> float:
         """Return the value of a bracket; what nobody set counts as 0."""

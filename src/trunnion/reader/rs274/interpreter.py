@@ -11,6 +11,7 @@ import numpy as np
 from trunnion.errors import Severity
 from trunnion.reader import interpreter, scan
 from trunnion.reader.control import LINEAR, RAPID
+from trunnion.reader.handover import FEEDS, ROW
 from trunnion.reader.interpreter import End, Interpreter
 from trunnion.reader.rs274.block import Block, spelled, split
 from trunnion.reader.rs274.control import CLOCKWISE, COUNTER, Rs274Control
@@ -133,6 +134,7 @@ class Rs274Interpreter(Interpreter[A]):
         control = self.control
         first = control.columns.n
         inverse = control.feed_mode.now == 93
+        before = float(control.place[3])
         control.kind = MOTIONS[self.motion]
         scan.scan(
             text.buffer,
@@ -150,25 +152,25 @@ class Rs274Interpreter(Interpreter[A]):
             control.notes,
         )
         self.motion = 10 * control.kind
-        self._check_feeds(first, inverse)
+        self._check_feeds(first, before, inverse)
 
-    def _check_feeds(self, first: int, inverse: bool) -> None:
+    def _check_feeds(self, first: int, before: float, inverse: bool) -> None:
         """Say where the kernel made lines without a feed."""
         control = self.control
         c, target = control.columns, control.target()
-        rows = slice(first, int(control.counts[1]))
+        rows = slice(first, int(control.counts[ROW]))
         lines = target.kind[rows] != 0
         if inverse:
             lines &= (target.programmed[rows] & int(Written.FEED)) == 0
             missing = np.flatnonzero(lines) + first
         else:
-            noted = control.notes.feeds[: control.counts[5]]
-            if not (noted <= 0.0).any():
+            noted = int(control.counts[FEEDS])
+            feeds = np.append(before, control.notes.feeds[:noted])
+            if (feeds > 0.0).all():
                 return
-            begins = control.notes.feed_rows[: len(noted)]
-            feeds = noted[np.maximum(np.searchsorted(begins, np.arange(rows.start, rows.stop), "right") - 1, 0)]
-            known = np.arange(rows.start, rows.stop) >= begins[0]
-            missing = np.flatnonzero(lines & known & (feeds <= 0.0)) + first
+            begins = np.append(first, control.notes.feed_rows[:noted])
+            held = feeds[np.searchsorted(begins, np.arange(rows.start, rows.stop), "right") - 1]
+            missing = np.flatnonzero(lines & ~(held > 0.0)) + first
         here = control.line
         for row in missing.tolist():
             control.line = int(c.block[row - c.base])
