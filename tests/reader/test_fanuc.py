@@ -27,7 +27,7 @@ FRESH = [HealthCheck.function_scoped_fixture]
 
 def fanuc(run: Runner, text: str, **more: object) -> Run:
     """Run a text on the machine."""
-    return run(text, MACHINE, **more)  # type: ignore[arg-type]
+    return run(text, MACHINE, **more)
 
 
 def about(axis: int, angle: float) -> Floats:

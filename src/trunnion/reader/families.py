@@ -7,6 +7,7 @@ from typing import Any, Final
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
 from trunnion.reader.fanuc.interpreter import FanucInterpreter
+from trunnion.reader.fidia.interpreter import FidiaInterpreter
 from trunnion.reader.interpreter import STEPS, Interpreter
 from trunnion.reader.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.reader.run import Run
@@ -18,6 +19,7 @@ READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
     "sinumerik_840d": SinumerikInterpreter,
     "linuxcnc": LinuxcncInterpreter,
     "fanuc_30i": FanucInterpreter,
+    "fidia_nc15": FidiaInterpreter,
 }
 
 

@@ -87,7 +87,8 @@ def _peck(hole: Hole, full: bool) -> list[Step]:
         made.append(Step(False, hole.retract + down * depth))
         if full:
             made.append(Step(True, hole.retract))
-            made.append(Step(True, hole.retract + down * max(depth - ABOVE * hole.units, 0.0)))
+            if depth > ABOVE * hole.units:
+                made.append(Step(True, hole.retract + down * (depth - ABOVE * hole.units)))
         else:
             made.append(Step(True, hole.retract + down * max(depth - CHIP_BREAK * hole.units, 0.0)))
         depth += hole.stroke
