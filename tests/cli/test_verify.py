@@ -36,7 +36,7 @@ def test_it_also_looks_at_a_program_alone(capfd: pytest.CaptureFixture[str]) -> 
     code, out, _ = verify(capfd, PROGRAM)
     assert code == 0
     assert [line.split()[0] for line in out.splitlines() if " ok " in line] == [
-        "offset", "span", "travel", "speed", "acceleration", "modal", "words",
+        "offset", "span", "travel", "speed", "acceleration", "turns", "modal", "words",
     ]  # fmt: skip
 
 
@@ -79,7 +79,7 @@ def test_what_cannot_be_used_has_exit_code_2(
 
 
 def test_a_machine_whose_programs_cannot_be_read_yet_says_so(capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["verify", str(PROGRAM), "--machine", "dmu65"]) == 2
+    assert main(["verify", str(PROGRAM), "--machine", "hs664rt"]) == 2
     assert "cannot be read yet" in capfd.readouterr().err
 
 
@@ -126,8 +126,8 @@ def machine_without_tcp(folder: Path) -> Path:
 
 
 CHECKS = [
-    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "span", "travel", "speed",
-    "acceleration", "modal", "words",
+    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "holes", "span", "travel",
+    "speed", "acceleration", "turns", "modal", "words",
 ]  # fmt: skip
 
 

@@ -149,8 +149,8 @@ def test_an_oblique_arc_becomes_lines(post: Post) -> None:
 
 
 def test_an_arc_under_a_tilted_steady_tool_axis_stays_an_arc(post: Post) -> None:
-    lines = motion(post(OFF_AXIS + ARC.format(centre="20,0,5", normal="0,0,1", end="30,0,5") + FOOT))
-    assert lines[2] == "G3 X30. Y0.0 I10. J0.0"
+    arc = ARC.format(centre="20,0,5", normal="0,0,1", end="30,0,5")
+    assert motion(post(OFF_AXIS + arc + FOOT, "--set", "manner=tcp"))[2] == "G3 X30. Y0.0 I10. J0.0"
 
 
 def test_a_second_operation_with_the_same_tool_changes_no_tool_and_starts_the_spindle_again(post: Post) -> None:
@@ -171,7 +171,7 @@ def test_a_second_tool_is_changed_after_coolant_off_and_from_home(post: Post) ->
 
 
 def test_rotary_axes_are_placed_before_traori(post: Post) -> None:
-    lines = post(OFF_AXIS + FOOT)
+    lines = post(OFF_AXIS + FOOT, "--set", "manner=tcp")
     assert lines.index("G0 B30. C0.0") < lines.index("TRAORI")
     assert "TRAFOOF" in lines[lines.index(";End of Path") :]
 
@@ -208,13 +208,32 @@ def test_a_missing_spindle_speed_is_said(post: Post) -> None:
     assert "part.cls:1: warning: operation OP1 has no spindle speed" in err
 
 
-def test_a_cycle_is_refused_rather_than_dropped(post: Post) -> None:
-    code, out, err = post.all(HEAD + "CYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100\nGOTO/20,0,0\nCYCLE/OFF\n" + FOOT)
+def test_a_cycle_that_begins_below_its_height_is_refused(post: Post) -> None:
+    code, out, err = post.all(HEAD + "CYCLE/DRILL,RAPTO,8,FEDTO,-10,MMPM,100\nGOTO/20,0,0\nCYCLE/OFF\n" + FOOT)
     assert (code, out) == (2, [])
-    assert "part.cls:12: error: hole-making cycles cannot be written yet" in err
+    assert "part.cls:12: error: CYCLE while the tool is below the height of RAPTO" in err
 
 
 def test_a_tool_change_within_an_operation_is_refused(post: Post) -> None:
     code, out, err = post.all(HEAD + "LOAD/TOOL,2\nGOTO/20,0,5\n" + FOOT)
     assert (code, out) == (2, [])
     assert "part.cls:12: error: tool change within an operation" in err
+
+
+def test_blocks_go_without_numbers_if_somebody_says_so(post: Post) -> None:
+    _, numbered, _ = post.all(HEAD + FOOT)
+    code, plain, err = post.all(HEAD + FOOT, "--set", "numbers=off")
+    assert (code, unproven(err)) == (0, "")
+    assert plain == numbered
+    assert post.all(HEAD + FOOT, "--set", "numbers=none")[0] == 2
+
+
+@pytest.mark.parametrize(("method", "mode"), [("ROUGH", "3"), ("SEMI_FINISH", "2"), ("FINISH", "1")])
+def test_older_controls_take_the_kind_of_machining_as_a_number(method: str, mode: str, tmp_path: Path) -> None:
+    machine, cl, nc = tmp_path / "old.toml", tmp_path / "a.cls", tmp_path / "a.mpf"
+    text = 'extends = "yl569"\nname = "Old"\n[control]\nextends = "sinumerik_840d_sl26"\n'
+    machine.write_text(text, encoding="utf-8")
+    cl.write_text(HEAD + FOOT, encoding="utf-8")
+    command = ["post", str(cl), "--machine", str(machine), "--output", str(nc), "--set", f"method={method}"]
+    assert main(command) == 0
+    assert f"CYCLE832(0.01, {mode},1)" in nc.read_text(encoding="utf-8")

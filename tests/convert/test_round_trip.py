@@ -14,7 +14,7 @@ from trunnion.control import Program, check_program, load_control, write_program
 from trunnion.convert import convert
 from trunnion.errors import Severity
 from trunnion.machine import load_machine
-from trunnion.plan import plan
+from trunnion.plan import Manner, Wishes, plan
 from trunnion.reader import run_program
 from trunnion.toolpath import Toolpath
 from trunnion.verify import compare
@@ -22,16 +22,21 @@ from trunnion.verify import compare
 MACHINE = load_machine("yl569")
 CONTROL = load_control(MACHINE.control)
 
-#: Tool axes that the YL569 reaches, upright ones among them.
+#: Tool axes that the YL569 reaches, upright ones among them. Others stand clear of its pole: nearer to it the angles of
+#: a tilted plane, as they are printed, leave C open.
 AXES = st.one_of(
     st.just((0.0, 0.0, 1.0)),
-    st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.01, 1)),
+    st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.01, 1)).filter(
+        lambda axis: abs(axis[0]) + abs(axis[1]) > 0.01
+    ),
 )
 
 
-def posted(toolpath: Toolpath, given: dict[str, str]) -> bytes | None:
-    """The program; None where there can be none."""
+def posted(toolpath: Toolpath, given: dict[str, str], planes: bool = True) -> bytes | None:
+    """The program; None where there can be none. Without ``planes`` one that would have tilted planes goes with TCP."""
     planned = plan([toolpath], MACHINE, CONTROL.chord_tolerance)
+    if not planes and any(motion.plane is not None for motion in planned.motions):
+        planned = plan([toolpath], MACHINE, CONTROL.chord_tolerance, Wishes(manner=Manner.TCP))
     program = Program(MACHINE, CONTROL, planned.motions, given, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
@@ -40,7 +45,7 @@ def posted(toolpath: Toolpath, given: dict[str, str]) -> bytes | None:
     return sink.getvalue()
 
 
-def there_and_back(program: bytes, folder: Path) -> bytes | None:
+def there_and_back(program: bytes, folder: Path, planes: bool = True) -> bytes | None:
     """Program to CL file to program."""
     (folder / "a.mpf").write_bytes(program)
     run = run_program(folder / "a.mpf", MACHINE)
@@ -50,7 +55,7 @@ def there_and_back(program: bytes, folder: Path) -> bytes | None:
         write_cl(converted.toolpath, sink)
     back = read_cl(folder / "a.cls")
     assert back.remarks == ()
-    return posted(back, converted.settings)
+    return posted(back, converted.settings, planes)
 
 
 SETTINGS = st.fixed_dictionaries(
@@ -84,12 +89,13 @@ def test_a_program_of_ours_comes_back_with_the_same_bytes(
 
     Besides, block skip goes on and off in turn, and cutter radius compensation changes on a motion. Heaps of events at
     one place, and feeds or phases of a tool that rests, print blocks that nothing but the program's text tells apart
-    from others; what they do is held on to by the test below.
+    from others; what they do is held on to by the test below. So are tilted planes: near the pole their printed angles
+    leave the last digit of a rotary axis open.
     """
-    first = posted(toolpath, with_tool(given))
+    first = posted(toolpath, with_tool(given), planes=False)
     assume(first is not None)
     assert first is not None
-    second = there_and_back(first, tmp_path_factory.getbasetemp())
+    second = there_and_back(first, tmp_path_factory.getbasetemp(), planes=False)
     assert second is not None
     assert second.decode().splitlines() == first.decode().splitlines()
 

@@ -18,7 +18,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import NoReturn
 
-from tests.fuzz import oracle, pieces, seeds
+from tests.fuzz import klartext, oracle, pieces, seeds
 from tests.fuzz.mangle import mangle
 
 
@@ -42,6 +42,11 @@ def a_cl_file(rng: random.Random) -> bytes:
     return _mangled(rng, grown, seeds.cl_files())
 
 
+def a_klartext(rng: random.Random) -> bytes:
+    """Return the bytes of a Klartext program."""
+    return _mangled(rng, klartext.program(rng.randint(1, 60), rng.choice).encode(), klartext.SOUND)
+
+
 def a_definition(rng: random.Random) -> bytes:
     """Return the bytes of a definition."""
     library = [entry.read_bytes() for entry in files("trunnion.machine").joinpath("library").iterdir()]
@@ -63,6 +68,11 @@ def judge_program(data: bytes, folder: Path, rng: random.Random) -> object:
     return oracle.judge_program(data, folder, rng.choice(oracle.MACHINES))
 
 
+def judge_klartext(data: bytes, folder: Path, rng: random.Random) -> object:
+    """Run a Klartext program on one of the machines."""
+    return klartext.judge(data, folder, rng.choice(klartext.MACHINES))
+
+
 def judge_cl(data: bytes, folder: Path, rng: random.Random) -> object:
     """Read a CL file."""
     return oracle.judge_cl(data, folder, strict=rng.random() < 0.2)
@@ -75,6 +85,7 @@ def judge_definition(data: bytes, folder: Path, rng: random.Random) -> object:
 
 TARGETS: dict[str, tuple[Callable[[random.Random], bytes], Callable[[bytes, Path, random.Random], object]]] = {
     "program": (a_program, judge_program),
+    "klartext": (a_klartext, judge_klartext),
     "cl": (a_cl_file, judge_cl),
     "definition": (a_definition, judge_definition),
 }
@@ -113,6 +124,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         oracle.prepare(folder)
+        klartext.prepare(folder)
         seed = arguments.seed
         while time.monotonic() < end:
             start = time.monotonic()

@@ -46,13 +46,15 @@ def no_warnings() -> Iterator[None]:
         yield
 
 
-def judge_program(data: bytes, folder: Path, key: str = "yl569", limit: int = LIMIT) -> Run | None:
+def judge_program(
+    data: bytes, folder: Path, key: str = "yl569", limit: int = LIMIT, family: str = "sinumerik_840d"
+) -> Run | None:
     """Run bytes as a program of a folder that is prepared; None if it is refused."""
-    path = folder / "MAIN.MPF"
+    path = folder / ("MAIN.MPF" if family == "sinumerik_840d" else "MAIN.H")
     path.write_bytes(data)
     try:
         with no_warnings():
-            run = run_program(path, machine(key), family="sinumerik_840d", step_limit=limit)
+            run = run_program(path, machine(key), family=family, step_limit=limit)
     except InputError as error:
         _check_error(error, folder)
         return None

@@ -9,7 +9,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import Refused, Severity
 from trunnion.machine import Machine, forward, load_machine, shipped, slide_positions
 from trunnion.plan import Plan, plan
-from trunnion.plan.planner import into_frame
+from trunnion.plan.frames import into_frame
 from trunnion.toolpath import Arcs, Frame, Moves, Operation, Tool, Toolpath
 
 

@@ -16,7 +16,8 @@ from trunnion.cl.write import write_cl
 from trunnion.cli import main
 from trunnion.errors import Severity
 from trunnion.machine import Machine, forward, slide_positions
-from trunnion.plan import Motion, Plan, Why, Wishes, plan
+from trunnion.plan import Clearance, Motion, Plan, Surface, Why, Wishes, plan
+from trunnion.plan.clearance import LEAST
 from trunnion.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Moves, Operation, Phase, SpindleOn, Toolpath
 
 
@@ -39,7 +40,7 @@ def added(motion: Motion, moves: Moves) -> tuple[int, Moves]:
 
 def test_the_tool_draws_back_turns_and_comes_back_to_the_same_point() -> None:
     moves = round_part()
-    motion = planned(operation_of(moves), wishes=Wishes(clearance=30.0)).motions[0]
+    motion = planned(operation_of(moves), wishes=Wishes(clearance=Clearance(30.0))).motions[0]
     row, rows = added(motion, moves)
     there = slice(row + 1, row + 4)
     assert rows.kind[there].tolist() == [Kind.LINEAR, Kind.RAPID, Kind.LINEAR]
@@ -58,6 +59,39 @@ def test_the_tool_draws_back_turns_and_comes_back_to_the_same_point() -> None:
     tip, axis = forward(CA, joints)
     assert np.abs(tip - rows.tip).max() < 1e-9
     assert np.abs(axis - rows.axis).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("setting", "clear"),
+    [
+        (Clearance(90.0, Surface.PLANE), lambda tip: abs(tip[2] - 90.0)),
+        (Clearance(120.0, Surface.SPHERE), lambda tip: abs(np.linalg.norm(tip) - 120.0)),
+        (Clearance(-5.0, Surface.PLANE), None),
+        (Clearance(1.0, Surface.SPHERE), None),
+    ],
+)
+def test_the_tool_draws_back_to_a_plane_or_out_of_a_sphere(
+    setting: Clearance, clear: Callable[[Floats], float] | None
+) -> None:
+    moves = round_part()
+    row, rows = added(planned(operation_of(moves), wishes=Wishes(clearance=setting)).motions[0], moves)
+    there = rows.tip[row + 1]
+    way = there - moves.tip[row]
+    assert np.linalg.norm(np.cross(way, moves.axis[row])) < 1e-9
+    assert way @ moves.axis[row] >= LEAST - 1e-9
+    if clear is None:  # it is out there already
+        assert way @ moves.axis[row] == pytest.approx(LEAST)
+    else:
+        assert clear(there) < 1e-9
+
+
+def test_a_level_tool_does_not_draw_back_to_a_plane() -> None:
+    moves = winding(89.5, 100.0, 1100.0, 400)
+    moves = replace(moves, tip=40.0 * moves.axis)
+    found = planned(operation_of(moves), wishes=Wishes(clearance=Clearance(90.0, Surface.PLANE)))
+    errors = [p for p in found.problems if p.severity is Severity.ERROR]
+    assert errors[0].what.endswith("its axis does not lead to the clearance plane:90")
+    assert np.isfinite(found.motions[0].operation.moves.tip).all()
 
 
 def test_a_rewind_is_announced_in_the_program_and_in_a_warning() -> None:
@@ -86,7 +120,7 @@ def test_without_rewinds_the_program_is_refused_with_line_axis_value_and_limit()
 def test_a_retreat_keeps_the_limits_of_the_slides_where_the_workpiece_zero_is_known() -> None:
     known = replace(CA, workpiece_zero=(0.0, 0.0, 100.0))
     assert [p.severity for p in planned(operation_of(round_part()), known).problems] == [Severity.WARNING]
-    found = planned(operation_of(round_part()), known, Wishes(clearance=1800.0)).problems
+    found = planned(operation_of(round_part()), known, Wishes(clearance=Clearance(1800.0))).problems
     errors = [p for p in found if p.severity is Severity.ERROR]
     assert len(errors) == 1
     assert "on the retreat for a rewind axis" in errors[0].what
@@ -94,7 +128,7 @@ def test_a_retreat_keeps_the_limits_of_the_slides_where_the_workpiece_zero_is_kn
 
 
 def test_without_a_workpiece_zero_a_retreat_needs_room_too() -> None:
-    found = planned(operation_of(round_part()), wishes=Wishes(clearance=3000.0)).problems
+    found = planned(operation_of(round_part()), wishes=Wishes(clearance=Clearance(3000.0))).problems
     assert any("has room for" in p.what for p in found)
 
 
@@ -150,6 +184,8 @@ def test_a_program_with_a_rewind_is_proven(tmp_path: Path, capfd: pytest.Capture
         ("clearance=far", "such as clearance=50"),
         ("clearance=nan", "such as clearance=50"),
         ("clearance=-5", "such as clearance=50"),
+        ("clearance=cone:5", "such as clearance=50"),
+        ("clearance=sphere:-5", "plane:Z, sphere:R"),
     ],
 )
 def test_settings_that_mean_nothing(

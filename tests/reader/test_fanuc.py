@@ -142,7 +142,7 @@ def test_offsets_shifts_and_machine_positions(run: Runner) -> None:
         [[1, 1, 1], [11, 1, 1], [1, 1, 1], [6, 6, 7], [8, 6, 7], [3, 6, 9], [3, 6, 0], [1, 0, 0]],
         atol=1e-9,
     )
-    assert [finding.line for finding in got.findings] == [12]
+    assert got.findings == ()
 
 
 # Cycles

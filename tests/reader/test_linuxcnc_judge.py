@@ -224,8 +224,8 @@ class Writer:
             self.plane = 2
             self.lines.append("G17")
         self.settle()
-        code = self.draw(st.sampled_from([73, 81, 82, 83, 85, 86, 89]))
-        extra = {73: " Q3.5", 83: " Q4", 82: " P.5", 86: " P.2", 89: " P1"}.get(code, "")
+        code = self.draw(st.sampled_from([73, 81, 82, 83, 84, 85, 86, 89]))
+        extra = {73: " Q3.5", 83: " Q4", 82: " P.5", 84: " P.3", 86: " P.2", 89: " P1"}.get(code, "")
         self.lines.append("M3 S100")
         self.absolute = self.draw(st.booleans())
         depth, top = self.draw(st.sampled_from([(-5, 2), (-12.5, -1), (3, 60)]))

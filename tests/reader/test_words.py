@@ -350,3 +350,7 @@ def test_transfer_header_and_words_without_effect(run: Runner) -> None:
     )
     assert result.findings == ()
     assert result.events[1].value == (0.02, "_ORI_ROUGH", 0.5)
+
+
+def test_a_limit_of_the_spindle_is_no_programmed_speed(run: Runner) -> None:
+    assert run("S500 M3\nG26 S4000\nG25 S20\nG1 X1 F100").rpm.tolist() == [500.0]

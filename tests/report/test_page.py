@@ -12,8 +12,9 @@ from tests.report.cases import CHECKS, PLACES, Page, blade, waves, with_columns,
 from trunnion.reader import Steps
 from trunnion.report import write_report
 from trunnion.report.pack import unpack
-from trunnion.report.page import clock, short
+from trunnion.report.page import short
 from trunnion.verify.model import Check, Verification
+from trunnion.verify.text import clock
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'--><!--&amp;"
 

@@ -52,7 +52,7 @@ def _post(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",
-        help="what templates print (title, part, date, method, …), units, zero, rewind, clearance; may be repeated",
+        help="what templates print (title, part, date, method, …), or how to read, place and plan; may be repeated",
     )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
@@ -81,6 +81,10 @@ def _verify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--offset", metavar="G", help="work offset of the program; G54 where there is a CL file")
     parser.add_argument("--edge", type=int, metavar="D", help="cutting edge under which the tool works; with --cl 1")
     parser.add_argument("--units", choices=("mm", "inch"), help="units of CL files that do not say them")
+    parser.add_argument(
+        "--frame", choices=("first", "absolute"), default="first",
+        help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",
+    )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
     parser.set_defaults(run=run)

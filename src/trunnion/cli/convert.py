@@ -8,10 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.output import whole
-from trunnion.cli.post import check_settings, planned_program, point, prove, say, wishes_of, write
+from trunnion.cli.post import PLANNING, check_settings, planned_program, point, prove, say, wishes_of, write
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     if "zero" in settings:
         target_machine = replace(target_machine, workpiece_zero=point(settings.pop("zero")))
     wishes = wishes_of(settings)
-    settings = {key: value for key, value in settings.items() if key not in ("rewind", "clearance")}
+    settings = {key: value for key, value in settings.items() if key not in PLANNING}
     target = _target(arguments, target_control)
     with whole(target) as sink:
         converted = _read(arguments.file, machine, control, arguments.force)
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
             _say_some(write_cl(converted.toolpath, sink, comments=comments))
         else:
             paths = [converted.toolpath]
-            program = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
+            program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
             prove(write(program, sink), paths, sink, target, program if arguments.force else None)
     if arguments.to_cl and carried:
         print(_hint(target, arguments.machine, carried), file=sys.stderr)

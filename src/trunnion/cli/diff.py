@@ -3,19 +3,18 @@
 import argparse
 from pathlib import Path
 
-from trunnion.cli.verify import check_reader
 from trunnion.machine import load_machine
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compare two programs; 0 if they do the same, 1 if not."""
-    from trunnion.reader import run_program
+    from trunnion.reader import reader_of, run_program
     from trunnion.verify import compare
 
     first = load_machine(arguments.machine)
     second = load_machine(arguments.to_machine) if arguments.to_machine else first
     for machine in (first, second):
-        check_reader(machine)
+        reader_of(machine)
     one, two = (run_program(Path(file), m) for file, m in zip(arguments.files, (first, second), strict=True))
     found = compare(one, two, arguments.tolerance)
     print(*found.lines(), sep="\n")

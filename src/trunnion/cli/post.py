@@ -1,6 +1,7 @@
 """``trunnion post``: CL files in, one proven NC program out (or one each, into a folder)."""
 
 import argparse
+import math
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -8,20 +9,31 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
+import numpy as np
+
 from trunnion.cl import read_cl
-from trunnion.cli.output import whole
 from trunnion.cli.progress import progress
-from trunnion.control import Control, Program, check_program, load_control, write_program
+from trunnion.control import CHOICES, Control, Program, check_program, is_lift, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Wishes, plan
+from trunnion.plan import Clearance, Decision, Manner, Motion, Pole, Surface, Wishes, plan
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
     from trunnion.verify import Allowed, Settings
 
+#: Settings that say how to plan.
+PLANNING = ("manner", "frame", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
+
 #: Settings that say how to read, to place and to plan rather than what to print.
-_RUN_SETTINGS = ("units", "zero", "rewind", "clearance")
+_RUN_SETTINGS = ("units", "zero", "numbers", *PLANNING)
+
+#: What the setting ``frame`` may say: whose coordinate system the program's is.
+_FRAMES = ("first", "absolute")
+
+#: What the setting ``manner`` may say.
+_MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,10 +46,12 @@ def run(arguments: argparse.Namespace) -> int:
     control = load_control(machine.control)
     settings = dict(arguments.settings)
     check_settings(settings, control)
+    if settings.get("numbers") == "off":
+        control = replace(control, numbers=replace(control.numbers, letter=""))
     if "zero" in settings:
         machine = replace(machine, workpiece_zero=point(settings["zero"]))
     printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
-    wishes = wishes_of(settings, arguments.explain)
+    wishes = wishes_of(settings, arguments.explain or bool(arguments.report))
     targets = _targets(arguments, control)
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
@@ -45,12 +59,15 @@ def run(arguments: argparse.Namespace) -> int:
     for target, files in targets.items():
         with whole(target) as sink:
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
-            program = planned_program(paths, machine, control, printed, arguments.force, wishes)
+            program, decisions = planned_program(
+                paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
+            )
             claim = write(program, sink)
+            claim = replace(claim, settings=replace(claim.settings, absolute=wishes.absolute))
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
-            prove(claim, paths, sink, target, again, arguments.report)
+            prove(claim, paths, sink, target, again, arguments.report, decisions)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
     return 0
@@ -79,8 +96,10 @@ def planned_program(
     settings: Mapping[str, str],
     force: bool,
     wishes: Wishes,
-) -> Program:
-    """The program of toolpaths, planned and checked; what speaks against it is said.
+    *,
+    say_why: bool = False,
+) -> tuple[Program, tuple[Decision, ...]]:
+    """The program of toolpaths, planned and checked, and why it is so; what speaks against it is said.
 
     Raises
     ------
@@ -88,7 +107,7 @@ def planned_program(
         When there can be no program, or when it must not run, unless ``force``: then its head says so.
     """
     planned = plan(paths, machine, control.chord_tolerance, wishes)
-    if wishes.explain:
+    if say_why:
         print(*planned.decisions, sep="\n", file=sys.stderr)
     program = Program(machine, control, planned.motions, settings, paths[0].file)
     lacking = check_program(program)
@@ -101,7 +120,7 @@ def planned_program(
         raise Refused((*planned.problems, Problem(paths[0].file, 0, "no program is written", "--force writes it")))
     say(planned.problems)
     notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in against]
-    return replace(program, notices=notices)
+    return replace(program, notices=notices), planned.decisions
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,7 +144,8 @@ def write(program: Program, sink: BinaryIO) -> Claim:
     rows = sum(len(motion.operation.moves) for motion in program.motions)
     with progress("writing", rows, "points") as advance:
         write_program(program, sink, advance)
-    return Claim(program.machine, rows, len(program.motions), _allowed(program), _asked(program))
+    operations = sum(motion.begins for motion in program.motions)
+    return Claim(program.machine, rows, operations, _allowed(program), _asked(program))
 
 
 def prove(
@@ -135,6 +155,7 @@ def prove(
     target: str,
     again: Program | None = None,
     report: str | None = None,
+    decisions: Sequence[Decision] = (),
 ) -> None:
     """Read a program back, run it and compare it with its toolpaths; one line a check.
 
@@ -152,6 +173,8 @@ def prove(
         The program, if it is to be written though a check fails: then its head says which.
     report
         File of the report.
+    decisions
+        What the report says of the planning.
 
     Raises
     ------
@@ -160,16 +183,16 @@ def prove(
     """
     from trunnion.cli.verify import report as write_report
     from trunnion.reader import run_program
-    from trunnion.verify import check_lines, failures, place_lines, verify
+    from trunnion.verify import check_lines, failures, place_lines, time_lines, verify
 
     sink.flush()
     run = run_program(Path(sink.name), claim.machine)
     found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
     found = replace(found, program="the program" if target == "-" else target)
-    for line in (*check_lines(found), *place_lines(found, failed_only=True)):
+    for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
         print(line, file=sys.stderr)
     if report:
-        write_report(found, report)
+        write_report(found, report, decisions)
     failed = failures(found)
     if failed and again is None:
         what = f"the program does not do what this file asks for: {', '.join(check.key for check in failed)}"
@@ -182,18 +205,42 @@ def prove(
 
 
 def _allowed(program: Program) -> "list[Allowed]":
-    """Half the last digit that each operation prints."""
-    from trunnion.verify import Allowed
+    """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
+    from trunnion.verify import Agreed, Allowed
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
-    allowed = []
+    turning = control.number_formats(three_axis=False)["plane_angle"].decimals
+    allowed: list[Allowed] = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
-        angle = max(half["primary"], half["secondary"])
-        allowed.append(Allowed(half["X"], angle, control.chord_tolerance, half["feed"]))
+        tip, angle = half["X"], max(half["primary"], half["secondary"])
+        if motion.plane is not None:
+            tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
+            tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
+        if not motion.begins:
+            before = allowed.pop()
+            tip, angle = max(tip, before.tip), max(angle, before.angle)
+        apart = motion.departures
+        agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
+        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed))
     return allowed
+
+
+def _in_plane(motion: Motion, half: float, tilt: float) -> float:
+    """How far a coordinate may be off where ``half`` is, in each coordinate of the plane and of its origin, mm, and
+    the plane itself by ``tilt`` degrees."""
+    assert motion.plane is not None
+    reach = float(np.abs(motion.as_written().moves.tip).max())
+    rounded = half * (1.0 + float(np.abs(motion.plane.matrix()).sum(axis=1).max()))
+    return rounded + float(np.radians(tilt)) * reach * math.sqrt(3.0)
+
+
+def _lever(motion: Motion, machine: Machine) -> float:
+    """How far a turn of the rotary axis next to the workpiece turns the tool axis: near its pole hardly at all."""
+    first = np.array(machine.axes[machine.rotary[0]].direction)
+    return max(float(np.linalg.norm(np.cross(first, motion.operation.moves.axis[0]))), 1e-3)
 
 
 def _asked(program: Program) -> "Settings":
@@ -230,6 +277,27 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
+    if not is_lift(settings.get("bore_lift", "")):
+        cure = "write millimetres, such as bore_lift=0.5"
+        problems.append(Problem("--set", 0, f"bore_lift is {settings['bore_lift']!r}", cure))
+    if settings.get("numbers", "on") not in ("on", "off"):
+        problems.append(Problem("--set", 0, f"numbers is {settings['numbers']!r}", "write numbers=on or numbers=off"))
+    if settings.get("frame", "first") not in _FRAMES:
+        cure = f"write one of {', '.join(_FRAMES)}"
+        problems.append(Problem("--set", 0, f"frame is {settings['frame']!r}", cure))
+    if settings.get("manner", "auto") not in _MANNERS:
+        cure = f"write one of {', '.join(_MANNERS)}"
+        problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
+    for name, choices in CHOICES.items():
+        if settings.get(name, choices[0]) not in choices:
+            cure = f"write one of {', '.join(choices)}"
+            problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
+    if settings.get("pole", "off") not in list(Pole):
+        what = f"pole is {settings['pole']!r}"
+        problems.append(Problem("--set", 0, what, f"write pole= and one of {', '.join(Pole)}"))
+    if settings.get("lower_feed", "no") not in ("yes", "no"):
+        what = f"lower_feed is {settings['lower_feed']!r}"
+        problems.append(Problem("--set", 0, what, "write lower_feed=yes or lower_feed=no"))
     if settings.get("units", "mm") not in ("mm", "inch"):
         problems.append(Problem("--set", 0, f"units is {settings['units']!r}", "write units=mm or units=inch"))
     if not settings.get("edge", "1").isdigit():
@@ -239,18 +307,51 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
 
 
 def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
-    """What the settings say to the planner."""
-    rewind, text = settings.get("rewind", "insert") == "insert", settings.get("clearance")
-    if text is None:
-        return Wishes(rewind=rewind, explain=explain)
+    """What the settings, checked by ``check_settings``, say to the planner."""
+    usual = Wishes()
+    cures = {
+        "pole_angle": "write pole_angle=DEG, by how much the tool axis may lean near the pole, such as pole_angle=0.1",
+    }
+    return Wishes(
+        rewind=settings.get("rewind", "insert") == "insert",
+        clearance=_clearance(settings["clearance"]) if "clearance" in settings else usual.clearance,
+        explain=explain,
+        manner=_MANNERS[settings.get("manner", "auto")],
+        absolute=settings.get("frame", "first") == "absolute",
+        pole=Pole(settings.get("pole", "off")),
+        pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),
+        lower_feed=settings.get("lower_feed", "no") == "yes",
+    )
+
+
+def _clearance(text: str) -> Clearance:
+    """The setting ``clearance``."""
+    kind, _, number = text.rpartition(":")
     try:
-        clearance = float(text)
+        surface, value = Surface(kind or Surface.DISTANCE), float(number)
     except ValueError:
-        clearance = 0.0
-    if not 0.1 <= clearance <= 10000.0:
-        cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50"
-        raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
-    return Wishes(rewind=rewind, clearance=clearance, explain=explain)
+        surface, value = Surface.DISTANCE, math.nan
+    least = -10000.0 if surface is Surface.PLANE else 0.1
+    if least <= value <= 10000.0:
+        return Clearance(value, surface)
+    cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
+    raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
+
+
+def _number(
+    settings: Mapping[str, str], key: str, usual: float, within: tuple[float, float], cures: Mapping[str, str]
+) -> float:
+    """A setting that is a number."""
+    text = settings.get(key)
+    if text is None:
+        return usual
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not within[0] <= value <= within[1]:
+        raise InputError(Problem("--set", 0, f"{key} is {text!r}", cures[key]))
+    return value
 
 
 def point(text: str) -> tuple[float, float, float]:

@@ -1,20 +1,17 @@
 """``trunnion verify``: an NC program, read back by an author of its own, run, and compared with its CL files."""
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.control.definition import library
-from trunnion.definition import extended
 from trunnion.errors import InputError, Problem
-from trunnion.machine import Machine, load_machine
+from trunnion.machine import load_machine
+from trunnion.plan import Decision
 
 if TYPE_CHECKING:
     from trunnion.verify import Verification
-
-#: Families of controls whose programs can be read.
-READERS = ("sinumerik_840d",)
 
 #: What a report's name may end in.
 _REPORTS = (".html", ".json")
@@ -24,13 +21,13 @@ def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
     from trunnion.cli.post import point
-    from trunnion.reader import run_program
-    from trunnion.verify import Allowed, Settings, check_lines, place_lines, verify
+    from trunnion.reader import reader_of, run_program
+    from trunnion.verify import Allowed, Settings, check_lines, place_lines, time_lines, verify
 
     if arguments.report:
         check_report(arguments.report)
     machine = load_machine(arguments.machine)
-    check_reader(machine)
+    reader_of(machine)
     if arguments.zero:
         machine = replace(machine, workpiece_zero=point(arguments.zero))
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
@@ -44,22 +41,14 @@ def run(arguments: argparse.Namespace) -> int:
             work_offset=_offset(arguments.offset, bool(paths)),
             edge=1 if arguments.edge is None and paths else arguments.edge,
             span=arguments.span,
+            absolute=arguments.frame == "absolute",
         ),
         columns=bool(arguments.report),
     )
-    print(*check_lines(found), *place_lines(found), sep="\n")
+    print(*check_lines(found), *place_lines(found), *time_lines(found), sep="\n")
     if arguments.report:
         report(found, arguments.report)
     return 0 if found.passed else 1
-
-
-def check_reader(machine: Machine) -> None:
-    """Raise ``InputError`` for machines whose programs nobody can read yet."""
-    table = extended(machine.control, library())
-    family = table.text("family", READERS[0])
-    if family not in READERS:
-        what = f"its control is a {family}, whose programs cannot be read yet"
-        raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
 
 
 def check_report(file: str) -> None:
@@ -68,11 +57,11 @@ def check_report(file: str) -> None:
         raise InputError(Problem(file, 0, "a report is a page or data", f"let its name end in {' or '.join(_REPORTS)}"))
 
 
-def report(found: "Verification", file: str) -> None:
-    """Write the report of a verification."""
-    from trunnion.report import write_report
+def report(found: "Verification", file: str, decisions: Sequence[Decision] = ()) -> None:
+    """Write the report of a verification, with what the planner decided."""
+    from trunnion.report import Decided, write_report
 
-    write_report(found, Path(file))
+    write_report(found, Path(file), decisions=[Decided(d.operation, d.file, d.line, d.why, d.text) for d in decisions])
 
 
 def _offset(text: str | None, with_cl: bool) -> int | None:

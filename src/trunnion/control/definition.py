@@ -21,13 +21,22 @@ FIELDS = frozenset(
     {
         "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
         "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine",
+        "plane_x", "plane_y", "plane_z", "plane_first", "plane_second", "plane_third", "plane_mode", "plane_side",
     }
 )  # fmt: skip
 
 TEMPLATES = (
     "program_start", "operation_start", "first_tool", "tool_change", "approach_five_axis", "approach_three_axis",
     "operation_end_five_axis", "operation_end_three_axis", "program_end",
+    "approach_cycle800", "plane_on_cycle800", "next_plane_cycle800", "operation_end_cycle800",
+    "approach_frames", "plane_on_frames", "next_plane_frames", "operation_end_frames",
 )  # fmt: skip
+
+#: mm; NaN is no less.
+_FARTHEST_LIFT = 100.0
+
+#: What some settings may say: the way to say a tilted plane, and the axes of CYCLE800's three turns.
+CHOICES = {"plane": ("cycle800", "frames"), "swivel_mode": ("57", "27", "39", "45", "30", "54")}
 
 CODES = (
     "rapid", "linear", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz",
@@ -202,8 +211,21 @@ def _texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
 
 def _settings(table: Table) -> dict[str, str]:
     found = {name: table.text(name) for name in list(table.keys())}
+    for name, choices in CHOICES.items():
+        if found.setdefault(name, choices[0]) not in choices:
+            table.problem(name, f"is {found[name]!r}", f"write one of {', '.join(choices)}")
+    if not is_lift(found.get("bore_lift", "")):
+        table.problem("bore_lift", f"is {found['bore_lift']!r}", "write millimetres, or nothing")
     table.finish()
     return found
+
+
+def is_lift(text: str) -> bool:
+    """Whether the setting ``bore_lift`` is empty, or millimetres that a tool could lift off in a bore."""
+    try:
+        return not text or abs(float(text)) < _FARTHEST_LIFT
+    except ValueError:
+        return False
 
 
 def _kind(entry: Table) -> tuple[str, str]:

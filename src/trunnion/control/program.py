@@ -13,15 +13,18 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.control import sinumerik
 from trunnion.control.definition import Control
+from trunnion.control.holes import Heights, cycle_call, feed_of
 from trunnion.control.template import Value
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.machine import Machine
+from trunnion.machine import Machine, inverse
 from trunnion.nc import ABSENT, CHUNK, BlockWriter, counts
-from trunnion.plan import Motion
+from trunnion.plan import Manner, Motion
+from trunnion.plan.holes import Cycle, CycleError, Turning, cycle_of, turning
 from trunnion.toolpath import (
     BlockSkip,
     Coolant,
     CutterComp,
+    CycleOff,
     CycleOn,
     Dwell,
     Event,
@@ -71,6 +74,9 @@ def check_program(program: Program) -> list[Problem]:
     for motion in program.motions:
         operation = motion.operation
         moves = operation.moves
+        problems += _hole_problems(program, motion)
+        if not motion.begins:
+            continue
         unfed = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
         if len(unfed):
             problems.append(
@@ -95,7 +101,8 @@ def check_program(program: Program) -> list[Problem]:
         for event in operation.events:
             problems += _event_problems(program, operation, event)
         tolerance = operation.intol is not None and operation.outtol is not None
-        if not motion.three_axis and not tolerance and not _setting(program, "tolerance"):
+        fine = not motion.three_axis and not (motion.plane and _setting(program, "plane") == "cycle800")
+        if fine and not tolerance and not _setting(program, "tolerance"):
             fallback = _setting(program, "fallback_tolerance")
             what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
             problems.append(Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING))
@@ -105,8 +112,6 @@ def check_program(program: Program) -> list[Problem]:
 def _event_problems(program: Program, operation: Operation, event: Event) -> list[Problem]:
     place = program.file, event.line
     rows = len(operation.moves)
-    if isinstance(event, CycleOn):
-        return [Problem(*place, "hole-making cycles cannot be written yet", "output the holes as motion")]
     if isinstance(event, LoadTool) and event.row > 0:
         return [Problem(*place, "tool change within an operation", "begin a new operation with the new tool")]
     if isinstance(event, CutterComp) and event.side == "ON":
@@ -117,6 +122,38 @@ def _event_problems(program: Program, operation: Operation, event: Event) -> lis
         known = ", ".join(program.control.coolant)
         return [Problem(*place, f"{program.control.name} has no coolant {event.kind}", f"use one of {known}")]
     return []
+
+
+def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
+    """What the cycles of a motion ask for and this control cannot be told."""
+    operation, problems = motion.as_written(), []
+    moves = operation.moves
+    for event in operation.events:
+        if not isinstance(event, CycleOn):
+            continue
+        try:
+            cycle = cycle_of(event)
+            if motion.manner is Manner.TCP:
+                cure = "leave the setting manner out, or end the cut before the tool axis changes"
+                raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
+            spindle = turning(operation.events, event.row, Turning(1.0, Sense.CLW))
+            cycle_call(cycle, 0.0, spindle, _lift(program), program.control.number_formats(motion.three_axis))
+            feed, _ = feed_of(cycle, spindle, float(moves.feed[event.row]), False)
+            if not feed > 0.0:
+                raise CycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
+            low = event.row > 0 and moves.tip[event.row - 1, 2] < moves.tip[event.row, 2] + cycle.above - 1e-6
+            if low and moves.kind[event.row - 1] != Kind.RAPID:
+                cure = "draw the tool back before the cycle"
+                raise CycleError("CYCLE while the tool is below the height of RAPTO", cure)
+        except CycleError as error:
+            problems.append(Problem(program.file, event.line, error.what, error.cure))
+    return problems
+
+
+def _lift(program: Program) -> float | None:
+    """The setting ``bore_lift``, mm; None where it is not given."""
+    text = _setting(program, "bore_lift")
+    return float(text) if text else None
 
 
 def _setting(program: Program, name: str) -> str:
@@ -159,6 +196,7 @@ class _Author:
         self._tool = self._tool_name = ""
         self._spindle: SpindleOn | None = None
         self._coolant = "OFF"
+        self._height = 0.0  # of the tool along Z of the frame, at the last row written
 
     def write(self) -> None:
         """The program, operation by operation."""
@@ -166,8 +204,8 @@ class _Author:
         self._writer.lines(sinumerik.comment(text) for text in self._program.notices)
         self._expand("program_start", self._values(motions[0]), motions[0])
         for k, motion in enumerate(motions):
-            self._operation(motion)
-            if self._coolant != "OFF" and k + 1 < len(motions):
+            self._operation(motion, k + 1 == len(motions) or motions[k + 1].begins)
+            if self._coolant != "OFF" and k + 1 < len(motions) and motions[k + 1].begins:
                 self._writer.lines([f"M{self._control.coolant['OFF']}"])
                 self._coolant = "OFF"
         self._expand("program_end", self._values(motions[-1]), motions[-1])
@@ -176,25 +214,58 @@ class _Author:
         formats = self._control.number_formats(motion.three_axis)
         self._writer.lines(self._control.templates[name].expand(values, formats))
 
-    def _operation(self, motion: Motion) -> None:
-        kind = "three_axis" if motion.three_axis else "five_axis"
-        values = self._values(motion)
-        self._expand("operation_start", values, motion)
-        tool = str(values["tool"])
-        if tool != self._tool:
-            self._expand("tool_change" if self._tool else "first_tool", values, motion)
-            self._tool = tool
-        self._tool_name = motion.operation.tool.name
+    def _operation(self, motion: Motion, ends: bool) -> None:
+        """An operation, or what there is of it in one plane; ``ends``: there is no more of it."""
+        kind, values = self._kind(motion), self._values(motion)
+        if motion.begins:
+            self._expand("operation_start", values, motion)
+            tool = str(values["tool"])
+            if tool != self._tool:
+                self._expand("tool_change" if self._tool else "first_tool", values, motion)
+                self._tool = tool
+            self._tool_name = motion.operation.tool.name
         self._writer.use(self._control.block_words(*self._letters, motion.three_axis))
         self._writer.forget()
         for word, code in self._control.in_force.items():
             self._writer.remember(word, code)
-        self._expand(f"approach_{kind}", values, motion)
+        self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
+        if motion.plane is not None:
+            self._expand(f"plane_on_{kind}", values, motion)
         for word, column in (("primary", self._primary), ("secondary", self._secondary)):
             self._writer.remember(word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word)[0]))
-        self._motion(motion)
+        self._motion(replace(motion, operation=motion.as_written()))
         self._back_in_force()
-        self._expand(f"operation_end_{kind}", values, motion)
+        if ends:
+            self._expand(f"operation_end_{kind}", values, motion)
+
+    def _kind(self, motion: Motion) -> str:
+        """What the templates of this kind of operation are called."""
+        if motion.manner is Manner.TILTED:
+            return _setting(self._program, "plane")
+        return "three_axis" if motion.three_axis else "five_axis"
+
+    def _plane(self, motion: Motion) -> dict[str, Value]:
+        """What templates may print of a tilted plane: its origin, its turning angles and the side of the machine.
+
+        The side is -1 or 1: of the two solutions that stand the tool on the plane, the one with the lower or the higher
+        value of the rotary axis farther from the workpiece. Where there is only one, either word means it.
+        """
+        names = "plane_x", "plane_y", "plane_z", "plane_first", "plane_second", "plane_third"
+        if motion.plane is None:
+            return dict.fromkeys((*names, "plane_mode", "plane_side"))
+        mode = _setting(self._program, "swivel_mode") if _setting(self._program, "plane") == "cycle800" else "57"
+        angles = sinumerik.turns(motion.plane.matrix(), sinumerik.sequence(int(mode)))
+        moves, column = motion.operation.moves, self._program.machine.rotary[1]
+        both = inverse(self._program.machine, moves.tip[:1], moves.axis[:1]).joints[:, 0, column]
+        apart = both - motion.rotary[0, 1]
+        apart -= 360.0 * np.rint(apart / 360.0)
+        lower = np.argmin(np.abs(apart)) == np.argmin(both)
+        side = "-1" if lower else "1"
+        return {
+            **dict(zip(names, (*motion.plane.origin, *angles), strict=True)),
+            "plane_mode": mode,
+            "plane_side": side,
+        }
 
     def _values(self, motion: Motion) -> dict[str, Value]:
         """What templates may print in this operation."""
@@ -222,6 +293,7 @@ class _Author:
         return {
             **values,
             **angles,
+            **self._plane(motion),
             "primary": self._letters[0],
             "secondary": self._letters[1],
             "machine": self._program.machine.name,
@@ -273,13 +345,19 @@ class _Author:
         rows = len(motion.operation.moves)
         joining = self._spindle_again(motion.operation)
         done, text = 0, -1
+        cycle: CycleOn | None = None
         for event in motion.operation.events:
+            if isinstance(event, CycleOn | CycleOff):
+                text = self._stretch(motion, done, event.row, joining, text, cycle)
+                done, joining = event.row, [e for e in joining if e.row >= event.row]
+                cycle = event if isinstance(event, CycleOn) else None
+                continue
             off = isinstance(event, SpindleOff) or (isinstance(event, Coolant) and event.kind == "OFF")
             joins = isinstance(event, SpindleOn | Coolant | CutterComp) and not off
             if joins and not any(type(e) is type(event) and e.row == event.row for e in joining):
                 joining.append(event)
             elif joins or off or isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
-                text = self._rows(motion, done, event.row, joining, text)
+                text = self._stretch(motion, done, event.row, joining, text, cycle)
                 for earlier in (e for e in joining if e.row == event.row):
                     self._event_block(earlier)  # what is said twice before one row is said in order
                 done, joining = event.row, [e for e in joining if e.row > event.row]
@@ -289,7 +367,7 @@ class _Author:
                     self._event_block(event)  # with the next motion the control would switch off after it
                 else:
                     self._own_block(motion, event)
-        self._rows(motion, done, rows, joining, text)
+        self._stretch(motion, done, rows, joining, text, cycle)
         for event in joining:
             if event.row == rows:
                 self._event_block(event)
@@ -338,6 +416,70 @@ class _Author:
     def _count(self, word: str, value: float) -> int:
         return int(counts(np.array([value]), self._writer.word(word).format.decimals)[0])
 
+    def _stretch(
+        self, motion: Motion, first: int, last: int, joining: Sequence[Event], text: int, cycle: CycleOn | None
+    ) -> int:
+        """Rows ``first`` to ``last``, holes if there is a cycle; as ``_rows``."""
+        if cycle is None or first == last:
+            return self._rows(motion, first, last, joining, text)
+        said = cycle_of(cycle)
+        assert said.retract is not None
+        place = self._writer.word("X").format.decimals
+        tops = counts(np.ascontiguousarray(motion.operation.moves.tip[first:last, 2]), place)
+        begins = {0, *(np.flatnonzero(np.diff(tops)) + 1).tolist(), *(e.row - first for e in joining if e.row >= first)}
+        ends = sorted(k for k in begins if k < last - first)
+        for k, end in zip(ends, [*ends[1:], last - first], strict=True):
+            here = [event for event in joining if event.row == first + k]
+            text = self._holes(motion, first + k, first + end, here, text, said)
+        self._progress(last - first)
+        return text
+
+    def _holes(self, motion: Motion, first: int, last: int, joining: Sequence[Event], text: int, cycle: Cycle) -> int:
+        """Holes of one height: position blocks between MCALL with a cycle and MCALL without.
+
+        The tool goes to them at the height to which it was drawn back. It begins at the retract height where nothing
+        says how high it is, and is drawn up first where it is lower than the next holes want it.
+        """
+        moves, control, codes = motion.operation.moves, self._control, self._control.codes
+        formats = control.number_formats(motion.three_axis)
+        top = float(moves.tip[first, 2])
+        heights = Heights.of(cycle, top)
+        for event in joining:
+            if first > 0:
+                self._event_block(event)
+        if first == 0:
+            block = {"motion": codes["rapid"], "edge": int(_setting(self._program, "edge"))}
+            block |= {word: self._count("X", value) for word, value in zip("XY", moves.tip[0], strict=False)}
+            block["Z"] = self._count("X", heights.retract)
+            for event in joining:
+                block |= self._event_words(event)
+            self._block(block)
+            self._height = heights.retract
+        elif self._height < top + cycle.above - 1e-9:
+            self._block({"motion": codes["rapid"], "Z": self._count("X", top + cycle.above)})
+        turning_now = None if self._spindle is None else Turning(self._spindle.rpm, self._spindle.sense)
+        feed, per_rev = feed_of(cycle, turning_now, float(moves.feed[first]), bool(moves.per_rev[first]))
+        mode = codes["feed_per_revolution" if per_rev else "feed_per_minute"]
+        self._block({"feed_mode": mode, "plane": codes["plane_xy"], "feed": self._count("feed", feed)})
+        self._writer.lines([f"MCALL {cycle_call(cycle, top, turning_now, _lift(self._program), formats)}"])
+        decimals = self._writer.word("X").format.decimals
+        columns = {
+            word: counts(np.ascontiguousarray(moves.tip[first:last, c]), decimals) for c, word in enumerate("XY")
+        }
+        columns["motion"] = np.full(last - first, codes["rapid"], np.int64)
+        ids, texts = self._phase_texts()
+        wanted = ids[moves.phase[first:last]]
+        before = np.concatenate(([text], wanted[:-1]))
+        self._writer.table(columns, {"X": True, "Y": True}, np.where(wanted != before, wanted, -1), texts)
+        self._writer.lines(["MCALL"])
+        self._height = heights.retract
+        self._writer.forget("X", "Y", "Z")  # a point at which the tool already stands gets its block
+        return int(wanted[-1])
+
+    def _block(self, words: Mapping[str, int]) -> None:
+        """One block of these words, as counts; nothing where all of them are in force."""
+        self._writer.table({word: np.array([count], np.int64) for word, count in words.items()})
+
     def _rows(self, motion: Motion, first: int, last: int, joining: Sequence[Event], text: int) -> int:
         """Write rows ``first`` to ``last``; returns the index of the phase text that was printed last."""
         for start in range(first, last, CHUNK):
@@ -349,13 +491,15 @@ class _Author:
     def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[Event], text: int) -> int:
         moves, arcs, control = motion.operation.moves, motion.operation.arcs, self._control
         part = slice(start, stop)
+        self._height = float(moves.tip[stop - 1, 2])
         rapid = moves.kind[part] == Kind.RAPID
         decimals = {word: self._writer.word(word).format.decimals for word in ("X", "feed", "I")}
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
-        columns["primary"] = self._angle_counts(motion.rotary[part, self._column[self._primary]], "primary")
-        columns["secondary"] = self._angle_counts(motion.rotary[part, self._column[self._secondary]], "secondary")
+        if motion.plane is None:  # in a plane the rotary axes stand where they were put
+            columns["primary"] = self._angle_counts(motion.rotary[part, self._column[self._primary]], "primary")
+            columns["secondary"] = self._angle_counts(motion.rotary[part, self._column[self._secondary]], "secondary")
         columns["motion"] = np.where(rapid, control.codes["rapid"], control.codes["linear"]).astype(np.int64)
         columns["feed"] = np.where(rapid, ABSENT, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"]))
         mode = np.where(moves.per_rev[part], control.codes["feed_per_revolution"], control.codes["feed_per_minute"])

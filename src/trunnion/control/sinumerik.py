@@ -4,6 +4,8 @@ Facts: SINUMERIK 840D sl programming manuals, *Fundamentals* and *Job planning*;
 one by one.
 """
 
+import math
+
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
@@ -24,6 +26,37 @@ def comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """What stands after ``T=``: a number, or a name in quotation marks."""
     return f'"{name}"' if by_name else str(number)
+
+
+def sequence(mode: int) -> tuple[int, int, int]:
+    """Axes of the three turns of CYCLE800's _MODE, 0 for X: bits 1 and 0 name the first, 3 and 2 the second, 5 and 4
+    the third; 1 is X, 2 is Y, 3 is Z."""
+    return (mode & 3) - 1, (mode >> 2 & 3) - 1, (mode >> 4 & 3) - 1
+
+
+def turns(matrix: Floats, order: tuple[int, int, int]) -> tuple[float, float, float]:
+    """Three angles, degrees, that turn the program's axes into those of a plane, each about an axis already turned.
+
+    Parameters
+    ----------
+    matrix : (3, 3) float64
+        X, Y and Z of the plane as columns.
+    order
+        The axes in the order of their turns, 0 for X; no two alike.
+
+    With s = 1 for the orders X Y Z, Y Z X, Z X Y and s = -1 for the others, the product of the three turns has in row i
+    the columns i: cos b cos c, j: -s cos b sin c, k: s sin b, and in column k the rows j: -s sin a cos b, k: cos a
+    cos b. Where cos b vanishes only the sum or the difference of a and c counts: c is then 0.
+    """
+    i, j, k = order
+    s = 1.0 if (j - i) % 3 == 1 else -1.0
+    across = math.hypot(matrix[i, i], matrix[i, j])
+    b = math.atan2(s * matrix[i, k], across)
+    if across < 1e-9:
+        a, c = math.atan2(s * matrix[k, j], matrix[j, j]), 0.0
+    else:
+        a, c = math.atan2(-s * matrix[j, k], matrix[k, k]), math.atan2(-s * matrix[i, j], matrix[i, i])
+    return math.degrees(a), math.degrees(b), math.degrees(c)
 
 
 def dwell(event: Dwell, formats: dict[str, NumberFormat]) -> str:

@@ -37,8 +37,11 @@ _PHASES = {
     "departure": Phase.DEPARTURE,
     "traverse": Phase.TRAVERSE,
 }
-_ENDS = "operation_end_five_axis", "operation_end_three_axis"
-_HEADS = "operation_start", "first_tool", "tool_change", "approach_five_axis", "approach_three_axis"
+_ENDS = "operation_end_five_axis", "operation_end_three_axis", "operation_end_cycle800", "operation_end_frames"
+_HEADS = (
+    "operation_start", "first_tool", "tool_change", "approach_five_axis", "approach_three_axis",
+    "approach_cycle800", "plane_on_cycle800", "approach_frames", "plane_on_frames",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -190,7 +193,8 @@ class _Converter:
                 self._known |= match(self._source.texts(1, part.line if part.line > 1 else first), start, common)
             self._known |= match(self._source.texts(part.line, first), head, part.values)
             self._known |= match(self._source.texts(last + 1, after), tail, part.values)
-            part.values = {**common, **part.values, **self._registers(part)}
+            plane = {"plane": "frames"} if "plane_x" in part.values and "swivel_style" not in part.values else {}
+            part.values = {**common, **part.values, **plane, **self._registers(part)}
 
     def _registers(self, part: _Part) -> dict[str, str]:
         """Work offset and edge in force at the first row."""

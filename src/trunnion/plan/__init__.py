@@ -6,8 +6,21 @@ Out:    ``Motion``: the same operations in the program's coordinate system, with
 Knows nothing of text, neither of CL files nor of NC programs.
 """
 
-from trunnion.plan.motion import Decision, Manner, Motion, Plan, Why
+from trunnion.plan.clearance import Clearance, Surface
+from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole, Why
 from trunnion.plan.planner import plan
 from trunnion.plan.wishes import Wishes
 
-__all__ = ["Decision", "Manner", "Motion", "Plan", "Why", "Wishes", "plan"]
+__all__ = [
+    "Clearance",
+    "Decision",
+    "Departures",
+    "Manner",
+    "Motion",
+    "Plan",
+    "Pole",
+    "Surface",
+    "Why",
+    "Wishes",
+    "plan",
+]

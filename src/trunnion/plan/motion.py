@@ -1,11 +1,23 @@
 """What the planner hands on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
-from trunnion.arrays import Floats
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
 from trunnion.errors import Problem
+from trunnion.plan.frames import into_plane
 from trunnion.toolpath import Frame, Operation
+
+
+class Pole(StrEnum):
+    """What is done near the pole where a rotary axis would have to be too fast (``trunnion.plan.pole``)."""
+
+    OFF = "off"
+    HOLD = "hold"
+    SPREAD = "spread"
+    LEAN = "lean"
 
 
 class Manner(StrEnum):
@@ -18,6 +30,32 @@ class Manner(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Departures:
+    """Where an operation is not made as its CL file has it; rows are those of the CL file, growing.
+
+    lean    degrees by which the tool axis may lean at the rows ``leaned``
+    leaned  (k,) int64
+    rotary  (k, 2) float64  positions of the rotary axes there, as ``Motion`` has them
+    slowed  (m,) int64      rows with another feed
+    feed    (m,) float64    that feed, in the unit of the CL file's
+    """
+
+    lean: float
+    leaned: Ints
+    rotary: Floats
+    slowed: Ints
+    feed: Floats
+
+    @staticmethod
+    def none() -> "Departures":
+        """Everything as it is in the CL file."""
+        return Departures(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
+
+    def __len__(self) -> int:
+        return len(self.leaned) + len(self.slowed)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Motion:
     """One operation on the machine.
 
@@ -26,13 +64,18 @@ class Motion:
     rotary       (n, 2) float64   positions of the rotary axes, degrees, in the order of ``machine.rotary`` and in the
                  range that each displays. The slides follow from them and the tip: ``trunnion.machine.slide_positions``
     manner       three-axis: the tool axis is +Z of the program's coordinate system throughout
-    plane        the tilted plane as seen from the program's coordinate system, for that manner only
+    plane        the tilted plane as seen from the program's coordinate system, for that manner only. Its Z is the tool
+                 axis
+    departures   where it is not made as its CL file has it
+    begins       False: it goes on with the operation of the motion before it, in another plane
     """
 
     operation: Operation
     rotary: Floats
     manner: Manner
     plane: Frame | None = None
+    departures: Departures = field(default_factory=Departures.none)
+    begins: bool = True
 
     def __post_init__(self) -> None:
         self.rotary.setflags(write=False)
@@ -42,6 +85,10 @@ class Motion:
         """Whether the rotary axes stand still at the program's own coordinate system."""
         return self.manner is Manner.THREE_AXIS
 
+    def as_written(self) -> Operation:
+        """The operation in the coordinates of its blocks: those of the tilted plane, or else the program's."""
+        return self.operation if self.plane is None else into_plane(self.operation, self.plane)
+
 
 class Why(StrEnum):
     """What a decision was about."""
@@ -50,6 +97,8 @@ class Why(StrEnum):
     POLE = "pole"
     CHANGE = "change"
     REWIND = "rewind"
+    SPEED = "speed"
+    FEED = "feed"
     MORE = "more"
     NEAREST = "nearest"
 

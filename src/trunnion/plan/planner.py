@@ -1,26 +1,28 @@
 """From operations to motions: the stages, in their order."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
+from trunnion.plan.clearance import Clearance
 from trunnion.plan.decisions import Planned, decisions, pose_words
-from trunnion.plan.motion import Decision, Manner, Motion, Plan
+from trunnion.plan.departures import Asked, near_pole, slower, source_rows
+from trunnion.plan.frames import into_frame, into_plane, seen_from
+from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
+from trunnion.plan.kinds import contradictions, manner_of, plane_of
+from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
 from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.plan.wishes import Wishes
-from trunnion.toolpath import Frame, From, Moves, Operation, Toolpath
-
-#: An operation is three-axis when no component of its tool axis differs from +Z by more than this.
-_UPRIGHT = 1e-7
+from trunnion.toolpath import Frame, Moves, Operation, Toolpath
 
 #: How many rows of one kind of trouble are named one by one.
 _NAMED = 5
@@ -46,30 +48,52 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     InputError
         When there is nothing to plan.
     Refused
-        When no position of the machine gives a tool axis; of that no program can be made at all.
+        When no position of the machine gives a tool axis, or an operation cannot be made in the manner that is wished
+        for; of that no program can be made at all.
     """
     wishes = wishes or Wishes()
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
-    program_frame = pairs[0][1].frame
+    program_frame = Frame() if wishes.absolute else pairs[0][1].frame
+    keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
+    against: list[Problem] = []
     for path, original in pairs:
-        operation = into_frame(original, program_frame)
-        operation = lines_for_arcs(operation, plain_arcs(operation), chord_tolerance)
-        stretches.append(_stretch(path.file, operation, machine, wishes))
-    problems = [problem for stretch in stretches for problem in stretch.problems]
+        try:
+            operation = into_frame(with_holes(original), program_frame)
+        except CycleError as error:
+            against.append(Problem(path.file, error.line, error.what, error.cure))
+            continue
+        manner, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
+        against += contradictions(path.file, operation, manner)
+        plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
+        kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
+        operation = lines_for_arcs(operation, kept, chord_tolerance)
+        source = source_rows(original, operation)
+        stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
+        parts = by_axis(operation) if manner is Manner.TCP and wishes.manner is None else None
+        kind = replace(stretch, manner=manner, plane=plane)
+        stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own, parts=parts))
+    if against:
+        raise Refused(against)
+    problems = [*_unknown_speeds(pairs[0][0].file, machine, wishes)]
+    problems += [problem for stretch in stretches for problem in stretch.problems]
     if any((stretch.poses.outcome == OUT_OF_REACH).any() for stretch in stretches):
         raise Refused(problems)
     if machine.workpiece_zero is None:
         problems += _fit_problems(stretches, machine)
     log = [decision for stretch in stretches for decision in stretch.log]
-    return Plan(tuple(stretch.motion(wishes) for stretch in stretches), tuple(problems), tuple(log))
+    motions = [motion for stretch in stretches for motion in stretch.motions(wishes)]
+    return Plan(tuple(motions), tuple(problems), tuple(log))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stretch:
-    """An operation with its poses, as it is before rewinds are put in, and the file that it came from."""
+    """An operation with its poses, as it is before rewinds are put in, the file that it came from, and its kind.
+
+    ``parts`` are the rows of its planes, where holes make it one in several of them; ``plane`` is then its own frame.
+    """
 
     file: str
     operation: Operation
@@ -77,30 +101,59 @@ class _Stretch:
     rewinds: tuple[Rewind, ...]
     problems: tuple[Problem, ...]
     log: tuple[Decision, ...]
+    departures: Departures
+    manner: Manner = Manner.TCP
+    plane: Frame | None = None
+    parts: Sequence[tuple[int, int]] = ()
 
-    def motion(self, wishes: Wishes) -> Motion:
+    def motions(self, wishes: Wishes) -> list[Motion]:
         """What is to be written."""
-        operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
-        upright = _is_upright(self.operation.moves.axis)
-        return Motion(operation, rotary, Manner.THREE_AXIS if upright else Manner.TCP)
+        if not self.parts:
+            operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
+            return [Motion(operation, rotary, self.manner, self.plane, self.departures)]
+        assert self.plane is not None
+        return [
+            Motion(
+                part_of(self.operation, first, end),
+                self.poses.rotary[first:end].copy(),
+                self.manner,
+                plane_of(self.operation.moves.axis[first], self.plane),
+                begins=first == 0,
+            )
+            for first, end in self.parts
+        ]
 
 
-def _stretch(file: str, operation: Operation, machine: Machine, wishes: Wishes) -> _Stretch:
+def _stretch(asked: Asked) -> _Stretch:
     """Plan one operation in the program's coordinate system."""
-    moves, keep_slides = operation.moves, machine.workpiece_zero is not None
-    poses = follow(machine, moves, keep_slides)
+    file, operation, machine, wishes = asked.file, asked.operation, asked.machine, asked.wishes
+    moves = operation.moves
+    poses = follow(machine, moves, asked.keep_slides)
     if (poses.outcome == OUT_OF_REACH).any():
-        return _Stretch(file, operation, poses, (), tuple(_row_problems(file, moves, poses, machine)), ())
-    planned = Planned(machine, file, operation, poses.rotary, poses.state, keep_slides)
-    needed = _rewinds(planned, poses)
-    problems = [*_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes)]
+        problems = tuple(_row_problems(file, moves, poses, machine))
+        return _Stretch(file, operation, poses, (), problems, (), Departures.none())
+    operation, poses, leaned, log, lacking = near_pole(asked, poses)
+    operation, slowed, too_fast = slower(replace(asked, operation=operation), poses)
+    departures = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
+    planned = Planned(machine, file, operation, poses.rotary, poses.state, asked.keep_slides)
+    needed = _rewinds(planned, poses, wishes.clearance)
+    problems = (*lacking, *_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes))
     if wishes.rewind:
-        _widen(poses, machine, moves, needed, wishes.clearance)
-    log = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
-    return _Stretch(file, operation, poses, needed if wishes.rewind else (), tuple(problems), tuple(log))
+        _widen(poses, machine, moves, needed)
+    said = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
+    log = [*said, *log, *too_fast]
+    return _Stretch(file, operation, poses, needed if wishes.rewind else (), problems, tuple(log), departures)
 
 
-def _rewinds(planned: Planned, poses: Poses) -> tuple[Rewind, ...]:
+def _unknown_speeds(file: str, machine: Machine, wishes: Wishes) -> Iterable[Problem]:
+    """What was wished for and cannot be done, for nobody says how fast the rotary axes are."""
+    names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
+    if names and (wishes.pole is not Pole.OFF or wishes.lower_feed):
+        what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: it is never too fast"
+        yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING)
+
+
+def _rewinds(planned: Planned, poses: Poses, clearance: Clearance) -> tuple[Rewind, ...]:
     """All rewinds of an operation, with the limit that asks for each."""
     rewinds = []
     for row in np.flatnonzero(poses.outcome == REWIND).tolist():
@@ -108,7 +161,7 @@ def _rewinds(planned: Planned, poses: Poses) -> tuple[Rewind, ...]:
         end = planned.ahead(row, before, poses.rotary[row - 1])
         moves = planned.operation.moves
         reason = "the path asks for it" if end is None else f"otherwise {end.words(planned.machine, moves)}"
-        found = rewind_at(planned.machine, moves, row, after, poses.rotary)
+        found = rewind_at(planned.machine, moves, row, after, poses.rotary, clearance)
         turn = f"{planned.words(found.before)} to {planned.words(found.after)}, {reason}"
         rewinds.append(replace(found, reason=turn, end=end))
     return tuple(rewinds)
@@ -127,12 +180,16 @@ def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes
             cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
             yield Problem(planned.file, at, what, cure)
             continue
-        what = f"the tool draws back {wishes.clearance:g} mm in the cut to rewind, {rewind.reason}"
+        if not math.isfinite(rewind.way):
+            what = f"the tool must rewind here, and its axis does not lead to the clearance {wishes.clearance}"
+            yield Problem(planned.file, line, what, "--set clearance=MM draws back by a distance")
+            continue
+        what = f"the tool draws back {rewind.way:g} mm in the cut to rewind, {rewind.reason}"
         yield Problem(planned.file, line, what, "--set rewind=none refuses it", Severity.WARNING)
         if compensated(operation, rewind.row):
             what = "a rewind within cutter radius compensation"
             yield Problem(planned.file, line, what, "output the path without CUTCOM, or split the operation")
-        joints = joints_of(machine, operation.moves, rewind, wishes.clearance)
+        joints = joints_of(machine, operation.moves, rewind)
         column = lacks_room(machine, joints) if planned.keep_slides else None
         if column is not None:
             values = joints[:, column]
@@ -141,47 +198,16 @@ def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes
             yield Problem(planned.file, line, what, "--set clearance=MM draws back less; or move the workpiece")
 
 
-def _widen(poses: Poses, machine: Machine, moves: Moves, rewinds: Sequence[Rewind], clearance: float) -> None:
+def _widen(poses: Poses, machine: Machine, moves: Moves, rewinds: Sequence[Rewind]) -> None:
     """Take the retreats into the extremes of the slides, at the rows where they begin."""
     for rewind in rewinds:
-        joints = joints_of(machine, moves, rewind, clearance)
+        joints = joints_of(machine, moves, rewind)
         for column in machine.linear:
             least, most = float(joints[:, column].min()), float(joints[:, column].max())
             if least < poses.extremes[column, 0]:
                 poses.extremes[column, 0], poses.where[column, 0] = least, rewind.row - 1
             if most > poses.extremes[column, 1]:
                 poses.extremes[column, 1], poses.where[column, 1] = most, rewind.row - 1
-
-
-def _is_upright(axis: Floats) -> bool:
-    if axis[0, 2] < 1.0 - _UPRIGHT:  # the usual case decides itself at the first row
-        return False
-    return bool(np.abs(axis - [0.0, 0.0, 1.0]).max() < _UPRIGHT)
-
-
-def into_frame(operation: Operation, frame: Frame) -> Operation:
-    """The operation as seen from another coordinate system; itself when it is the same one.
-
-    With M the matrix and o the origin of a frame in the CAM's absolute system, a point is
-    M_to^T (M_from p + o_from - o_to) and a direction M_to^T M_from u.
-    """
-    if operation.frame == frame:
-        return operation
-    turn = frame.matrix().T @ operation.frame.matrix()
-    shift = frame.matrix().T @ (np.array(operation.frame.origin) - np.array(frame.origin))
-    moves, arcs = operation.moves, operation.arcs
-    return replace(
-        operation,
-        frame=frame,
-        moves=replace(moves, tip=moves.tip @ turn.T + shift, axis=moves.axis @ turn.T),
-        arcs=replace(arcs, centre=arcs.centre @ turn.T + shift, normal=arcs.normal @ turn.T),
-        events=tuple(
-            replace(event, tip=tuple(turn @ event.tip + shift), axis=tuple(turn @ event.axis))
-            if isinstance(event, From)
-            else event
-            for event in operation.events
-        ),
-    )
 
 
 def _row_problems(file: str, moves: Moves, poses: Poses, machine: Machine) -> Iterable[Problem]:

@@ -5,6 +5,7 @@ only the rotary axes turn and the tip is held, and a line back to the same point
 feed. What is cut before and after is what would have been cut without.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -13,6 +14,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machine import Machine, slide_positions
 from trunnion.plan.ahead import DeadEnd, continued
+from trunnion.plan.clearance import LEAST, Clearance
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.plan.wishes import Wishes
 from trunnion.toolpath import CutterComp, Event, Kind, Message, Moves, Operation, Phase
@@ -31,6 +33,7 @@ class Rewind:
     row     row of the operation before which it takes place, at the point of the row before
     before  (2,) float64   rotary axes until then, degrees as they display them
     after   (2,) float64   and from then on, under the same tool axis
+    way     how far the tool draws back, mm; infinite where its axis does not lead to the clearance
     reason  why, in words
     end     where it would go wrong without
     """
@@ -38,15 +41,17 @@ class Rewind:
     row: int
     before: Floats
     after: Floats
+    way: float
     reason: str = ""
     end: DeadEnd | None = None
 
-    def tip(self, moves: Moves, clearance: float) -> Floats:
+    def tip(self, moves: Moves) -> Floats:
         """(3,) where the tool turns, mm."""
-        return np.asarray(moves.tip[self.row - 1] + clearance * moves.axis[self.row - 1])
+        way = self.way if math.isfinite(self.way) else LEAST
+        return np.asarray(moves.tip[self.row - 1] + way * moves.axis[self.row - 1])
 
 
-def rewind_at(machine: Machine, moves: Moves, row: int, branch: int, rotary: Floats) -> Rewind:
+def rewind_at(machine: Machine, moves: Moves, row: int, branch: int, rotary: Floats, clearance: Clearance) -> Rewind:
     """The rewind before a row that is reached in ``branch``; ``rotary`` (n, 2) as in ``Motion``."""
     after = continued(machine, moves, slice(row - 1, row), branch, rotary[row])[0]
     for r, column in enumerate(machine.rotary):
@@ -54,10 +59,10 @@ def rewind_at(machine: Machine, moves: Moves, row: int, branch: int, rotary: Flo
         if not np.isnan(axis.display_low):
             after[r] -= 360.0 * np.floor((after[r] - axis.display_low) / 360.0)
         after[r] = min(max(after[r], axis.low), axis.high)
-    return Rewind(row, rotary[row - 1], after)
+    return Rewind(row, rotary[row - 1], after, clearance.way(moves.tip[row - 1], moves.axis[row - 1]))
 
 
-def joints_of(machine: Machine, moves: Moves, rewind: Rewind, clearance: float) -> Floats:
+def joints_of(machine: Machine, moves: Moves, rewind: Rewind) -> Floats:
     """Axis positions on the way of a rewind, (k, 5), mm and degrees."""
     part = np.linspace(0.0, 1.0, _CHECKED)[:, None]
     before, after = np.array(rewind.before), np.array(rewind.after)
@@ -65,7 +70,7 @@ def joints_of(machine: Machine, moves: Moves, rewind: Rewind, clearance: float) 
         if machine.axes[column].endless:
             after[r] = before[r] + (after[r] - before[r]) - 360.0 * np.rint((after[r] - before[r]) / 360.0)
     rotary = before + part * (after - before)
-    tip = np.repeat(rewind.tip(moves, clearance)[None], _CHECKED, axis=0)
+    tip = np.repeat(rewind.tip(moves)[None], _CHECKED, axis=0)
     return slide_positions(machine, tip, rotary)
 
 
@@ -117,7 +122,7 @@ def _note(operation: Operation, rewind: Rewind, row: int) -> Event:
 def _with_rows(moves: Moves, rewinds: Sequence[Rewind], rows: Ints, wishes: Wishes) -> Moves:
     at = np.repeat(rows, ADDED)
     source = rows - 1
-    away = np.array([rewind.tip(moves, wishes.clearance) for rewind in rewinds])
+    away = np.array([rewind.tip(moves) for rewind in rewinds])
     tip = np.stack((away, away, moves.tip[source]), axis=1).reshape(-1, 3)
     feed = moves.feed[rows]
     return Moves(

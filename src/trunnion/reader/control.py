@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Machine, Output, forward
+from trunnion.machine import Axis, Machine, Output, forward
 from trunnion.machine.inverse import solve_slides
 from trunnion.reader import arcs, poses
 from trunnion.reader.columns import Changes, affine
@@ -47,6 +47,9 @@ class Control(Rows, ABC):
 
     #: The work offset that is none: positions count from the machine's zero.
     no_offset = -1
+
+    #: Rotary words are positions as they wind, whatever the machine's definition says of its display.
+    winds = False
 
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, file)
@@ -95,16 +98,16 @@ class Control(Rows, ABC):
             return {How.SHORTEST: poses.SHORTEST, How.GROWING: poses.POSITIVE, How.FALLING: poses.NEGATIVE}[how]
         if not axis.endless:
             return poses.PLAIN
-        if self.shortest:
+        if self.shortest or (self.shortest is None and self.shorter(axis)):
             return poses.SHORTEST
-        if axis.output is Output.NONE:
-            return poses.PLAIN
-        return poses.SHORTEST if self.shorter and self.shortest is None else poses.SAME_TURN
+        return poses.PLAIN if self.winds or axis.output is Output.NONE else poses.SAME_TURN
 
-    @property
     @abstractmethod
-    def shorter(self) -> bool:
-        """Whether plain words for an endless rotary axis take the shorter way now, else they stay inside the turn."""
+    def shorter(self, axis: Axis) -> bool:
+        """Whether plain words for an endless rotary axis take the shorter way now.
+
+        Else they stay inside the turn, or are taken as they are where values are written as they wind.
+        """
 
     # Frames
 

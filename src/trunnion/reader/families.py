@@ -8,6 +8,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
 from trunnion.reader.fanuc.interpreter import FanucInterpreter
 from trunnion.reader.fidia.interpreter import FidiaInterpreter
+from trunnion.reader.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.reader.interpreter import STEPS, Interpreter
 from trunnion.reader.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.reader.run import Run
@@ -17,6 +18,8 @@ from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 #: Readers by the family of the control.
 READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
     "sinumerik_840d": SinumerikInterpreter,
+    "heidenhain_itnc530": HeidenhainInterpreter,
+    "heidenhain_tnc640": HeidenhainInterpreter,
     "linuxcnc": LinuxcncInterpreter,
     "fanuc_30i": FanucInterpreter,
     "fidia_nc15": FidiaInterpreter,
@@ -56,8 +59,20 @@ def run_program(
         If the file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
         control. What is only not understood is in ``Run.findings``.
     """
+    reader = reader_of(machine, family)
+    return reader(Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
+
+
+def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Interpreter[Any]]:
+    """Return the interpreter of a family, by default that of the machine's control.
+
+    Raises
+    ------
+    InputError
+        If nobody can read its programs yet.
+    """
     name = family_of(machine) if family is None else family
     if name not in READERS:
-        what = f"has the control {name!r}, whose programs cannot be read yet"
-        raise InputError(Problem(machine.key, 0, what, f"there are readers for {', '.join(READERS)}"))
-    return READERS[name](Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
+        what = f"its control is a {name}, whose programs cannot be read yet"
+        raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
+    return READERS[name]

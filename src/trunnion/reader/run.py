@@ -170,9 +170,9 @@ class Run:
     spindle        (n,)   int8     +1 M3, -1 M4, 0 off
     tool           (n,)   int32    index into ``tools``; 0 is the empty name, no tool yet
     edge           (n,)   int32    D number, -1 before the first D
-    offset         (n,)   uint16   work offset 54..57, 505..599, 500 for none, 0 before the first
-    tcp            (n,)   bool     TRAORI was on
-    machine_frame  (n,)   bool     a SUPA, G53 or G153 block: positions of machine axes
+    offset         (n,)   uint16   work offset as the program numbers it (G54, preset 2), 0 before the first
+    tcp            (n,)   bool     tool centre point control was on
+    machine_frame  (n,)   bool     a block with positions of machine axes: SUPA, G53, M91
     inches         (n,)   bool     lengths were programmed in inches (the columns are in mm)
     orientation    (n,)   uint8    an ``Orientation``: how the tool axis got here from the row before
     """

@@ -4,7 +4,7 @@ In:     a ``Run`` and how many pieces each row is cut into.
 Out:    axis values, tip and tool axis at the end of every piece, row after row.
 Units:  mm and degrees, workpiece frame.
 
-With TRAORI the tip moves on its line or circle, and the tool axis with it: angles linear, or the vector on a great
+With TCP the tip moves on its line or circle, and the tool axis with it: angles linear, or the vector on a great
 circle. Without it the axes themselves move linearly, and the tip goes where they take it. On circles the tip stays on
 the circle in both cases; the rotary angles are linear.
 """

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.report.facts import AxisExtent, Facts, Span, Spot, TipExtent, ToolUse, finite
+from trunnion.report.facts import AxisExtent, Decided, Facts, OperationUse, Span, Spot, TipExtent, ToolUse, finite
 from trunnion.report.series import Series
 from trunnion.verify.model import Check, Place
 
@@ -56,6 +56,8 @@ def _head(said: Facts) -> dict[str, object]:
             "motions_without_time": said.untimed,
         },
         "tools": [_tool(tool) for tool in said.tools],
+        "operations": [_operation(operation) for operation in said.operations],
+        "decisions": [_decided(decided) for decided in said.decisions],
         "extents": {
             "tip": [_tip(extent) for extent in said.tip],
             "axes": [_axis(extent) for extent in said.axes],
@@ -97,6 +99,29 @@ def _tool(tool: ToolUse) -> dict[str, object]:
         "rpm": list(tool.rpm) if tool.rpm else None,
         "feed": list(tool.feed) if tool.feed else None,
         "first": _spot(tool.first),
+    }
+
+
+def _operation(operation: OperationUse) -> dict[str, object]:
+    return {
+        "name": operation.name,
+        "tool": operation.tool,
+        "cl_file": operation.cl_file or None,
+        "motions": operation.motions,
+        "seconds": operation.seconds,
+        "cutting_seconds": operation.cutting_seconds,
+        "rapid_seconds": operation.rapid_seconds,
+        "first": _spot(operation.first) if operation.first else None,
+    }
+
+
+def _decided(decided: Decided) -> dict[str, object]:
+    return {
+        "operation": decided.operation,
+        "cl_file": decided.cl_file or None,
+        "cl_line": decided.cl_line or None,
+        "about": decided.about,
+        "text": decided.text,
     }
 
 

@@ -9,7 +9,7 @@ Text that came from outside is cleaned here of what no file can carry; escaping 
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machine import Axis
 from trunnion.reader import Run, Written
 from trunnion.toolpath import Kind
-from trunnion.verify.model import Check, Verification
+from trunnion.verify.model import Check, Share, Verification
 
 #: Control characters but tab and line feed; no form can hold all of them.
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff]")
@@ -85,6 +85,31 @@ class ToolUse:
 
 
 @dataclass(frozen=True, slots=True)
+class OperationUse:
+    """What one operation of a CL file takes, with the way to it; ``first`` is None where no motion belongs to it."""
+
+    name: str
+    tool: str
+    cl_file: str
+    motions: int
+    seconds: float
+    cutting_seconds: float
+    rapid_seconds: float
+    first: Spot | None
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """Why something was planned as it was: the operation, the place in its CL file, what it is about, and the words."""
+
+    operation: str
+    cl_file: str
+    cl_line: int
+    about: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Facts:
     """All that a report says besides the plots; ``untimed`` counts motions whose time nobody knows."""
 
@@ -101,11 +126,13 @@ class Facts:
     rapid_seconds: float
     untimed: int
     tools: tuple[ToolUse, ...]
+    operations: tuple[OperationUse, ...]
+    decisions: tuple[Decided, ...]
     tip: tuple[TipExtent, ...]
     axes: tuple[AxisExtent, ...]
 
 
-def facts(verification: Verification, control: str = "", made: str = "") -> Facts:
+def facts(verification: Verification, control: str = "", made: str = "", decisions: Sequence[Decided] = ()) -> Facts:
     """Gather what a report says of a verification."""
     run, machine = verification.run, verification.machine
     seconds, known = durations(verification)
@@ -124,6 +151,8 @@ def facts(verification: Verification, control: str = "", made: str = "") -> Fact
         rapid_seconds=math.fsum(seconds[~cutting]),
         untimed=int(np.count_nonzero(~known)),
         tools=tuple(_tools(run, seconds, cutting)),
+        operations=tuple(_operation(run, share, seconds, cutting) for share in verification.operations),
+        decisions=tuple(map(_clean_decision, decisions)),
         tip=tuple(_tip(run, k, cutting) for k in range(3)),
         axes=tuple(_axis(run, k, axis) for k, axis in enumerate(machine.axes)),
     )
@@ -229,6 +258,30 @@ def _tools(run: Run, seconds: Floats, cutting: Flags) -> Iterator[ToolUse]:
             feed=_range(run.feed[per_minute]),
             first=_spot(run, int(first[k])),
         )
+
+
+def _operation(run: Run, share: Share, seconds: Floats, cutting: Flags) -> OperationUse:
+    rows = slice(share.first, share.end)
+    return OperationUse(
+        name=clean(share.name),
+        tool=clean(share.tool),
+        cl_file=clean(share.cl_file),
+        motions=share.end - share.first,
+        seconds=math.fsum(seconds[rows]),
+        cutting_seconds=math.fsum(seconds[rows][cutting[rows]]),
+        rapid_seconds=math.fsum(seconds[rows][~cutting[rows]]),
+        first=_spot(run, share.first) if share.end > share.first else None,
+    )
+
+
+def _clean_decision(decided: Decided) -> Decided:
+    return replace(
+        decided,
+        operation=clean(decided.operation),
+        cl_file=clean(decided.cl_file),
+        about=clean(decided.about),
+        text=clean(decided.text),
+    )
 
 
 def _range(values: Floats) -> tuple[float, float] | None:

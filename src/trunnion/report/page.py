@@ -15,9 +15,10 @@ import math
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 
-from trunnion.report.facts import AxisExtent, Facts, Span, Spot, TipExtent, ToolUse
+from trunnion.report.facts import AxisExtent, Facts, OperationUse, Span, Spot, TipExtent, ToolUse
 from trunnion.report.pack import pack
 from trunnion.report.series import DIRECT, IN_VIEW, Level, Line, Plot, Series, levels, rows_of
+from trunnion.verify import clock
 from trunnion.verify.model import Check, Place
 
 #: Places that the page shows of each check; the JSON report has all of them.
@@ -93,7 +94,8 @@ def _hash(source: str) -> str:
 
 
 def _body(said: Facts) -> str:
-    parts = (_title(said), _checks(said.checks), _worst(said.checks), _tool_table(said), _extents(said))
+    tables = (_operation_table(said), _tool_table(said), _decisions(said), _extents(said))
+    parts = (_title(said), _checks(said.checks), _worst(said.checks), *tables)
     return "<body>\n<main>\n" + "".join(parts)
 
 
@@ -188,6 +190,34 @@ def _tool(tool: ToolUse) -> str:
     )
 
 
+def _operation_table(said: Facts) -> str:
+    rows = [_operation(operation) for operation in said.operations]
+    heads = ("Operation", "Tool", "#Motions", "#Time", "#in cuts", "#in rapids", "#From")
+    return _section("Operations and times", _table(heads, rows)) if rows else ""
+
+
+def _operation(operation: OperationUse) -> str:
+    first = _spot(operation.first) if operation.first else ""
+    return (
+        f'<tr><th scope=row title="{text(operation.cl_file)}"><bdi>{text(operation.name)}</bdi></th>'
+        f"<td><bdi>{text(operation.tool)}</bdi></td><td class=n>{operation.motions}</td>"
+        f"<td class=n>{clock(operation.seconds)}</td><td class=n>{clock(operation.cutting_seconds)}</td>"
+        f"<td class=n>{clock(operation.rapid_seconds)}</td><td class=n>{first}</td></tr>"
+    )
+
+
+def _decisions(said: Facts) -> str:
+    """Why it was planned so."""
+    rows = [
+        f"<tr><td><bdi>{text(decided.operation)}</bdi></td>"
+        f'<td class=n title="{text(decided.cl_file)}">{decided.cl_line or ""}</td>'
+        f"<td>{text(decided.about)}</td><td>{text(decided.text)}</td></tr>"
+        for decided in said.decisions
+    ]
+    heads = ("Operation", "#CL line", "About", "Decision and why")
+    return _section("Decisions", _table(heads, rows, "tight")) if rows else ""
+
+
 def _extents(said: Facts) -> str:
     axes = [_axis(axis) for axis in said.axes]
     tips = [_tip(extent) for extent in said.tip]
@@ -244,18 +274,6 @@ def _table(heads: Sequence[str], rows: Sequence[str], kind: str = "") -> str:
 
 # ---------------------------------------------------------------------------------------------------------------------
 # Numbers for people
-
-
-def clock(seconds: float) -> str:
-    """Return a time as people read it.
-
-    >>> clock(4.26), clock(75), clock(7384)
-    ('4.3 s', '1:15 min', '2:03:04 h')
-    """
-    if round(seconds, 1) < 60.0:
-        return f"{seconds:.1f} s"
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} h"
 
 
 def short(value: float | None) -> str:

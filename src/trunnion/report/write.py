@@ -4,22 +4,21 @@ In:     a ``Verification`` and a path.
 Out:    the file.
 """
 
-import os
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import BinaryIO
 
 from trunnion.errors import InputError, Problem
+from trunnion.files import whole
 from trunnion.report.data import data
-from trunnion.report.facts import facts
+from trunnion.report.facts import Decided, Facts, facts
 from trunnion.report.page import page
-from trunnion.report.series import series
+from trunnion.report.series import Series, series
 from trunnion.verify.model import Verification
 
 
-def write_report(verification: Verification, path: Path, *, control: str = "", made: str = "") -> None:
+def write_report(
+    verification: Verification, path: Path, *, control: str = "", made: str = "", decisions: Sequence[Decided] = ()
+) -> None:
     """Write a report: a page for ``.html``, data for ``.json``. The same input makes the same bytes.
 
     Parameters
@@ -32,6 +31,8 @@ def write_report(verification: Verification, path: Path, *, control: str = "", m
         Name of the control as the report shows it; by default the key that the machine's definition names.
     made
         Text that says when, or by whom, the report was made. Nothing is said by default.
+    decisions
+        Why the program was planned as it is, in the order of its operations.
 
     Raises
     ------
@@ -41,46 +42,10 @@ def write_report(verification: Verification, path: Path, *, control: str = "", m
     form = FORMS.get(path.suffix.lower())
     if form is None:
         raise InputError(Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json"))
-    with _whole(path) as sink:
-        for piece in form(verification, control, made):
+    with whole(str(path)) as sink:
+        for piece in form(facts(verification, control, made, decisions), series(verification)):
             sink.write(piece)
 
 
-def _page(verification: Verification, control: str, made: str) -> Iterator[bytes]:
-    return page(facts(verification, control, made), series(verification))
-
-
-def _data(verification: Verification, control: str, made: str) -> Iterator[bytes]:
-    return data(facts(verification, control, made), series(verification))
-
-
 #: Suffix -> what makes the bytes, piece by piece.
-FORMS: dict[str, Callable[[Verification, str, str], Iterator[bytes]]] = {".html": _page, ".json": _data}
-
-
-@contextmanager
-def _whole(path: Path) -> Iterator[BinaryIO]:
-    """A sink whose bytes stand under ``path`` once the block has ended without an error."""
-    try:
-        if path.exists() and not os.access(path, os.W_OK):
-            raise PermissionError(13, "Permission denied")
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise _cannot_write(path, error) from None
-    part = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as sink:
-            yield sink
-        if os.name == "posix":
-            umask = os.umask(0)
-            os.umask(umask)
-            part.chmod(0o666 & ~umask)  # mkstemp makes files that nobody else may read
-        part.replace(path)
-    except OSError as error:
-        raise _cannot_write(path, error) from None
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def _cannot_write(path: Path, error: OSError) -> InputError:
-    return InputError(Problem(str(path), 0, f"cannot be written: {error.strerror or error}", "name another file"))
+FORMS: dict[str, Callable[[Facts, Series], Iterator[bytes]]] = {".html": page, ".json": data}

@@ -2,23 +2,27 @@
 
 from trunnion.verify.case import Settings
 from trunnion.verify.compare import Comparison, Difference, compare
-from trunnion.verify.model import Check, Place, Verification
-from trunnion.verify.text import check_lines, failures, place_line, place_lines
+from trunnion.verify.model import Check, Place, Share, Verification
+from trunnion.verify.text import check_lines, clock, failures, place_line, place_lines, time_lines
 from trunnion.verify.verify import verify
-from trunnion.verify.wanted import Allowed
+from trunnion.verify.wanted import Agreed, Allowed
 
 __all__ = [
+    "Agreed",
     "Allowed",
     "Check",
     "Comparison",
     "Difference",
     "Place",
     "Settings",
+    "Share",
     "Verification",
     "check_lines",
+    "clock",
     "compare",
     "failures",
     "place_line",
     "place_lines",
+    "time_lines",
     "verify",
 ]

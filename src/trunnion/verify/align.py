@@ -18,6 +18,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.reader import Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.arcs import Arc, arc_of
+from trunnion.verify.cycles import hole_rows, made_in
 from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Wanted
 
@@ -83,9 +84,20 @@ def _answer(run: Run, start: int, end: int) -> Flags:
     return np.asarray(~(placing | state.machine_frame.part(start, end)))
 
 
+def points(run: Run) -> Rows:
+    """Rows of a run that ought to answer to CL points, without those that make holes."""
+    rows, making = answers(run), hole_rows(made_in(run))
+    if not len(making):
+        return rows
+    every = rows.part(0, len(rows))
+    flags = np.zeros(len(run), np.bool_)
+    flags[every[~np.isin(every, making)]] = True
+    return Rows.where([(0, flags)])
+
+
 def in_order(run: Run, wanted: Wanted) -> Pairs | None:
     """Pairs by counting alone, if there are as many motions as points; whether they fit is not looked at."""
-    rows = answers(run)
+    rows = points(run)
     if len(rows) == len(wanted):
         return Pairs(rows, Rows.of([(0, len(wanted))]))
     fresh = Rows.where(_fresh(wanted))
@@ -115,7 +127,7 @@ class _Matcher:
 
     def __init__(self, run: Run, wanted: Wanted) -> None:
         self._run, self._wanted = run, wanted
-        self._rows = answers(run)
+        self._rows = points(run)
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []

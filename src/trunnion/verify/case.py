@@ -23,12 +23,14 @@ class Settings:
     work_offset  54..57 or 505..599; None: one throughout, whichever
     edge         number of the cutting edge (D) under which the tool works; None: whichever
     span         degrees that the tool axis may be off between points; None: it is told, not judged
+    absolute     the program's coordinate system is the CAM's absolute one, not that of the first operation
     """
 
     tool: str = ""
     work_offset: int | None = None
     edge: int | None = None
     span: float | None = None
+    absolute: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,6 +52,13 @@ class Case:
         if cl is None or self.wanted is None:
             return Place(line, number, value, text)
         return Place(line, number, value, text, self.wanted.part_of(cl).file, self.wanted.point(cl).line)
+
+    def answering(self, cl: int, value: float, text: str) -> Place:
+        """A place by its row of the CL files, at the motion that answers to it."""
+        assert self.pairs is not None
+        if cl not in self.pairs.cl:
+            return replace(self.missing(cl, text), value=value)
+        return self.place(self.pairs.nc[self.pairs.cl.before(cl)], value, text, cl)
 
     def missing(self, cl: int, text: str) -> Place:
         """A place by its row of the CL files, where no motion answers to it: the block before which it should stand."""

@@ -8,13 +8,16 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
+from trunnion.verify.agreed import Believed, needless_feeds
 from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
+from trunnion.verify.cycles import made_in
+from trunnion.verify.holes import leads
 from trunnion.verify.model import Check, Place
 from trunnion.verify.retreats import retreats
 from trunnion.verify.rows import Rows
-from trunnion.verify.wanted import Call, Spindle, Stretch
+from trunnion.verify.wanted import Call, Spindle, Stretch, is_called
 
 _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
 
@@ -39,6 +42,7 @@ def order(case: Case) -> Check:
     count = len(pairs.missing)
     back = retreats(case.run, pairs.extra, max(part.allowed.tip for part in wanted.parts))
     lawful = {row for retreat in back for row in range(retreat.first, retreat.end)}
+    lawful |= leads(case.run, pairs.extra, made_in(case.run))
     for retreat in back:
         text = f"draws back {retreat.distance:.3f} mm along the tool axis, turns, and comes back"
         told.append(case.place(retreat.first, retreat.distance, text))
@@ -141,7 +145,7 @@ def _circles(case: Case) -> list[Place]:
     return places
 
 
-def feed(case: Case) -> Check:
+def feed(case: Case, believed: Believed) -> Check:
     """Feeds of all rows that are not rapids."""
     wanted, pairs, run = case.wanted, case.pairs, case.run
     assert wanted is not None
@@ -180,7 +184,12 @@ def feed(case: Case) -> Check:
             has_here = run.state.feed[row]
             text = f"moves with F{has_here:g}; the CL file wants {asked_here:g}"
             places.append(case.place(row, has_here, text, pieces.cl))
+    broken = [*believed.feed, *needless_feeds(run, wanted, pairs)]
+    places = [*(case.answering(one.cl, one.value, one.text) for one in broken[:NAMED]), *places]
+    count += len(broken)
     good = "nothing is cut" if seen[0] > seen[1] else f"{seen[0]:g} to {seen[1]:g}, as the CL file says"
+    least, rows = believed.slowed
+    good += f"; lowered at {rows} rows, down to {least:.2f}, for the rotary axes" if rows else ""
     return judged("feed", "feeds as the CL file says", places, good, count)
 
 
@@ -276,7 +285,7 @@ def tool(case: Case) -> Check:
         if (call.number is None and not settings.tool) or first == end:
             continue
         known.append(names)
-        right = [k for k, text in enumerate(run.tools) if _is_tool(text, names)]
+        right = [k for k, text in enumerate(run.tools) if is_called(text, names)]
         bad = _first_wrong(pairs, first, end, partial(_holds_another, run, right))
         if bad is not None:
             row, cl = bad
@@ -291,7 +300,7 @@ def tool(case: Case) -> Check:
     for event in run.events if known else ():
         if event.kind == "tool_change":
             text = str(event.value or "")
-            if text and text != "0" and not any(_is_tool(text, names) for names in known):
+            if text and text != "0" and not any(is_called(text, names) for names in known):
                 places.append(case.at(event, 0.0, f"changes to tool {text}, which the CL file never asks for"))
     good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in known)) or "the CL file names no tool"
     return judged("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
@@ -316,10 +325,6 @@ def _edges(case: Case, pairs: Pairs, asked: int) -> list[Place]:
         row = int(strange[0])
         places.append(case.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{asked}"))
     return places
-
-
-def _is_tool(text: str, names: tuple[str, ...]) -> bool:
-    return text in names or (text.isdigit() and str(int(text)) in names)
 
 
 def coolant(case: Case) -> Check:

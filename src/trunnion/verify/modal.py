@@ -10,6 +10,7 @@ from trunnion.reader import Finding, Happening, Run
 from trunnion.toolpath import Kind
 from trunnion.verify.align import CHUNK, PLACES
 from trunnion.verify.case import NAMED, Case, judged
+from trunnion.verify.cycles import hole_rows, made_in
 from trunnion.verify.model import Check, Place
 
 #: Rotary motion below this, degrees, is none.
@@ -129,6 +130,7 @@ def _low_rapids(case: Case) -> list[Place]:
         assert case.wanted is not None
         for nc, cl in case.pairs.chunks():
             suspect[nc[case.wanted.kind(cl) == Kind.RAPID]] = False
+    suspect[hole_rows(made_in(run))] = False  # they have a check of their own
     if not suspect.any():
         return []
     every = rapids[(run.programmed[rapids] & int(PLACES)) != 0]

@@ -45,15 +45,31 @@ class Check:
     places: tuple[Place, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Share:
+    """The rows ``first`` to ``end`` (left out) of a run that belong to one operation of a CL file.
+
+    What leads to an operation (home, tool change, placing) belongs to it, the way home at last to the last one.
+    """
+
+    name: str
+    tool: str
+    cl_file: str
+    first: int
+    end: int
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Verification:
     """Everything that was found out about one program.
 
     Columns have one row a motion of ``run``, or none at all if nobody asked for them.
 
-    seconds   (n,)   float64   time that the row takes: its length at its feed, or the slowest axis at its rapid speed
+    seconds   (n,)   float64   time that the row takes (``trunnion.verify.times``)
     tip_feed  (n,)   float64   speed of the tip over the part, mm/min
     cl_line   (n,)   int32     line of the CL file that the row answers to, 0 where there is none
+
+    ``operations`` share the rows among them; none without CL files.
     """
 
     program: str
@@ -63,6 +79,7 @@ class Verification:
     seconds: Floats
     tip_feed: Floats
     cl_line: Lines
+    operations: tuple[Share, ...] = ()
 
     @property
     def passed(self) -> bool:

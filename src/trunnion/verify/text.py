@@ -2,6 +2,9 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from trunnion.toolpath import Kind
 from trunnion.verify.model import Check, Place, Verification
 
 
@@ -26,6 +29,28 @@ def place_line(program: str, place: Place) -> str:
     number = f" (N{place.number})" if place.number >= 0 else ""
     cl = f", {place.cl_file}:{place.cl_line}" if place.cl_line else ""
     return f"{program}:{place.nc_line}{number}{cl}: {place.text}"
+
+
+def time_lines(verification: Verification) -> Iterator[str]:
+    """What the program and each of its operations take, as far as times were asked for."""
+    seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
+    if len(seconds):
+        cuts = verification.run.kind != Kind.RAPID
+        yield f"time: {clock(float(seconds.sum()))}, {clock(float(seconds[cuts].sum()))} of it in cuts"
+        for share in verification.operations:
+            yield f"time: {clock(float(seconds[share.first : share.end].sum()))} for {share.name}"
+
+
+def clock(seconds: float) -> str:
+    """Return a time as people read it.
+
+    >>> clock(4.26), clock(75), clock(7384)
+    ('4.3 s', '1:15 min', '2:03:04 h')
+    """
+    if round(seconds, 1) < 60.0:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} h"
 
 
 def failures(verification: Verification) -> list[Check]:

@@ -1,7 +1,8 @@
 """One program, all checks."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,11 +10,14 @@ from trunnion.arrays import Lines
 from trunnion.reader import Run
 from trunnion.toolpath import Toolpath
 from trunnion.verify import demands, modal
+from trunnion.verify.agreed import Believed, believe, broken_poses
 from trunnion.verify.align import Pairs, in_order, matched
 from trunnion.verify.arcs import Arc, turned
 from trunnion.verify.case import NAMED, Case, Settings
-from trunnion.verify.model import Check, Place, Verification
+from trunnion.verify.holes import holes
+from trunnion.verify.model import Check, Place, Share, Verification
 from trunnion.verify.points import Deviations, Off
+from trunnion.verify.turns import turns
 from trunnion.verify.walk import Walk, Walker, Worst
 from trunnion.verify.wanted import Allowed, Wanted
 
@@ -52,24 +56,39 @@ def verify(
     """
     settings = settings or Settings()
     checks: list[Check] = []
-    wanted = Wanted(toolpaths, allowed or Allowed()) if toolpaths else None
+    wanted = Wanted(toolpaths, allowed or Allowed(), settings.absolute) if toolpaths else None
     walker = Walker(run, NAMED, math.inf if settings.span is None else settings.span, times=columns)
     pairs = None
     if wanted is not None:
+        believed = believe(wanted, run.machine)
         pairs, off_tip, off_axis = _paired(run, wanted, walker)
         case = Case(run, wanted, pairs, settings)
-        checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis)]
-        checks += [demands.kind(case), demands.feed(case), demands.spindle(case), demands.tool(case)]
-        checks += [demands.coolant(case), demands.offset(case), demands.home(case)]
+        checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis, believed)]
+        checks += [demands.kind(case), demands.feed(case, believed), demands.spindle(case), demands.tool(case)]
+        checks += [demands.coolant(case), demands.offset(case), demands.home(case), holes(case)]
     else:
         _go_by(run, walker)
         case = Case(run, None, None, settings)
         checks.append(demands.offset(case))
     way = walker.walked()
     checks += [_span(case, way), _travel(case, way), _speed(case, way), _acceleration(case, way)]
-    checks += [modal.modal(case), modal.words(case)]
+    checks += [turns(case), modal.modal(case), modal.words(case)]
     cl_line = _cl_lines(case) if columns else np.zeros(0, np.int32)
-    return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line)
+    operations = tuple(_operations(case))
+    return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line, operations)
+
+
+def _operations(case: Case) -> Iterator[Share]:
+    """Which rows belong to which operation; an operation that no motion answers to has none."""
+    if case.wanted is None or case.pairs is None:
+        return
+    first, last = 0, len(case.wanted.parts) - 1
+    for number, part in enumerate(case.wanted.parts):
+        k = case.pairs.cl.before(part.end)
+        end = max(first, case.pairs.nc[k - 1] + 1) if k else first
+        end = len(case.run) if number == last else end
+        yield Share(part.operation.name, part.operation.tool.name, part.file, first, end)
+        first = end
 
 
 def _cl_lines(case: Case) -> Lines:
@@ -140,9 +159,10 @@ def _ragged(arc: Arc) -> float:
     return min(abs(float(np.linalg.norm(arm)) - arc.radius), 1e-3)
 
 
-def _axis(case: Case, off: Off) -> Check:
+def _axis(case: Case, off: Off, believed: Believed) -> Check:
     pairs = case.pairs
     assert pairs is not None
+    assert case.wanted is not None
     places = []
     for k, value in off.bad:
         text = f"the tool axis is off, a rotary axis by {value:.6f} degrees"
@@ -151,7 +171,9 @@ def _axis(case: Case, off: Off) -> Check:
     if places:
         by = case.turned_by(min(pairs.nc[k] for k, _ in off.bad))
         places += [by] if by is not None else []
-    assert case.wanted is not None
+    broken = [*believed.axis, *broken_poses(case.run, case.wanted, pairs)]
+    places = [*(case.answering(one.cl, one.value, one.text) for one in broken[:NAMED]), *places]
+    count += len(broken)
     for pieces in pairs.pieces:
         arc, part = pieces.arc, case.wanted.part_of(pieces.cl)
         begin, end = case.wanted.point(pieces.cl - 1).axis, case.wanted.point(pieces.cl).axis
@@ -167,14 +189,17 @@ def _axis(case: Case, off: Off) -> Check:
             value = float(np.degrees(away[k]))
             text = f"the tool axis is off by {value:.6f} degrees on its way round an arc"
             places.append(case.place(int(pieces.nc[k]), value, text, pieces.cl))
-    return _measured("axis", "tool axis against the CL points", case, off, "deg", places, count)
+    check = _measured("axis", "tool axis against the CL points", case, off, "deg", places, count)
+    lean, rows = believed.lean
+    return replace(check, summary=f"{check.summary}; leans by up to {lean:.6f} at {rows} rows") if rows else check
 
 
 def _measured(key: str, title: str, case: Case, off: Off, unit: str, places: list[Place], count: int) -> Check:
     assert case.pairs is not None
-    if not len(case.pairs.nc):
+    if not len(case.pairs.nc) and case.wanted is not None and len(case.wanted):
         return Check(key, title, False, "no block answers to any CL point", unit=unit)
-    summary = f"largest {off.largest:.6f} {unit}, rms {off.rms:.6f}, allowed {off.limit:.6f}"
+    each, whole = ("X, Y or Z", "distance") if unit == "mm" else ("a rotary axis", "angle")
+    summary = f"largest {off.largest:.6f} {unit} in {each}, rms {whole} {off.rms:.6f}, allowed {off.limit:.6f}"
     if count:
         summary += f", {count} points off, first in {_block(min(places, key=lambda p: p.nc_line))}"
     passed = not count

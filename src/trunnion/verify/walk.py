@@ -5,14 +5,14 @@ Out:    per row the time it takes and the speed of the tip; over all rows, how m
         acceleration is asked for, how far they go, and how far the tool is off half-way.
 Units:  mm and degrees; minutes inside the kernel, seconds outside.
 
-A row at feed takes its length at its feed, or longer if an axis cannot follow. Its length is the tip's way with TCP,
-the slides' way without; where nothing but rotary axes move, degrees count as millimetres. A rapid takes as long as its
-slowest axis. The acceleration between two rows at feed is the change of speed over half the time of both: a control
+A row at feed asks for its length at its feed. Its length is the tip's way with TCP, the slides' way without; where
+nothing but rotary axes move, degrees count as millimetres. How long it takes is in ``trunnion.verify.times``. The
+acceleration between two rows at feed is the change of speed over half the time of both: a control
 that rounds corners needs less, one that stops exactly needs more.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -22,6 +22,7 @@ from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machine import Machine, forward
 from trunnion.reader import Orientation, Run, Stretch
 from trunnion.toolpath import Kind
+from trunnion.verify.times import Pace
 
 #: Rotary motion below this, degrees, bends nothing.
 _STILL: Final = 1e-9
@@ -93,11 +94,10 @@ class Walker:
         self._acceleration = np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in axes])
         self._arc_length = _arc_lengths(run)
         self._state = np.zeros(7)
-        self._times = times
-        n = len(run) if times else 0
+        self._pace = Pace(run) if times else None
         self._walk = Walk(
-            np.empty(n),
-            np.empty(n),
+            np.zeros(0),
+            np.zeros(0),
             tuple(Worst(1.0 + 1e-9, named) for _ in axes),
             tuple(Worst(1.0 + 1e-9, named) for _ in axes),
             Worst(span_limit, named),
@@ -112,15 +112,15 @@ class Walker:
         state, kind, programmed = run.state, run.kind[first:end], run.programmed[first:end]
         tcp, machine_frame = state.tcp.part(first, end), state.machine_frame.part(first, end)
         angles = run.oriented(first, end) == Orientation.ANGLES
-        times, shares, bend = np.empty((2, count)), np.empty((2, 5, count)), np.empty(count)
+        times, shares, bend = np.empty((4, count)), np.empty((2, 5, count)), np.empty(count)
         walk_rows(
             first, poses.joints, poses.tip, poses.axis, poses.half_way, kind, programmed, tcp, machine_frame,
             state.feed.part(first, end), state.feed_mode.part(first, end), state.rpm.part(first, end), run.arcs.row,
             self._arc_length, self._rotary,
             self._rapid, self._acceleration, self._state, walk.extremes, walk.places, times, shares, angles, bend,
         )  # fmt: skip
-        if self._times:
-            walk.seconds[first:end], walk.tip_feed[first:end] = times
+        if self._pace is not None:
+            self._pace.take(first, end, poses, times)
         for k, axis in enumerate(run.machine.axes):
             if axis.rapid is not None:
                 walk.speed[k].take(first, shares[0, k])
@@ -134,7 +134,10 @@ class Walker:
 
     def walked(self) -> Walk:
         """Everything, when all rows have gone by."""
-        return self._walk
+        if self._pace is None:
+            return self._walk
+        seconds, tip_feed = self._pace.paced()
+        return replace(self._walk, seconds=seconds, tip_feed=tip_feed)
 
 
 def _arc_lengths(run: Run) -> Floats:
@@ -210,7 +213,8 @@ def walk_rows(
     joints, tip, axis (k + 1, …) with the place before the rows in front; all other columns have k rows
     rapid, most   (5,) float64   mm/min or deg/min, mm/s^2 or deg/s^2; infinite where not stated
     state         (7,) float64   minutes of the row before if it was at feed (else 0), next arc, speeds of that row (5)
-    times         (2, k) float64 written: seconds, and speed of the tip, mm/min
+    times         (4, k) float64 written: length that the feed means, mm or degrees, the feed along it, infinite for
+                                 rapids, the tip's way, mm, and 0, 1 or 2 where the tip, the slides or degrees are meant
     shares        (2, 5, k) float64  written: shares of ``rapid`` and ``most``, 0 for rapids
     angles        (k,) bool      rotary axes go linearly, not the tool axis on a great circle
     bend          (k,) float64   written: how far the tool axis is off half-way in rows that cut, degrees
@@ -220,14 +224,12 @@ def walk_rows(
     arc = int(state[1])
     for at in range(kind.shape[0]):
         row = first + at
-        slowest = 0.0
         slides = 0.0
         turned = 0.0
         placed = not machine_frame[at] and (tcp[at] or programmed[at] & 7)
         for k in range(5):
             value = joints[at + 1, k]
             moved = abs(value - joints[at, k])
-            slowest = max(slowest, moved / rapid[k])
             if rotary[k]:
                 turned = max(turned, moved)
             else:
@@ -247,10 +249,13 @@ def walk_rows(
         if on_arc:
             way = arc_length[arc]
         minutes = 0.0
+        meant = 0.0 if tcp[at] or on_arc else 1.0
+        length = way if tcp[at] or on_arc else math.sqrt(slides)
+        if length < 1e-9:
+            length = turned
+            meant = 2.0
+        speed = math.inf
         if kind[at] != 0:
-            length = way if tcp[at] or on_arc else math.sqrt(slides)
-            if length < 1e-9:
-                length = turned
             rate = feed[at]
             if feed_mode[at] == 95:
                 rate *= rpm[at]
@@ -258,9 +263,11 @@ def walk_rows(
                 rate *= length
             if rate > 0.0:
                 minutes = length / rate
-        took = max(minutes, slowest)
-        times[0, at] = 60.0 * took
-        times[1, at] = way / took if took > 0.0 else 0.0
+                speed = rate
+        times[0, at] = length
+        times[1, at] = speed
+        times[2, at] = way
+        times[3, at] = meant
         bend[at] = 0.0
         if turned > _STILL and kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
             bend[at] = beside(axis, half_way, at)

@@ -2,7 +2,7 @@
 
 In:     toolpaths, in the order in which they are cut.
 Out:    the rows of all operations one after the other, and from which row on which spindle, tool and coolant hold.
-Frame:  the coordinate system of the first operation that moves: it is the program's.
+Frame:  the program's, which is the coordinate system of the first operation that moves, or the CAM's absolute one.
 """
 
 from collections.abc import Sequence
@@ -30,6 +30,25 @@ from trunnion.toolpath import (
     SpindleOn,
     Toolpath,
 )
+from trunnion.verify.cycles import Hole, Spin, holes_of, spindle_at, without_holes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Agreed:
+    """Rows of an operation at which a program says that it is not as the CL file has it (``trunnion.verify.agreed``).
+
+    lean    degrees by which the tool axis may lean at the rows ``leaned``, as it was asked for
+    leaned  (k,) int64      rows, growing
+    rotary  (k, 2) float64  positions of the rotary axes there, degrees
+    slowed  (m,) int64      rows with a lower feed, growing
+    feed    (m,) float64    that feed, in the unit of the CL file's
+    """
+
+    lean: float
+    leaned: Ints
+    rotary: Floats
+    slowed: Ints
+    feed: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +57,14 @@ class Allowed:
 
     chord   distance of lines from the arc that they stand for, mm
     feed    of a feed from the CL file's, in its own unit
+    agreed  where it may be otherwise
     """
 
     tip: float = 0.001
     angle: float = 0.001
     chord: float = 0.001
     feed: float = 0.005
+    agreed: Agreed | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,6 +103,11 @@ class Call:
         return tuple(str(text) for text in (self.number, self.name) if text not in (None, ""))
 
 
+def is_called(text: str, names: tuple[str, ...]) -> bool:
+    """Whether a program's word for a tool is one of its names."""
+    return text in names or (text.isdigit() and str(int(text)) in names)
+
+
 @dataclass(frozen=True, slots=True)
 class Stretch:
     """Rows ``first`` to ``end`` ask for ``value``."""
@@ -103,9 +129,11 @@ class Point:
 
 
 class Wanted:
-    """All operations of a program, end to end. Their columns stay where they are."""
+    """All operations of a program, end to end. Their columns stay where they are; holes are kept apart."""
 
-    def __init__(self, toolpaths: Sequence[Toolpath], allowed: Allowed | Sequence[Allowed]) -> None:
+    def __init__(
+        self, toolpaths: Sequence[Toolpath], allowed: Allowed | Sequence[Allowed], absolute: bool = False
+    ) -> None:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
             file = toolpaths[0].file if toolpaths else "CL file"
@@ -113,13 +141,25 @@ class Wanted:
         limits = [allowed] * len(moving) if isinstance(allowed, Allowed) else list(allowed)
         if len(limits) != len(moving):
             raise ValueError(f"{len(limits)} limits for {len(moving)} operations")
-        frame = moving[0][1].frame
+        frame = Frame() if absolute else moving[0][1].frame
         parts: list[Part] = []
+        found: list[Hole] = []
         first = 0
-        for (path, operation), limit in zip(moving, limits, strict=True):
-            parts.append(Part(path.file, seen_from(frame, operation), first, limit))
+        spindle: Spin | None = None
+        number: int | None = None
+        for (path, whole), limit in zip(moving, limits, strict=True):
+            seen = seen_from(frame, whole)
+            operation, rows = without_holes(seen)
+            loads = [event.number for event in seen.events if isinstance(event, LoadTool)]
+            number = loads[-1] if loads else number
+            tools = () if number is None else Call(number, seen.tool.name).names
+            holes = holes_of(seen, rows, first, path.file, limit.tip, spindle)
+            found += [replace(hole, tools=tools) for hole in holes]
+            spindle = spindle_at(seen, len(seen.moves), spindle)
+            parts.append(Part(path.file, operation, first, limit))
             first += len(operation.moves)
         self.parts: tuple[Part, ...] = tuple(parts)
+        self.holes: tuple[Hole, ...] = tuple(found)
         self.firsts: Ints = np.array([part.first for part in parts], np.int64)
 
     def __len__(self) -> int:

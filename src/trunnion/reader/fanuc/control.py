@@ -4,7 +4,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
-from trunnion.machine import Machine
+from trunnion.machine import Axis, Machine, Output
 from trunnion.reader import tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.frames import Frame, about, turn
@@ -40,10 +40,9 @@ class FanucControl(Rs274Control):
         #: G43.5: words I J K of lines are vectors.
         self.vectors = False
 
-    @property
-    def shorter(self) -> bool:
-        """Always, as axes roll over that are set to."""
-        return True
+    def shorter(self, axis: Axis) -> bool:
+        """Always, as axes roll over that are set to; but for axes whose values are written as they wind."""
+        return axis.output is not Output.NONE
 
     @property
     def plain_table(self) -> Codes:

@@ -18,7 +18,7 @@ from trunnion.reader.fanuc.text import SUFFIXES, FanucText
 from trunnion.reader.fanuc.variables import ARITHMETIC, Variables
 from trunnion.reader.interpreter import STEPS, End
 from trunnion.reader.rows import FARTHEST
-from trunnion.reader.rs274.block import Block, Number, read_block, reader_of
+from trunnion.reader.rs274.block import Block, Number, block_reader, read_block
 from trunnion.reader.rs274.expressions import BlockError
 from trunnion.reader.rs274.interpreter import CANCEL, MOTIONS, Rs274Interpreter
 from trunnion.reader.text import Folder, Text
@@ -44,7 +44,6 @@ class FanucInterpreter(Rs274Interpreter[Activation]):
         self._control = FanucControl(
             machine, self._note, self._file, shortest=shortest, calculator=self._settings.calculator
         )
-        self._control.set_offset(54, "G54")
         self._variables = Variables(self._system)
         self._flow = Flow(self._note, self._variables)
         self._to_initial = True
@@ -88,7 +87,7 @@ class FanucInterpreter(Rs274Interpreter[Activation]):
         if text[0] in "O:":
             self._program_number(call, line, text)
             return
-        reader = reader_of(text, ARITHMETIC, self._variables)
+        reader = block_reader(text, ARITHMETIC, self._variables)
         if self._flow.takes(call, line, reader):
             return
         self._carry_out(call, line, read_block(reader, self._twice))

@@ -4,7 +4,7 @@ import math
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
-from trunnion.machine import Machine
+from trunnion.machine import Axis, Machine, Output
 from trunnion.reader import tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.control import RAPID
@@ -26,10 +26,9 @@ class FidiaControl(Rs274Control):
         super().__init__(machine, note, file, shortest=shortest)
         self.table = letters((self.names[0], self.names[1]), gaps=True)
 
-    @property
-    def shorter(self) -> bool:
-        """Always (unconfirmed)."""
-        return True
+    def shorter(self, axis: Axis) -> bool:
+        """Always (unconfirmed); but for axes whose values are written as they wind."""
+        return axis.output is not Output.NONE
 
     @property
     def plain_table(self) -> Codes:

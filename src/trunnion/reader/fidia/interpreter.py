@@ -12,7 +12,7 @@ from trunnion.reader.drilling import CycleError, Step
 from trunnion.reader.fidia import cycles, words
 from trunnion.reader.fidia.control import FidiaControl
 from trunnion.reader.interpreter import STEPS
-from trunnion.reader.rs274.block import Block, read_block, reader_of
+from trunnion.reader.rs274.block import Block, block_reader, read_block
 from trunnion.reader.rs274.expressions import Arithmetic, BlockError, Value
 from trunnion.reader.rs274.interpreter import CANCEL, MOTIONS, Activation, Rs274Interpreter
 from trunnion.reader.text import Folder, Text
@@ -74,7 +74,7 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
         if tool is not None:
             text = text[: tool.start()] + text[tool.end() :]
         # The time of a dwell has two letters.
-        block = read_block(reader_of(text.replace("HD", "H"), _ARITHMETIC, _NO_PARAMETERS), self._twice)
+        block = read_block(block_reader(text.replace("HD", "H"), _ARITHMETIC, _NO_PARAMETERS), self._twice)
         if block.settings:
             raise BlockError("parameters are not simulated")
         self._carry_out(block, None if tool is None else tool.group(1))

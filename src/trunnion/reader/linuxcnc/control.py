@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Codes, Floats
-from trunnion.machine import Machine, forward
+from trunnion.machine import Axis, Machine, forward
 from trunnion.reader import arcs, poses
 from trunnion.reader.columns import Changes
 from trunnion.reader.frames import Frame, turn
@@ -49,8 +49,7 @@ class LinuxcncControl(Rs274Control):
         self.shift = np.zeros(6)
         self.shifted = False
 
-    @property
-    def shorter(self) -> bool:
+    def shorter(self, axis: Axis) -> bool:
         """Never: rotary axes take the number as it is."""
         return False
 

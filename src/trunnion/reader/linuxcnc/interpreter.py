@@ -34,7 +34,7 @@ from trunnion.reader.linuxcnc.words import (
 )
 from trunnion.reader.rows import FARTHEST
 from trunnion.reader.rs274 import interpreter
-from trunnion.reader.rs274.block import Block, read_block, reader_of, split
+from trunnion.reader.rs274.block import Block, block_reader, read_block, split
 from trunnion.reader.rs274.expressions import BlockError, Reader
 from trunnion.reader.rs274.interpreter import CANCEL, MOTIONS, Rs274Interpreter
 from trunnion.reader.text import Folder, Text
@@ -42,6 +42,9 @@ from trunnion.reader.word import How, Word
 from trunnion.toolpath import Kind
 
 _KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE|CALL|RETURN")
+
+#: Comments that speak to whoever stands at the machine.
+_MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),(.*)", re.IGNORECASE | re.DOTALL)
 
 #: M codes that act after the motion of their block.
 _LATE: Final = frozenset({0, 1, 2, 30, 60})
@@ -73,7 +76,6 @@ class LinuxcncInterpreter(Rs274Interpreter[Activation]):
     ) -> None:
         super().__init__(path, machine, Folder(path, SUFFIXES), step_limit=step_limit, skip=skip)
         self._control = LinuxcncControl(machine, self._note, self._file, shortest=shortest)
-        self._control.set_offset(54, "G54")
         self._parameters = Parameters(self._system)
         self._returned: float | None = None
         self._to_initial = False
@@ -138,8 +140,16 @@ class LinuxcncInterpreter(Rs274Interpreter[Activation]):
 
     # Blocks
 
+    def _twice(self, letter: str) -> None:
+        raise BlockError(f"{letter} is written twice")
+
+    def _said(self, comment: str) -> None:
+        match = _MESSAGE.match(comment)
+        if match is not None:
+            self._control.event("message", match.group(1))
+
     def _text(self, call: Activation, line: int, text: str) -> None:
-        reader = reader_of(text, ARITHMETIC, self._parameters)
+        reader = block_reader(text, ARITHMETIC, self._parameters)
         if reader.takes("O"):
             self._o_word(call, line, reader)
             return
@@ -589,7 +599,7 @@ class LinuxcncInterpreter(Rs274Interpreter[Activation]):
         call.text.jump(line)
         text = split(call.text.next_line(), semicolon=True).text
         call.text.jump(here)
-        reader = reader_of(text, ARITHMETIC, self._parameters)
+        reader = block_reader(text, ARITHMETIC, self._parameters)
         reader.expect("O")
         self._label(reader)
         return reader if reader.text.startswith("ELSEIF", reader.at) else None

@@ -133,7 +133,7 @@ def read_block(reader: Reader, twice: Callable[[str], None]) -> Block:
     return block
 
 
-def reader_of(text: str, arithmetic: Arithmetic, parameters: Parameters) -> Reader:
+def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> Reader:
     """Return a reader at the beginning of a block."""
     if len(text) > LONGEST:
         raise BlockError(f"the block is longer than {LONGEST} characters")

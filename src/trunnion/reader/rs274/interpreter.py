@@ -9,7 +9,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from trunnion.errors import Severity
-from trunnion.reader import interpreter, scan
+from trunnion.reader import interpreter
 from trunnion.reader.control import LINEAR, RAPID
 from trunnion.reader.handover import FEEDS, ROW
 from trunnion.reader.interpreter import End, Interpreter
@@ -17,6 +17,7 @@ from trunnion.reader.rs274.block import Block, spelled, split
 from trunnion.reader.rs274.control import CLOCKWISE, COUNTER, Rs274Control
 from trunnion.reader.rs274.expressions import BlockError
 from trunnion.reader.run import Written
+from trunnion.reader.scan import scan
 from trunnion.reader.text import Text
 from trunnion.reader.word import How, Word
 
@@ -106,6 +107,10 @@ class Rs274Interpreter(Interpreter[A]):
         finally:
             for comment in parts.comments:
                 self._comment(line, comment)
+                self._said(comment)
+
+    def _said(self, comment: str) -> None:
+        """Look at what a comment says, where that is more than a comment."""
 
     def _percent(self, call: A) -> None:
         """Begin or end what is transferred."""
@@ -136,7 +141,7 @@ class Rs274Interpreter(Interpreter[A]):
         inverse = control.feed_mode.now == 93
         before = float(control.place[3])
         control.kind = MOTIONS[self.motion]
-        scan.scan(
+        scan(
             text.buffer,
             len(text.buffer),
             self._table,

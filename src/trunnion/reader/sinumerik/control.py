@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Machine
+from trunnion.machine import Axis, Machine, Output
 from trunnion.reader import arcs, tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.control import LINEAR, Circle, Control
@@ -35,10 +35,9 @@ class SinumerikControl(Control):
         super().__init__(machine, note, file, shortest=shortest)
         self.table = letters((self.names[0], self.names[1]), comment=";", assign="=")
 
-    @property
-    def shorter(self) -> bool:
-        """With TRAORI."""
-        return self.tcp
+    def shorter(self, axis: Axis) -> bool:
+        """With TRAORI, but for axes whose values are written as they wind."""
+        return self.tcp and axis.output is not Output.NONE
 
     def _vectors(self, frame: Frame) -> Floats:
         return np.eye(3) if self._machine_vectors else super()._vectors(frame)
@@ -141,7 +140,7 @@ class SinumerikControl(Control):
             self.note("CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return None
         wanted = sorted(pairs, key=lambda pair: pair[1], reverse=direction > 0)[0]
-        if wanted in inside:
-            return wanted
-        self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
-        return inside[0]
+        if wanted not in inside:
+            self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
+            wanted = inside[0]
+        return tilt.turned_inside(self.machine, wanted, self.held)

@@ -7,12 +7,12 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machine import Machine
-from trunnion.reader import scan
 from trunnion.reader.control import LINEAR, RAPID
 from trunnion.reader.drilling import CycleError, sane
 from trunnion.reader.interpreter import STEPS, End, Interpreter
 from trunnion.reader.rows import FARTHEST
 from trunnion.reader.run import Orientation
+from trunnion.reader.scan import scan
 from trunnion.reader.sinumerik import cycles
 from trunnion.reader.sinumerik.block import Block, BlockReader, Call, read_call
 from trunnion.reader.sinumerik.control import CLOCKWISE, COUNTER, THROUGH, SinumerikControl
@@ -27,6 +27,7 @@ from trunnion.reader.sinumerik.words import (
     CONSTANTS,
     FRAMES,
     G_FEEDS,
+    G_LIMITS,
     G_MACHINE,
     G_NAMED,
     G_NO_MOTION,
@@ -89,7 +90,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
 
     def _kernel(self, text: Text) -> None:
         control = self._control
-        scan.scan(
+        scan(
             text.buffer,
             len(text.buffer),
             control.table,
@@ -177,7 +178,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
             return
         if block.feed is not None:
             control.place[3] = block.feed * control.feeds
-        if block.speed is not None:
+        if block.speed is not None and not G_LIMITS.intersection(block.g):
             control.rpm.set(control.row, abs(block.speed))
             control.event("speed", abs(block.speed))
         if block.tool is not None:
@@ -306,6 +307,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
                 self._note(f"{word}: {name} is not simulated", Severity.ERROR)
         frame = statement(base, values, control.plane)
         control.set_program_frame(control.program_frame.then(frame) if adds else frame)
+        control.event("frame", "" if not adds and not values else word)
 
     # Cycles and calls
 

@@ -94,6 +94,9 @@ G_NAMED: Final = {
 #: G words after whose block the axis words of the same block are no positions.
 G_NO_MOTION: Final = frozenset({25, 26, 58, 59, 74, 75, 110, 111, 112})
 
+#: G words that set limits: a spindle speed in their block is one of them.
+G_LIMITS: Final = frozenset({25, 26})
+
 #: Words without a value that change how the control drives, not where to.
 SILENT: Final = _words("""
     NORM KONT KONTC KONTT FNORM FLIN FCUB FPO

@@ -1,4 +1,4 @@
-"""Output that appears whole or not at all."""
+"""Files that appear whole or not at all."""
 
 import os
 import shutil
@@ -55,4 +55,4 @@ def whole(target: str) -> Iterator[BinaryIO]:
 
 
 def _cannot_write(target: str, error: OSError) -> InputError:
-    return InputError(Problem(target, 0, f"cannot be written: {error.strerror or error}", "name another --output"))
+    return InputError(Problem(target, 0, f"cannot be written: {error.strerror or error}", "name another file"))

@@ -1,0 +1,194 @@
+"""Q parameters, and the formulas that set them."""
+
+import math
+import re
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+#: Parentheses and signs inside each other.
+DEEPEST: Final = 40
+
+#: Larger values are none that a parameter can have.
+LARGEST: Final = 1e10
+
+_TOKEN = re.compile(r"[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+)|([A-Z]+)|([-+*/^%()]))")
+
+
+class KlartextError(Exception):
+    """Why a block is not understood, in words."""
+
+
+class Parameters:
+    """The parameters of a program: Q and QR of all programs together, QL of each by itself."""
+
+    def __init__(self, shared: "Parameters | None" = None) -> None:
+        self._values: dict[str, float] = {} if shared is None else shared._values
+        self._local: dict[str, float] = {}
+
+    def _table(self, name: str) -> dict[str, float]:
+        return self._local if name.startswith("QL") else self._values
+
+    def get(self, name: str) -> float | None:
+        """Return the value of a parameter, None if it has none."""
+        return self._table(name).get(name)
+
+    def __getitem__(self, name: str) -> float:
+        value = self.get(name)
+        if value is None:
+            raise KlartextError(f"{name} has no value that the program says")
+        return value
+
+    def __setitem__(self, name: str, value: float) -> None:
+        self._table(name)[name] = sound(value)
+
+    def forget(self, name: str) -> None:
+        """Take a parameter's value away: only the control knows it."""
+        self._table(name).pop(name, None)
+
+
+def sound(value: float) -> float:
+    """Return a value, refusing what no parameter can hold."""
+    if not abs(value) <= LARGEST:
+        raise KlartextError("a value is larger than any parameter can hold")
+    return value
+
+
+def canonical(name: str) -> str:
+    """Name of a parameter without leading zeros."""
+    letters = name.rstrip("0123456789")
+    return f"{letters}{int(name[len(letters) :])}"
+
+
+def _raised(base: float, exponent: float) -> float:
+    if base < 0.0 and exponent != int(exponent):
+        raise ValueError
+    return math.pow(base, exponent)
+
+
+def _tangent(x: float) -> float:
+    if math.isclose(math.cos(math.radians(x)), 0.0, abs_tol=1e-12):
+        raise KlartextError(f"TAN {x:g} is infinite")
+    return math.tan(math.radians(x))
+
+
+#: Functions of one value; angles in degrees.
+FUNCTIONS: Final[dict[str, Callable[[float], float]]] = {
+    "SIN": lambda x: math.sin(math.radians(x)),
+    "COS": lambda x: math.cos(math.radians(x)),
+    "TAN": _tangent,
+    "ASIN": lambda x: math.degrees(math.asin(x)),
+    "ACOS": lambda x: math.degrees(math.acos(x)),
+    "ATAN": lambda x: math.degrees(math.atan(x)),
+    "SQRT": math.sqrt,
+    "SQ": lambda x: x * x,
+    "LN": math.log,
+    "LOG": math.log10,
+    "EXP": math.exp,
+    "NEG": lambda x: -x,
+    "INT": lambda x: float(math.trunc(x)),
+    "FRAC": lambda x: x - math.trunc(x),
+    "ABS": abs,
+    "SGN": lambda x: float((x > 0.0) - (x < 0.0)),
+}
+
+
+def formula(text: str, parameters: Parameters) -> float:
+    """Return the value of a formula: ``Q1 = SQ 3 + (Q2 - 4) ^ 2`` without what stands before it.
+
+    Powers bind tightest, then multiplication and division, then addition. A function takes the value behind it.
+    """
+    parser = _Parser(text, parameters)
+    value = parser.sum()
+    if parser.token is not None:
+        raise KlartextError(f"{parser.token[:20]} stands where nothing may follow")
+    return sound(value)
+
+
+class _Parser:
+    def __init__(self, text: str, parameters: Parameters) -> None:
+        self._tokens: list[str] = []
+        at = 0
+        text = text.rstrip()
+        while at < len(text):
+            match = _TOKEN.match(text, at)
+            if match is None:
+                raise KlartextError(f"{text[at : at + 20].strip()} belongs to no formula")
+            self._tokens.append(match.group().strip())
+            at = match.end()
+        self._at = 0
+        self._depth = 0
+        self._parameters = parameters
+
+    @property
+    def token(self) -> str | None:
+        return self._tokens[self._at] if self._at < len(self._tokens) else None
+
+    def _take(self) -> str:
+        token = self.token
+        if token is None:
+            raise KlartextError("a value is missing")
+        self._at += 1
+        return token
+
+    def sum(self) -> float:
+        value = self._product()
+        while self.token in ("+", "-"):
+            value = sound(value + self._product() if self._take() == "+" else value - self._product())
+        return value
+
+    def _product(self) -> float:
+        value = self._power()
+        while self.token in ("*", "/", "%"):
+            operator, other = self._take(), self._power()
+            if operator == "*":
+                value = sound(value * other)
+            elif other == 0.0:
+                raise KlartextError("divides by zero")
+            else:
+                value = sound(value / other) if operator == "/" else math.fmod(value, other)
+        return value
+
+    def _power(self) -> float:
+        value = self._factor()
+        while self.token == "^":
+            self._take()
+            exponent = self._factor()
+            value = guarded(partial(_raised, value, exponent), "^")
+        return value
+
+    def _factor(self) -> float:
+        self._depth += 1
+        if self._depth > DEEPEST:
+            raise KlartextError(f"nests deeper than {DEEPEST} levels")
+        try:
+            return self._value(self._take())
+        finally:
+            self._depth -= 1
+
+    def _value(self, token: str) -> float:
+        if token in ("+", "-"):
+            return self._factor() if token == "+" else -self._factor()
+        if token == "(":
+            value = self.sum()
+            if self._take() != ")":
+                raise KlartextError("a parenthesis is not closed")
+            return value
+        if token == "PI":
+            return math.pi
+        if token in FUNCTIONS:
+            argument = self._factor()
+            return guarded(lambda: FUNCTIONS[token](argument), token)
+        if token[0] == "Q" and token[-1].isdigit():
+            return self._parameters[canonical(token)]
+        if token[0].isdigit() or token[0] in ".,":
+            return sound(float(token.replace(",", ".")))
+        raise KlartextError(f"{token[:20]} belongs to no formula")
+
+
+def guarded(work: Callable[[], float], name: str) -> float:
+    """Return what a function gives, refusing what it has no value for."""
+    try:
+        return sound(work())
+    except (ValueError, OverflowError, ZeroDivisionError):
+        raise KlartextError(f"{name} has no value here") from None

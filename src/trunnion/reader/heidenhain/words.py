@@ -1,0 +1,157 @@
+"""Every word that the reader knows, by what it does. ``docs/controls/heidenhain.md`` says the same to people."""
+
+from typing import Final
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+#: How path blocks begin.
+PATHS: Final = _words("L LN LP C CR CP CT CTP")
+
+#: Blocks that are known and whose effect on the path is not simulated: what the reader says instead.
+BLOCKS_NAMED: Final = {
+    "RND": "rounds the corner: not simulated, the corner stays sharp",
+    "CHF": "chamfers the corner: not simulated, the corner stays sharp",
+    "APPR": "approaches a contour: not simulated, the block is not executed",
+    "DEP": "departs from a contour: not simulated, the block is not executed",
+    "FPOL": "free contour programming is not simulated",
+    "FL": "free contour programming is not simulated",
+    "FLT": "free contour programming is not simulated",
+    "FC": "free contour programming is not simulated",
+    "FCT": "free contour programming is not simulated",
+    "FSELECT": "free contour programming is not simulated",
+    "SPL": "splines are not simulated",
+    "PATTERN": "point patterns are not simulated",
+    "SEL": "tables, contours and programs are not selected here",
+    "DECLARE": "strings are not simulated",
+    "TRANS": "is not simulated: cycles 7, 8, 10 and 11 are",
+    "TCH": "touch probes measure what only the machine knows",
+    "CONTOUR": "contour cycles are not simulated",
+    "OPEN": "files are not written",
+}
+
+#: M words that act on the path, on the cycles or on the program.
+M_MACHINE: Final = 91
+M_SECOND_MACHINE: Final = 92
+M_SHORTEST: Final = 126
+M_NOT_SHORTEST: Final = 127
+M_TCP: Final = 128
+M_TCP_OFF: Final = 129
+M_RETRACT: Final = 140
+M_CALL: Final = 99
+M_CALL_MODAL: Final = 89
+M_PER_TURN: Final = 136
+M_PER_MINUTE: Final = 137
+M_ENDS: Final = frozenset({2, 30})
+
+#: M words that become events: kind and value, in the order in which they happen.
+M_EVENTS: Final = {
+    0: (("stop", None),),
+    1: (("optional_stop", None),),
+    3: (("spindle", "clockwise"),),
+    4: (("spindle", "counter-clockwise"),),
+    5: (("spindle", "off"),),
+    8: (("coolant", "flood"),),
+    9: (("coolant", "off"),),
+    13: (("spindle", "clockwise"), ("coolant", "flood")),
+    14: (("spindle", "counter-clockwise"), ("coolant", "flood")),
+}
+
+#: Sense of rotation of the spindle after an M word.
+M_SPINDLE: Final = {3: 1, 4: -1, 5: 0, 13: 1, 14: -1}
+
+#: M words that act after the motion of their block.
+M_LATE: Final = frozenset({0, 1, 5, 9, 117, M_NOT_SHORTEST, M_TCP_OFF, M_CALL}) | M_ENDS
+
+#: M words that change how the control drives, not where to.
+M_SILENT: Final = {
+    90: "constant contour speed at corners",
+    94: "the display of rotary axes comes back below 360",
+    97: "small contour steps",
+    101: "replacement tools",
+    102: "no replacement tools",
+    103: "a factor for plunging feeds",
+    107: "no message for oversize",
+    108: "message for oversize again",
+    109: "contour speed at the cutting edge",
+    110: "contour speed at the cutting edge, reduced only",
+    111: "contour speed as usual",
+    116: "feed of rotary axes in mm/min",
+    117: "feed of rotary axes in degrees/min",
+    120: "look-ahead for compensated contours",
+    124: "points that are left out",
+    134: "exact stop at corners with rotary axes",
+    135: "no exact stop",
+    138: "rotary axes that tilt",
+    141: "touch probe monitoring",
+    144: "display with the head's offset",
+    145: "display without it",
+    148: "lift-off at a stop",
+    149: "no lift-off",
+}
+
+#: M words that are known and whose effect on the path is not simulated: a finding each time; whether it is an error.
+M_NAMED: Final = {
+    98: ("ends an open contour corner: not simulated", False),
+    104: ("takes the last datum again: not simulated", True),
+    112: ("contour transitions are not simulated", False),
+    114: ("compensates the tilt by itself: not simulated, M128 is", True),
+    115: ("ends M114, which is not simulated", False),
+    118: ("handwheel superimposed: not simulated", False),
+    130: ("positions in the untilted coordinate system: not simulated", True),
+    142: ("deletes modal program information: not simulated", True),
+    143: ("deletes a basic rotation, which only the control knows", False),
+    200: ("laser cutting is not simulated", False),
+    201: ("laser cutting is not simulated", False),
+    202: ("laser cutting is not simulated", False),
+    203: ("laser cutting is not simulated", False),
+    204: ("laser cutting is not simulated", False),
+}
+
+#: Words that belong to an M word if they follow it.
+M_ARGUMENTS: Final = {
+    94: _words("X Y Z A B C U V W"),
+    103: _words("F"),
+    118: _words("X Y Z A B C U V W VT"),
+    120: _words("LA"),
+    124: _words("T"),
+    M_TCP: _words("F FMAX MAX AUTO"),
+    138: _words("A B C"),
+    M_RETRACT: _words("MB MAX F FMAX"),
+}
+
+#: Cycles that act as soon as they are defined, by number.
+DATUM: Final = 7
+MIRROR: Final = 8
+DWELL: Final = 9
+ROTATION: Final = 10
+SCALING: Final = 11
+ORIENTATION: Final = 13
+TILT: Final = 19
+AXIS_SCALING: Final = 26
+TOLERANCE: Final = 32
+PRESET: Final = 247
+
+#: Cycles that are known and not simulated: whether the path is doubtful because of it when they are called.
+CYCLES_NAMED: Final = {
+    3: "slot milling", 4: "pocket milling", 5: "circular pocket", 6: "rough-out", 12: "program call", 14: "contour",
+    15: "pilot drilling", 16: "contour milling", 18: "thread cutting", 20: "contour data", 21: "pilot drilling",
+    22: "rough-out", 23: "floor finishing", 24: "side finishing", 25: "contour train", 27: "cylinder surface",
+    28: "cylinder surface slot", 29: "cylinder surface ridge", 39: "cylinder surface contour", 208: "bore milling",
+    220: "polar pattern", 221: "linear pattern", 225: "engraving", 230: "multipass milling", 231: "ruled surface",
+    232: "face milling", 233: "face milling", 239: "load measuring", 251: "rectangular pocket",
+    252: "circular pocket", 253: "slot milling", 254: "circular slot", 256: "rectangular stud", 257: "circular stud",
+    258: "polygon stud", 262: "thread milling", 263: "thread milling and countersinking",
+    264: "thread drilling and milling", 265: "helical thread drilling and milling", 267: "outside thread milling",
+    270: "contour train data", 271: "OCM contour data", 272: "OCM roughing", 273: "OCM floor finishing",
+    274: "OCM side finishing", 275: "trochoidal slot", 276: "three-dimensional contour train",
+}  # fmt: skip
+
+#: FN functions that are known and not simulated.
+FN_NAMED: Final = {
+    14: "an error message", 15: "prints", 16: "prints to a file", 17: "writes system data", 19: "speaks to the PLC",
+    20: "waits for the PLC", 25: "sets a preset", 26: "opens a table", 27: "writes to a table", 28: "reads a table",
+    29: "speaks to the PLC", 37: "exports parameters", 38: "sends a message",
+}  # fmt: skip

@@ -1,0 +1,139 @@
+"""Three-axis, tilted plane or simultaneous: the rule, the user's word, and the plane itself."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from tests.plan.naive import moves_of, operation_of
+from trunnion.arrays import Floats
+from trunnion.errors import Refused
+from trunnion.machine import load_machine
+from trunnion.plan import Manner, Motion, Wishes, plan
+from trunnion.plan.frames import seen_from
+from trunnion.plan.kinds import plane_of
+from trunnion.toolpath import Arcs, Frame, Kind, Operation, Toolpath
+
+YL569 = load_machine("yl569")
+
+unit_vectors = (
+    st.tuples(*[st.floats(-1.0, 1.0)] * 3)
+    .filter(lambda v: float(np.linalg.norm(v)) > 0.1)
+    .map(lambda v: np.array(v) / np.linalg.norm(v))
+)
+points = st.tuples(*[st.floats(-500.0, 500.0)] * 3)
+
+
+@st.composite
+def frames(draw: st.DrawFn) -> Frame:
+    """Any right-handed coordinate system."""
+    x, y = draw(unit_vectors), draw(unit_vectors)
+    assume(float(np.linalg.norm(np.cross(x, y))) > 0.1)
+    y = y - (x @ y) * x
+    return Frame(draw(points), tuple(x.tolist()), tuple((y / np.linalg.norm(y)).tolist()))
+
+
+def motion_of(axis: Floats, *, frame: Frame | None = None, wish: Manner | None = None) -> Motion:
+    """The second of two operations, planned; the first one is upright in the absolute system."""
+    axis = np.atleast_2d(axis)
+    tip = np.arange(3.0 * len(axis)).reshape(-1, 3)
+    first = operation_of(moves_of(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]])), "TOP")
+    second = operation_of(moves_of(tip, axis), "SIDE")
+    second = Operation("SIDE", second.tool, frame or Frame(), second.moves, Arcs.none(), (), 1)
+    return plan([Toolpath("a.cls", (first, second))], YL569, 0.001, Wishes(manner=wish)).motions[1]
+
+
+TILTED = np.array([0.6, 0.0, 0.8])
+UPRIGHT = np.array([0.0, 0.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("axes", "manner"),
+    [
+        ([UPRIGHT, UPRIGHT], Manner.THREE_AXIS),
+        ([TILTED], Manner.TILTED),
+        ([TILTED, TILTED], Manner.TILTED),
+        ([TILTED, UPRIGHT], Manner.TCP),
+        ([TILTED, UPRIGHT, TILTED], Manner.TCP),
+        ([UPRIGHT, TILTED, UPRIGHT], Manner.TCP),
+    ],
+)
+def test_by_rule_it_is_what_the_tool_axis_does(axes: list[Floats], manner: Manner) -> None:
+    assert motion_of(np.array(axes)).manner is manner
+
+
+def test_an_axis_that_is_z_of_a_tilted_coordinate_system_is_a_tilted_plane_there() -> None:
+    frame = Frame((10.0, 20.0, -5.0), (0.8, 0.0, -0.6), (0.0, 1.0, 0.0))
+    motion = motion_of(UPRIGHT, frame=frame)
+    assert motion.manner is Manner.TILTED
+    assert motion.plane is not None
+    assert motion.plane.origin == frame.origin
+    np.testing.assert_allclose(motion.plane.matrix(), frame.matrix(), atol=1e-15)
+    np.testing.assert_allclose(motion.as_written().moves.tip, [[0.0, 1.0, 2.0]], atol=1e-12)
+
+
+def test_the_users_word_is_stronger() -> None:
+    assert motion_of(TILTED, wish=Manner.TCP).manner is Manner.TCP
+    assert motion_of(UPRIGHT, wish=Manner.TCP).manner is Manner.TCP
+    upright = motion_of(np.array([TILTED, TILTED]), wish=Manner.TILTED)
+    assert upright.plane is not None
+
+
+@pytest.mark.parametrize(
+    ("axes", "wish", "line"),
+    [
+        ([TILTED, UPRIGHT], Manner.TILTED, 10),
+        ([UPRIGHT, TILTED], Manner.THREE_AXIS, 11),
+    ],
+)
+def test_a_word_that_cannot_be_kept_is_refused_with_the_line(axes: list[Floats], wish: Manner, line: int) -> None:
+    operation = operation_of(moves_of(np.zeros((2, 3)), np.array(axes)))
+    if wish is Manner.TILTED:
+        line = 11
+    with pytest.raises(Refused) as refused:
+        plan([Toolpath("a.cls", (operation,))], YL569, 0.001, Wishes(manner=wish))
+    assert [problem.line for problem in refused.value.problems] == [line]
+
+
+@given(unit_vectors, frames())
+def test_a_planes_z_is_the_tool_axis_and_its_matrix_is_square(axis: Floats, own: Frame) -> None:
+    for frame in (own, seen_from(own, own)):
+        plane = plane_of(axis, frame)
+        matrix = plane.matrix()
+        np.testing.assert_allclose(matrix.T @ matrix, np.eye(3), atol=1e-12)
+        np.testing.assert_allclose(matrix[:, 2], axis, atol=1e-12)
+
+
+@given(frames(), st.floats(-1e-7, 1e-7))
+def test_a_coordinate_system_that_stands_on_the_axis_gives_origin_and_x(own: Frame, off: float) -> None:
+    axis = own.matrix()[:, 2] + off * np.array(own.x)
+    plane = plane_of(axis / np.linalg.norm(axis), own)
+    np.testing.assert_allclose(plane.origin, own.origin, atol=0.5e-4 + 1e-12)
+    np.testing.assert_allclose(plane.x, own.x, atol=2e-7)
+
+
+@given(frames(), frames(), points)
+def test_a_frame_seen_from_another_holds_the_same_points(one: Frame, other: Frame, point: tuple[float, ...]) -> None:
+    seen = seen_from(one, other)
+    there = seen.matrix() @ np.array(point) + seen.origin
+    absolute = other.matrix() @ there + other.origin
+    np.testing.assert_allclose(absolute, one.matrix() @ np.array(point) + one.origin, atol=1e-9)
+
+
+def test_arcs_are_judged_in_the_plane() -> None:
+    c, s = 0.8, 0.6
+    across = np.array([c, 0.0, -s])
+    tip = np.array([[0.0, 0.0, 0.0], 20.0 * across])
+    moves = moves_of(tip, np.array([[s, 0.0, c]] * 2))
+    kinds = moves.kind.copy()
+    kinds[1] = Kind.ARC
+    moves = type(moves)(moves.tip, moves.axis, kinds, moves.phase, moves.feed, moves.per_rev, moves.line)
+    arcs = Arcs(np.array([1]), (10.0 * across)[None], np.array([[s, 0.0, c]]), np.array([10.0]), np.zeros(1, np.int64))
+    operation = Operation("OP", operation_of(moves).tool, Frame(), moves, arcs, (), 1)
+    planned = plan([Toolpath("a.cls", (operation,))], YL569, 0.001).motions[0]
+    written = planned.as_written()
+    assert len(written.arcs.row) == 1
+    np.testing.assert_allclose(written.arcs.normal, [[0.0, 0.0, 1.0]], atol=1e-12)
+    tcp = plan([Toolpath("a.cls", (operation,))], YL569, 0.001, Wishes(manner=Manner.TCP)).motions[0]
+    assert len(tcp.operation.arcs.row) == 0
+    assert len(tcp.operation.moves) > 10

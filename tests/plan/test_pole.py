@@ -1,0 +1,323 @@
+"""The pole: no axis too fast where there is a way, the tool axis off by no more than asked for, the tip where it is."""
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.plan.naive import moves_of, operation_of, rapids_at
+from trunnion.arrays import Flags, Floats
+from trunnion.machine import Machine, forward, inverse, load_machine, pack, shipped
+from trunnion.plan import Plan, Pole, Why, Wishes, plan
+from trunnion.plan.cone import leanest, nearest_second, off_pole
+from trunnion.plan.placing import REWIND
+from trunnion.plan.pole import Leaning, leaning
+from trunnion.plan.poses import follow
+from trunnion.plan.speed import shares
+from trunnion.toolpath import Moves, Operation, Toolpath
+
+
+def quick(name: str) -> Machine:
+    """A shipped machine; rotary axes of which nobody says how fast they are turn with 3600 degrees/min."""
+    machine = load_machine(name)
+    axes = (replace(axis, rapid=axis.rapid or 3600.0) if axis.is_rotary else axis for axis in machine.axes)
+    return replace(machine, axes=tuple(axes))
+
+
+MACHINES = {name: quick(name) for name in shipped()}
+
+
+def pole_of(machine: Machine) -> Floats:
+    """The tool axis along the first rotary axis, on the side where the spindle is at zero."""
+    line = np.array(pack(machine).frame_1[6:])
+    return line if line @ np.array(machine.spindle_direction) >= 0.0 else -line
+
+
+def around_pole(machine: Machine, x: Floats, y: Floats) -> Floats:
+    """(n, 3) tool axes x and y degrees off the pole, in two directions across it."""
+    line = pole_of(machine)
+    across = np.cross(line, np.eye(3)[int(np.argmin(np.abs(line)))])
+    across /= np.linalg.norm(across)
+    axis = line + np.tan(np.radians(x))[:, None] * across + np.tan(np.radians(y))[:, None] * np.cross(line, across)
+    return np.asarray(axis / np.linalg.norm(axis, axis=1, keepdims=True))
+
+
+@st.composite
+def passes(draw: st.DrawFn, machine: Machine) -> Operation:
+    """One pass or two by the pole, near or nearer, straight or in a bow, slow or quick; some rapids."""
+    n = draw(st.integers(20, 160))
+    along = np.linspace(-draw(st.floats(0.3, 6.0)), draw(st.floats(0.3, 6.0)), n)
+    off = draw(st.sampled_from([0.0, 0.01, 0.05, 0.2]) | st.floats(0.0, 1.0)) + draw(st.floats(-0.1, 0.1)) * along**2
+    if draw(st.booleans()):
+        along, off = np.concatenate((along, along[::-1])), np.concatenate((off, -off[::-1]))
+    turn = draw(st.floats(0.0, 2.0 * math.pi))
+    x, y = along * math.cos(turn) - off * math.sin(turn), along * math.sin(turn) + off * math.cos(turn)
+    tip = np.column_stack((draw(st.floats(0.5, 5.0)) * along, off, np.zeros(len(along))))
+    moves = moves_of(tip, around_pole(machine, x, y))
+    moves = replace(moves, feed=np.full(len(moves), draw(st.floats(50.0, 5000.0))))
+    return operation_of(rapids_at(moves, [row for row in range(len(moves)) if draw(st.integers(0, 60)) == 0]))
+
+
+def looked_after(machine: Machine, operation: Operation, mode: Pole, angle: float) -> Leaning:
+    moves = operation.moves
+    poses = follow(machine, moves, False)
+    return leaning(machine, operation, poses, False, mode, angle, np.zeros(len(moves), bool))
+
+
+def axes_of(machine: Machine, rotary: Floats) -> Floats:
+    joints = np.zeros((len(rotary), 5))
+    joints[:, list(machine.rotary)] = rotary
+    return forward(machine, joints)[1]
+
+
+def degrees_between(a: Floats, b: Floats) -> Floats:
+    return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(a - b, axis=1), 1.0))))
+
+
+@settings(max_examples=150)
+@given(st.data(), st.sampled_from(sorted(MACHINES)), st.sampled_from(list(Pole)[1:]), st.floats(0.005, 1.0))
+def test_the_tool_axis_leans_by_no_more_than_was_asked_for_and_only_where_it_says(
+    data: st.DataObject, name: str, mode: Pole, angle: float
+) -> None:
+    machine = MACHINES[name]
+    operation = data.draw(passes(machine))
+    moves = operation.moves
+    found = looked_after(machine, operation, mode, angle)
+    if (found.poses.outcome > 0).any():
+        return  # out of reach, over limits or rewound: the planner's own tests
+    off = degrees_between(axes_of(machine, found.poses.rotary), moves.axis)
+    assert off.max() <= angle + 1e-8
+    stays: Flags = np.ones(len(moves), bool)
+    stays[found.rows] = False
+    assert off[stays].max(initial=0.0) < 1.2e-5  # what the seven digits of a vector in the pole leave open
+    np.testing.assert_allclose(found.lean, off[found.rows], atol=1e-8)
+    np.testing.assert_array_equal(found.moves.tip, moves.tip)
+    np.testing.assert_array_equal(found.moves.axis[stays], moves.axis[stays])
+    assert degrees_between(found.moves.axis, axes_of(machine, found.poses.rotary)).max() < 1.2e-5
+    low, high = machine.limits[list(machine.rotary)].T
+    assert (found.poses.rotary >= low - 1e-5).all()
+    assert (found.poses.rotary <= high + 1e-5).all()
+
+
+@settings(max_examples=150)
+@given(st.data(), st.sampled_from(sorted(MACHINES)), st.floats(0.005, 1.0))
+def test_where_there_is_a_way_no_rotary_axis_is_too_fast(data: st.DataObject, name: str, angle: float) -> None:
+    machine = MACHINES[name]
+    operation = data.draw(passes(machine))
+    found = looked_after(machine, operation, Pole.LEAN, angle)
+    if (found.poses.outcome > 0).any():
+        return
+    share = shares(machine, operation, found.poses.rotary, np.zeros(0, np.int64)).max(axis=1)
+    lacking: Flags = np.zeros(len(share), bool)
+    for place in found.places:
+        if not place.found:
+            lacking[place.first : place.end] = True
+    assert share[~lacking].max(initial=0.0) <= 1.0
+
+
+@settings(max_examples=100)
+@given(st.data(), st.sampled_from(sorted(MACHINES)))
+def test_nothing_is_done_where_nothing_is_too_fast(data: st.DataObject, name: str) -> None:
+    machine = MACHINES[name]
+    operation = data.draw(passes(machine))
+    operation = replace(operation, moves=replace(operation.moves, feed=operation.moves.feed / 1e6))
+    for mode in (Pole.HOLD, Pole.SPREAD, Pole.LEAN):
+        found = looked_after(machine, operation, mode, 0.5)
+        plain = follow(machine, operation.moves, False)
+        if not (shares(machine, operation, plain.rotary, np.zeros(0, np.int64)) > 0.98).any():
+            assert not len(found.rows)
+            np.testing.assert_array_equal(found.poses.rotary, plain.rotary)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The way with limited speed against a slow twin
+
+GRID = 3.0
+FIRST = np.arange(-480.0, 480.0 + GRID, GRID)
+
+
+@cache
+def reached(name: str) -> Floats:
+    """(k, s, 3): tool axes at the first angles of the grid, and second ones near the pole."""
+    grid = np.stack(np.meshgrid(FIRST, np.arange(-10.0, 10.0, 0.02), indexing="ij"), axis=-1)
+    return axes_of(MACHINES[name], grid.reshape(-1, 2)).reshape(*grid.shape[:2], 3)
+
+
+def off_at_best(name: str, axis: Floats) -> Floats:
+    """(n, k): the least lean from n tool axes over all second angles, at k first ones, by trying them."""
+    cosine = np.stack([(reached(name) @ one).max(axis=1) for one in axis])
+    return np.asarray(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+
+
+def twin_finds(off: Floats, wanted: Floats, far: Floats, angle: float) -> bool:
+    """Whether a way over the grid of first angles keeps within ``angle`` and ``far``, on the side that is wanted."""
+    nearest = [int(np.argmin(np.abs(FIRST - value))) for value in wanted]
+    alive: Flags = np.zeros(len(FIRST), bool)
+    alive[nearest[0]] = True
+    for row in range(1, len(off)):
+        allowed = off[row] <= angle
+        allowed[nearest[row]] |= row == len(off) - 1
+        low = high = nearest[row]
+        while low > 0 and allowed[low - 1]:
+            low -= 1
+        while high < len(FIRST) - 1 and allowed[high + 1]:
+            high += 1
+        near = np.zeros(len(FIRST), bool)
+        near[low : high + 1] = True
+        there = np.array([(alive & (np.abs(FIRST - first) <= far[row])).any() for first in FIRST])
+        alive = there & near & allowed
+    return bool(alive[nearest[-1]])
+
+
+@settings(max_examples=80)
+@given(
+    st.sampled_from(["generic_head_table_bc", "generic_head_head_ca", "generic_nutated_b45_c", "yl569"]),
+    st.floats(0.02, 1.0),
+    st.floats(2.0, 90.0),
+    st.floats(0.02, 1.0),
+    st.integers(4, 9),
+    st.floats(0.0, 6.0),
+)
+def test_a_way_that_a_search_finds_is_found(
+    name: str, past: float, gets: float, angle: float, n: int, turn: float
+) -> None:
+    machine = MACHINES[name]
+    along = np.linspace(-2.0, 2.0, n)
+    x, y = along * math.cos(turn) - past * math.sin(turn), along * math.sin(turn) + past * math.cos(turn)
+    axis = around_pole(machine, x, y)
+    wanted = np.unwrap(inverse(machine, np.zeros((n, 3)), axis).joints[0, :, machine.rotary[0]], period=360.0)
+    far = np.full(n, gets)
+    steady = np.zeros(n, bool)
+    steady[[0, -1]] = True
+    packed, free = pack(machine), (-math.inf, math.inf)
+    made, lean = leanest(packed, axis, wanted, far, steady, free, angle)
+    off = off_at_best(name, axis)
+    if made is None:
+        # A little less room than there is, for what a grid cannot hit.
+        assert not twin_finds(off, wanted, far - GRID, 0.999 * angle)
+        return
+    assert (np.abs(np.diff(made)) <= far[1:] + 1e-9).all()
+    assert made[0] == pytest.approx(wanted[0], abs=1e-9)
+    assert made[-1] == pytest.approx(wanted[-1], abs=1e-9)
+    second = nearest_second(replace_limits(machine), packed, axis, made, np.zeros(n))
+    assert degrees_between(axes_of(machine, np.column_stack((made, second))), axis).max() <= lean + 1e-8
+    assert lean <= angle
+    assert not twin_finds(off, wanted, far - GRID, 0.9 * lean - 1e-3), "there is a way with less lean"
+
+
+def replace_limits(machine: Machine) -> Machine:
+    """The machine without limits of its rotary axes."""
+    free = {"low": -math.inf, "high": math.inf}
+    return replace(machine, axes=tuple(replace(a, **free) if a.is_rotary else a for a in machine.axes))  # type: ignore[arg-type]
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# What is done, by example
+
+BC = MACHINES["generic_head_table_bc"]
+
+
+def straight_past(off: float, feed: float = 3000.0, n: int = 401) -> Operation:
+    along = np.linspace(-4.0, 4.0, n)
+    tip = np.column_stack((2.5 * along, np.zeros(n), np.zeros(n)))
+    moves = moves_of(tip, around_pole(BC, along, np.full(n, off)))
+    return operation_of(replace(moves, feed=np.full(n, feed)))
+
+
+def planned(operation: Operation, **wishes: object) -> Plan:
+    return plan([Toolpath("part.cls", (operation,))], BC, 0.001, Wishes(**wishes))  # type: ignore[arg-type]
+
+
+def test_held_in_the_cone_and_turned_behind_it() -> None:
+    operation = straight_past(0.05)
+    found = looked_after(BC, operation, Pole.HOLD, 0.1)
+    inside = np.flatnonzero(off_pole(pack(BC), operation.moves.axis) <= 0.1)
+    np.testing.assert_allclose(np.diff(found.poses.rotary[inside[0] - 1 : inside[-1] + 1, 0]), 0.0, atol=1e-9)
+    assert set(found.rows) <= set(inside.tolist())
+
+
+def test_spread_evenly_over_the_cone() -> None:
+    operation = straight_past(0.05)
+    found = looked_after(BC, operation, Pole.SPREAD, 0.1)
+    inside = np.flatnonzero(off_pole(pack(BC), operation.moves.axis) <= 0.1)
+    steps = np.diff(np.unwrap(found.poses.rotary[inside[0] - 1 : inside[-1] + 2, 0], period=360.0))
+    np.testing.assert_allclose(steps, steps[0], atol=1e-9)
+
+
+def test_the_turn_out_of_the_pole_is_spread_over_the_approach_without_any_lean() -> None:
+    n = 60
+    axis = around_pole(BC, np.zeros(n), np.zeros(n))
+    axis[40:] = around_pole(BC, np.full(20, 3.0), np.full(20, 3.0))
+    axis[:5] = around_pole(BC, np.full(5, -3.0), np.full(5, 0.0))
+    tip = np.column_stack((np.arange(n) * 0.5, np.zeros(n), np.zeros(n)))
+    operation = operation_of(replace(moves_of(tip, axis), feed=np.full(n, 5000.0)))
+    plain = looked_after(BC, operation, Pole.SPREAD, 0.01)
+    assert plain.lean.max(initial=0.0) < 1e-9
+    steps = np.abs(np.diff(np.unwrap(plain.poses.rotary[:, 0], period=360.0)))
+    assert steps[4:40].max() < 4.0
+    assert shares(BC, operation, plain.poses.rotary, np.zeros(0, np.int64))[:, 0].max() < 1.5
+
+
+def test_by_default_everything_stays_and_the_log_names_place_axis_and_cure() -> None:
+    operation = straight_past(0.05)
+    found = planned(operation, explain=True)
+    assert not len(found.motions[0].departures)
+    np.testing.assert_array_equal(found.motions[0].operation.moves.axis, operation.moves.axis)
+    said = [decision for decision in found.decisions if decision.why is Why.SPEED]
+    assert len(said) == 1
+    assert "axis C would need" in said[0].text
+    assert "--set pole=lean --set pole_angle=0.08 would do" in said[0].text
+    assert 10 + 190 < said[0].line < 10 + 210
+
+
+def test_no_way_is_a_warning_with_an_angle_that_would_do() -> None:
+    found = planned(straight_past(0.2), pole=Pole.LEAN, pole_angle=0.1)
+    assert [str(p.severity) for p in found.problems] == ["warning"]
+    assert "no lean of the tool axis by up to 0.1 degrees" in found.problems[0].what
+    assert found.problems[0].cure == "--set pole=lean --set pole_angle=0.2 would do, or --set lower_feed=yes"
+    enough = planned(straight_past(0.2), pole=Pole.LEAN, pole_angle=0.2)
+    assert enough.problems == ()
+    assert [d.why for d in enough.decisions if d.why in (Why.SPEED, Why.POLE)][-1] is Why.POLE
+
+
+def test_a_machine_that_does_not_say_its_speed_is_named() -> None:
+    machine = load_machine("hs664rt")
+    found = plan([Toolpath("part.cls", (straight_past(0.05),))], machine, 0.001, Wishes(pole=Pole.LEAN))
+    assert "has no rapid speed of C and A" in found.problems[0].what
+
+
+def feeds(found: Plan) -> Floats:
+    return found.motions[0].operation.moves.feed
+
+
+def test_a_lowered_feed_is_what_the_axes_can_do_and_no_less() -> None:
+    operation = straight_past(0.05)
+    found = planned(operation, lower_feed=True)
+    motion = found.motions[0]
+    share = shares(BC, motion.operation, motion.rotary, np.zeros(0, np.int64)).max(axis=1)
+    low = feeds(found) < operation.moves.feed
+    assert low.any()
+    assert share.max() < 1.0
+    assert share[low].min() > 0.98
+    np.testing.assert_array_equal(motion.departures.slowed, np.flatnonzero(low))
+    np.testing.assert_array_equal(motion.departures.feed, feeds(found)[low])
+    assert [d.why for d in found.decisions if d.why in (Why.SPEED, Why.FEED)] == [Why.FEED]
+
+
+def test_leaning_first_leaves_less_to_lower() -> None:
+    operation = straight_past(0.2)
+    lowered = feeds(planned(operation, lower_feed=True)).min()
+    assert feeds(planned(operation, lower_feed=True, pole=Pole.LEAN, pole_angle=0.1)).min() == lowered
+    assert feeds(planned(operation, lower_feed=True, pole=Pole.LEAN, pole_angle=0.2)).min() == 3000.0
+
+
+def test_moves_keep_their_number_and_their_lines() -> None:
+    operation = straight_past(0.05)
+    moves: Moves = planned(operation, pole=Pole.LEAN).motions[0].operation.moves
+    np.testing.assert_array_equal(moves.line, operation.moves.line)
+    np.testing.assert_array_equal(moves.tip, operation.moves.tip)
+    assert REWIND not in looked_after(BC, operation, Pole.LEAN, 0.1).poses.outcome

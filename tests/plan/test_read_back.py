@@ -1,0 +1,99 @@
+"""Whatever is planned, on every shipped machine: written, read back by the independent reader, and proven."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from tests.plan.naive import operation_of
+from tests.plan.test_optimum import short_paths, smooth_paths, winding
+from trunnion.cli.post import planned_program, write
+from trunnion.control import load_control
+from trunnion.errors import InputError, Refused, Severity
+from trunnion.machine import Machine, load_machine, shipped
+from trunnion.plan import Wishes, plan
+from trunnion.reader import run_program
+from trunnion.toolpath import LoadTool, Moves, SpindleOn, Toolpath
+from trunnion.verify import Verification, failures, verify
+
+SINUMERIK = load_machine("yl569").control
+CONTROL = load_control(SINUMERIK.fresh())
+
+#: Every shipped machine with a control whose programs can be written.
+MACHINES = {name: replace(load_machine(name), control=SINUMERIK.fresh()) for name in shipped()}
+
+#: How far the rotary axes may be beyond a limit: half of what is printed.
+HALF_DIGIT = 0.5e-5 + 1e-9
+
+
+def toolpath_of(moves: Moves) -> Toolpath:
+    """A CL file of one operation, with all that a program needs besides."""
+    moves = replace(moves, tip=moves.tip + 20.0 * np.sin(np.arange(len(moves)))[:, None] * [1.0, 0.5, 0.2])
+    operation = operation_of(moves)
+    events = (LoadTool(0, 1, 1), SpindleOn(0, 2, 1000.0))
+    return Toolpath("part.cls", (replace(operation, events=events, intol=0.01, outtol=0.01),))
+
+
+def proven(machine: Machine, toolpath: Toolpath, folder: Path) -> Verification:
+    """The proof of the program that a toolpath becomes.
+
+    Raises
+    ------
+    Refused, InputError
+        When there is no program, as over-travel and tool axes out of reach leave none.
+    """
+    program, _ = planned_program([toolpath], machine, CONTROL, {}, False, Wishes())
+    target = folder / "part.mpf"
+    with target.open("wb") as sink:
+        claim = write(program, sink)
+    return verify(run_program(target, machine), [toolpath], allowed=claim.allowed, settings=claim.settings)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("programs")
+
+
+paths = smooth_paths(25.0) | smooth_paths(100.0) | smooth_paths(3.0) | short_paths(12)
+
+
+@settings(max_examples=250)
+@given(name=st.sampled_from(sorted(MACHINES)), moves=paths)
+def test_what_is_planned_is_proven(name: str, moves: Moves, folder: Path) -> None:
+    machine, toolpath = MACHINES[name], toolpath_of(moves)
+    try:
+        found = proven(machine, toolpath, folder)
+    except (Refused, InputError):
+        assume(False)
+        return
+    assert not failures(found), [(check.key, check.summary) for check in failures(found)]
+    rotary = found.run.rotary
+    low, high = np.array([[a.low, a.high] for a in (machine.axes[k] for k in machine.rotary)]).T
+    assert (rotary >= low - HALF_DIGIT).all()
+    assert (rotary <= high + HALF_DIGIT).all()
+
+
+@settings(max_examples=60)
+@given(
+    name=st.sampled_from(sorted(MACHINES)),
+    tilt=st.floats(3.0, 29.0),
+    start=st.floats(-180.0, 180.0),
+    turns=st.floats(1.2, 3.6),
+    sense=st.sampled_from([-1.0, 1.0]),
+)
+def test_more_than_a_turn_is_wound_or_rewound_and_proven(
+    name: str, tilt: float, start: float, turns: float, sense: float, folder: Path
+) -> None:
+    machine = MACHINES[name]
+    moves = winding(tilt, start, start + sense * 360.0 * turns, 300)
+    toolpath = toolpath_of(replace(moves, tip=30.0 * moves.axis))
+    needs_none = machine.axes[machine.rotary[0]].endless
+    found = proven(machine, toolpath, folder)
+    assert not failures(found), [(check.key, check.summary) for check in failures(found)]
+    rewinds = [p for p in plan([toolpath], machine, 0.001).problems if "to rewind" in p.what]
+    assert all(problem.severity is Severity.WARNING for problem in rewinds)
+    if needs_none:
+        assert not rewinds

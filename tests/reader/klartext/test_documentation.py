@@ -1,0 +1,56 @@
+"""The page about Klartext and the reader do not drift apart."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from trunnion.reader import families
+from trunnion.reader.heidenhain import cycles, functions, interpreter, parameters, words
+
+DOCS = Path(__file__).parents[3] / "docs"
+PAGE = (DOCS / "reader-klartext.md").read_text(encoding="utf-8")
+READER = (DOCS / "reader.md").read_text(encoding="utf-8")
+
+#: What stands in backticks.
+NAMED = set(re.findall(r"`([^`\n]+)`", PAGE))
+
+M_WORDS = {
+    *words.M_EVENTS, *words.M_SPINDLE, *words.M_LATE, *words.M_SILENT, *words.M_NAMED, *words.M_ENDS,
+    words.M_MACHINE, words.M_SECOND_MACHINE, words.M_SHORTEST, words.M_TCP, words.M_CALL_MODAL, words.M_PER_TURN,
+    words.M_PER_MINUTE,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("code", sorted(M_WORDS))
+def test_every_m_word_is_in_the_page(code: int) -> None:
+    assert f"M{code}" in NAMED
+
+
+@pytest.mark.parametrize("word", sorted(words.PATHS | words.BLOCKS_NAMED.keys() | parameters.FUNCTIONS.keys()))
+def test_every_block_and_function_is_in_the_page(word: str) -> None:
+    assert word in NAMED
+
+
+@pytest.mark.parametrize("number", sorted({*cycles.CYCLES, *cycles.OLD, 7, 8, 9, 10, 11, 13, 26, 32, 247}))
+def test_every_cycle_is_in_the_page(number: int) -> None:
+    assert f"CYCL DEF {number}" in NAMED
+
+
+@pytest.mark.parametrize("number", sorted(words.CYCLES_NAMED))
+def test_every_cycle_that_is_only_named_is_in_the_page(number: int) -> None:
+    assert str(number) in NAMED
+
+
+def test_every_fn_function_is_in_the_page() -> None:
+    numbers = {0, 18, *words.FN_NAMED, *functions._ARITHMETIC, *functions._SINGLE, *functions._CONDITIONS}
+    assert {f"FN {number}" for number in numbers} <= NAMED
+
+
+def test_limits_are_those_of_the_page() -> None:
+    assert f"at most {interpreter.DEEPEST_LABEL}" in PAGE
+    assert f"at most {parameters.DEEPEST} deep" in PAGE
+
+
+def test_every_family_is_in_the_page_about_readers() -> None:
+    assert all(f"`{name}`" in READER for name in families.READERS)

@@ -1,0 +1,155 @@
+"""Programs whose tool axis leans near the pole, or whose feed is lowered: proven as they say, and no farther."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.plan.test_pole import around_pole
+from tests.verify.conftest import CL_FOOT, CL_HEAD, check
+from trunnion.cl import read_cl
+from trunnion.cli.post import Claim, planned_program, write
+from trunnion.control import load_control
+from trunnion.machine import Machine, load_machine
+from trunnion.plan import Wishes
+from trunnion.plan.motion import Pole
+from trunnion.reader import run_program
+from trunnion.toolpath import Toolpath
+from trunnion.verify import Agreed, Verification, verify
+
+ROWS = 81
+
+
+@dataclass(frozen=True)
+class Posted:
+    """A pass 0.05 degrees from the pole, posted; ``text`` are the lines of its program."""
+
+    machine: Machine
+    path: Toolpath
+    claim: Claim
+    text: list[str]
+    folder: Path
+
+    def verified(self, text: list[str] | None = None, agreed: Agreed | None = None) -> Verification:
+        """The program, or another text in its place, against the CL file and what was agreed upon."""
+        file = self.folder / "again.mpf"
+        file.write_text("\n".join(self.text if text is None else text) + "\n", encoding="utf-8")
+        allowed = [replace(self.claim.allowed[0], agreed=agreed or self.agreed)]
+        run = run_program(file, self.machine)
+        return verify(run, [self.path], allowed=allowed, settings=self.claim.settings)
+
+    @property
+    def agreed(self) -> Agreed:
+        assert self.claim.allowed[0].agreed is not None
+        return self.claim.allowed[0].agreed
+
+    def block(self, row: int) -> int:
+        """Index of the line that goes to a CL row; row 0 is the rapid."""
+        return [k for k, line in enumerate(self.text) if " X" in line and ("C" in line or "Y" in line)][row]
+
+
+def posted(folder: Path, wishes: Wishes) -> Posted:
+    machine = load_machine("yl569")
+    axis = around_pole(machine, np.linspace(-2.0, 2.0, ROWS), np.full(ROWS, 0.05))
+    tips = [f"{0.25 * k:.6f},{0.01 * k:.6f},5.000000" for k in range(ROWS)]
+    points = [f"GOTO/{tip},{i:.9f},{j:.9f},{k:.9f}\n" for tip, (i, j, k) in zip(tips, axis.tolist(), strict=True)]
+    source = folder / "pole.cls"
+    start = "".join(points[0].replace(",5.000000,", ",50.000000,"))
+    head = CL_HEAD.replace("GOTO/0.0,0.0,50.0,0.0,0.0,1.0\n", start).replace("500.0", "3000.0")
+    source.write_text(head + "".join(points) + CL_FOOT, encoding="utf-8")
+    path = read_cl(source)
+    program, _ = planned_program([path], machine, load_control(machine.control), {}, False, wishes)
+    target = folder / "pole.mpf"
+    with target.open("wb") as sink:
+        claim = write(program, sink)
+    return Posted(machine, path, claim, target.read_text(encoding="utf-8").splitlines(), folder)
+
+
+@pytest.fixture
+def leaning(tmp_path: Path) -> Posted:
+    return posted(tmp_path, Wishes(pole=Pole.LEAN))
+
+
+@pytest.fixture
+def slowed(tmp_path: Path) -> Posted:
+    return posted(tmp_path, Wishes(lower_feed=True))
+
+
+def failed(found: Verification) -> list[str]:
+    return [c.key for c in found.checks if not c.passed]
+
+
+def with_word(line: str, letter: str, change: float) -> str:
+    """The line with a number changed."""
+    words = line.split(" ")
+    k = next(k for k, word in enumerate(words) if word.startswith(letter))
+    words[k] = f"{letter}{float(words[k][len(letter) :]) + change:.5f}"
+    return " ".join(words)
+
+
+@pytest.mark.parametrize("mode", [Pole.HOLD, Pole.SPREAD, Pole.LEAN])
+def test_a_leaning_program_is_proven_as_it_says(mode: Pole, tmp_path: Path) -> None:
+    found = posted(tmp_path, Wishes(pole=mode)).verified()
+    assert failed(found) == []
+    assert "; leans by up to 0.0" in check(found, "axis").summary
+
+
+def test_without_its_claim_it_fails(leaning: Posted) -> None:
+    nothing = Agreed(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
+    assert "axis" in failed(leaning.verified(agreed=nothing))
+
+
+def test_a_wrong_rotary_position_is_found_in_every_row(leaning: Posted) -> None:
+    tried = 0
+    for k, line in enumerate(leaning.text):
+        for letter in "BC":
+            if any(word.startswith(letter) and word[1:2] in "-.0123456789" for word in line.split(" ")) and "X" in line:
+                for change in (2e-5, 0.3):
+                    tried += 1
+                    found = leaning.verified(
+                        [*leaning.text[:k], with_word(line, letter, change), *leaning.text[k + 1 :]]
+                    )
+                    if "SUPA" not in line:
+                        assert "axis" in failed(found), (line, change)
+    assert tried > 4 * len(leaning.agreed.leaned)
+
+
+def test_a_lean_beyond_what_was_asked_for_is_not_believed(leaning: Posted) -> None:
+    off = check(leaning.verified(agreed=replace(leaning.agreed, lean=0.03)), "axis")
+    assert not off.passed
+    assert "more than the 0.03 asked for" in off.places[0].text
+    assert off.places[0].cl_line in range(12, 12 + ROWS)
+
+
+def test_a_claim_about_other_rows_is_not_met(leaning: Posted) -> None:
+    agreed = leaning.agreed
+    moved = replace(agreed, leaned=agreed.leaned + 1)
+    assert "axis" in failed(leaning.verified(agreed=moved))
+
+
+def test_a_slowed_program_is_proven_as_it_says(slowed: Posted) -> None:
+    found = slowed.verified()
+    assert failed(found) == []
+    assert "for the rotary axes" in check(found, "feed").summary
+    assert check(found, "speed").worst is not None
+    assert check(found, "speed").worst <= 1.0  # type: ignore[operator]
+
+
+def test_every_wrong_feed_is_found(slowed: Posted) -> None:
+    lines = [k for k, line in enumerate(slowed.text) if " F" in line and "FNORM" not in line]
+    assert len(lines) > 10
+    for k in lines:
+        for change in (0.02, -0.02, 500.0):
+            text = [*slowed.text[:k], with_word(slowed.text[k], "F", change), *slowed.text[k + 1 :]]
+            assert failed(slowed.verified(text)) == ["feed"], slowed.text[k]
+
+
+@pytest.mark.parametrize(("factor", "text"), [(0.5, "need no more than"), (1e3, "said to be a lower one")])
+def test_a_feed_lower_than_needed_or_higher_than_asked_for_is_not_believed(
+    factor: float, text: str, slowed: Posted
+) -> None:
+    agreed = replace(slowed.agreed, feed=slowed.agreed.feed * factor)
+    found = check(slowed.verified(agreed=agreed), "feed")
+    assert not found.passed
+    assert any(text in place.text for place in found.places)
