@@ -324,6 +324,7 @@ class FanucInterpreter(Rs274Interpreter[Activation]):
         if code == words.OTHER_HOME:
             which = block.take("P")
             self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING)
+        self._count(1)
         kind, control.kind = control.kind, RAPID
         before = control.place[:3].copy()
         moving = {name: word for name, word in axes.items() if not (not control.absolute and word[0] == 0.0)}
@@ -378,6 +379,7 @@ class FanucInterpreter(Rs274Interpreter[Activation]):
         way = block.take("P")
         if way:
             self._note(f"G53.1 P{way:g}: taken as G53.1, the way on which the axes turn least", Severity.WARNING)
+        self._count(1)
         self._control.stand_on_plane()
 
     # Motion

@@ -149,6 +149,7 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
         if code == words.TOOL:
             control.change_tool()
         elif code == words.RETRACT:
+            self._count(1)
             control.retract()
         elif not self._m(code):
             control.event("m", float(code))

@@ -349,6 +349,7 @@ class LinuxcncInterpreter(Rs274Interpreter[Activation]):
         control = self._control
         axes = self._programmed(self._axis_words(block))
         kind, control.kind = control.kind, RAPID
+        self._count(1)
         control.move(axes, None)
         names = axes or dict.fromkeys((*"XYZ", *control.names))
         stored = self._homes[code]
@@ -456,6 +457,7 @@ class LinuxcncInterpreter(Rs274Interpreter[Activation]):
             raise BlockError("R of the cycle lies below its depth")
         still = [np.nan, np.nan]
         if old < retract:
+            self._count(1)
             control.drill([Step(True, retract)])
             old = height = retract
         hole = cycles.Hole(

@@ -126,7 +126,7 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _may_be_plain(self, text: Text) -> bool:
         control = self.control
-        if self.motion not in (0, 10) or not control.absolute or not control.place[3] > 0.0:
+        if self.motion not in (0, 10) or not control.absolute:
             return False
         return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
 
