@@ -25,9 +25,10 @@ PREPARATORY: Final = 2
 FEED: Final = 3
 SLIDE: Final = 4  # and the two after it: X, Y, Z
 ROTARY: Final = 7  # and the one after it
-COMMENT: Final = 9
-ASSIGN: Final = 10
-GAP: Final = 11
+VECTOR: Final = 9  # and the two after it: the tool axis
+COMMENT: Final = 12
+ASSIGN: Final = 13
+GAP: Final = 14
 
 #: What a byte means, and the flag that its whole numbers are none of the kernel's.
 _MEANING: Final = 15
@@ -52,7 +53,13 @@ _EQUALS: Final = 61
 
 
 def letters(
-    rotary: tuple[str, str], *, comment: str = "", assign: str = "", gaps: bool = False, pointed: str = ""
+    rotary: tuple[str, str],
+    *,
+    comment: str = "",
+    assign: str = "",
+    gaps: bool = False,
+    pointed: str = "",
+    vector: str = "",
 ) -> Codes:
     """Table (256,) uint8 from a byte to what it means to ``scan``.
 
@@ -60,6 +67,7 @@ def letters(
     comment   what begins a comment that goes on to the end of the line
     assign    what may stand between the letter of an axis and its number
     gaps      blanks may stand there
+    vector    letters of the tool axis, besides A3= B3= C3=
     pointed   letters whose numbers need a point, 0 apart: others are counted in increments
     """
     table = np.zeros(256, np.uint8)
@@ -67,6 +75,7 @@ def letters(
     for column, name in enumerate(rotary):
         if len(name) == 1:
             meanings.setdefault(name.upper(), ROTARY + column)
+    meanings |= {letter: VECTOR + axis for axis, letter in enumerate(vector)}
     for letter, meaning in meanings.items():
         flag = _POINTED if letter in pointed else 0
         table[ord(letter)] = table[ord(letter.lower())] = meaning | flag
@@ -137,10 +146,10 @@ def scan(
             slot = what
             at += 1
             if vectors and 65 <= upper <= 67 and text[at] == _THREE and text[at + 1] == _EQUALS:
-                slot = 9 + upper - 65
+                slot = VECTOR + upper - 65
                 what = ROTARY
                 at += 2
-            elif what == 0 or what > ROTARY + 1:
+            elif what == 0 or what > VECTOR + 2:
                 plain = False
                 break
             elif what >= SLIDE and table[text[at]] == ASSIGN:

@@ -25,10 +25,17 @@ class FanucControl(Rs274Control):
         super().__init__(machine, note, file, shortest=shortest)
         names = self.names[0], self.names[1]
         pointed = "" if calculator else "XYZ" + "".join(names)
-        # Two tables: whole numbers behind F are what they look like only in mm/min.
-        self._tables = tuple(
-            letters(names, gaps=True, pointed=pointed + feed) for feed in ("", "" if calculator else "F")
-        )
+        # Whole numbers behind F are what they look like only in mm/min; with G43.5 I J K are the tool axis.
+        self._tables = {
+            (plain, vectors): letters(
+                names,
+                gaps=True,
+                pointed="" if calculator else pointed + "IJK" + ("" if plain else "F"),
+                vector="IJK" if vectors else "",
+            )
+            for plain in (True, False)
+            for vectors in (True, False)
+        }
         #: Number of the work offset in force: 1 to 6 for G54 to G59, more for G54.1.
         self.system = 1
         self._set: dict[int, Floats] = {}
@@ -48,7 +55,7 @@ class FanucControl(Rs274Control):
     def plain_table(self) -> Codes:
         """What bytes mean to the scan kernel now."""
         plain = self.feed_mode.now in (93, 94) and self.lengths == 1.0
-        return self._tables[0 if plain else 1]
+        return self._tables[plain, self.vectors]
 
     # Frames
 

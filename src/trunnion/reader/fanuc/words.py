@@ -29,7 +29,7 @@ TAKES_AXES: Final = frozenset({DWELL, SET_DATA, HOME, OTHER_HOME, LOCAL, MACRO, 
 
 #: G codes that change how the control drives, or what is not there: tool lengths are 0.
 SILENT: Final = frozenset(
-    {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 450, 500, 501, 600, 610, 620, 630, 640, 970}
+    {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 500, 501, 600, 610, 620, 630, 640, 970}
 )
 
 #: G codes that are known and not simulated: text, and whether the path is wrong without it.
@@ -50,6 +50,7 @@ NAMED: Final = {
     422: ("radius compensation in space is not simulated", False),
     431: ("the tool length along the tool axis is not simulated", True),
     432: ("dynamic fixture offsets and rotary tool lengths are not simulated", True),
+    450: ("tool position offsets are not simulated", True),
     460: ("tool position offsets are not simulated", True),
     470: ("tool position offsets are not simulated", True),
     480: ("tool position offsets are not simulated", True),
@@ -92,6 +93,7 @@ WORDS: Final = {
     440: "H",
     431: "H",
     432: "H",
+    450: "D",
     460: "D",
     470: "D",
     480: "D",
