@@ -1,23 +1,27 @@
 """The optimum against the nearest neighbour: ``python benchmarks/planning.py``.
 
 Four paths on five machines: how often each of the two must rewind in the cut, how far it turns the rotary axes, and how
-long it takes; then how many points a second are planned. Prints the tables of docs/planning.md.
+long it takes; how many points a second are planned; and what becomes of rotary axes that are too fast near the pole.
+Prints the tables of docs/planning.md.
 """
 
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from make_cls import path
 from trunnion.arrays import Codes
-from trunnion.machine import Machine, load_machine
+from trunnion.machine import Machine, forward, load_machine
+from trunnion.plan import Pole, Wishes, plan, seconds
 from trunnion.plan.decisions import Planned, travel, turned_over
 from trunnion.plan.poses import choose, choose_nearest, take
+from trunnion.plan.speed import shares
 from trunnion.plan.states import states_of
-from trunnion.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool
+from trunnion.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool, Toolpath
 
 Floats = NDArray[np.float64]
 Choose = Callable[[Machine, Moves, bool], Codes]
@@ -122,8 +126,64 @@ def measured(machine: Machine, moves: Moves, choice: Choose) -> str:
     return f"{len(turned_over(planned))}{note} | {turned:.0f} | {1e3 * min(seconds):.1f}"
 
 
+def straight_past() -> Moves:
+    """Nine straight passes to and fro, 0.02 to 0.42 degrees from the pole."""
+    parts = []
+    for number, across in enumerate(np.linspace(-0.38, 0.42, 9)):
+        along = np.linspace(-4.0, 4.0, 201) * (1.0 if number % 2 == 0 else -1.0)
+        x, y = np.tan(np.radians(along)), np.full(201, np.tan(np.radians(across)))
+        axis = np.column_stack((x, y, np.ones(201)))
+        parts.append(axis / np.linalg.norm(axis, axis=1, keepdims=True))
+    return passes(parts)
+
+
+#: How the pole is looked after, by the settings that ask for it.
+POLES = {
+    "off": Wishes(),
+    "hold, 0.5": Wishes(pole=Pole.HOLD, pole_angle=0.5),
+    "spread, 0.5": Wishes(pole=Pole.SPREAD, pole_angle=0.5),
+    "lean, 0.5": Wishes(pole=Pole.LEAN, pole_angle=0.5),
+    "lower_feed": Wishes(lower_feed=True),
+}
+
+
+def at_pole(machine: Machine, moves: Moves, wishes: Wishes) -> str:
+    """Cells of the table: share of the rapid speed, rows too fast, lean, time on the machine, milliseconds."""
+    moves = replace(moves, tip=4.0 * moves.tip, feed=np.full(len(moves), 600.0))
+    path = Toolpath("path", (Operation("", Tool(), Frame(), moves, Arcs.none(), (), 1),))
+    begin = time.perf_counter()
+    motion = plan([path], machine, 0.001, wishes).motions[0]
+    took = time.perf_counter() - begin
+    rotary = motion.rotary
+    share = shares(machine, motion.operation, rotary).max(axis=1)
+    leaned = motion.departures
+    joints = np.zeros((len(leaned.rotary), 5))
+    joints[:, list(machine.rotary)] = leaned.rotary
+    apart = np.linalg.norm(forward(machine, joints)[1] - moves.axis[leaned.leaned], axis=1)
+    lean = float(np.degrees(2.0 * np.arcsin(0.5 * apart)).max(initial=0.0))
+    cells = (f"{100.0 * share.max():.0f} %", f"{int((share > 1.0).sum())}", f"{lean:.4f}")
+    return " | ".join((*cells, f"{seconds(machine, motion):.1f}", f"{1e3 * took:.0f}"))
+
+
+def poles() -> None:
+    """Print the table of the ways to look after the pole."""
+    print("\n| path | machine | pole | rotary axis at most | rows too fast | lean | s | planned in ms |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    paths = {
+        "near-pole spiral": (near_pole_spiral(), ("off", "lean, 0.5", "lower_feed")),
+        "passes by the pole": (straight_past(), tuple(POLES)),
+    }
+    for title, (moves, modes) in paths.items():
+        for name, machine in machines().items():
+            if any(machine.axes[column].rapid is None for column in machine.rotary):
+                continue
+            for mode in modes:
+                at_pole(machine, moves, POLES[mode])  # once for what is compiled at the first call
+                print(f"| {title} ({len(moves)}) | {name} | {mode} | {at_pole(machine, moves, POLES[mode])} |")
+
+
 def main() -> None:
-    """Print both tables."""
+    """Print all tables."""
     parser = argparse.ArgumentParser(description="Plan with the optimum and with the nearest neighbour.")
     parser.add_argument("--points", type=int, default=1_000_000, help="points of the second table")
     points = parser.parse_args().points
@@ -145,6 +205,7 @@ def main() -> None:
             take(machine, moves, state, False)
             best = min(best, time.perf_counter() - begin)
         print(f"| {name} | {len(states_of(machine))} | {points / best:,.0f} |")
+    poles()
 
 
 if __name__ == "__main__":

@@ -111,7 +111,7 @@ def test_where_there_is_a_way_no_rotary_axis_is_too_fast(data: st.DataObject, na
     found = looked_after(machine, operation, Pole.LEAN, angle)
     if (found.poses.outcome > 0).any():
         return
-    share = shares(machine, operation, found.poses.rotary, np.zeros(0, np.int64)).max(axis=1)
+    share = shares(machine, operation, found.poses.rotary).max(axis=1)
     lacking: Flags = np.zeros(len(share), bool)
     for place in found.places:
         if not place.found:
@@ -128,7 +128,7 @@ def test_nothing_is_done_where_nothing_is_too_fast(data: st.DataObject, name: st
     for mode in (Pole.HOLD, Pole.SPREAD, Pole.LEAN):
         found = looked_after(machine, operation, mode, 0.5)
         plain = follow(machine, operation.moves, False)
-        if not (shares(machine, operation, plain.rotary, np.zeros(0, np.int64)) > 0.98).any():
+        if not (shares(machine, operation, plain.rotary) > 0.98).any():
             assert not len(found.rows)
             np.testing.assert_array_equal(found.poses.rotary, plain.rotary)
 
@@ -259,7 +259,7 @@ def test_the_turn_out_of_the_pole_is_spread_over_the_approach_without_any_lean()
     assert plain.lean.max(initial=0.0) < 1e-9
     steps = np.abs(np.diff(np.unwrap(plain.poses.rotary[:, 0], period=360.0)))
     assert steps[4:40].max() < 4.0
-    assert shares(BC, operation, plain.poses.rotary, np.zeros(0, np.int64))[:, 0].max() < 1.5
+    assert shares(BC, operation, plain.poses.rotary)[:, 0].max() < 1.5
 
 
 def test_by_default_everything_stays_and_the_log_names_place_axis_and_cure() -> None:
@@ -298,7 +298,7 @@ def test_a_lowered_feed_is_what_the_axes_can_do_and_no_less() -> None:
     operation = straight_past(0.05)
     found = planned(operation, lower_feed=True)
     motion = found.motions[0]
-    share = shares(BC, motion.operation, motion.rotary, np.zeros(0, np.int64)).max(axis=1)
+    share = shares(BC, motion.operation, motion.rotary).max(axis=1)
     low = feeds(found) < operation.moves.feed
     assert low.any()
     assert share.max() < 1.0

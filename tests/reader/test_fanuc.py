@@ -1,6 +1,7 @@
 """Fanuc programs: numbers without a point, frames and planes, cycles, macros."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -315,3 +316,12 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
         same(fast, slow)
     else:
         assert fast == slow
+
+
+def test_the_length_of_the_tool_counts_from_g43_to_g49(run: Runner) -> None:
+    machine = replace(MACHINE, tool_length=50.0)
+    got = run("G0 X1. Y2. Z3.\nG43 H1 Z3.\nG43.4 H1\nX4. Y5. Z6. B30. C40.\nG49\nG53 X0 Y0 Z0\nZ5.\n", machine)
+    assert got.errors == ()
+    close(slides(got)[:2], [[1, 2, 3], [1, 2, 53]])
+    close(got.tip[2], [4.0, 5.0, 6.0], atol=1e-9)
+    close(slides(got)[3:], [[0, 0, 0], [0, 0, 5]], atol=1e-9)

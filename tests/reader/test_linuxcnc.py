@@ -3,6 +3,7 @@
 import math
 import re
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -216,3 +217,20 @@ def test_a_subprogram_that_calls_itself_is_stopped(run: Runner) -> None:
 def test_what_is_nested_wrongly_is_refused(text: str, run: Runner) -> None:
     with pytest.raises(InputError, match=r"O word|begin|without|never ends|outside"):
         run(text, XYZAC)
+
+
+@pytest.mark.parametrize("key", ["xyzac_trt", "xyzbc_trt"])
+def test_the_length_of_the_tool_counts_as_linuxcnc_counts_it(key: str, run: Runner) -> None:
+    machine = replace(load_machine(key), tool_length=80.0)
+    tilt = "A" if key == "xyzac_trt" else "B"
+    text = f"G43\nG0 X1 Y2 Z3\nM428\nX4 Y5 Z6 {tilt}-30 C40\nG53 G0 Z100\nM429\n"
+    text += "G53 G0 Z7\nG10 L20 P1 Z1\nZ2\nG49\nZ5\nM2\n"
+    got = run(text, machine)
+    assert got.errors == ()
+    close(at(got, "XYZ")[0], [1.0, 2.0, 83.0])
+    close(got.tip[1], [4.0, 5.0, 6.0], atol=1e-9)
+    # LinuxCNC's kinematics have the position of the gauge point over the tip, and the tilting axis as far below.
+    x, y, z = trt(key, 4.0, 5.0, 6.0, -30.0, 40.0)
+    close(at(got, "XYZ")[1], [x, y, z + 80.0], atol=1e-9)
+    close(got.tip[2], [4.0, 5.0, 20.0], atol=1e-9)
+    close(at(got, "Z")[3:, 0], [7.0, 8.0, 11.0 - 80.0], atol=1e-9)

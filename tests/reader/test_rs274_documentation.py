@@ -26,7 +26,7 @@ NAMED = {name: {word.split("[")[0] for word in re.findall(r"`([^`\n]+)`", page)}
 COMMON = {*MOTIONS, *PLANES, 900, 910, 800}
 G_WORDS = {
     "linuxcnc": {
-        *COMMON, *FEED_MODES, *linuxcnc.OFFSETS, *linuxcnc.SILENT, *linuxcnc.NAMED, *linuxcnc.LINES,
+        *COMMON, *FEED_MODES, *linuxcnc.OFFSETS, *linuxcnc.SILENT, *linuxcnc.LENGTHS, *linuxcnc.NAMED, *linuxcnc.LINES,
         *linuxcnc.NO_MOTION,
         *linuxcnc_cycles.CYCLES, 40, 100, 200, 210, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923, 980, 990,
     },

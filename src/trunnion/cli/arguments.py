@@ -77,6 +77,10 @@ def _verify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--span", type=_tolerance, metavar="DEG", help="how far the tool axis may be off between points"
     )
+    parser.add_argument(
+        "--span-tip", type=_tolerance, metavar="MM", help="how far the tip may be off between points without TCP"
+    )
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, for programs without TCP")
     parser.add_argument("--tool", default="", metavar="T", help="tool that was called in place of the CL file's")
     parser.add_argument("--offset", metavar="G", help="work offset of the program; G54 where there is a CL file")
     parser.add_argument("--edge", type=int, metavar="D", help="cutting edge under which the tool works; with --cl 1")

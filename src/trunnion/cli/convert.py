@@ -4,11 +4,10 @@ import argparse
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.post import PLANNING, check_settings, planned_program, point, prove, say, wishes_of, write
+from trunnion.cli.post import RUN_SETTINGS, check_settings, planned_program, prove, say, set_up, wishes_of, write
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
@@ -31,10 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
     target_control = load_control(target_machine.control) if arguments.to_machine else control
     settings = dict(arguments.settings)
     _check_settings(settings, target_control, arguments.to_cl)
-    if "zero" in settings:
-        target_machine = replace(target_machine, workpiece_zero=point(settings.pop("zero")))
-    wishes = wishes_of(settings)
-    settings = {key: value for key, value in settings.items() if key not in PLANNING}
+    target_machine = set_up(target_machine, settings)
+    wishes = wishes_of(settings, target_control)
+    settings = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
     target = _target(arguments, target_control)
     with whole(target) as sink:
         converted = _read(arguments.file, machine, control, arguments.force)
@@ -49,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
         else:
             paths = [converted.toolpath]
             program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
-            prove(write(program, sink), paths, sink, target, program if arguments.force else None)
+            prove(write(program, sink, wishes), paths, sink, target, program if arguments.force else None)
     if arguments.to_cl and carried:
         print(_hint(target, arguments.machine, carried), file=sys.stderr)
     if target != "-":

@@ -7,13 +7,13 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
 from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
-from trunnion.control import CHOICES, Control, Program, check_program, is_lift, load_control, write_program
+from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
@@ -21,13 +21,16 @@ from trunnion.plan import Clearance, Decision, Manner, Motion, Pole, Surface, Wi
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
-    from trunnion.verify import Allowed, Settings
+    from trunnion.verify import Allowed, Settings, Verification
 
 #: Settings that say how to plan.
-PLANNING = ("manner", "frame", "rewind", "clearance", "pole", "pole_angle", "lower_feed")
+PLANNING = (
+    "manner", "tcp", "tip_tolerance", "axis_tolerance", "frame", "rewind", "clearance", "pole", "pole_angle",
+    "lower_feed",
+)  # fmt: skip
 
 #: Settings that say how to read, to place and to plan rather than what to print.
-_RUN_SETTINGS = ("units", "zero", "numbers", *PLANNING)
+RUN_SETTINGS = ("units", "zero", "tool_length", "numbers", *PLANNING)
 
 #: What the setting ``frame`` may say: whose coordinate system the program's is.
 _FRAMES = ("first", "absolute")
@@ -47,11 +50,10 @@ def run(arguments: argparse.Namespace) -> int:
     settings = dict(arguments.settings)
     check_settings(settings, control)
     if settings.get("numbers") == "off":
-        control = replace(control, numbers=replace(control.numbers, letter=""))
-    if "zero" in settings:
-        machine = replace(machine, workpiece_zero=point(settings["zero"]))
-    printed = {key: value for key, value in settings.items() if key not in _RUN_SETTINGS}
-    wishes = wishes_of(settings, arguments.explain or bool(arguments.report))
+        control = replace(control, numbers=replace(control.numbers, numbered=False))
+    machine = set_up(machine, settings)
+    printed = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
+    wishes = wishes_of(settings, control, arguments.explain or bool(arguments.report))
     targets = _targets(arguments, control)
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
@@ -62,12 +64,12 @@ def run(arguments: argparse.Namespace) -> int:
             program, decisions = planned_program(
                 paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
             )
-            claim = write(program, sink)
-            claim = replace(claim, settings=replace(claim.settings, absolute=wishes.absolute))
+            claim = write(program, sink, wishes)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
-            prove(claim, paths, sink, target, again, arguments.report, decisions)
+            said = decisions if wishes.explain else ()
+            prove(claim, paths, sink, target, again, arguments.report, said)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
     return 0
@@ -116,11 +118,25 @@ def planned_program(
         raise InputError(lacking)
     say(lacking)
     against = [problem for problem in planned.problems if problem.severity is Severity.ERROR]
+    against += _unprovable(machine, control)
     if against and not force:
-        raise Refused((*planned.problems, Problem(paths[0].file, 0, "no program is written", "--force writes it")))
+        unproven = _unprovable(machine, control)
+        raise Refused(
+            (*planned.problems, *unproven, Problem(paths[0].file, 0, "no program is written", "--force writes it"))
+        )
     say(planned.problems)
     notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in against]
     return replace(program, notices=notices), planned.decisions
+
+
+def _unprovable(machine: Machine, control: Control) -> list[Problem]:
+    """Why a program of this machine can be written but not read back; empty where it can."""
+    from trunnion.reader import can_read
+
+    if can_read(machine):
+        return []
+    what = f"programs for {control.name} cannot be read back yet: nothing proves this one"
+    return [Problem(machine.key, 0, what)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,13 +155,13 @@ class Claim:
     settings: "Settings"
 
 
-def write(program: Program, sink: BinaryIO) -> Claim:
-    """Write a program; what comes back is all that its proof needs."""
+def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None) -> Claim:
+    """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for."""
     rows = sum(len(motion.operation.moves) for motion in program.motions)
     with progress("writing", rows, "points") as advance:
         write_program(program, sink, advance)
     operations = sum(motion.begins for motion in program.motions)
-    return Claim(program.machine, rows, operations, _allowed(program), _asked(program))
+    return Claim(program.machine, rows, operations, _allowed(program), _asked(program, wishes or Wishes()))
 
 
 def prove(
@@ -182,15 +198,24 @@ def prove(
         When a check fails and there is no program to write again.
     """
     from trunnion.cli.verify import report as write_report
-    from trunnion.reader import run_program
+    from trunnion.reader import can_read, run_program
     from trunnion.verify import check_lines, failures, place_lines, time_lines, verify
 
+    if not can_read(claim.machine):
+        what = "it is written by --force, and nothing has been checked" + (": there is no report" if report else "")
+        say([Problem(target, 0, what, severity=Severity.WARNING)])
+        return
     sink.flush()
     run = run_program(Path(sink.name), claim.machine)
     found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
     found = replace(found, program="the program" if target == "-" else target)
     for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
         print(line, file=sys.stderr)
+    if not decisions and _too_fast(found):
+        print(
+            f"{found.program}: a rotary axis cannot follow the feed everywhere; --explain says where, and what helps",
+            file=sys.stderr,
+        )
     if report:
         write_report(found, report, decisions)
     failed = failures(found)
@@ -204,21 +229,29 @@ def prove(
         write_program(replace(again, notices=[*again.notices, *notices]), sink)
 
 
+def _too_fast(found: "Verification") -> bool:
+    """Whether a rotary axis would have to be faster than it can."""
+    names = tuple(f"{axis.name} " for axis in found.machine.axes if axis.is_rotary)
+    return any(c.key == "speed" and any(place.text.startswith(names) for place in c.places) for c in found.checks)
+
+
 def _allowed(program: Program) -> "list[Allowed]":
     """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
     from trunnion.verify import Agreed, Allowed
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
-    turning = control.number_formats(three_axis=False)["plane_angle"].decimals
     allowed: list[Allowed] = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
         tip, angle = half["X"], max(half["primary"], half["secondary"])
         if motion.plane is not None:
+            turning = control.number_formats(three_axis=False)["plane_angle"].decimals
             tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
+        if motion.manner is Manner.WITHOUT_TCP:
+            tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
         if not motion.begins:
             before = allowed.pop()
             tip, angle = max(tip, before.tip), max(angle, before.angle)
@@ -243,16 +276,22 @@ def _lever(motion: Motion, machine: Machine) -> float:
     return max(float(np.linalg.norm(np.cross(first, motion.operation.moves.axis[0]))), 1e-3)
 
 
-def _asked(program: Program) -> "Settings":
+def _asked(program: Program, wishes: Wishes) -> "Settings":
     """What the settings of the run say that the CL files do not."""
     from trunnion.verify import Settings
+
+    led = any(motion.manner is Manner.WITHOUT_TCP for motion in program.motions)
+    axis = wishes.axis_between if led or math.isfinite(wishes.axis_between) else None
 
     values = {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
     offset = values["work_offset"].strip().upper().removeprefix("G")
     return Settings(
         tool=values["tool"].strip('"'),
         work_offset=int(offset) if offset.isdigit() else None,
-        edge=int(values["edge"]),
+        edge=int(values["edge"]) if "edge" in values else None,
+        span=axis,
+        span_tip=wishes.tip_tolerance if led else None,
+        absolute=wishes.absolute,
     )
 
 
@@ -264,7 +303,7 @@ def say(problems: Sequence[Problem]) -> None:
 
 def check_settings(settings: Mapping[str, str], control: Control) -> None:
     """Raise ``InputError`` for settings that the control does not have, or that make no sense."""
-    known = (*control.settings, *_RUN_SETTINGS)
+    known = (*control.settings, *RUN_SETTINGS)
     problems = [
         Problem("--set", 0, f"{key} is no setting of {control.name}", f"write one of {', '.join(known)}")
         for key in settings
@@ -277,9 +316,10 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     if settings.get("rewind", "insert") not in ("insert", "none"):
         problems.append(Problem("--set", 0, f"rewind is {settings['rewind']!r}", "write rewind=insert or rewind=none"))
-    if not is_lift(settings.get("bore_lift", "")):
-        cure = "write millimetres, such as bore_lift=0.5"
-        problems.append(Problem("--set", 0, f"bore_lift is {settings['bore_lift']!r}", cure))
+    if settings.get("tcp", "on") not in ("on", "off"):
+        problems.append(Problem("--set", 0, f"tcp is {settings['tcp']!r}", "write tcp=on or tcp=off"))
+    for name, cure in control.family.wrong_settings(settings):
+        problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
     if settings.get("numbers", "on") not in ("on", "off"):
         problems.append(Problem("--set", 0, f"numbers is {settings['numbers']!r}", "write numbers=on or numbers=off"))
     if settings.get("frame", "first") not in _FRAMES:
@@ -288,7 +328,7 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     if settings.get("manner", "auto") not in _MANNERS:
         cure = f"write one of {', '.join(_MANNERS)}"
         problems.append(Problem("--set", 0, f"manner is {settings['manner']!r}", cure))
-    for name, choices in CHOICES.items():
+    for name, choices in control.family.CHOICES.items():
         if settings.get(name, choices[0]) not in choices:
             cure = f"write one of {', '.join(choices)}"
             problems.append(Problem("--set", 0, f"{name} is {settings[name]!r}", cure))
@@ -306,29 +346,20 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         raise InputError(problems)
 
 
-def wishes_of(settings: Mapping[str, str], explain: bool = False) -> Wishes:
-    """What the settings, checked by ``check_settings``, say to the planner."""
-    usual = Wishes()
-    cures = {
-        "pole_angle": "write pole_angle=DEG, by how much the tool axis may lean near the pole, such as pole_angle=0.1",
-    }
-    return Wishes(
-        rewind=settings.get("rewind", "insert") == "insert",
-        clearance=_clearance(settings["clearance"]) if "clearance" in settings else usual.clearance,
-        explain=explain,
-        manner=_MANNERS[settings.get("manner", "auto")],
-        absolute=settings.get("frame", "first") == "absolute",
-        pole=Pole(settings.get("pole", "off")),
-        pole_angle=_number(settings, "pole_angle", usual.pole_angle, (1e-3, 10.0), cures),
-        lower_feed=settings.get("lower_feed", "no") == "yes",
-    )
+#: Settings that are numbers: their limits, and what to write.
+_NUMBERS = {
+    "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
+    "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
+    "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
+    "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
+}
 
 
 def _clearance(text: str) -> Clearance:
     """The setting ``clearance``."""
-    kind, _, number = text.rpartition(":")
+    kind, _, length = text.rpartition(":")
     try:
-        surface, value = Surface(kind or Surface.DISTANCE), float(number)
+        surface, value = Surface(kind or Surface.DISTANCE), float(length)
     except ValueError:
         surface, value = Surface.DISTANCE, math.nan
     least = -10000.0 if surface is Surface.PLANE else 0.1
@@ -338,20 +369,57 @@ def _clearance(text: str) -> Clearance:
     raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
 
 
-def _number(
-    settings: Mapping[str, str], key: str, usual: float, within: tuple[float, float], cures: Mapping[str, str]
-) -> float:
-    """A setting that is a number."""
+def number(settings: Mapping[str, str], key: str) -> float | None:
+    """A setting that is a number; None where nobody set it.
+
+    Raises
+    ------
+    InputError
+        If it is none, or beyond what makes sense.
+    """
     text = settings.get(key)
     if text is None:
-        return usual
+        return None
+    low, high, cure = _NUMBERS[key]
     try:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not within[0] <= value <= within[1]:
-        raise InputError(Problem("--set", 0, f"{key} is {text!r}", cures[key]))
+    if not low <= value <= high:
+        raise InputError(Problem("--set", 0, f"{key} is {text!r}", f"write {cure}"))
     return value
+
+
+def set_up(machine: Machine, settings: Mapping[str, str]) -> Machine:
+    """The machine with its workpiece and its tool where the settings say so."""
+    if "zero" in settings:
+        machine = replace(machine, workpiece_zero=point(settings["zero"]))
+    length = number(settings, "tool_length")
+    return machine if length is None else replace(machine, tool_length=length)
+
+
+def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = False) -> Wishes:
+    """What the settings, checked by ``check_settings``, say to the planner."""
+    tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
+    if tcp and not control.tcp:
+        raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
+    if not tcp and settings.get("manner") == "tcp":
+        raise InputError(Problem("--set", 0, "manner is tcp, and there is no TCP", "leave the setting manner out"))
+    said = {key: number(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
+    known: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+    if "clearance" in settings:
+        known["clearance"] = _clearance(settings["clearance"])
+    return Wishes(
+        rewind=settings.get("rewind", "insert") == "insert",
+        explain=explain,
+        manner=_MANNERS[settings.get("manner", "auto")],
+        manners=control.manners(settings),
+        pole=Pole(settings.get("pole", "off")),
+        absolute=settings.get("frame", "first") == "absolute",
+        lower_feed=settings.get("lower_feed", "no") == "yes",
+        tcp=tcp,
+        **known,
+    )
 
 
 def point(text: str) -> tuple[float, float, float]:

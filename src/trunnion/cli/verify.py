@@ -2,7 +2,6 @@
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +19,7 @@ _REPORTS = (".html", ".json")
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
-    from trunnion.cli.post import point
+    from trunnion.cli.post import set_up
     from trunnion.reader import reader_of, run_program
     from trunnion.verify import Allowed, Settings, check_lines, place_lines, time_lines, verify
 
@@ -28,8 +27,8 @@ def run(arguments: argparse.Namespace) -> int:
         check_report(arguments.report)
     machine = load_machine(arguments.machine)
     reader_of(machine)
-    if arguments.zero:
-        machine = replace(machine, workpiece_zero=point(arguments.zero))
+    given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
+    machine = set_up(machine, {key: value for key, value in given.items() if value})
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
     done = run_program(Path(arguments.file), machine)
     found = verify(
@@ -41,6 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
             work_offset=_offset(arguments.offset, bool(paths)),
             edge=1 if arguments.edge is None and paths else arguments.edge,
             span=arguments.span,
+            span_tip=arguments.span_tip,
             absolute=arguments.frame == "absolute",
         ),
         columns=bool(arguments.report),

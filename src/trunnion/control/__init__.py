@@ -4,7 +4,8 @@ In:     a toolpath, its motion on the machine, the control's definition and the 
 Out:    the NC program, through the block writer.
 """
 
-from trunnion.control.definition import CHOICES, Control, is_lift, load_control
-from trunnion.control.program import Program, check_program, write_program
+from trunnion.control.check import check_program
+from trunnion.control.definition import Control, load_control
+from trunnion.control.program import Program, write_program
 
-__all__ = ["CHOICES", "Control", "Program", "check_program", "is_lift", "load_control", "write_program"]
+__all__ = ["Control", "Program", "check_program", "load_control", "write_program"]

@@ -1,53 +1,53 @@
 """The definition of a control: everything about its language that is data.
 
 Formats, words and their order, codes, templates and settings come from TOML (``control/library`` and the ``[control]``
-table of a machine); only what words cannot say is code, in the module of the control's family.
+table of a machine); only what words cannot say is code, in the module of the control's family, which also says what
+words and codes it asks for.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
+from trunnion.control.families import FAMILIES
+from trunnion.control.family import Family
 from trunnion.control.template import Template
 from trunnion.definition import Table, extended
 from trunnion.nc import BlockNumbers, NumberFormat, Word
+from trunnion.plan import Manner
 
-#: Families of controls whose programs can be written.
-FAMILIES = ("sinumerik_840d",)
-
-#: Values that templates may print besides the settings; what each is stands in docs/controls/sinumerik.md.
+#: Values that templates of all families may print besides the settings; what each is stands in docs/controls.
 FIELDS = frozenset(
     {
         "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
-        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine",
-        "plane_x", "plane_y", "plane_z", "plane_first", "plane_second", "plane_third", "plane_mode", "plane_side",
+        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine", "gauge_length",
+        "zero_x", "zero_y", "zero_z", "time", "total_time",
+        "home_x", "home_y", "home_z", "primary_home", "secondary_home",
+        "plane_x", "plane_y", "plane_z", "plane_side",
     }
 )  # fmt: skip
 
+#: Templates that every definition has.
 TEMPLATES = (
-    "program_start", "operation_start", "first_tool", "tool_change", "approach_five_axis", "approach_three_axis",
-    "operation_end_five_axis", "operation_end_three_axis", "program_end",
-    "approach_cycle800", "plane_on_cycle800", "next_plane_cycle800", "operation_end_cycle800",
-    "approach_frames", "plane_on_frames", "next_plane_frames", "operation_end_frames",
+    "program_start", "operation_start", "first_tool", "tool_change", "approach_three_axis", "operation_end_three_axis",
+    "program_end",
 )  # fmt: skip
 
-#: mm; NaN is no less.
-_FARTHEST_LIFT = 100.0
+#: How the templates of operations with TCP are called.
+FIVE_AXIS = "five_axis"
 
-#: What some settings may say: the way to say a tilted plane, and the axes of CYCLE800's three turns.
-CHOICES = {"plane": ("cycle800", "frames"), "swivel_mode": ("57", "27", "39", "45", "30", "54")}
+#: Those without.
+WITHOUT_TCP = "without_tcp"
 
-CODES = (
-    "rapid", "linear", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz",
-    "feed_per_minute", "feed_per_revolution", "comp_off", "comp_left", "comp_right",
-    "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop", "optional_stop",
-)  # fmt: skip
+#: Words of a motion block that all families have.
+AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
 
-WORDS = (
-    "cutter_comp", "feed_mode", "plane", "motion", "X", "Y", "Z", "primary", "secondary", "I", "J", "K", "turns",
-    "speed", "edge", "spindle", "coolant", "feed",
-)  # fmt: skip
+#: The format of words that print no number.
+_NO_NUMBER = NumberFormat(0)
+
+#: How feeds can be said where nobody holds the tip.
+FEEDS_WITHOUT_TCP = ("inverse_time",)
 
 PHASES = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 COOLANTS = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
@@ -64,21 +64,34 @@ class Format:
 
 @dataclass(frozen=True, slots=True)
 class WordRule:
-    """A word of a motion block; ``letter`` is empty for the rotary axes, which the machine names."""
+    """A word of a motion block; for the rotary axes, which the machine names, ``letter`` is what follows the name.
+
+    A ``bare`` word is letters without a number, and has no format.
+    """
 
     name: str
     letter: str
     format: str
     modal: bool
+    closing: str = ""
+    bare: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """A control's language, read and checked."""
+    """A control's language, read and checked.
+
+    longest_line      bytes of a line, at most
+    by_method         settings that follow from the method's name where nobody gave them: setting -> (part of the name,
+                      value), the first that is found in it
+    tcp               it can hold the tip of the tool while rotary axes turn
+    feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
+    """
 
     name: str
-    family: str
+    family: Family
     extension: str
+    longest_line: int
     numbers: BlockNumbers
     formats: Mapping[str, Format]
     words: tuple[WordRule, ...]
@@ -86,11 +99,29 @@ class Control:
     coolant: Mapping[str, int]
     in_force: Mapping[str, int]
     settings: Mapping[str, str]
-    kinds: tuple[tuple[str, str], ...]
+    by_method: Mapping[str, tuple[tuple[str, str], ...]]
     tool_types: Mapping[str, str]
     phases: Mapping[str, str]
     chord_tolerance: float
+    tcp: bool
+    feed_without_tcp: str
     templates: Mapping[str, Template] = field(repr=False)
+
+    def usual(self, setting: str, method: str) -> str | None:
+        """What a setting is for operations of a method where nobody gave it; None where nothing says so."""
+        rules = self.by_method.get(setting, ())
+        return next((value for part, value in rules if part.upper() in method.upper()), None)
+
+    def kind(self, manner: Manner, settings: Mapping[str, str]) -> str:
+        """What the templates of operations made in a manner are called; empty where the definition has none."""
+        plane = settings.get("plane") or self.settings.get("plane") or next(iter(self.family.PLANES), "")
+        names = {Manner.THREE_AXIS: "three_axis", Manner.TILTED: plane, Manner.WITHOUT_TCP: WITHOUT_TCP}
+        name = names.get(manner, FIVE_AXIS if self.tcp else "")
+        return name if f"approach_{name}" in self.templates else ""
+
+    def manners(self, settings: Mapping[str, str]) -> frozenset[Manner]:
+        """In which manners operations can be said."""
+        return frozenset(manner for manner in Manner if self.kind(manner, settings))
 
     def number_formats(self, three_axis: bool) -> dict[str, NumberFormat]:
         """The number formats by name, for one kind of operation."""
@@ -99,8 +130,12 @@ class Control:
     def block_words(self, primary: str, secondary: str, three_axis: bool) -> list[Word]:
         """The words of a motion block in their order; ``primary`` and ``secondary`` are the rotary axes' letters."""
         formats = self.number_formats(three_axis)
-        letters = {"primary": primary, "secondary": secondary}
-        return [Word(w.name, letters.get(w.name, w.letter), formats[w.format], w.modal) for w in self.words]
+        axes = dict.fromkeys(("primary", "primary_shortest"), primary)
+        axes |= dict.fromkeys(("secondary", "secondary_shortest"), secondary)
+        return [
+            Word(w.name, axes.get(w.name, "") + w.letter, formats.get(w.format, _NO_NUMBER), w.modal, w.closing, w.bare)
+            for w in self.words
+        ]
 
 
 def library() -> Traversable:
@@ -122,12 +157,14 @@ def load_control(own: Table) -> Control:
         With every mistake, each at its file and line.
     """
     table = extended(own, library())
-    family = table.text("family")
-    if family not in FAMILIES:
+    key = table.text("family")
+    if key not in FAMILIES:
         known = ", ".join(FAMILIES)
-        table.problem("family", f"is {family!r}, for which no programs can be written yet", f"write one of {known}")
+        table.problem("family", f"is {key!r}, for which no programs can be written yet", f"write one of {known}")
         table.check()
     table.skip("reading")  # for whoever reads programs
+    family = FAMILIES[key]
+    words = (*AXIS_WORDS, *family.WORDS)
     formats = {}
     for entry in table.tables("format"):
         name = entry.text("name")
@@ -136,19 +173,24 @@ def load_control(own: Table) -> Control:
         name=table.text("name"),
         family=family,
         extension=table.text("extension"),
+        longest_line=table.integer("longest_line", 1 << 20, at_least=40, at_most=1 << 20),
         numbers=_numbers(table.table("block_numbers")),
         formats=formats,
-        words=tuple(_word(entry, formats) for entry in table.tables("word")),
-        codes=_integers(table.table("codes"), CODES),
+        words=tuple(_word(entry, formats, words) for entry in table.tables("word")),
+        codes=_integers(table.table("codes"), family.CODES),
         coolant=_integers(table.table("coolant"), COOLANTS, complete=False),
-        in_force=_integers(table.table("in_force"), WORDS, complete=False),
-        settings=_settings(table.table("settings")),
-        kinds=tuple(_kind(entry) for entry in table.tables("cycle832")),
+        in_force=_integers(table.table("in_force"), words, complete=False),
+        settings=_settings(table.table("settings"), family),
+        by_method=_by_method(table.tables("by_method"), table.table("settings")),
         tool_types=_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_texts(table.table("phases"), PHASES),
         chord_tolerance=_chord_tolerance(table.table("arcs")),
-        templates=_templates(table.table("templates")),
+        tcp=table.flag("tcp", True),
+        feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
+        templates=_templates(table.table("templates"), family),
     )
+    for lacking in dict.fromkeys(name for name in words if name not in {word.name for word in control.words}):
+        table.problem("word", f"has no entry {lacking!r}, which programs of this family need", "write it")
     _check_templates(table.table("templates"), control)
     table.finish()
     table.check()
@@ -174,24 +216,32 @@ def _format(entry: Table) -> Format:
     return Format(*pair)
 
 
-def _word(entry: Table, formats: Mapping[str, Format]) -> WordRule:
-    name = entry.text("name", one_of=WORDS)
-    rotary = name in ("primary", "secondary")
-    letter = entry.text("letter", "") if rotary else entry.text("letter")
-    if len(letter.encode()) > 8:
-        entry.problem("letter", f"is {letter!r}", "write at most 8 characters")
+def _word(entry: Table, formats: Mapping[str, Format], words: Sequence[str]) -> WordRule:
+    name = entry.text("name", one_of=words)
+    rotary = name.startswith(("primary", "secondary"))
+    letter, closing = entry.text("letter", "") if rotary else entry.text("letter"), entry.text("closing", "")
+    most = 4 if rotary else 8
+    if len(letter.encode()) > most:
+        entry.problem("letter", f"is {letter!r}", f"write at most {most} characters")
         letter = letter[:1]
-    rule = WordRule(name, letter, entry.text("format", one_of=tuple(formats)), entry.flag("modal", True))
+    if len(closing.encode()) > 1:
+        entry.problem("closing", f"is {closing!r}", "write one character")
+        closing = ""
+    bare = entry.flag("bare", False)
+    form = "" if bare else entry.text("format", one_of=tuple(formats))
+    rule = WordRule(name, letter, form, not bare and entry.flag("modal", True), closing, bare)
     entry.finish()
     return rule
 
 
 def _numbers(table: Table) -> BlockNumbers:
+    letter = table.text("letter", "N")
     numbers = BlockNumbers(
-        table.text("letter", "N"),
+        letter,
         table.integer("start", 10, at_least=0),
         table.integer("step", 10, at_least=1),
         table.integer("highest", 99999999, at_least=1, at_most=99999999),
+        table.flag("numbered", bool(letter)),
     )
     table.finish()
     return numbers
@@ -209,29 +259,24 @@ def _texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
     return found
 
 
-def _settings(table: Table) -> dict[str, str]:
+def _settings(table: Table, family: Family) -> dict[str, str]:
     found = {name: table.text(name) for name in list(table.keys())}
-    for name, choices in CHOICES.items():
+    for name, choices in family.CHOICES.items():
         if found.setdefault(name, choices[0]) not in choices:
             table.problem(name, f"is {found[name]!r}", f"write one of {', '.join(choices)}")
-    if not is_lift(found.get("bore_lift", "")):
-        table.problem("bore_lift", f"is {found['bore_lift']!r}", "write millimetres, or nothing")
+    for name, cure in family.wrong_settings(found):
+        table.problem(name, f"is {found[name]!r}", cure)
     table.finish()
     return found
 
 
-def is_lift(text: str) -> bool:
-    """Whether the setting ``bore_lift`` is empty, or millimetres that a tool could lift off in a bore."""
-    try:
-        return not text or abs(float(text)) < _FARTHEST_LIFT
-    except ValueError:
-        return False
-
-
-def _kind(entry: Table) -> tuple[str, str]:
-    kind = entry.text("method"), entry.text("mode")
-    entry.finish()
-    return kind
+def _by_method(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tuple[str, str], ...]]:
+    found: dict[str, tuple[tuple[str, str], ...]] = {}
+    for entry in entries:
+        name = entry.text("setting", one_of=settings.keys())
+        found[name] = (*found.get(name, ()), (entry.text("method"), entry.text("value")))
+        entry.finish()
+    return found
 
 
 def _chord_tolerance(table: Table) -> float:
@@ -240,9 +285,12 @@ def _chord_tolerance(table: Table) -> float:
     return tolerance
 
 
-def _templates(table: Table) -> dict[str, Template]:
+def _templates(table: Table, family: Family) -> dict[str, Template]:
+    """Those that every definition has, and those of the kinds of operations that this one has any for."""
     found = {}
-    for name in TEMPLATES:
+    kinds = [_of_kind(FIVE_AXIS), _of_kind(WITHOUT_TCP), *(_of_kind(plane, plane=True) for plane in family.PLANES)]
+    wanted = [name for names in kinds if any(name in table for name in names) for name in names]
+    for name in (*TEMPLATES, *wanted):
         text = table.text(name)
         file, line = table.origin(name)
         found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
@@ -250,9 +298,15 @@ def _templates(table: Table) -> dict[str, Template]:
     return found
 
 
+def _of_kind(kind: str, plane: bool = False) -> tuple[str, ...]:
+    """The templates of a kind of operation that not every definition has."""
+    parts = ("approach", "plane_on", "next_plane", "operation_end") if plane else ("approach", "operation_end")
+    return tuple(f"{part}_{kind}" for part in parts)
+
+
 def _check_templates(templates: Table, control: Control) -> None:
     """A template that asks for what does not exist is a mistake of the definition, not of the run."""
-    known = FIELDS | control.settings.keys()
+    known = FIELDS | control.family.FIELDS | control.settings.keys()
     for template in control.templates.values():
         for name, form in sorted(template.fields()):
             if name not in known:

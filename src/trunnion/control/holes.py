@@ -3,7 +3,7 @@
 Facts: SINUMERIK cycles manual; docs/controls/sinumerik.md has the parameters one by one.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from trunnion.nc import NumberFormat
@@ -12,6 +12,9 @@ from trunnion.toolpath import Sense
 
 #: Tool axis of CYCLE83: the third axis of the plane G17.
 _THIRD_AXIS = "3"
+
+#: mm; NaN is no less.
+_FARTHEST_LIFT = 100.0
 
 #: How far a chip-breaking stroke is drawn back, mm.
 _CHIP_BREAK = 1.0
@@ -34,7 +37,7 @@ class Heights:
 
 
 def cycle_call(
-    cycle: Cycle, top: float, turning: Turning | None, lift: float | None, formats: dict[str, NumberFormat]
+    cycle: Cycle, top: float, turning: Turning | None, lift: float | None, formats: Mapping[str, NumberFormat]
 ) -> str:
     """The call of the cycle, as it stands after MCALL.
 
@@ -64,16 +67,15 @@ def cycle_call(
     return f"{name}({','.join([*first, *arguments])})"
 
 
-def feed_of(cycle: Cycle, turning: Turning | None, modal: float, modal_per_rev: bool) -> tuple[float, bool]:
-    """The feed that is in force in the cycle, and whether it is per turn: the cycle's own, or the modal one."""
-    if cycle.feed is None:
-        return modal, modal_per_rev
-    if cycle.making in (Making.TAP, Making.TAP_CHUCK) and cycle.per_rev and turning is not None:
-        return cycle.feed * turning.rpm, False
-    return cycle.feed, cycle.per_rev
+def is_lift(text: str) -> bool:
+    """Whether the setting ``bore_lift`` is empty, or millimetres that a tool could lift off in a bore."""
+    try:
+        return not text or abs(float(text)) < _FARTHEST_LIFT
+    except ValueError:
+        return False
 
 
-def _dwell(cycle: Cycle, turning: Turning | None, formats: dict[str, NumberFormat]) -> str:
+def _dwell(cycle: Cycle, turning: Turning | None, formats: Mapping[str, NumberFormat]) -> str:
     """Seconds at the bottom, empty for none; spindle turns become the time that they take."""
     if not cycle.dwell:
         return ""

@@ -10,16 +10,17 @@ from typing import BinaryIO
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
-from trunnion.control import sinumerik
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.definition import Control
-from trunnion.control.holes import Heights, cycle_call, feed_of
+from trunnion.control.family import WordEvent
+from trunnion.control.slides import Slides, inverse_time, slides_of
 from trunnion.control.template import Value
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine, inverse
-from trunnion.nc import ABSENT, CHUNK, BlockWriter, counts
-from trunnion.plan import Manner, Motion
-from trunnion.plan.holes import Cycle, CycleError, Turning, cycle_of, turning
+from trunnion.machine.pace import clock
+from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
+from trunnion.plan import Manner, Motion, seconds
+from trunnion.plan.holes import Cycle, Turning, cycle_of, feed_of
 from trunnion.toolpath import (
     BlockSkip,
     Coolant,
@@ -28,14 +29,12 @@ from trunnion.toolpath import (
     CycleOn,
     Dwell,
     Event,
-    GoHome,
     Insert,
     Kind,
     LoadTool,
     Message,
     Operation,
     Phase,
-    Sense,
     SpindleOff,
     SpindleOn,
     Stop,
@@ -51,8 +50,7 @@ _PHASE_TEXT = {
     Phase.DEPARTURE: "departure",
     Phase.TRAVERSE: "traverse",
 }
-_COMP = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
-_COMP_PLANE = {"XYPLAN": "plane_xy", "ZXPLAN": "plane_zx", "YZPLAN": "plane_yz"}
+_UNKNOWN = (None, None, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,96 +65,17 @@ class Program:
     notices: Sequence[str] = ()
 
 
-def check_program(program: Program) -> list[Problem]:
-    """What the program would lack, or what this control cannot yet be told; errors mean that it must not be written."""
-    problems = []
-    spindle, in_spindle = False, ""
-    for motion in program.motions:
-        operation = motion.operation
-        moves = operation.moves
-        problems += _hole_problems(program, motion)
-        if not motion.begins:
-            continue
-        unfed = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
-        if len(unfed):
-            problems.append(
-                Problem(
-                    program.file, int(moves.line[unfed[0]]), "cutting motion without a feed", "put FEDRAT before it"
-                )
-            )
-        spindle = spindle or any(isinstance(e, SpindleOn) for e in operation.events)
-        if not spindle:
-            what = f"operation {operation.name} has no spindle speed"
-            problems.append(Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING))
-        loaded = any(isinstance(e, LoadTool) for e in operation.events) or _setting(program, "tool")
-        if not loaded and operation.tool.name and operation.tool.name != in_spindle:
-            what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
-            problems.append(
-                Problem(program.file, operation.line, what, "--set tool=NUMBER calls it by number", Severity.WARNING)
-            )
-        if '"' in operation.tool.name and (not loaded or _setting(program, "tool_call") == "name"):
-            what = f"the tool name {operation.tool.name} has a quotation mark in it"
-            problems.append(Problem(program.file, operation.line, what, "write --set tool=NUMBER"))
-        in_spindle = operation.tool.name
-        for event in operation.events:
-            problems += _event_problems(program, operation, event)
-        tolerance = operation.intol is not None and operation.outtol is not None
-        fine = not motion.three_axis and not (motion.plane and _setting(program, "plane") == "cycle800")
-        if fine and not tolerance and not _setting(program, "tolerance"):
-            fallback = _setting(program, "fallback_tolerance")
-            what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
-            problems.append(Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING))
-    return problems
+def kind_of(program: Program, motion: Motion) -> str:
+    """What the templates of this kind of operation are called."""
+    return program.control.kind(motion.manner, program.settings)
 
 
-def _event_problems(program: Program, operation: Operation, event: Event) -> list[Problem]:
-    place = program.file, event.line
-    rows = len(operation.moves)
-    if isinstance(event, LoadTool) and event.row > 0:
-        return [Problem(*place, "tool change within an operation", "begin a new operation with the new tool")]
-    if isinstance(event, CutterComp) and event.side == "ON":
-        return [Problem(*place, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
-    if isinstance(event, GoHome) and event.row < rows:
-        return [Problem(*place, "GOHOME before the operation's end", "begin a new operation after it")]
-    if isinstance(event, Coolant) and event.kind not in program.control.coolant:
-        known = ", ".join(program.control.coolant)
-        return [Problem(*place, f"{program.control.name} has no coolant {event.kind}", f"use one of {known}")]
-    return []
+def settings_of(program: Program) -> dict[str, str]:
+    """The settings of the run over those of the definition."""
+    return {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
 
 
-def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
-    """What the cycles of a motion ask for and this control cannot be told."""
-    operation, problems = motion.as_written(), []
-    moves = operation.moves
-    for event in operation.events:
-        if not isinstance(event, CycleOn):
-            continue
-        try:
-            cycle = cycle_of(event)
-            if motion.manner is Manner.TCP:
-                cure = "leave the setting manner out, or end the cut before the tool axis changes"
-                raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
-            spindle = turning(operation.events, event.row, Turning(1.0, Sense.CLW))
-            cycle_call(cycle, 0.0, spindle, _lift(program), program.control.number_formats(motion.three_axis))
-            feed, _ = feed_of(cycle, spindle, float(moves.feed[event.row]), False)
-            if not feed > 0.0:
-                raise CycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
-            low = event.row > 0 and moves.tip[event.row - 1, 2] < moves.tip[event.row, 2] + cycle.above - 1e-6
-            if low and moves.kind[event.row - 1] != Kind.RAPID:
-                cure = "draw the tool back before the cycle"
-                raise CycleError("CYCLE while the tool is below the height of RAPTO", cure)
-        except CycleError as error:
-            problems.append(Problem(program.file, event.line, error.what, error.cure))
-    return problems
-
-
-def _lift(program: Program) -> float | None:
-    """The setting ``bore_lift``, mm; None where it is not given."""
-    text = _setting(program, "bore_lift")
-    return float(text) if text else None
-
-
-def _setting(program: Program, name: str) -> str:
+def setting_of(program: Program, name: str) -> str:
     return program.settings.get(name) or program.control.settings.get(name, "")
 
 
@@ -186,22 +105,26 @@ class _Author:
     def __init__(self, program: Program, sink: BinaryIO, progress: Callable[[int], None]) -> None:
         self._program = program
         self._control = program.control
+        self._family = program.control.family
         self._progress = progress
         axes = program.machine.axes
         self._primary, self._secondary = program.machine.primary, program.machine.secondary
         self._column = {k: c for c, k in enumerate(program.machine.rotary)}
         self._letters = axes[self._primary].name, axes[self._secondary].name
-        words = self._control.block_words(*self._letters, three_axis=False)
-        self._writer = BlockWriter(sink, words, self._control.numbers)
+        self._words = self._control.block_words(*self._letters, three_axis=False)
+        self._writer = BlockWriter(sink, self._words, self._control.numbers)
         self._tool = self._tool_name = ""
         self._spindle: SpindleOn | None = None
         self._coolant = "OFF"
+        self._seconds: list[float] = []
+        self._slides: Slides | None = None
+        self._feed_mode = ABSENT
         self._height = 0.0  # of the tool along Z of the frame, at the last row written
 
     def write(self) -> None:
         """The program, operation by operation."""
         motions = self._program.motions
-        self._writer.lines(sinumerik.comment(text) for text in self._program.notices)
+        self._lines([line for text in self._program.notices for line in self._family.comment(text)])
         self._expand("program_start", self._values(motions[0]), motions[0])
         for k, motion in enumerate(motions):
             self._operation(motion, k + 1 == len(motions) or motions[k + 1].begins)
@@ -212,11 +135,25 @@ class _Author:
 
     def _expand(self, name: str, values: Mapping[str, Value], motion: Motion) -> None:
         formats = self._control.number_formats(motion.three_axis)
-        self._writer.lines(self._control.templates[name].expand(values, formats))
+        self._lines(self._control.templates[name].expand(values, formats))
+
+    def _lines(self, lines: Sequence[str]) -> None:
+        """Lines of text, none longer than the control reads."""
+        room = self._control.longest_line - ROOM_OF_NUMBER
+        for line in lines:
+            if len(line.encode()) > room:
+                what = f"a line has more than the {self._control.longest_line} bytes that {self._control.name} reads"
+                raise InputError(Problem(self._program.file, 0, f"{what}: {line[:60]}…", "shorten the text"))
+        self._writer.lines(lines)
 
     def _operation(self, motion: Motion, ends: bool) -> None:
         """An operation, or what there is of it in one plane; ``ends``: there is no more of it."""
-        kind, values = self._kind(motion), self._values(motion)
+        self._slides = None
+        if motion.manner is Manner.WITHOUT_TCP:
+            angle = self._control.number_formats(motion.three_axis)["angle"]
+            self._slides = slides_of(self._program.machine, motion, angle.decimals)
+            motion = self._slides.motion
+        kind, values = kind_of(self._program, motion), self._values(motion)
         if motion.begins:
             self._expand("operation_start", values, motion)
             tool = str(values["tool"])
@@ -224,10 +161,12 @@ class _Author:
                 self._expand("tool_change" if self._tool else "first_tool", values, motion)
                 self._tool = tool
             self._tool_name = motion.operation.tool.name
-        self._writer.use(self._control.block_words(*self._letters, motion.three_axis))
+        self._words = self._control.block_words(*self._letters, motion.three_axis)
+        self._writer.use(self._words)
         self._writer.forget()
         for word, code in self._control.in_force.items():
             self._writer.remember(word, code)
+        self._feed_mode = ABSENT
         self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
         if motion.plane is not None:
             self._expand(f"plane_on_{kind}", values, motion)
@@ -238,33 +177,31 @@ class _Author:
         if ends:
             self._expand(f"operation_end_{kind}", values, motion)
 
-    def _kind(self, motion: Motion) -> str:
-        """What the templates of this kind of operation are called."""
-        if motion.manner is Manner.TILTED:
-            return _setting(self._program, "plane")
-        return "three_axis" if motion.three_axis else "five_axis"
-
     def _plane(self, motion: Motion) -> dict[str, Value]:
-        """What templates may print of a tilted plane: its origin, its turning angles and the side of the machine.
+        """What templates of all families may print of a tilted plane: its origin and the side of the machine.
 
         The side is -1 or 1: of the two solutions that stand the tool on the plane, the one with the lower or the higher
         value of the rotary axis farther from the workpiece. Where there is only one, either word means it.
         """
-        names = "plane_x", "plane_y", "plane_z", "plane_first", "plane_second", "plane_third"
+        names = "plane_x", "plane_y", "plane_z"
         if motion.plane is None:
-            return dict.fromkeys((*names, "plane_mode", "plane_side"))
-        mode = _setting(self._program, "swivel_mode") if _setting(self._program, "plane") == "cycle800" else "57"
-        angles = sinumerik.turns(motion.plane.matrix(), sinumerik.sequence(int(mode)))
+            return dict.fromkeys((*names, "plane_side"))
         moves, column = motion.operation.moves, self._program.machine.rotary[1]
         both = inverse(self._program.machine, moves.tip[:1], moves.axis[:1]).joints[:, 0, column]
         apart = both - motion.rotary[0, 1]
         apart -= 360.0 * np.rint(apart / 360.0)
         lower = np.argmin(np.abs(apart)) == np.argmin(both)
         side = "-1" if lower else "1"
+        return {**dict(zip(names, motion.plane.origin, strict=True)), "plane_side": side}
+
+    def _home(self) -> dict[str, Value]:
+        """The machine's home, for templates that say it in positions of the machine."""
+        axes = self._program.machine.axes
+        slides = {axis.name: axis.home for axis in axes if not axis.is_rotary}
         return {
-            **dict(zip(names, (*motion.plane.origin, *angles), strict=True)),
-            "plane_mode": mode,
-            "plane_side": side,
+            **{f"home_{name.lower()}": slides.get(name) for name in "XYZ"},
+            "primary_home": axes[self._primary].home,
+            "secondary_home": axes[self._secondary].home,
         }
 
     def _values(self, motion: Motion) -> dict[str, Value]:
@@ -272,14 +209,14 @@ class _Author:
         operation, control = motion.operation, self._control
         tool = operation.tool
         values: dict[str, Value] = {**control.settings, **self._program.settings}
-        if not values["tolerance"]:
+        values |= self._family.values(values, None if motion.plane is None else motion.plane.matrix())
+        if not values.get("tolerance"):
             given = operation.intol is not None and operation.outtol is not None
             values["tolerance"] = (
-                (operation.intol or 0.0) + (operation.outtol or 0.0) if given else values["fallback_tolerance"]
+                (operation.intol or 0.0) + (operation.outtol or 0.0) if given else values.get("fallback_tolerance")
             )
-        if not values["cycle832"]:
-            method = str(values["method"]).upper()
-            values["cycle832"] = next((mode for part, mode in control.kinds if part.upper() in method), None)
+        for setting in control.by_method:
+            values[setting] = values[setting] or control.usual(setting, str(values.get("method", "")))
         ball = tool.kind == "MILL" and tool.diameter > 0 and abs(2 * tool.corner_radius - tool.diameter) < 1e-6
         known = tool.kind != "UNKNOWN"
         formats = {word.key: word for word in control.block_words(*self._letters, motion.three_axis)}
@@ -290,13 +227,15 @@ class _Author:
             )
             for word, column in (("primary", self._primary), ("secondary", self._secondary))
         }
-        return {
+        found: dict[str, Value] = {
             **values,
             **angles,
+            **self._times(motion),
             **self._plane(motion),
             "primary": self._letters[0],
             "secondary": self._letters[1],
             "machine": self._program.machine.name,
+            **self._home(),
             "operation": operation.name,
             "tool": self._tool_call(motion),
             "tool_name": tool.name or None,
@@ -304,23 +243,35 @@ class _Author:
             "tool_diameter": tool.diameter if known else None,
             "tool_length": tool.length if known else None,
             "tool_corner_radius": tool.corner_radius if known else None,
+            "gauge_length": self._program.machine.tool_length,
+            **dict(zip(("zero_x", "zero_y", "zero_z"), self._program.machine.workpiece_zero or _UNKNOWN, strict=True)),
             "intol": operation.intol,
             "outtol": operation.outtol,
         }
+        return {name: self._family.inside(value) if isinstance(value, str) else value for name, value in found.items()}
+
+    def _times(self, motion: Motion) -> dict[str, Value]:
+        """What the operation and all of them take, as people read it; worked out only where a template prints it."""
+        if not any(name in ("time", "total_time") for t in self._control.templates.values() for name, _ in t.fields()):
+            return {"time": None, "total_time": None}
+        if not self._seconds:
+            self._seconds = [seconds(self._program.machine, each) for each in self._program.motions]
+        own = next(s for each, s in zip(self._program.motions, self._seconds, strict=True) if each is motion)
+        return {"time": clock(own), "total_time": clock(sum(self._seconds))}
 
     def _tool_call(self, motion: Motion) -> str:
         """The tool as ``T=`` takes it: the run's setting, the number of LOAD/TOOL, or else the tool's name."""
         operation = motion.operation
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
-        number, name = _setting(self._program, "tool"), operation.tool.name
+        number, name = setting_of(self._program, "tool"), operation.tool.name
         if self._tool and not loads and name == self._tool_name:
             return self._tool
-        if name and (_setting(self._program, "tool_call") == "name" or not (number or loads)):
-            return sinumerik.tool_call(0, name, by_name=True)
+        if name and (setting_of(self._program, "tool_call") == "name" or not (number or loads)):
+            return self._family.tool_call(0, name, by_name=True)
         if number:
             return number
         if loads:
-            return sinumerik.tool_call(loads[0].number, "", by_name=False)
+            return self._family.tool_call(loads[0].number, "", by_name=False)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(Problem(self._program.file, operation.line, what, "write --set tool=NUMBER"))
 
@@ -353,17 +304,17 @@ class _Author:
                 cycle = event if isinstance(event, CycleOn) else None
                 continue
             off = isinstance(event, SpindleOff) or (isinstance(event, Coolant) and event.kind == "OFF")
-            joins = isinstance(event, SpindleOn | Coolant | CutterComp) and not off
+            joins = event if isinstance(event, SpindleOn | Coolant | CutterComp) and not off else None
             if joins and not any(type(e) is type(event) and e.row == event.row for e in joining):
-                joining.append(event)
+                joining.append(joins)
             elif joins or off or isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
                 text = self._stretch(motion, done, event.row, joining, text, cycle)
                 for earlier in (e for e in joining if e.row == event.row):
                     self._event_block(earlier)  # what is said twice before one row is said in order
                 done, joining = event.row, [e for e in joining if e.row > event.row]
                 if joins:
-                    joining.append(event)
-                elif off:
+                    joining.append(joins)
+                elif isinstance(event, SpindleOff | Coolant):
                     self._event_block(event)  # with the next motion the control would switch off after it
                 else:
                     self._own_block(motion, event)
@@ -372,52 +323,44 @@ class _Author:
             if event.row == rows:
                 self._event_block(event)
 
-    def _spindle_again(self, operation: Operation) -> list[Event]:
+    def _spindle_again(self, operation: Operation) -> list[WordEvent]:
         """The last operation's end stopped the spindle: what was in force is said again unless something new is."""
         said = any(isinstance(event, SpindleOn) and event.row == 0 for event in operation.events)
         return [] if said or self._spindle is None else [replace(self._spindle, row=0)]
 
-    def _event_block(self, event: Event) -> None:
+    def _event_block(self, event: WordEvent) -> None:
         """Words of an event in a block of their own."""
         self._writer.table({word: np.array([code], np.int64) for word, code in self._event_words(event).items()})
 
     def _own_block(self, motion: Motion, event: Event) -> None:
         """Events that are no words of a motion block."""
         if isinstance(event, Dwell):
-            self._writer.lines([sinumerik.dwell(event, self._control.number_formats(motion.three_axis))])
+            rpm = None if self._spindle is None else self._spindle.rpm
+            self._lines(self._family.dwell(event, rpm, self._control.number_formats(motion.three_axis)))
         elif isinstance(event, Stop):
-            self._writer.lines(sinumerik.stop(event, self._control))
+            self._lines(self._family.stop(event, self._control.codes))
         elif isinstance(event, Message):
-            self._writer.lines([sinumerik.message(event)])
+            self._lines(self._family.message(event))
         elif isinstance(event, Insert):
-            self._writer.lines([event.text])
+            self._lines([event.text])
             self._writer.forget()  # nobody knows what the text has changed
         elif isinstance(event, BlockSkip):
             self._writer.skip_blocks(event.on)
 
-    def _event_words(self, event: Event) -> dict[str, int]:
+    def _event_words(self, event: WordEvent) -> dict[str, int]:
         """The words of an event that joins a motion block, as counts."""
-        codes = self._control.codes
         if isinstance(event, SpindleOn):
             self._spindle = event
-            turn = "spindle_clockwise" if event.sense is Sense.CLW else "spindle_counterclockwise"
-            return {"speed": self._count("speed", event.rpm), "spindle": codes[turn]}
-        if isinstance(event, SpindleOff):
-            return {"spindle": codes["spindle_off"]}
-        if isinstance(event, Coolant):
+        elif isinstance(event, Coolant):
             self._coolant = event.kind
-            return {"coolant": self._control.coolant[event.kind]}
-        assert isinstance(event, CutterComp)
-        words = {"cutter_comp": codes[_COMP[event.side]]} if event.side in _COMP else {}
-        if event.plane in _COMP_PLANE:
-            words["plane"] = codes[_COMP_PLANE[event.plane]]
-        return words
+        words = self._family.event_words(event, self._control.codes, self._control.coolant)
+        return {word: self._count(word, value) for word, value in words.items()}
 
     def _count(self, word: str, value: float) -> int:
         return int(counts(np.array([value]), self._writer.word(word).format.decimals)[0])
 
     def _stretch(
-        self, motion: Motion, first: int, last: int, joining: Sequence[Event], text: int, cycle: CycleOn | None
+        self, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int, cycle: CycleOn | None
     ) -> int:
         """Rows ``first`` to ``last``, holes if there is a cycle; as ``_rows``."""
         if cycle is None or first == last:
@@ -434,8 +377,10 @@ class _Author:
         self._progress(last - first)
         return text
 
-    def _holes(self, motion: Motion, first: int, last: int, joining: Sequence[Event], text: int, cycle: Cycle) -> int:
-        """Holes of one height: position blocks between MCALL with a cycle and MCALL without.
+    def _holes(
+        self, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int, cycle: Cycle
+    ) -> int:
+        """Holes of one height: position blocks under a modal cycle.
 
         The tool goes to them at the height to which it was drawn back. It begins at the retract height where nothing
         says how high it is, and is drawn up first where it is lower than the next holes want it.
@@ -443,25 +388,26 @@ class _Author:
         moves, control, codes = motion.operation.moves, self._control, self._control.codes
         formats = control.number_formats(motion.three_axis)
         top = float(moves.tip[first, 2])
-        heights = Heights.of(cycle, top)
+        assert cycle.retract is not None
+        retract = top + cycle.retract
         for event in joining:
             if first > 0:
                 self._event_block(event)
         if first == 0:
-            block = {"motion": codes["rapid"], "edge": int(_setting(self._program, "edge"))}
+            block = {"motion": codes["rapid"], **self._edge()}
             block |= {word: self._count("X", value) for word, value in zip("XY", moves.tip[0], strict=False)}
-            block["Z"] = self._count("X", heights.retract)
+            block["Z"] = self._count("X", retract)
             for event in joining:
                 block |= self._event_words(event)
             self._block(block)
-            self._height = heights.retract
+            self._height = retract
         elif self._height < top + cycle.above - 1e-9:
             self._block({"motion": codes["rapid"], "Z": self._count("X", top + cycle.above)})
         turning_now = None if self._spindle is None else Turning(self._spindle.rpm, self._spindle.sense)
         feed, per_rev = feed_of(cycle, turning_now, float(moves.feed[first]), bool(moves.per_rev[first]))
         mode = codes["feed_per_revolution" if per_rev else "feed_per_minute"]
         self._block({"feed_mode": mode, "plane": codes["plane_xy"], "feed": self._count("feed", feed)})
-        self._writer.lines([f"MCALL {cycle_call(cycle, top, turning_now, _lift(self._program), formats)}"])
+        self._lines(self._family.hole_call(cycle, top, turning_now, settings_of(self._program), formats))
         decimals = self._writer.word("X").format.decimals
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[first:last, c]), decimals) for c, word in enumerate("XY")
@@ -471,8 +417,8 @@ class _Author:
         wanted = ids[moves.phase[first:last]]
         before = np.concatenate(([text], wanted[:-1]))
         self._writer.table(columns, {"X": True, "Y": True}, np.where(wanted != before, wanted, -1), texts)
-        self._writer.lines(["MCALL"])
-        self._height = heights.retract
+        self._lines(self._family.hole_end())
+        self._height = retract
         self._writer.forget("X", "Y", "Z")  # a point at which the tool already stands gets its block
         return int(wanted[-1])
 
@@ -480,7 +426,7 @@ class _Author:
         """One block of these words, as counts; nothing where all of them are in force."""
         self._writer.table({word: np.array([count], np.int64) for word, count in words.items()})
 
-    def _rows(self, motion: Motion, first: int, last: int, joining: Sequence[Event], text: int) -> int:
+    def _rows(self, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int) -> int:
         """Write rows ``first`` to ``last``; returns the index of the phase text that was printed last."""
         for start in range(first, last, CHUNK):
             stop = min(start + CHUNK, last)
@@ -488,47 +434,82 @@ class _Author:
             self._progress(stop - start)
         return text
 
-    def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[Event], text: int) -> int:
+    def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[WordEvent], text: int) -> int:
         moves, arcs, control = motion.operation.moves, motion.operation.arcs, self._control
         part = slice(start, stop)
         self._height = float(moves.tip[stop - 1, 2])
         rapid = moves.kind[part] == Kind.RAPID
-        decimals = {word: self._writer.word(word).format.decimals for word in ("X", "feed", "I")}
+        decimals = {word: self._writer.word(word).format.decimals for word in ("X", "feed")}
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
         if motion.plane is None:  # in a plane the rotary axes stand where they were put
             columns["primary"] = self._angle_counts(motion.rotary[part, self._column[self._primary]], "primary")
             columns["secondary"] = self._angle_counts(motion.rotary[part, self._column[self._secondary]], "secondary")
-        columns["motion"] = np.where(rapid, control.codes["rapid"], control.codes["linear"]).astype(np.int64)
         columns["feed"] = np.where(rapid, ABSENT, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"]))
-        mode = np.where(moves.per_rev[part], control.codes["feed_per_revolution"], control.codes["feed_per_minute"])
-        columns["feed_mode"] = np.where(rapid, ABSENT, mode).astype(np.int64)
+        columns |= self._family.row_words(rapid, moves.per_rev[part], control.codes)
         forced: dict[str, bool | Ints] = {}
+        if self._slides is not None:
+            forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
+        lines: dict[int, str] = {}
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
         if len(inside):
-            words, ends = sinumerik.arc_words(arcs, moves.tip, inside, start, decimals["I"], control)
+            formats = {word.key: word.format for word in self._words}
+            words = self._family.arc_words(arcs, moves.tip, inside, control.codes, formats)
             at = arcs.row[inside] - start
-            for word, column in words.items():
+            for word, column in words.columns.items():
                 columns.setdefault(word, np.full(stop - start, ABSENT, np.int64))[at] = column
-            for word, flag in ends.items():
+            for word, flag in words.forced.items():
                 every = np.zeros(stop - start, np.int64)
                 every[at] = flag
-                forced[word] = every
+                forced[word] = every | forced.get(word, 0)
+            lines = dict(zip(at.tolist(), words.lines or (), strict=False))
         if start == 0:
-            self._join(columns, 0, {"edge": int(_setting(self._program, "edge"))})
+            self._join(columns, 0, self._edge())
         for event in joining:
             self._join(columns, event.row - start, self._event_words(event))
         ids, texts = self._phase_texts()
         wanted = ids[moves.phase[part]]
         before = np.concatenate(([text], wanted[:-1]))
-        self._writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts)
+        self._writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
         return int(wanted[-1])
+
+    def _edge(self) -> dict[str, int]:
+        """The cutting edge, on controls that have any."""
+        return {"edge": int(setting_of(self._program, "edge"))} if "edge" in self._control.settings else {}
+
+    def _words_of_slides(
+        self, slides: Slides, feed: Floats, part: slice, rapid: Flags, columns: dict[str, Ints]
+    ) -> dict[str, bool | Ints]:
+        """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
+
+        Returns which words are said though they may print as before: F wherever its meaning changes, and X in rapids,
+        which without a slide would only place the rotary axes.
+        """
+        turning = slides.turns[part] & ~rapid
+        word = self._writer.word("inverse_feed")
+        rate = np.full(len(feed), np.nan)
+        rate[turning] = inverse_time(slides.length[part][turning], feed[turning], word.format)[0]
+        columns["inverse_feed"] = counts(rate, word.format.decimals)
+        columns["feed"][turning] = ABSENT
+        columns["feed_mode"][turning] = self._control.codes["feed_inverse_time"]
+        for which, key in ((self._primary, "primary"), (self._secondary, "secondary")):
+            jumps = slides.shortest[part, self._column[which]]
+            if jumps.any():  # which only controls do that have the word
+                columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
+                columns[key][jumps] = ABSENT
+        cuts = np.flatnonzero(~rapid)
+        changes = np.zeros(len(feed), np.int64)
+        if len(cuts):
+            modes = columns["feed_mode"][cuts]
+            changes[cuts] = modes != np.concatenate(([self._feed_mode], modes[:-1]))
+            self._feed_mode = int(modes[-1])
+        return {"feed": changes, "X": rapid.astype(np.int64)}
 
     def _join(self, columns: dict[str, Ints], row: int, words: Mapping[str, int]) -> None:
         """Put words onto a row."""
         for word, code in words.items():
-            column = columns.setdefault(word, np.full(len(columns["motion"]), ABSENT, np.int64))
+            column = columns.setdefault(word, np.full(len(columns["X"]), ABSENT, np.int64))
             column[row] = code
 
     def _phase_texts(self) -> tuple[Ints, list[str]]:

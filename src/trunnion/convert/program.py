@@ -37,10 +37,13 @@ _PHASES = {
     "departure": Phase.DEPARTURE,
     "traverse": Phase.TRAVERSE,
 }
-_ENDS = "operation_end_five_axis", "operation_end_three_axis", "operation_end_cycle800", "operation_end_frames"
+_ENDS = (
+    "operation_end_five_axis", "operation_end_three_axis", "operation_end_without_tcp", "operation_end_cycle800",
+    "operation_end_frames",
+)  # fmt: skip
 _HEADS = (
     "operation_start", "first_tool", "tool_change", "approach_five_axis", "approach_three_axis",
-    "approach_cycle800", "plane_on_cycle800", "approach_frames", "plane_on_frames",
+    "approach_without_tcp", "approach_cycle800", "plane_on_cycle800", "approach_frames", "plane_on_frames",
 )  # fmt: skip
 
 

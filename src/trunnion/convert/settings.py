@@ -41,10 +41,10 @@ def number(text: str | None) -> float | None:
 def _given(control: Control, values: Mapping[str, str]) -> dict[str, str]:
     """The settings in a head, without those that follow from others."""
     given = {name: value for name, value in values.items() if name in control.settings}
-    method = given.get("method", control.settings.get("method", "")).upper()
-    usual = next((mode for part, mode in control.kinds if part.upper() in method), None)
-    if given.get("cycle832") == usual:
-        given.pop("cycle832", None)
+    method = given.get("method", control.settings.get("method", ""))
+    for setting in control.by_method:
+        if given.get(setting) == control.usual(setting, method):
+            given.pop(setting, None)
     intol, outtol = number(values.get("intol")), number(values.get("outtol"))
     fallback = number(control.settings.get("fallback_tolerance")) or 0.0
     expected = intol + outtol if intol is not None and outtol is not None else fallback

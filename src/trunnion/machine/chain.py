@@ -18,7 +18,7 @@ from trunnion.arrays import Flags, Floats
 from trunnion.machine.model import Machine
 
 
-def forward(machine: Machine, joints: Floats, tool_length: float = 0.0) -> tuple[Floats, Floats]:
+def forward(machine: Machine, joints: Floats, tool_length: float | None = None) -> tuple[Floats, Floats]:
     """Tool tip and tool axis for rows of axis values.
 
     Parameters
@@ -28,7 +28,7 @@ def forward(machine: Machine, joints: Floats, tool_length: float = 0.0) -> tuple
     joints : (n, 5) float64, mm or deg
         Displayed axis values, one column an axis in the order of ``machine.axes``. Windings may be large.
     tool_length
-        From the gauge point to the tip, mm.
+        From the gauge point to the tip, mm; None: that of ``machine.tool_length``.
 
     Returns
     -------
@@ -85,14 +85,15 @@ class Chain(NamedTuple):
     zero: Floats
 
 
-def pack_chain(machine: Machine, tool_length: float = 0.0) -> Chain:
-    """A machine's chain for kernels; tool length from the gauge point to the tip, mm."""
+def pack_chain(machine: Machine, tool_length: float | None = None) -> Chain:
+    """A machine's chain for kernels; tool length from the gauge point to the tip, mm, None: the machine's."""
     spindle = np.array(machine.spindle_direction)
+    length = (machine.tool_length or 0.0) if tool_length is None else tool_length
     return Chain(
         rotary=np.array([axis.is_rotary for axis in machine.axes]),
         direction=np.array([[axis.sense * d for d in axis.direction] for axis in machine.axes]),
         point=np.array([axis.point for axis in machine.axes]),
-        tip_at_zero=np.array(machine.spindle_point) - tool_length * spindle,
+        tip_at_zero=np.array(machine.spindle_point) - length * spindle,
         spindle=spindle,
         zero=np.array(machine.workpiece_zero or (0.0, 0.0, 0.0)),
     )

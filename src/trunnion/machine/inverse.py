@@ -111,8 +111,12 @@ class Solutions:
     pole: Flags
 
 
-def pack(machine: Machine, tool_length: float = 0.0) -> Packed:
-    """Plain numbers for the kernels of this module, for a machine and the length (mm) of the tool in its spindle."""
+def pack(machine: Machine, tool_length: float | None = None) -> Packed:
+    """Plain numbers for the kernels of this module, for a machine and the length (mm) of the tool in its spindle.
+
+    Without a length it is that of ``machine.tool_length``.
+    """
+    length = (machine.tool_length or 0.0) if tool_length is None else tool_length
     first, second = machine.rotary
     directions = np.array([[axis.sense * d for d in axis.direction] for axis in machine.axes])
     points = np.array([axis.point for axis in machine.axes])
@@ -123,7 +127,7 @@ def pack(machine: Machine, tool_length: float = 0.0) -> Packed:
     frame_1 = _frame(w1, w2)
     frame_2 = _frame(w2, w1)
     spindle = frame_2 @ s
-    tip = np.array(machine.spindle_point) - tool_length * s
+    tip = np.array(machine.spindle_point) - length * s
     zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
     slides = machine.linear
     return Packed(
@@ -180,7 +184,7 @@ def _towards(w1: Floats, w2: Floats, s: Floats) -> float:
     return 1.0 if float(frame[1] @ s) > 0.0 else -1.0
 
 
-def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float = 0.0) -> Solutions:
+def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float | None = None) -> Solutions:
     """Both sets of axis values for rows of tool tips and tool axes.
 
     Parameters
@@ -192,7 +196,7 @@ def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float = 0.
     axis : (n, 3) float64
         From tip to holder, in workpiece coordinates; any length but zero.
     tool_length
-        From the gauge point to the tip, mm.
+        From the gauge point to the tip, mm; None: that of ``machine.tool_length``.
     """
     tips = np.ascontiguousarray(tip, dtype=np.float64)
     axes = np.ascontiguousarray(axis, dtype=np.float64)
@@ -204,7 +208,7 @@ def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float = 0.
     return Solutions(joints, (status & (UNREACHABLE | STUCK)) == 0, (status & POLE) != 0)
 
 
-def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: float = 0.0) -> Floats:
+def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: float | None = None) -> Floats:
     """All five axis positions for rows of tool tips when the rotary positions are known.
 
     Parameters

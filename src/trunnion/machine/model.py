@@ -130,6 +130,7 @@ class Machine:
     spindle_direction   unit vector from tool tip to holder, all axes at zero
     spindle_point       gauge point (where tool lengths begin), mm, all axes at zero
     workpiece_zero      workpiece zero in the machine frame, all axes at zero, mm; None where nobody said it
+    tool_length         of the tool in the spindle, gauge point to tip, mm; None where nobody said it: it counts as 0
     control             the ``[control]`` table of the definition, unread
     files               definition files that the machine came from
     """
@@ -140,6 +141,7 @@ class Machine:
     spindle_direction: Vector = (0.0, 0.0, 1.0)
     spindle_point: Vector = (0.0, 0.0, 0.0)
     workpiece_zero: Vector | None = None
+    tool_length: float | None = None
     spindle_max_rpm: float | None = None
     description: str = ""
     facts: Facts = Facts()
@@ -176,6 +178,11 @@ class Machine:
         """Column of the secondary rotary axis (the fifth): the one that the primary carries."""
         first, second = self.rotary
         return first if self.primary == second else second
+
+    @property
+    def turns_tool(self) -> bool:
+        """Whether a rotary axis stands between the bed and the tool: then lengths of tools move the tip aside."""
+        return any(axis.is_rotary and axis.carries is Carries.TOOL for axis in self.axes)
 
     @property
     def limits(self) -> Floats:

@@ -48,6 +48,18 @@ def row_seconds(machine: Machine, steps: Floats, length: Floats, rate: Floats, s
     return seconds
 
 
+def clock(seconds: float) -> str:
+    """Return a time as people read it.
+
+    >>> clock(4.26), clock(75), clock(7384)
+    ('4.3 s', '1:15 min', '2:03:04 h')
+    """
+    if round(seconds, 1) < 60.0:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} h"
+
+
 @njit(cache=True)
 def _pace(
     steps: Floats, length: Floats, rate: Floats, stop: Flags, rapid: Floats, most: Floats, seconds: Floats

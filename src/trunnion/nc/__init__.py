@@ -6,6 +6,6 @@ Knows nothing of machines, of CL files, or of what a word means to a control.
 """
 
 from trunnion.nc.words import ABSENT, NumberFormat, Word, counts
-from trunnion.nc.writer import CHUNK, BlockNumbers, BlockWriter
+from trunnion.nc.writer import CHUNK, ROOM_OF_NUMBER, BlockNumbers, BlockWriter
 
-__all__ = ["ABSENT", "CHUNK", "BlockNumbers", "BlockWriter", "NumberFormat", "Word", "counts"]
+__all__ = ["ABSENT", "CHUNK", "ROOM_OF_NUMBER", "BlockNumbers", "BlockWriter", "NumberFormat", "Word", "counts"]

@@ -62,17 +62,21 @@ class NumberFormat:
 class Word:
     """An address and its number: ``key`` names it in definitions, ``letter`` is what is printed before the number.
 
-    A modal word is left out of a block when it would print as it last did.
+    A modal word is left out of a block when it would print as it last did. ``closing`` is what stands behind the
+    number, one character or none. A bare word is letters without a number, such as ``FMAX``: it stands wherever its
+    column has any count, is never modal, and makes no block by itself.
     """
 
     key: str
     letter: str
     format: NumberFormat
     modal: bool = True
+    closing: str = ""
+    bare: bool = False
 
     def text(self, value: float) -> str:
         """The whole word, such as ``X-.31289``."""
-        return self.letter + self.format.text(value)
+        return self.letter if self.bare else self.letter + self.format.text(value) + self.closing
 
 
 @njit(cache=True, nogil=True)

@@ -19,21 +19,24 @@ from trunnion.nc.words import ABSENT, Word
 CHUNK = 16384
 
 _DIGITS = 20  # of an int64, with sign and point
-_LETTERS = 8
-_NUMBER = 12  # N99999999 and a blank, with room to spare
+_LETTERS = 12
+
+#: Bytes that a block number takes at most, with its blank and the sign of skipped blocks.
+ROOM_OF_NUMBER = 12
 
 # columns of the table that describes the words to the kernel
-_MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH = range(9)
+_MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH, _CLOSING, _BARE = range(11)
 
 
 @dataclass(frozen=True, slots=True)
 class BlockNumbers:
-    """Block numbers: ``letter`` (empty: none), first number, step, and the highest before they start again."""
+    """Block numbers: letter (may be empty), first number, step, the highest before they start again; or none."""
 
     letter: str = "N"
     start: int = 10
     step: int = 10
     highest: int = 99999999
+    numbered: bool = True
 
 
 @njit(cache=True, inline="always")
@@ -129,7 +132,8 @@ def _put_number(
 def _write_blocks(
     table: Ints,
     forced: Ints,
-    text_before: Ints,
+    line_before: Ints,
+    line_of: Ints,
     text_bytes: Bytes,
     text_ends: Ints,
     rule: Ints,
@@ -137,6 +141,7 @@ def _write_blocks(
     last: Ints,
     number: Ints,
     number_letter: Bytes,
+    numbered: bool,
     skip: Bytes,
     out: Bytes,
 ) -> int:
@@ -144,18 +149,19 @@ def _write_blocks(
 
     table        (w, n) int64   counts, ABSENT where a word is not wanted
     forced       (n,)   int64   bit k set: word k is written even if it prints as before
-    text_before  (n,)   int64   index of the text line that stands before the row, -1 for none
-    text_bytes, text_ends       the text lines, end to end
-    rule         (w, 9) int64   modal, decimals, 10**decimals, point, leading, trailing, plus, length of letter, of zero
-    spelling     (w, 16) uint8  letter in the first 8 bytes, spelling of zero in the last 8
+    line_before  (n + 1,) int64 how many lines stand before the row and all rows above it, from 0
+    line_of      (l,)   int64   which text each of these lines is
+    text_bytes, text_ends       the texts, end to end
+    rule         (w, 11) int64  modal, decimals, 10**decimals, point, leading, trailing, plus, length of letter, of
+                                zero, byte that closes the word or 0, bare
+    spelling     (w, 24) uint8  letter in the first 12 bytes, spelling of zero in the last 12
     last         (w,)   int64   what was last printed; kept up to date
     number       (4,)   int64   next block number, step, first, highest; the first is kept up to date
     """
     words, rows = table.shape
     at = 0
-    numbered = number_letter.shape[0] > 0
     for row in range(rows):
-        for piece in range(0 if text_before[row] >= 0 else 1, 2):
+        for piece in range(line_before[row], line_before[row + 1] + 1):  # the lines, then the row itself
             # skip sign and block number are written first, and taken back when nothing follows them
             block_start = at
             for k in range(skip.shape[0]):
@@ -168,9 +174,10 @@ def _write_blocks(
                 at = _put_whole(number[0], out, at)
                 out[at] = 32
                 at += 1
-            content_start = at
-            if piece == 0:
-                line = text_before[row]
+            has_number = False
+            if piece < line_before[row + 1]:
+                has_number = True
+                line = line_of[piece]
                 for k in range(0 if line == 0 else text_ends[line - 1], text_ends[line]):
                     out[at] = text_bytes[k]
                     at += 1
@@ -186,6 +193,11 @@ def _write_blocks(
                     for k in range(rule[word, _LETTER_LENGTH]):
                         out[at] = spelling[word, k]
                         at += 1
+                    if rule[word, _BARE] == 1:
+                        out[at] = 32
+                        at += 1
+                        continue
+                    has_number = True
                     if count == 0 and rule[word, _ZERO_LENGTH] > 0:
                         for k in range(rule[word, _ZERO_LENGTH]):
                             out[at] = spelling[word, _LETTERS + k]
@@ -202,9 +214,12 @@ def _write_blocks(
                             out,
                             at,
                         )
+                    if rule[word, _CLOSING]:
+                        out[at] = rule[word, _CLOSING]
+                        at += 1
                     out[at] = 32
                     at += 1
-            if at == content_start:
+            if not has_number:
                 at = block_start
                 continue
             out[at - 1] = 10
@@ -240,7 +255,7 @@ class BlockWriter:
         self._words = {word.key: word for word in words}
         self._keys = [word.key for word in words]
         self._last = np.array([kept.get(key, ABSENT) for key in self._keys], np.int64)
-        self._rule = np.array([_rule(word) for word in words], np.int64).reshape(len(words), 9)
+        self._rule = np.array([_rule(word) for word in words], np.int64).reshape(len(words), _BARE + 1)
         self._spelling = np.zeros((len(words), 2 * _LETTERS), np.uint8)
         for row, word in zip(self._spelling, words, strict=True):
             row[: len(word.letter)] = np.frombuffer(word.letter.encode(), np.uint8)
@@ -271,7 +286,8 @@ class BlockWriter:
             return
         no_words = np.zeros((0, len(texts)), np.int64)
         none = np.zeros(len(texts), np.int64)
-        self._emit(no_words, none, np.arange(len(texts)), texts, self._rule[:0], self._spelling[:0], self._last[:0])
+        before = np.arange(len(texts) + 1)
+        self._emit(no_words, none, before, before[:-1], texts, self._rule[:0], self._spelling[:0], self._last[:0])
 
     def table(
         self,
@@ -279,6 +295,7 @@ class BlockWriter:
         forced: Mapping[str, bool | Ints] | None = None,
         text_before: Ints | None = None,
         texts: Sequence[str] = (),
+        lines: Mapping[int, str] | None = None,
     ) -> None:
         """Write one block a row.
 
@@ -290,8 +307,10 @@ class BlockWriter:
             Word key -> (n,) 0 or 1, or one flag for all rows: write the word even where it prints as before.
         text_before : (n,) int64, optional
             Index into ``texts`` of a line that stands before the row, -1 for none.
+        lines
+            Row -> a line of its own that stands right before it, after the one of ``text_before``.
 
-        A row of which nothing is left to print makes no block.
+        A row of which nothing is left to print, or nothing but bare words, makes no block.
         """
         rows = len(next(iter(columns.values())))
         present = [k for k, key in enumerate(self._keys) if key in columns]
@@ -303,25 +322,60 @@ class BlockWriter:
             _check_range(self._words[key], table[k])
             if forced and key in forced:
                 flags |= np.int64(1 << k) * np.asarray(forced[key], np.int64)
-        before = np.full(rows, -1, np.int64) if text_before is None else text_before
+        before, line_of, texts = _lines_before(rows, text_before, texts, lines or {})
         last = self._last[present]
-        self._emit(table, flags, before, texts, self._rule[present], self._spelling[present], last)
+        self._emit(table, flags, before, line_of, texts, self._rule[present], self._spelling[present], last)
         self._last[present] = last
 
     def _emit(
-        self, table: Ints, forced: Ints, before: Ints, texts: Sequence[str], rule: Ints, spelling: Bytes, last: Ints
+        self,
+        table: Ints,
+        forced: Ints,
+        before: Ints,
+        line_of: Ints,
+        texts: Sequence[str],
+        rule: Ints,
+        spelling: Bytes,
+        last: Ints,
     ) -> None:
         encoded = [text.encode() for text in texts]
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
-        heads = _NUMBER + len(self._letter) + 1
-        width = heads + len(rule) * (_DIGITS + _LETTERS + 1) + 1
-        text_room = sum(len(encoded[k]) + heads + 1 for k in before[before >= 0])
+        heads = ROOM_OF_NUMBER + len(self._letter) + 1
+        width = heads + len(rule) * (_DIGITS + _LETTERS + 2) + 1
+        text_room = sum(len(encoded[k]) + heads + 1 for k in line_of)
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
         written = _write_blocks(
-            table, forced, before, text_bytes, ends, rule, spelling, last, self._number, self._letter, self._skip, out
+            table,
+            forced,
+            before,
+            line_of,
+            text_bytes,
+            ends,
+            rule,
+            spelling,
+            last,
+            self._number,
+            self._letter,
+            self._numbers.numbered,
+            self._skip,
+            out,
         )
         self._sink.write(out[:written].data)
+
+
+def _lines_before(
+    rows: int, text_before: Ints | None, texts: Sequence[str], lines: Mapping[int, str]
+) -> tuple[Ints, Ints, Sequence[str]]:
+    """Where lines stand, as the kernel takes it, which they are, and all texts."""
+    at = np.full(rows, -1, np.int64) if text_before is None else text_before
+    first = np.flatnonzero(at >= 0)
+    single = np.array(sorted(lines), np.int64)
+    row = np.concatenate((first, single))
+    text = np.concatenate((at[first], len(texts) + np.arange(len(single))))
+    order = np.argsort(row, kind="stable")
+    before = np.searchsorted(row[order], np.arange(rows + 1))
+    return before, text[order], [*texts, *(lines[k] for k in single.tolist())]
 
 
 def _check_range(word: Word, column: Ints) -> None:
@@ -342,7 +396,7 @@ def _check_range(word: Word, column: Ints) -> None:
 def _rule(word: Word) -> list[int]:
     number = word.format
     return [
-        int(word.modal),
+        int(word.modal and not word.bare),
         number.decimals,
         10**number.decimals,
         int(number.point),
@@ -351,4 +405,6 @@ def _rule(word: Word) -> list[int]:
         int(number.plus),
         len(word.letter.encode()),
         len(number.zero.encode()),
+        ord(word.closing or "\0"),
+        int(word.bare),
     ]

@@ -7,6 +7,7 @@ Knows nothing of text, neither of CL files nor of NC programs.
 """
 
 from trunnion.plan.clearance import Clearance, Surface
+from trunnion.plan.duration import seconds
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole, Why
 from trunnion.plan.planner import plan
 from trunnion.plan.wishes import Wishes
@@ -23,4 +24,5 @@ __all__ = [
     "Why",
     "Wishes",
     "plan",
+    "seconds",
 ]

@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.toolpath import Arcs, Kind, Moves, Operation
+from trunnion.plan.rows import with_copies
+from trunnion.toolpath import Arcs, Kind, Operation
 
 #: Directions are taken as along a coordinate axis within this sine; seven printed decimals give 1e-7.
 _ALONG = 1e-6
@@ -74,10 +75,7 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
         return operation
     moves, arcs = operation.moves, operation.arcs
     sweep = arc_sweeps(operation)
-    half = np.sqrt(np.minimum(chord_tolerance / (2.0 * np.maximum(arcs.radius, chord_tolerance)), 0.25))
-    pieces = np.where(keep, 1, np.ceil(sweep / (4.0 * np.arcsin(half)))).astype(np.int64)
-    copies = np.ones(len(moves), np.int64)
-    copies[arcs.row] = np.maximum(pieces, 1)
+    copies = arc_pieces(operation, keep, chord_tolerance)
     source = np.repeat(np.arange(len(moves)), copies)
     new_row = np.cumsum(copies) - 1  # where each old row ends up: the last of its copies
     tip, axis = moves.tip[source], moves.axis[source]
@@ -87,19 +85,18 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
         part = slice(new_row[row] - copies[row] + 1, new_row[row] + 1)
         tip[part], axis[part] = _points_on_arc(operation, int(m), float(sweep[m]), int(copies[row]))
         kind[part] = Kind.LINEAR
-    return replace(
-        operation,
-        moves=Moves(
-            tip, axis, kind, moves.phase[source], moves.feed[source], moves.per_rev[source], moves.line[source]
-        ),
-        arcs=Arcs(new_row[arcs.row[keep]], arcs.centre[keep], arcs.normal[keep], arcs.radius[keep], arcs.turns[keep]),
-        events=tuple(replace(event, row=_moved(event.row, new_row, copies)) for event in operation.events),
-    )
+    kept = Arcs(arcs.row[keep], arcs.centre[keep], arcs.normal[keep], arcs.radius[keep], arcs.turns[keep])
+    return with_copies(replace(operation, arcs=kept), copies, tip, axis, kind)
 
 
-def _moved(row: int, new_row: Ints, copies: Ints) -> int:
-    """The new index of the row before which an event stands: ahead of the first copy."""
-    return int(new_row[row] - copies[row] + 1) if row < len(new_row) else int(new_row[-1]) + 1 if len(new_row) else 0
+def arc_pieces(operation: Operation, keep: Flags, chord_tolerance: float) -> Ints:
+    """(n,) int64: into how many lines the move to each row is cut; 1 for all but the arcs that are not kept."""
+    arcs = operation.arcs
+    half = np.sqrt(np.minimum(chord_tolerance / (2.0 * np.maximum(arcs.radius, chord_tolerance)), 0.25))
+    pieces = np.where(keep, 1, np.ceil(arc_sweeps(operation) / (4.0 * np.arcsin(half)))).astype(np.int64)
+    copies = np.ones(len(operation.moves), np.int64)
+    copies[arcs.row] = np.maximum(pieces, 1)
+    return copies
 
 
 def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> tuple[Floats, Floats]:
@@ -116,10 +113,10 @@ def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> t
     # the file rounds centre and end: spread what is missing at the end over the arc, so that the end is met
     tip += part[:, None] * (moves.tip[row] - tip[-1])
     tip[-1] = moves.tip[row]  # to the last digit, too
-    return tip, _turned_evenly(moves.axis[row - 1], moves.axis[row], part)
+    return tip, turned_evenly(moves.axis[row - 1], moves.axis[row], part)
 
 
-def _turned_evenly(first: Floats, last: Floats, part: Floats) -> Floats:
+def turned_evenly(first: Floats, last: Floats, part: Floats) -> Floats:
     """Great-circle turn from ``first`` to ``last`` (unit vectors), at the fractions ``part``."""
     angle = float(np.arctan2(np.linalg.norm(np.cross(first, last)), first @ last))
     if angle < 1e-12:

@@ -15,10 +15,10 @@ from trunnion.errors import Problem, Severity
 from trunnion.machine import Machine, pack
 from trunnion.plan.cone import off_pole
 from trunnion.plan.motion import Decision, Departures, Pole, Why
-from trunnion.plan.placing import REWIND
 from trunnion.plan.pole import Leaning, Place, leaning
 from trunnion.plan.poses import Poses
-from trunnion.plan.speed import fastest, lowered
+from trunnion.plan.rewind import Rewind
+from trunnion.plan.speed import Loose, fastest, lowered
 from trunnion.plan.wishes import Wishes
 from trunnion.toolpath import Kind, Operation
 
@@ -117,26 +117,28 @@ def _enough(asked: Asked, poses: Poses, angle: float) -> str:
     """What would do where ``angle``, degrees, is too small."""
     for more in angle * 2.0 ** np.arange(1, _TRIED):
         if all(place.found for place in _leaning(asked, poses, Pole.LEAN, float(more)).places):
-            return f"--set pole=lean --set pole_angle={more:g} would do, or --set lower_feed=yes"
+            return f"--set pole=lean --set pole_angle={more:.4g} would do, or --set lower_feed=yes"
     return "--set lower_feed=yes lowers the feed there"
 
 
 def _no_way(asked: Asked, place: Place, cure: str) -> Problem:
     line = asked.operation.moves.line
+    name = asked.machine.axes[asked.machine.rotary[0]].name
     what = (
-        f"no lean of the tool axis by up to {asked.wishes.pole_angle:g} degrees keeps the rotary axes within their"
-        f" speed up to line {line[place.end - 1]}"
+        f"no lean of the tool axis by up to {asked.wishes.pole_angle:g} degrees keeps axis {name} within its speed"
+        f" up to line {line[place.end - 1]}"
     )
     return Problem(asked.file, int(line[place.first]), what, cure, Severity.WARNING)
 
 
-def slower(asked: Asked, poses: Poses) -> tuple[Operation, Departures, list[Decision]]:
+def slower(asked: Asked, poses: Poses, rewinds: Sequence[Rewind]) -> tuple[Operation, Departures, list[Decision]]:
     """The operation with the feeds that it is made with; said where they are lowered, or where an axis is too fast.
 
-    ``asked`` has the operation, and ``poses`` the positions, with which it is made.
+    ``asked`` has the operation, ``poses`` the positions with which it is made, ``rewinds`` what goes in between.
     """
     operation = asked.operation
-    loose = np.flatnonzero(poses.outcome == REWIND)
+    rows = np.array([rewind.row for rewind in rewinds], np.int64)
+    loose = Loose(rows, np.array([rewind.after for rewind in rewinds]).reshape(-1, 2))
     if not asked.wishes.lower_feed:
         return operation, Departures.none(), list(_too_fast(asked, poses, loose))
     moves, rows = lowered(asked.machine, operation, poses.rotary, loose, asked.source)
@@ -163,7 +165,7 @@ def _lowered(asked: Asked, rows: Ints, feed: Floats) -> Iterator[Decision]:
         yield asked.decision(int(stretches[-1][0]), Why.FEED, text)
 
 
-def _too_fast(asked: Asked, poses: Poses, loose: Ints) -> Iterator[Decision]:
+def _too_fast(asked: Asked, poses: Poses, loose: Loose) -> Iterator[Decision]:
     """Where a rotary axis would have to be faster than it can, and what helps; looked for if somebody asks."""
     machine, operation, wishes = asked.machine, asked.operation, asked.wishes
     if not (wishes.explain or wishes.lower_feed or wishes.pole is not Pole.OFF):

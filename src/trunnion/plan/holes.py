@@ -255,3 +255,12 @@ def part_of(operation: Operation, first: int, end: int) -> Operation:
     if held and isinstance(held[-1], CycleOn) and not any(isinstance(e, CycleOff) and e.row == 0 for e in events):
         events.insert(0, replace(held[-1], row=0))
     return replace(operation, moves=cut, arcs=Arcs.none(), events=tuple(events))
+
+
+def feed_of(cycle: Cycle, turning: Turning | None, modal: float, modal_per_rev: bool) -> tuple[float, bool]:
+    """The feed that is in force in the cycle, and whether it is per turn: the cycle's own, or the modal one."""
+    if cycle.feed is None:
+        return modal, modal_per_rev
+    if cycle.making in (Making.TAP, Making.TAP_CHUCK) and cycle.per_rev and turning is not None:
+        return cycle.feed * turning.rpm, False
+    return cycle.feed, cycle.per_rev

@@ -4,13 +4,14 @@ In:     an operation in the program's coordinate system, and the coordinate syst
 Out:    how the machine is to make it, and its plane if it is tilted.
 
 By rule: a tool axis that is +Z of the program throughout is three-axis, one that stands still otherwise is a tilted
-plane, one that changes is simultaneous. The user's word is stronger than the rule.
+plane, one that changes is simultaneous. The user's word is stronger than the rule. A tilted plane for which the control
+has no words is made as a simultaneous operation, where it has words for that.
 """
 
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.errors import Problem
+from trunnion.errors import Problem, Severity
 from trunnion.plan.frames import frame_of
 from trunnion.plan.motion import Manner
 from trunnion.toolpath import Frame, Operation
@@ -38,9 +39,29 @@ def manner_of(operation: Operation, wish: Manner | None) -> Manner:
     return Manner.THREE_AXIS if _steady(axis[:1], np.array([0.0, 0.0, 1.0])) else Manner.TILTED
 
 
-def contradictions(file: str, operation: Operation, manner: Manner) -> list[Problem]:
-    """Why an operation cannot be made as the user wants it; the rule never brings any."""
+def in_other_words(
+    file: str, operation: Operation, manner: Manner, manners: frozenset[Manner], tcp: bool
+) -> tuple[Manner, list[Problem]]:
+    """The manner that the control has words for, and what there is to say when it is not the one that was asked for.
+
+    ``tcp`` says whether the control is to hold the tip where rotary axes turn.
+    """
+    simultaneous = Manner.TCP if tcp else Manner.WITHOUT_TCP
+    if manner is Manner.TILTED and manner not in manners and simultaneous in manners:
+        what = f"operation {operation.name} stands in a {manner}, for which the control has no words"
+        how = f"it is made {'with TCP' if tcp else 'without TCP'}"
+        return simultaneous, [Problem(file, operation.line, what, how, Severity.WARNING)]
+    return simultaneous if manner is Manner.TCP else manner, []
+
+
+def contradictions(
+    file: str, operation: Operation, manner: Manner, manners: frozenset[Manner] = frozenset(Manner)
+) -> list[Problem]:
+    """Why an operation cannot be made in a manner, be it the user's wish or the control's words."""
     axis, line = operation.moves.axis, operation.moves.line
+    if manner not in manners:
+        what = f"operation {operation.name}: the control has no words for {manner}"
+        return [Problem(file, operation.line, what, f"it has words for {', '.join(sorted(manners))}")]
     if manner is Manner.THREE_AXIS:
         wanted, what = np.array([0.0, 0.0, 1.0]), "the tool axis is not +Z of the program, and manner is three-axis"
     elif manner is Manner.TILTED:

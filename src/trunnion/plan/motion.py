@@ -100,6 +100,7 @@ class Why(StrEnum):
     SPEED = "speed"
     FEED = "feed"
     MORE = "more"
+    POINTS = "points"
     NEAREST = "nearest"
 
 

@@ -10,12 +10,13 @@ from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
 from trunnion.plan.arcs import lines_for_arcs, plain_arcs
+from trunnion.plan.between import check_without_tcp, with_points
 from trunnion.plan.clearance import Clearance
 from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower, source_rows
 from trunnion.plan.frames import into_frame, into_plane, seen_from
 from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
-from trunnion.plan.kinds import contradictions, manner_of, plane_of
+from trunnion.plan.kinds import contradictions, in_other_words, manner_of, plane_of
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
@@ -41,12 +42,12 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     chord_tolerance
         For arcs that become lines, mm.
     wishes
-        How to rewind, and whether to explain.
+        How to rewind, with TCP or without, what is allowed between the points, and whether to explain.
 
     Raises
     ------
     InputError
-        When there is nothing to plan.
+        When there is nothing to plan, or without TCP something is not known that slide positions depend on.
     Refused
         When no position of the machine gives a tool axis, or an operation cannot be made in the manner that is wished
         for; of that no program can be made at all.
@@ -56,36 +57,48 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
     program_frame = Frame() if wishes.absolute else pairs[0][1].frame
+    if not wishes.tcp:
+        wishes = replace(wishes, rewind=False)  # nobody would hold the tip while the axes turn
     keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
     against: list[Problem] = []
+    said: list[Problem] = []
     for path, original in pairs:
         try:
             operation = into_frame(with_holes(original), program_frame)
         except CycleError as error:
             against.append(Problem(path.file, error.line, error.what, error.cure))
             continue
-        manner, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
-        against += contradictions(path.file, operation, manner)
+        asked, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
+        manner, reworded = in_other_words(path.file, operation, asked, wishes.manners, wishes.tcp)
+        said += reworded
+        against += contradictions(path.file, operation, manner, wishes.manners)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
         kept = plain_arcs(operation if plane is None else into_plane(operation, plane))
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         source = source_rows(original, operation)
         stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
-        parts = by_axis(operation) if manner is Manner.TCP and wishes.manner is None else None
+        planes = Manner.TILTED in wishes.manners and wishes.manner is None
+        parts = by_axis(operation) if manner in (Manner.TCP, Manner.WITHOUT_TCP) and planes else None
         kind = replace(stretch, manner=manner, plane=plane)
         stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own, parts=parts))
     if against:
         raise Refused(against)
-    problems = [*_unknown_speeds(pairs[0][0].file, machine, wishes)]
+    problems = [*said, *_unknown_speeds(pairs[0][0].file, machine, wishes)]
     problems += [problem for stretch in stretches for problem in stretch.problems]
     if any((stretch.poses.outcome == OUT_OF_REACH).any() for stretch in stretches):
         raise Refused(problems)
     if machine.workpiece_zero is None:
         problems += _fit_problems(stretches, machine)
+    motions = [(stretch, motion) for stretch in stretches for motion in stretch.motions(wishes)]
+    lacking = [motion.operation for _, motion in motions if motion.manner is Manner.WITHOUT_TCP]
+    if lacking:
+        check_without_tcp(pairs[0][0].file, lacking, machine)
     log = [decision for stretch in stretches for decision in stretch.log]
-    motions = [motion for stretch in stretches for motion in stretch.motions(wishes)]
-    return Plan(tuple(motions), tuple(problems), tuple(log))
+    led = [with_points(stretch.file, motion, machine, wishes, chord_tolerance) for stretch, motion in motions]
+    problems += [problem for one in led for problem in one.problems]
+    log += [decision for one in led for decision in one.log]
+    return Plan(tuple(one.motion for one in led), tuple(problems), tuple(log))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,10 +146,10 @@ def _stretch(asked: Asked) -> _Stretch:
         problems = tuple(_row_problems(file, moves, poses, machine))
         return _Stretch(file, operation, poses, (), problems, (), Departures.none())
     operation, poses, leaned, log, lacking = near_pole(asked, poses)
-    operation, slowed, too_fast = slower(replace(asked, operation=operation), poses)
-    departures = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
     planned = Planned(machine, file, operation, poses.rotary, poses.state, asked.keep_slides)
     needed = _rewinds(planned, poses, wishes.clearance)
+    operation, slowed, too_fast = slower(replace(asked, operation=operation), poses, needed)
+    departures = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
     problems = (*lacking, *_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes))
     if wishes.rewind:
         _widen(poses, machine, moves, needed)
@@ -177,7 +190,8 @@ def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes
             what = "the rotary axes would have to rewind in the cut"
             if rewind.end is not None:
                 what = f"{beyond_words(machine, rewind.end.column, rewind.end.value)} in the cut"
-            cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
+            allowed = "allow rewinds (--set rewind=insert)" if wishes.tcp else "post with TCP (--set tcp=on)"
+            cure = f"{allowed}, split the operation, or turn the workpiece"
             yield Problem(planned.file, at, what, cure)
             continue
         if not math.isfinite(rewind.way):

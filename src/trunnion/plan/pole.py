@@ -29,7 +29,7 @@ from trunnion.machine.inverse import inverse
 from trunnion.plan.cone import Cone, leanest, nearest_second, off_pole, way_of_second
 from trunnion.plan.motion import Pole
 from trunnion.plan.placing import FINE, OUT_OF_REACH, REWIND
-from trunnion.plan.poses import Poses, follow
+from trunnion.plan.poses import Poses, follow, least_cost, take
 from trunnion.plan.speed import displayed, reach, turns_freely, wound
 from trunnion.plan.states import LIMIT_TOLERANCE, REWOUND, limits_of
 from trunnion.toolpath import Moves, Operation
@@ -41,7 +41,7 @@ _AROUND: Final = 400.0
 _SHORTER: Final = 179.999
 
 #: Cones, by how many times the wished angle, within which the side may change where there is no way otherwise.
-_WIDER: Final = (2.0, 4.0, 8.0)
+_WIDER: Final = (1.0, 2.0, 4.0, 8.0)
 
 #: A tool axis that leans by less than this, degrees, stands as the CAM has it: the rounding of CL files is more.
 _UPRIGHT: Final = 1e-7
@@ -110,10 +110,10 @@ def leaning(
 
 
 def _wider(work: "_Work", poses: Poses, quick: Flags, keep_slides: bool) -> "_Made | None":
-    """A way that leads to the other side past a pole from which the tool axis stays off by more than it may lean."""
+    """A way that leads to the other side past the pole, whichever side is usual, and also farther off from it."""
     for times in _WIDER:
         cones = list(_cones(work, quick, times * work.angle))
-        made = _made(work, Pole.LEAN, *_through(work, poses, cones, keep_slides)) if cones else None
+        made = _made(work, Pole.LEAN, *_through(work, poses, cones, keep_slides, usual=False)) if cones else None
         if made is not None and not made.lacking:
             return made
     return None
@@ -180,10 +180,12 @@ def _cones(work: _Work, quick: Flags, angle: float) -> Iterator[Cone]:
             yield Cone(first, end)
 
 
-def _through(work: _Work, poses: Poses, cones: list[Cone], keep_slides: bool) -> tuple[Poses, list[Cone]]:
+def _through(
+    work: _Work, poses: Poses, cones: list[Cone], keep_slides: bool, usual: bool = True
+) -> tuple[Poses, list[Cone]]:
     """Poses with the tool axis in the pole within the cones, where nothing speaks against them; else those there were.
 
-    In these poses the first angle holds within the cones.
+    In these poses the first angle holds within the cones. Without ``usual`` no side is preferred but the definition's.
     """
     if not cones:
         return poses, cones
@@ -196,7 +198,10 @@ def _through(work: _Work, poses: Poses, cones: list[Cone], keep_slides: bool) ->
     solutions = inverse(work.machine, moves.tip[: cones[0].end], moves.axis[: cones[0].end])
     if not solutions.reachable[cones[0].first]:
         return poses, []
-    through = follow(work.machine, moves, keep_slides)
+    if usual:
+        through = follow(work.machine, moves, keep_slides)
+    else:
+        through = take(work.machine, moves, least_cost(work.machine, moves, keep_slides), keep_slides)
     if (through.outcome == OUT_OF_REACH).any() or np.count_nonzero(through.outcome) > np.count_nonzero(poses.outcome):
         return poses, cones
     return through, cones

@@ -101,6 +101,22 @@ def divide(
     return spans
 
 
+def branches(machine: Machine, axis: Floats, rotary: Floats) -> Ints:
+    """(n,) int64: which of the two solutions each row stands in; -1 in the pole, where they are one.
+
+    ``axis`` (n, 3) in the workpiece frame, ``rotary`` (n, 2) in degrees.
+    """
+    found = np.empty(len(axis), np.int64)
+    _branches(pack(machine), axis, rotary, found)
+    return found
+
+
+@njit(cache=True)
+def _branches(packed: Packed, axis: Floats, rotary: Floats, found: Ints) -> None:
+    for row in range(axis.shape[0]):
+        found[row] = _branch_of(packed, axis[row], rotary[row])
+
+
 @njit(cache=True)
 def _divide(
     chain: Chain,
@@ -135,7 +151,9 @@ def _divide(
             look[0, :], look[1, :], look[2, 0] = axis[row - 1], axis[row], _angle_between(axis[row - 1], axis[row])
             at[0, :], at[1, :] = tip[row - 1], tip[row]
             done = 0.0
-            while _error(chain, begin, end, done, 1.0, at, look, allowed, _CLOSE_LOOKS) > 1.0:
+            if _surely_within(chain, columns, begin, end, allowed):
+                done = 1.0
+            while done < 1.0 and _error(chain, begin, end, done, 1.0, at, look, allowed, _CLOSE_LOOKS) > 1.0:
                 step = _farthest(chain, packed, columns, at, look, done, branch, begin, end, allowed, here)
                 pieces = 1
                 if step == 0.0:  # nothing but a turn in its place is left: over it, and on
@@ -164,6 +182,33 @@ def _divide(
 
 
 @njit(cache=True)
+def _surely_within(chain: Chain, columns: Ints, begin: Floats, end: Floats, allowed: Floats) -> bool:
+    """Whether so little turns that nothing can be off by more than is allowed; most spans of a dense path are such.
+
+    A curve whose second derivative is at most s is off its chord by at most s/8. Here s is, of the tip, the square of
+    the angles turned together times its distance from the rotary axes, and twice the angles times the way of the
+    slides; of the tool axis the square alone, and the great circle may be as far off the chord on the other side.
+    """
+    turn, way, reach = 0.0, 0.0, 0.0
+    for k in range(5):
+        moved = abs(end[k] - begin[k])
+        if k == columns[0] or k == columns[1]:
+            turn += math.radians(moved)
+        else:
+            way += moved
+            reach += max(abs(begin[k]), abs(end[k]))
+    if not 0.25 * turn * turn <= allowed[1]:
+        return False
+    if allowed[0] == math.inf:
+        return True
+    for k in range(3):
+        one, two = chain.point[columns[0], k], chain.point[columns[1], k]
+        reach += abs(chain.tip_at_zero[k] - one) + abs(chain.tip_at_zero[k] - two) + 2.0 * abs(one - two)
+    within: bool = 0.125 * (turn * turn * reach + 2.0 * turn * way) <= allowed[0]
+    return within
+
+
+@njit(cache=True)
 def _place(packed: Packed, columns: Ints, tip: Floats, rotary: Floats, out: Floats) -> None:
     """Write all five axis values."""
     solve_slides(packed, rotary[0], rotary[1], tip[0], tip[1], tip[2], out)
@@ -183,7 +228,11 @@ def _write(
     axis: Floats,
     rotary: Floats,
 ) -> None:
-    """Write one added row: the place at ``done``, with the rotary axes at a share of the way between two positions."""
+    """Write one added row: the place at ``done``, with the rotary axes at a share of the way between two positions.
+
+    A turn at an end of the way is at rest right there.
+    """
+    done = 0.0 if done < 2.0 * _SHORT else 1.0 if done > 1.0 - 2.0 * _SHORT else done
     for k in range(3):
         tip[k] = at[0, k] + done * (at[1, k] - at[0, k])
     _slerp(look, done, axis)

@@ -22,7 +22,7 @@ USED: Final = 0.99
 _LEAST_FEED: Final = 0.1
 
 #: A tip that moves by less than this, mm, rests.
-_RESTS: Final = 1e-9
+RESTS: Final = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,18 @@ class Fastest:
     count: int
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Loose:
+    """Growing rows before which the axes turn off the part, row (k,) int64, and where they stand then, after (k, 2)."""
+
+    row: Ints
+    after: Floats
+
+
+#: No such rows.
+TIED: Final = Loose(np.zeros(0, np.int64), np.zeros((0, 2)))
+
+
 def rates(operation: Operation) -> Floats:
     """(n,) float64: programmed speed of the tip, mm/min, whatever its unit is; NaN where nobody says it."""
     moves = operation.moves
@@ -51,7 +63,7 @@ def rates(operation: Operation) -> Floats:
     return np.asarray(np.where(moves.per_rev, moves.feed * rpm, moves.feed))
 
 
-def fastest(machine: Machine, operation: Operation, rotary: Floats, loose: Ints) -> Fastest:
+def fastest(machine: Machine, operation: Operation, rotary: Floats, loose: Loose) -> Fastest:
     """Where the rotary axes would have to be fastest.
 
     Parameters
@@ -60,17 +72,17 @@ def fastest(machine: Machine, operation: Operation, rotary: Floats, loose: Ints)
         In the program's coordinate system.
     rotary : (n, 2) float64
         Degrees, as the axes display them.
-    loose : (k,) int64
-        Growing rows that do not follow the row before them: the axes turn off the part in between.
+    loose
+        Rows before which the axes turn off the part.
     """
     share = np.empty((0, 2))
-    return Fastest(*_scan(*_columns(machine, operation, rotary), loose, share))
+    return Fastest(*_scan(*_columns(machine, operation, rotary), loose.row, loose.after, share))
 
 
-def shares(machine: Machine, operation: Operation, rotary: Floats, loose: Ints) -> Floats:
+def shares(machine: Machine, operation: Operation, rotary: Floats, loose: Loose = TIED) -> Floats:
     """(n, 2) float64: share of each rotary axis' rapid speed that each row asks for; arguments as for ``fastest``."""
     share = np.zeros((len(rotary), 2))
-    _scan(*_columns(machine, operation, rotary), loose, share)
+    _scan(*_columns(machine, operation, rotary), loose.row, loose.after, share)
     return share
 
 
@@ -82,7 +94,7 @@ def reach(machine: Machine, operation: Operation) -> tuple[Floats, Flags]:
     moves = operation.moves
     way = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
     rate = rates(operation)
-    bound = (moves.kind != Kind.RAPID) & (way >= _RESTS) & (rate > 0.0)
+    bound = (moves.kind != Kind.RAPID) & (way >= RESTS) & (rate > 0.0)
     bound[0] = False
     far = np.full((len(moves), 2), np.inf)
     for r, column in enumerate(machine.rotary):
@@ -91,7 +103,7 @@ def reach(machine: Machine, operation: Operation) -> tuple[Floats, Flags]:
     return far, ~bound
 
 
-def lowered(machine: Machine, operation: Operation, rotary: Floats, loose: Ints, together: Ints) -> tuple[Moves, Ints]:
+def lowered(machine: Machine, operation: Operation, rotary: Floats, loose: Loose, together: Ints) -> tuple[Moves, Ints]:
     """The moves with feeds at which no rotary axis exceeds its rapid speed, and the rows whose feed is lower now.
 
     together : (n,) int64
@@ -153,6 +165,7 @@ def _scan(
     free: Flags,
     rapid: Floats,
     loose: Ints,
+    after: Floats,
     share: Floats,
 ) -> tuple[float, int, int, int]:
     """Most share, its row and axis, and how many rows ask for more than all; all shares too if there is room."""
@@ -161,9 +174,11 @@ def _scan(
     for row in range(1, tip.shape[0]):
         while skip < len(loose) and loose[skip] < row:
             skip += 1
-        if kind[row] == 0 or not rate[row] > 0.0 or (skip < len(loose) and loose[skip] == row):
+        if kind[row] == 0 or not rate[row] > 0.0:
             continue
         one, two = rotary[row, 0] - rotary[row - 1, 0], rotary[row, 1] - rotary[row - 1, 1]
+        if skip < len(loose) and loose[skip] == row:
+            one, two = rotary[row, 0] - after[skip, 0], rotary[row, 1] - after[skip, 1]
         if one == 0.0 and two == 0.0:
             continue
         if free[0]:
@@ -173,9 +188,9 @@ def _scan(
         one, two = abs(one), abs(two)
         x, y, z = tip[row, 0] - tip[row - 1, 0], tip[row, 1] - tip[row - 1, 1], tip[row, 2] - tip[row - 1, 2]
         way = math.sqrt(x * x + y * y + z * z)
-        if way < _RESTS:
+        if way < RESTS:
             way = max(one, two)
-            if way < _RESTS:
+            if way < RESTS:
                 continue
         minutes = way / rate[row]
         one, two = one / minutes / rapid[0], two / minutes / rapid[1]

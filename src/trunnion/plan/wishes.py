@@ -1,25 +1,35 @@
 """What whoever asks for a program may wish of its planning."""
 
+import math
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Final
 
 from trunnion.plan.clearance import Clearance
 from trunnion.plan.motion import Manner, Pole
+
+#: How far the tool axis may be off between CL points without TCP, degrees, unless something else is asked.
+AXIS_WITHOUT_TCP: Final = 0.05
 
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
     """Wishes with their defaults.
 
-    rewind      insert retreats where an axis must wind back in the cut; False: refuse the program
-    clearance   how far the tool draws back along its axis for that
-    engage      share of the feed with which it comes back
-    explain     say more in the log: what the nearest neighbour would have done, where a rotary axis is too fast
-    manner      how every operation is to be made, whatever the rule says; None: by the rule
-    pole        what is done near the pole where a rotary axis would have to be too fast
-    pole_angle  by how much the tool axis may lean for that, degrees
-    absolute    the program's coordinate system is the CAM's absolute one, not that of the first operation
-    lower_feed  lower the feed where a rotary axis would have to be too fast
+    rewind          insert retreats where an axis must wind back in the cut; False: refuse the program
+    clearance       how far the tool draws back along its axis for that
+    engage          share of the feed with which it comes back
+    explain         say more in the log: what the nearest neighbour would have done, where a rotary axis is too fast
+    manner          how every operation is to be made, whatever the rule says; None: by the rule
+    manners         those that the control has words for
+    pole            what is done near the pole where a rotary axis would have to be too fast
+    pole_angle      by how much the tool axis may lean for that, degrees
+    absolute        the program's coordinate system is the CAM's absolute one, not that of the first operation
+    lower_feed      lower the feed where a rotary axis would have to be too fast
+    tcp             the control holds the tip (TCP); False: the slides and rotary axes themselves are led
+    tip_tolerance   without TCP: how far the tip may be off its line between CL points, mm
+    axis_tolerance  how far the tool axis may be off its great circle between CL points, degrees; None: with TCP it is
+                    not looked at, without TCP it is ``AXIS_WITHOUT_TCP``
     """
 
     rewind: bool = True
@@ -27,7 +37,18 @@ class Wishes:
     engage: float = 0.5
     explain: bool = False
     manner: Manner | None = None
+    manners: frozenset[Manner] = frozenset(Manner)
     absolute: bool = False
     pole: Pole = Pole.OFF
     pole_angle: float = 0.1
     lower_feed: bool = False
+    tcp: bool = True
+    tip_tolerance: float = 0.005
+    axis_tolerance: float | None = None
+
+    @property
+    def axis_between(self) -> float:
+        """How far the tool axis may be off between CL points, degrees; infinite where nobody asks."""
+        if self.axis_tolerance is not None:
+            return self.axis_tolerance
+        return math.inf if self.tcp else AXIS_WITHOUT_TCP

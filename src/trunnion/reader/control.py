@@ -11,6 +11,7 @@ says, with turned axes it is where the machine takes it.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -18,7 +19,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machine import Axis, Machine, Output, forward
-from trunnion.machine.inverse import solve_slides
+from trunnion.machine.inverse import pack, solve_slides
 from trunnion.reader import arcs, poses
 from trunnion.reader.columns import Changes, affine
 from trunnion.reader.drilling import Step
@@ -117,10 +118,14 @@ class Control(Rows, ABC):
         return self._plane.then(self._program)
 
     def _origins(self) -> tuple[Floats, Floats]:
-        """Slide values at the work offset's zero, and the tip where the machine's zero is; rotary axes at zero."""
+        """Slide values at the work offset's zero, and the tip where the machine's zero is; rotary axes at zero.
+
+        Both without a tool.
+        """
+        bare = replace(self.machine, tool_length=None)
         joints = np.zeros(5)
-        solve_slides(self._packed, 0.0, 0.0, 0.0, 0.0, 0.0, joints)
-        tip = forward(self.machine, np.zeros((1, 5)))[0][0]
+        solve_slides(pack(bare), 0.0, 0.0, 0.0, 0.0, 0.0, joints)
+        tip = forward(bare, np.zeros((1, 5)))[0][0]
         return np.nan_to_num(joints[self._slides]), tip
 
     def _remap(self) -> None:
@@ -132,9 +137,14 @@ class Control(Rows, ABC):
         if self.tips:
             origin = self._origin_tip if none else np.zeros(3)
         else:
-            origin = np.zeros(3) if none else self._origin_slides
+            origin = self._length + (0.0 if none else self._origin_slides)
         self.map = affine(frame.linear, frame.shift + origin)
         self.turn = self._vectors(frame)
+
+    @property
+    def _length(self) -> Floats:
+        """What is added to the slides X Y Z for the length of the tool where positions are theirs, (3,) mm."""
+        return np.zeros(3)
 
     def _vectors(self, frame: Frame) -> Floats:
         """From programmed vectors to the workpiece frame, (3, 3)."""

@@ -42,7 +42,8 @@ def run_program(
     path
         The program. Subprograms are looked for in its folder, nowhere else.
     machine
-        Three slides X, Y and Z, two rotary axes. Tools have length 0: the tip is where the control takes it to be.
+        Three slides X, Y and Z, two rotary axes. Every tool has the length of ``machine.tool_length``, or 0: the
+        tip is then where the control takes it to be.
     family
         The control whose language it is, a key of ``READERS``; None: as the machine's definition has it.
     step_limit
@@ -76,3 +77,8 @@ def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Inte
         what = f"its control is a {name}, whose programs cannot be read yet"
         raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
     return READERS[name]
+
+
+def can_read(machine: Machine) -> bool:
+    """Whether there is a reader for the programs of a machine."""
+    return family_of(machine) in READERS

@@ -15,10 +15,10 @@ import math
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 
+from trunnion.machine.pace import clock
 from trunnion.report.facts import AxisExtent, Facts, OperationUse, Span, Spot, TipExtent, ToolUse
 from trunnion.report.pack import pack
 from trunnion.report.series import DIRECT, IN_VIEW, Level, Line, Plot, Series, levels, rows_of
-from trunnion.verify import clock
 from trunnion.verify.model import Check, Place
 
 #: Places that the page shows of each check; the JSON report has all of them.

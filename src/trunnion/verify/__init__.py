@@ -3,7 +3,7 @@
 from trunnion.verify.case import Settings
 from trunnion.verify.compare import Comparison, Difference, compare
 from trunnion.verify.model import Check, Place, Share, Verification
-from trunnion.verify.text import check_lines, clock, failures, place_line, place_lines, time_lines
+from trunnion.verify.text import check_lines, failures, place_line, place_lines, time_lines
 from trunnion.verify.verify import verify
 from trunnion.verify.wanted import Agreed, Allowed
 
@@ -18,7 +18,6 @@ __all__ = [
     "Share",
     "Verification",
     "check_lines",
-    "clock",
     "compare",
     "failures",
     "place_line",

@@ -25,6 +25,9 @@ _NOISE: Final = 1e-7
 #: Share of its rapid speed that a rotary axis must need for a feed to be lowered that far.
 _NEEDED: Final = 0.95
 
+#: Two points, each off by one in three coordinates, are farther apart by this at most.
+_BOTH_ENDS: Final = 2.0 * 3.0**0.5
+
 
 @dataclass(frozen=True, slots=True)
 class Broken:
@@ -101,25 +104,30 @@ def broken_poses(run: Run, wanted: Wanted, pairs: Pairs) -> list[Broken]:
 
 
 def needless_feeds(run: Run, wanted: Wanted, pairs: Pairs) -> list[Broken]:
-    """Rows whose feed was lowered farther than the rotary axes need it; lines for arcs share one and are left out."""
+    """Rows whose feed was lowered farther than the rotary axes need it.
+
+    Lines for arcs share a feed, and ways that rounding may have made are no measure: both are left out.
+    """
     broken = []
     rapid = np.array([run.machine.axes[column].rapid or np.inf for column in run.machine.rotary])
     for part, agreed in _agreeing(wanted):
         for nc, cl in pairs.chunks(pairs.cl.before(part.first), pairs.cl.before(part.end)):
             here, k = _among(cl - part.first, agreed.slowed)
             here, k = here[wanted.kind(cl[here]) != Kind.ARC], k[wanted.kind(cl[here]) != Kind.ARC]
-            here, k = here[nc[here] > 0], k[nc[here] > 0]
+            # Points between lead there as well: the way is that from the CL point before.
+            first = nc[here] - 1 - pairs.leading(cl[here])
+            here, k, first = here[first >= 0], k[first >= 0], first[first >= 0]
             if not len(here):
                 continue
-            now, before = run.poses(nc[here]), run.poses(nc[here] - 1)
-            turned = np.abs(now.joints - before.joints)[:, list(run.machine.rotary)]
-            length = np.linalg.norm(now.tip - before.tip, axis=1)
-            length = np.where(length < 1e-9, turned.max(axis=1), length)
+            now, before = run.poses(nc[here]), run.poses(first)
+            # What is printed is rounded at both ends: this is the most that the axes may need.
+            turned = np.abs(now.joints - before.joints)[:, list(run.machine.rotary)] + 2.0 * part.allowed.angle
+            length = np.linalg.norm(now.tip - before.tip, axis=1) - _BOTH_ENDS * part.allowed.tip
             per_rev = wanted.per_rev(cl[here])
             rate = agreed.feed[k] * np.where(per_rev, run.state.rpm.at(nc[here]), 1.0)
             with np.errstate(divide="ignore", invalid="ignore"):
                 share = (turned / rapid).max(axis=1) * rate / length
-            for bad in np.flatnonzero(~(share >= _NEEDED)).tolist():
+            for bad in np.flatnonzero(~(share >= _NEEDED) & (length > 0.0)).tolist():
                 text = (
                     f"the feed is lowered to {agreed.feed[k[bad]]:g}, and the rotary axes need no more than"
                     f" {100.0 * share[bad]:.0f} % of their rapid speed there"

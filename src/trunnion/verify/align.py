@@ -9,6 +9,7 @@ programs; otherwise both sides are walked along together, and where they part th
 at which two motions in a row fit again.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -18,6 +19,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.reader import Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.arcs import Arc, arc_of
+from trunnion.verify.between import follow
 from trunnion.verify.cycles import hole_rows, made_in
 from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Wanted
@@ -48,12 +50,16 @@ class Pieces:
     arc: Arc
 
 
+_NOTHING = np.zeros(0, np.int64), np.zeros(0, np.int64)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Pairs:
     """Partners: row ``nc[k]`` of the run answers to CL row ``cl[k]``, both growing.
 
     missing   CL rows that no motion answers to, repeated points left out
     extra     motions that answer to no CL row
+    between   (k,) and (k,) int64: motions on the way from one CL point to the next, and the CL row that each leads to
     """
 
     nc: Rows
@@ -61,6 +67,19 @@ class Pairs:
     missing: tuple[int, ...] = ()
     extra: tuple[int, ...] = ()
     pieces: tuple[Pieces, ...] = ()
+    between: tuple[Ints, Ints] = _NOTHING
+
+    def all_chunks(self) -> Iterator[tuple[Ints, Ints]]:
+        """As ``chunks``, with the motions between CL points after all the others."""
+        yield from self.chunks()
+        nc, cl = self.between
+        for start in range(0, len(nc), CHUNK):
+            yield nc[start : start + CHUNK], cl[start : start + CHUNK]
+
+    def leading(self, cl: Ints) -> Ints:
+        """How many motions between CL points lead to each of some CL rows, (k,)."""
+        to = self.between[1]
+        return np.searchsorted(to, cl, "right") - np.searchsorted(to, cl)
 
     def chunks(self, first: int = 0, end: int | None = None) -> Iterator[tuple[Ints, Ints]]:
         """Partners, many at a time, from pair ``first`` to the one before ``end``: rows of run and CL files."""
@@ -117,16 +136,19 @@ def _fresh(wanted: Wanted) -> Iterator[tuple[int, Flags]]:
             yield part.first + start, fresh if start else np.concatenate(([True], fresh))
 
 
-def matched(run: Run, wanted: Wanted) -> Pairs:
-    """Pairs by position, whatever was dropped, doubled or swapped."""
-    return _Matcher(run, wanted).walk()
+def matched(run: Run, wanted: Wanted, *, bend: float | None = None) -> Pairs:
+    """Pairs by position, whatever was dropped, doubled or swapped.
+
+    With ``bend``, degrees, there may be more points on the way between CL points, with the tool axis no further off.
+    """
+    return _Matcher(run, wanted, bend).walk()
 
 
 class _Matcher:
     """Walks along the motions of a program and the points of its CL files together."""
 
-    def __init__(self, run: Run, wanted: Wanted) -> None:
-        self._run, self._wanted = run, wanted
+    def __init__(self, run: Run, wanted: Wanted, bend: float | None) -> None:
+        self._run, self._wanted, self._bend = run, wanted, bend
         self._rows = points(run)
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
@@ -134,6 +156,7 @@ class _Matcher:
         self._missing: list[int] = []
         self._extra: list[int] = []
         self._pieces: list[Pieces] = []
+        self._between: list[tuple[Ints, Ints]] = [_NOTHING]
 
     def walk(self) -> Pairs:
         """Both sides to their ends."""
@@ -157,6 +180,10 @@ class _Matcher:
             if pieces:
                 i += pieces
                 continue
+            motions, points = self._take_way(i, j)
+            if motions:
+                i, j = i + motions, j + points
+                continue
             partings += 1
             a, b = self._meeting(i, j) if partings <= _PARTINGS else (self._n - i, self._m - j)
             self._part(i, j, a, b)
@@ -169,6 +196,7 @@ class _Matcher:
             tuple(self._missing),
             tuple(self._extra),
             tuple(self._pieces),
+            (np.concatenate([nc for nc, _ in self._between]), np.concatenate([cl for _, cl in self._between])),
         )
 
     def _pair(self, i: int, j: int, count: int) -> None:
@@ -232,6 +260,32 @@ class _Matcher:
             if len(rows) < ahead:
                 return 0
         return 0
+
+    def _take_way(self, i: int, j: int) -> tuple[int, int]:
+        """How many motions from the i-th on go to how many points from row j on, some by points between."""
+        if j == 0 or self._bend is None:
+            return 0, 0
+        part = self._wanted.part_of(j)
+        rows = self._rows.part(i, i + CHUNK)
+        points = np.arange(max(j - 1, part.first), min(j + CHUNK, part.end))
+        if points[0] == j:  # nobody knows from where the tool comes to the first point
+            return 0, 0
+        is_ = self._run.poses(rows)
+        wanted = self._wanted
+        near, bend = self._limits(j), math.radians(self._bend)
+        way = follow(
+            is_.tip, is_.axis, self._run.kind[rows], wanted.tip(points), wanted.axis(points), wanted.kind(points), near,
+            part.allowed.tip, bend + 2.0 * near[1],
+        )  # fmt: skip
+        nc, cl = rows[: way.motions], j + way.partner
+        there = np.flatnonzero(way.there)
+        edges = np.flatnonzero((np.diff(nc[there]) != 1) | (np.diff(cl[there]) != 1))
+        for stretch in np.split(there, edges + 1):
+            if len(stretch):
+                self._nc.append((int(nc[stretch[0]]), len(stretch)))
+                self._cl.append((int(cl[stretch[0]]), len(stretch)))
+        self._between.append((nc[~way.there], cl[~way.there]))
+        return way.motions, way.points
 
     def _meeting(self, i: int, j: int) -> tuple[int, int]:
         """How many motions and points to go until two in a row fit again; all of them if they never do."""

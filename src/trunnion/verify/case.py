@@ -23,6 +23,7 @@ class Settings:
     work_offset  54..57 or 505..599; None: one throughout, whichever
     edge         number of the cutting edge (D) under which the tool works; None: whichever
     span         degrees that the tool axis may be off between points; None: it is told, not judged
+    span_tip     mm that the tip may be off its line between points without TCP; None: it is told, not judged
     absolute     the program's coordinate system is the CAM's absolute one, not that of the first operation
     """
 
@@ -30,6 +31,7 @@ class Settings:
     work_offset: int | None = None
     edge: int | None = None
     span: float | None = None
+    span_tip: float | None = None
     absolute: bool = False
 
 

@@ -1,11 +1,12 @@
 """The words of a program against what the CL file asks for: how to move, feed, spindle, tool, coolant, offset, home."""
 
+import math
 from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
 from trunnion.verify.agreed import Believed, needless_feeds
@@ -26,6 +27,12 @@ _COOLANT = {"OFF": "off", "ON": "flood", "FLOOD": "flood", "TAP": "flood", "MIST
 
 #: A spindle speed is printed without decimals.
 _RPM = 0.5 + 1e-6
+
+#: A tip that moves by less than this, mm, may be said to rest.
+_RESTS = 1e-3
+
+#: No control makes a block in less than this, minutes.
+_QUICKEST = 1e-6
 
 #: Home is met within this, mm or degrees.
 _HOME = 1e-6
@@ -60,6 +67,8 @@ def order(case: Case) -> Check:
         return judged("order", title, places, "", count)
     left_out = len(wanted) - len(pairs.cl)
     summary = f"{len(pairs.cl)} points in their order"
+    if len(pairs.between[0]):
+        summary += f", {len(pairs.between[0])} more on the way between them"
     if left_out:
         summary += f", {left_out} repeated ones left out"
     if back:
@@ -84,7 +93,7 @@ def kind(case: Case) -> Check:
     by_lines = {pieces.cl for pieces in pairs.pieces}
     places: list[Place] = []
     count = 0
-    for nc, cl in pairs.chunks():
+    for nc, cl in pairs.all_chunks():
         for k in np.flatnonzero(run.kind[nc] != wanted.kind(cl)).tolist():
             row, point = int(nc[k]), int(cl[k])
             is_, want = Kind(int(run.kind[row])), wanted.point(point).kind
@@ -153,16 +162,19 @@ def feed(case: Case, believed: Believed) -> Check:
     places: list[Place] = []
     count = 0
     seen: tuple[float, float] = (np.inf, -np.inf)
-    for nc, cl in pairs.chunks():
+    for nc, cl in pairs.all_chunks():
         cuts = (run.kind[nc] != Kind.RAPID) & (wanted.kind(cl) != Kind.RAPID)
         rate, per_rev = run.state.feed.at(nc), wanted.per_rev(cl)
         asked = wanted.feed(cl)
-        allowed: float | Floats = max(part.allowed.feed for part in wanted.parts) + 1e-9
+        allowed = max(part.allowed.feed for part in wanted.parts) + 1e-9
         mode = run.state.feed_mode.at(nc)
-        if (mode == 93).any():
-            rate, allowed = _inverse_time(run, nc, mode, rate), np.where(mode == 93, 1e-3 * asked, allowed)
+        near = np.abs(rate - asked) <= allowed
+        timed = np.flatnonzero(mode == 93)
+        if len(timed):
+            rounded = max(part.allowed.tip for part in wanted.parts)
+            near[timed], rate[timed] = _in_time(run, nc[timed], rate[timed], asked[timed], rounded)
         wrong = cuts & ((mode == 95) != per_rev)
-        wrong |= cuts & ~(np.abs(rate - asked) <= allowed) & ~np.isnan(asked)
+        wrong |= cuts & ~near & ~np.isnan(asked)
         known = asked[cuts & ~np.isnan(asked)]
         if len(known):
             seen = min(seen[0], float(known.min())), max(seen[1], float(known.max()))
@@ -177,13 +189,16 @@ def feed(case: Case, believed: Believed) -> Check:
             text = f"moves with {has}; the CL file wants {asked[k]:g} {want}"
             places.append(case.place(int(nc[k]), float(rate[k]), text, int(cl[k])))
     for pieces in pairs.pieces:
-        asked_here = wanted.point(pieces.cl).feed
-        off = np.abs(run.state.feed.at(pieces.nc) - asked_here) > wanted.part_of(pieces.cl).allowed.feed + 1e-9
-        for row in pieces.nc[off & (run.state.feed_mode.at(pieces.nc) != 93)].tolist():
+        asked_here, limits = wanted.point(pieces.cl).feed, wanted.part_of(pieces.cl).allowed
+        rate, mode = run.state.feed.at(pieces.nc), run.state.feed_mode.at(pieces.nc)
+        near = np.abs(rate - asked_here) <= limits.feed + 1e-9
+        timed = np.flatnonzero(mode == 93)
+        asked = np.full(len(timed), asked_here)
+        near[timed], rate[timed] = _in_time(run, pieces.nc[timed], rate[timed], asked, limits.tip)
+        for k in np.flatnonzero(~near).tolist():
             count += 1
-            has_here = run.state.feed[row]
-            text = f"moves with F{has_here:g}; the CL file wants {asked_here:g}"
-            places.append(case.place(row, has_here, text, pieces.cl))
+            text = f"moves with {rate[k]:g} mm/min; the CL file wants {asked_here:g}"
+            places.append(case.place(int(pieces.nc[k]), float(rate[k]), text, pieces.cl))
     broken = [*believed.feed, *needless_feeds(run, wanted, pairs)]
     places = [*(case.answering(one.cl, one.value, one.text) for one in broken[:NAMED]), *places]
     count += len(broken)
@@ -193,10 +208,22 @@ def feed(case: Case, believed: Believed) -> Check:
     return judged("feed", "feeds as the CL file says", places, good, count)
 
 
-def _inverse_time(run: Run, nc: Ints, mode: Codes, rate: Floats) -> Floats:
-    """Feeds in mm/min, where they are said as blocks a minute."""
-    length = np.sqrt(((run.poses(nc).tip - run.poses(nc - 1).tip) ** 2).sum(axis=1))
-    return np.asarray(np.where(mode == 93, rate * length, rate))
+def _in_time(run: Run, nc: Ints, rate: Floats, asked: Floats, rounded: float) -> tuple[Flags, Floats]:
+    """Whether blocks with inverse time take as long as their way does at the feed asked for; and their feeds, mm/min.
+
+    They may be off by a thousandth and by what rounding moves the ends, ``rounded`` mm in each coordinate. Where the
+    tip rests, a degree may count as a millimetre. A block may always take as long as no control is quicker.
+    """
+    before, after = run.poses(nc - 1), run.poses(nc)
+    way = np.sqrt(((after.tip - before.tip) ** 2).sum(axis=1))
+    turned = np.abs(after.joints - before.joints)[:, list(run.machine.rotary)].max(axis=1)
+    slack = 2.0 * math.sqrt(3.0) * rounded
+    longest = np.where(way < _RESTS, np.maximum(way, turned), way) + slack
+    with np.errstate(divide="ignore"):
+        minutes = 1.0 / rate
+    soon = minutes < (1.0 - 1e-3) * np.maximum(way - slack, 0.0) / asked
+    late = minutes > (1.0 + 1e-3) * longest / asked + _QUICKEST
+    return ~(soon | late | np.isnan(minutes)), rate * way
 
 
 def _part(case: Case, stretch: Stretch) -> tuple[int, int]:

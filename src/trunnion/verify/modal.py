@@ -6,12 +6,18 @@ from pathlib import Path
 import numpy as np
 
 from trunnion.errors import InputError, Severity
-from trunnion.reader import Finding, Happening, Run
+from trunnion.reader import Finding, Happening, Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.align import CHUNK, PLACES
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.cycles import hole_rows, made_in
 from trunnion.verify.model import Check, Place
+
+_FEEDLESS = {
+    "no feed": "moves at feed, but no feed was said",
+    "spindle off": "moves at feed, spindle off",
+    "no time": "moves with inverse time (G93), and has no F of its own",
+}
 
 #: Rotary motion below this, degrees, is none.
 _TURNED = 1e-3
@@ -53,11 +59,15 @@ def _spindle_at(run: Run, before_row: int) -> bool:
 def _without_feed_or_spindle(case: Case) -> list[Place]:
     run = case.run
     places: list[Place] = []
-    found = {"no feed": False, "spindle off": False}
+    found = {"no feed": False, "spindle off": False, "no time": False}
     for start in range(0, len(run), CHUNK):
         end = min(start + CHUNK, len(run))
         cuts = run.kind[start:end] != Kind.RAPID
         faults = {"no feed": cuts & ~(run.state.feed.part(start, end) > 0.0)}
+        timed = run.state.feed_mode.part(start, end) == 93
+        said = run.programmed[start:end]
+        # Motions that blocks do not write themselves, as those of cycles, have their feeds from elsewhere.
+        faults["no time"] = cuts & timed & (said != 0) & ((said & int(Written.FEED)) == 0)
         # With a CL file it says where the spindle turns; some tools do not.
         if case.wanted is None:
             off = (run.state.spindle.part(start, end) == 0) | (run.state.rpm.part(start, end) <= 0.0)
@@ -65,8 +75,7 @@ def _without_feed_or_spindle(case: Case) -> list[Place]:
         for what, rows in faults.items():
             if not found[what] and rows.any():
                 found[what] = True
-                text = "moves at feed, but no feed was said" if what == "no feed" else "moves at feed, spindle off"
-                places.append(case.place(start + int(np.argmax(rows)), 0.0, text))
+                places.append(case.place(start + int(np.argmax(rows)), 0.0, _FEEDLESS[what]))
     return places
 
 
@@ -128,7 +137,7 @@ def _low_rapids(case: Case) -> list[Place]:
     suspect[rapids] = True
     if case.pairs is not None:
         assert case.wanted is not None
-        for nc, cl in case.pairs.chunks():
+        for nc, cl in case.pairs.all_chunks():
             suspect[nc[case.wanted.kind(cl) == Kind.RAPID]] = False
     suspect[hole_rows(made_in(run))] = False  # they have a check of their own
     if not suspect.any():

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trunnion.machine.pace import clock
 from trunnion.toolpath import Kind
 from trunnion.verify.model import Check, Place, Verification
 
@@ -39,18 +40,6 @@ def time_lines(verification: Verification) -> Iterator[str]:
         yield f"time: {clock(float(seconds.sum()))}, {clock(float(seconds[cuts].sum()))} of it in cuts"
         for share in verification.operations:
             yield f"time: {clock(float(seconds[share.first : share.end].sum()))} for {share.name}"
-
-
-def clock(seconds: float) -> str:
-    """Return a time as people read it.
-
-    >>> clock(4.26), clock(75), clock(7384)
-    ('4.3 s', '1:15 min', '2:03:04 h')
-    """
-    if round(seconds, 1) < 60.0:
-        return f"{seconds:.1f} s"
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} h"
 
 
 def failures(verification: Verification) -> list[Check]:

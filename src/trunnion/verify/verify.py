@@ -13,6 +13,7 @@ from trunnion.verify import demands, modal
 from trunnion.verify.agreed import Believed, believe, broken_poses
 from trunnion.verify.align import Pairs, in_order, matched
 from trunnion.verify.arcs import Arc, turned
+from trunnion.verify.between import Spans
 from trunnion.verify.case import NAMED, Case, Settings
 from trunnion.verify.holes import holes
 from trunnion.verify.model import Check, Place, Share, Verification
@@ -57,21 +58,23 @@ def verify(
     settings = settings or Settings()
     checks: list[Check] = []
     wanted = Wanted(toolpaths, allowed or Allowed(), settings.absolute) if toolpaths else None
-    walker = Walker(run, NAMED, math.inf if settings.span is None else settings.span, times=columns)
+    walker = Walker(run, NAMED, math.inf, times=columns)
     pairs = None
     if wanted is not None:
         believed = believe(wanted, run.machine)
-        pairs, off_tip, off_axis = _paired(run, wanted, walker)
+        pairs, off_tip, off_axis, spans = _paired(run, wanted, walker, settings)
         case = Case(run, wanted, pairs, settings)
         checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis, believed)]
         checks += [demands.kind(case), demands.feed(case, believed), demands.spindle(case), demands.tool(case)]
         checks += [demands.coolant(case), demands.offset(case), demands.home(case), holes(case)]
     else:
-        _go_by(run, walker)
+        alone = _spans(run, settings)
+        _go_by(run, walker, *alone)
+        spans = alone[0] if alone else None
         case = Case(run, None, None, settings)
         checks.append(demands.offset(case))
     way = walker.walked()
-    checks += [_span(case, way), _travel(case, way), _speed(case, way), _acceleration(case, way)]
+    checks += [_span(case, way, spans), _travel(case, way), _speed(case, way), _acceleration(case, way)]
     checks += [turns(case), modal.modal(case), modal.words(case)]
     cl_line = _cl_lines(case) if columns else np.zeros(0, np.int32)
     operations = tuple(_operations(case))
@@ -91,35 +94,46 @@ def _operations(case: Case) -> Iterator[Share]:
         first = end
 
 
+def _spans(run: Run, settings: Settings, wanted: Wanted | None = None, pairs: Pairs | None = None) -> tuple[Spans, ...]:
+    """What goes along to judge the way between the points, if anything is to be."""
+    if settings.span is None and settings.span_tip is None:
+        return ()
+    limits = [part.allowed for part in wanted.parts] if wanted is not None else [Allowed()]
+    tip = math.inf if settings.span_tip is None else settings.span_tip + max(limit.tip for limit in limits)
+    axis = math.inf if settings.span is None else settings.span + 2.0 * max(limit.angle for limit in limits)
+    return (Spans(run, NAMED, tip, axis, wanted, pairs),)
+
+
 def _cl_lines(case: Case) -> Lines:
     """Line of the CL file that each row answers to, (n,), 0 where there is none."""
     lines = np.zeros(len(case.run), np.int32)
     if case.wanted is not None and case.pairs is not None:
-        for nc, cl in case.pairs.chunks():
+        for nc, cl in case.pairs.all_chunks():
             lines[nc] = case.wanted.line(cl)
         for pieces in case.pairs.pieces:
             lines[pieces.nc] = case.wanted.point(pieces.cl).line
     return lines
 
 
-def _go_by(run: Run, *each: Walker | Deviations) -> None:
+def _go_by(run: Run, *each: Walker | Deviations | Spans) -> None:
     """Show all rows of a run to whoever looks at them, a chunk at a time, while it is in the processor's cache."""
     for first, end, poses in run.stretches():
         for one in each:
             one.take(first, end, poses)
 
 
-def _paired(run: Run, wanted: Wanted, walker: Walker) -> tuple[Pairs, Off, Off]:
+def _paired(run: Run, wanted: Wanted, walker: Walker, settings: Settings) -> tuple[Pairs, Off, Off, Spans | None]:
     """Partners and how far they are apart: by counting if that fits, else by position. The walker goes along."""
     counted = in_order(run, wanted)
-    pairs = counted or matched(run, wanted)
-    off = Deviations(run.machine, wanted, pairs, NAMED)
-    _go_by(run, walker, off)
+    bend = settings.span if settings.span is not None or settings.span_tip is None else 180.0
+    pairs = counted or matched(run, wanted, bend=bend)
+    off, spans = Deviations(run.machine, wanted, pairs, NAMED), _spans(run, settings, wanted, pairs)
+    _go_by(run, walker, off, *spans)
     if counted and any(one.count for one in off.found()):
-        pairs = matched(run, wanted)
-        off = Deviations(run.machine, wanted, pairs, NAMED)
-        _go_by(run, off)
-    return pairs, *off.found()
+        pairs = matched(run, wanted, bend=bend)
+        off, spans = Deviations(run.machine, wanted, pairs, NAMED), _spans(run, settings, wanted, pairs)
+        _go_by(run, off, *spans)
+    return pairs, *off.found(), spans[0] if spans else None
 
 
 def _tip(case: Case, off: Off) -> Check:
@@ -210,10 +224,11 @@ def _block(place: Place) -> str:
     return f"N{place.number}" if place.number >= 0 else f"line {place.nc_line}"
 
 
-def _span(case: Case, way: Walk) -> Check:
+def _span(case: Case, way: Walk, spans: Spans | None) -> Check:
     """How far the tool is off between the points."""
     title = "tool between the points"
-    axis, tip = way.bend_axis, way.bend_tip
+    axis, tip = (way.bend_axis, way.bend_tip) if spans is None else (spans.axis, spans.tip)
+    where = "half-way" if spans is None else "on the way"
     chord, row_of_chord = 0.0, -1
     if case.pairs is not None:
         for pieces in case.pairs.pieces:
@@ -226,16 +241,22 @@ def _span(case: Case, way: Walk) -> Check:
     places = []
     if axis.row >= 0:
         rows = axis.rows or [(axis.row, axis.value)]
-        places += [case.place(r, v, f"half-way the tool axis is {v:.5f} degrees off the great circle") for r, v in rows]
+        places += [case.place(r, v, f"{where} the tool axis is {v:.5f} degrees off the great circle") for r, v in rows]
     if row >= 0 and off_tip > 0.0:
-        places.append(case.place(row, off_tip, f"between its ends the tip is {off_tip:.5f} mm off"))
-    summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off half-way"
+        rows = tip.rows or [(row, off_tip)]
+        places += [case.place(r, v, f"between its ends the tip is {v:.5f} mm off") for r, v in rows]
+    summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off {where}"
     if axis.row >= 0:
         summary += f", in {case.block(axis.row)}"
-    limit = case.settings.span
-    if limit is not None:
-        summary += f", allowed {limit:.5f}"
-    return Check("span", title, not axis.count, summary, axis.value, limit, "deg", tuple(places))
+    asked = [f"{limit:g} {unit}" for limit, unit in _span_limits(case) if limit is not None]
+    summary += f", allowed {' and '.join(asked)}" if asked else ""
+    return Check(
+        "span", title, not axis.count + tip.count, summary, axis.value, case.settings.span, "deg", tuple(places)
+    )
+
+
+def _span_limits(case: Case) -> tuple[tuple[float | None, str], ...]:
+    return (case.settings.span_tip, "mm"), (case.settings.span, "deg")
 
 
 def _travel(case: Case, way: Walk) -> Check:

@@ -81,24 +81,25 @@ words = st.sampled_from(
     [
         "L", "L ", "X1", "Y-2.5", "Z+.5", "Z,5", "Z 25.000", "X", "X+", "A-30", "C+45", "C 7", "B2", "F100", "F 100",
         "FMAX", "F MAX", "FAUTO", "R0", "RL", "R5", "R0.", "IX1", "M3", "M99", ";c", "; a ~", "~", "X1.2.3", "x4",
-        "fmax", "FQ1", "X1234567890123456", "X123456", "Y1,2,3", "1", "12", "/", "*", "-", "DR+", "LN", "CC X1", "X1Y2",
-        "F9Z1",
-        "M128", "M129", "M126", "M89", "PLANE SPATIAL SPA-9 SPB0 SPC30 STAY", "PLANE RESET STAY", "BEGIN PGM A INCH",
-        "CYCL DEF 7.1 X+3", "CYCL DEF 10.1 ROT30",
+        "fmax", "FQ1", "X1234567890123456", "X123456", "Y1,2,3", "1", "12", "/", "*", "-", "DR+", "LN", "TX.6",
+        "TY-.8", "TZ 1", "TX0", "NZ1", "NX.5", "CC X1", "X1Y2", "F9Z1", "M128", "M129", "M126", "M89",
+        "PLANE SPATIAL SPA-9 SPB0 SPC30 STAY", "PLANE RESET STAY", "BEGIN PGM A INCH", "CYCL DEF 7.1 X+3",
+        "CYCL DEF 10.1 ROT30",
     ]
 )  # fmt: skip
 
 
 @settings(max_examples=250, deadline=None)
 @given(
-    lines=st.lists(st.tuples(st.booleans(), st.lists(words, max_size=6)), max_size=8),
+    lines=st.lists(st.tuples(st.sampled_from(["", "L ", "LN "]), st.lists(words, max_size=6)), max_size=8),
     numbered=st.booleans(),
+    tcp=st.booleans(),
 )
 def test_the_kernel_and_the_interpreter_read_any_words_alike(
-    lines: list[tuple[bool, list[str]]], numbered: bool, tmp_path_factory: pytest.TempPathFactory
+    lines: list[tuple[str, list[str]]], numbered: bool, tcp: bool, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    texts = [("L " if begun else "") + " ".join(said) for begun, said in lines]
-    text = "\n".join(f"{k} {line}" if numbered else line for k, line in enumerate(texts))
+    texts = [begun + " ".join(said) for begun, said in lines]
+    text = "\n".join(f"{k} {line}" if numbered else line for k, line in enumerate(["M128" if tcp else "", *texts]))
     fast = ran(text, tmp_path_factory)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(HeidenhainInterpreter, "_may_be_plain", lambda *_: False)

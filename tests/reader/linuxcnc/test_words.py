@@ -54,6 +54,12 @@ def test_circles(block: str, centre: tuple[float, ...], normal: tuple[float, ...
     assert found.arcs.turns.tolist() == [turns]
 
 
+def test_inverse_time_counts_no_inches(run: Runner) -> None:
+    found = run("G20 G93 G1 X1 F7\nX2 F8\nX[3] F9\nG94 X4 F10")
+    assert found.findings == ()
+    close(found.feed, [7, 8, 9, 254])
+
+
 # Cycles
 
 BEFORE = "S1000 M3\nG0 X3 Y4 Z50\nF150\n"

@@ -184,11 +184,15 @@ class FanucInterpreter(Rs274Interpreter[Activation]):
         elif code in (words.TCP, words.TCP_VECTOR):
             block.take("H")
             control.set_tcp(True)
+            control.set_length(True)
             control.vectors = code == words.TCP_VECTOR
         elif code in (words.LENGTH_OFF, 430, 440):
             block.take("H")
             control.vectors = False
             control.set_tcp(False)
+            control.set_length(code != words.LENGTH_OFF)
+            if code == 440:
+                self._note("G44: taken as G43, the length with the other sign is not simulated", Severity.WARNING)
         elif code == words.UPRIGHT_OFF:
             control.upright()
         elif code in (980, 990):

@@ -128,6 +128,7 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
             if number is None or number != int(number) or not 1 <= number <= 99:
                 raise BlockError("G55 needs O from 1 to 99")
             control.set_offset(500 + int(number), f"G55 O{number:g}")
+            control.set_length(True)
         elif code == words.TAKE_PLANE:
             control.take_plane()
         elif code == words.NO_PLANE:

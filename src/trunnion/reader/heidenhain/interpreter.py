@@ -33,7 +33,7 @@ DEEPEST_LABEL: Final = 20
 _TENTH: Final = 0.1 * INCH
 
 #: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
-_PLAIN = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][ \t])")
+_PLAIN = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][Nn]?[ \t])")
 _LOOK: Final = 32
 
 _LABEL = re.compile(r"(Q[LR]?[0-9]{1,4})|([0-9]{1,5})")
@@ -109,10 +109,12 @@ class HeidenhainInterpreter(Interpreter[Activation]):
             text.buffer,
             len(text.buffer),
             control.table,
+            control.tips,
             control.lengths,
             control.feeds,
             control.default_way,
             control.map,
+            control.turn,
             control.counts,
             control.place,
             control.target(),

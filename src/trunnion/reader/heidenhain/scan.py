@@ -1,8 +1,9 @@
 """Plain Klartext blocks straight from bytes to columns.
 
 In:     bytes of a program, whole lines; where the control stands; columns with room.
-Out:    rows for the blocks that are ``L`` with nothing but X Y Z, rotary words, R0, F or FMAX, with plain numbers; the
-        place of the first block that is anything else, which is the interpreter's.
+Out:    rows for the blocks that are ``L`` with nothing but X Y Z, rotary words, R0, F or FMAX, with plain numbers, or
+        ``LN`` with NX NY NZ and TX TY TZ besides; the place of the first block that is anything else, which is the
+        interpreter's.
 Units:  mm and degrees; ``lengths`` and ``feeds`` turn inches into mm.
 
 A line is read to its end before anything is written: a line that turns out not to be plain has had no effect. Numbers
@@ -22,6 +23,8 @@ FEED: Final = 1
 COMPENSATION: Final = 2
 SLIDE: Final = 3  # and the two after it: X, Y, Z
 ROTARY: Final = 6  # and the one after it
+TOOL: Final = 8  # and the two after it: TX, TY, TZ
+NORMAL: Final = 11  # and the two after it: NX, NY, NZ
 
 _POWERS: Final = np.array([10.0**k for k in range(23)])
 
@@ -42,7 +45,10 @@ _SEMICOLON: Final = 59
 _A: Final = 65
 _L: Final = 76
 _M: Final = 77
+_N: Final = 78
+_T: Final = 84
 _X: Final = 88
+_Z: Final = 90
 _CAPITAL: Final = 0xDF
 
 
@@ -63,10 +69,12 @@ def scan(
     text: Bytes,
     end: int,
     table: Codes,
+    vectors: bool,
     lengths: float,
     feeds: float,
     way: int,
     frame: Floats,
+    turn: Floats,
     counts: Ints,
     place: Floats,
     target: Target,
@@ -76,7 +84,9 @@ def scan(
 
     text      (m,) uint8       the program; whole lines up to ``end``
     table     (256,) uint8     from ``letters``
+    vectors   bool             TX TY TZ are allowed
     frame     (3, 4) float64   from programmed position to ``target.place``
+    turn      (3, 3) float64   from programmed vector to ``target.vector``
     counts    (6,) int64       see ``trunnion.reader.handover``, updated
     place     (5,) float64     programmed X Y Z, mm, feed, and feed of the row before, updated
     """
@@ -87,7 +97,7 @@ def scan(
     line = counts[LINE]
     comments = notes.comments
     room = min(target.kind.shape[0], target.base + target.way.shape[0])
-    values = np.zeros(9)
+    values = np.zeros(14)
     while position < end and row < room and noted < comments.shape[0] and feeds_noted < notes.feeds.shape[0]:
         at = position
         seen = 0
@@ -107,9 +117,12 @@ def scan(
                 at += 1
         # The comment of a whole line, or L and a blank.
         plain = text[at] == _SEMICOLON
-        if (text[at] & _CAPITAL) == _L and (text[at + 1] == _SPACE or text[at + 1] == _TAB):
+        spatial = False
+        if (text[at] & _CAPITAL) == _L:
             at += 1
-            plain = True
+            spatial = (text[at] & _CAPITAL) == _N
+            at += spatial
+            plain = text[at] == _SPACE or text[at] == _TAB
         while plain:
             char = text[at]
             if char in (_SPACE, _TAB, _CR):
@@ -125,6 +138,10 @@ def scan(
                     at += 1
                 break
             what = int(table[char])
+            upper = char & _CAPITAL
+            if spatial and (upper == _N or (upper == _T and vectors)) and _X <= (text[at + 1] & _CAPITAL) <= _Z:
+                what = (NORMAL if upper == _N else TOOL) + (text[at + 1] & _CAPITAL) - _X
+                at += 1
             if what == 0 or seen & (1 << what):
                 plain = False
                 break
@@ -176,7 +193,14 @@ def scan(
                 break
         if not plain:
             break
-        moves = seen >> SLIDE
+        moves = (seen >> SLIDE) & 0xFF
+        tilts = moves >> 5
+        # A vector beside rotary words, or without a length, is for the interpreter to name.
+        if tilts:
+            for k in range(3):
+                values[TOOL + k] = values[TOOL + k] if seen & (1 << (TOOL + k)) else 0.0
+            if moves & 0b11000 or (values[TOOL] == 0.0 and values[TOOL + 1] == 0.0 and values[TOOL + 2] == 0.0):
+                break
         if seen & (1 << FEED) and not rapid:
             place[3] = values[FEED] * feeds
         for k in range(3):
@@ -200,7 +224,13 @@ def scan(
             for k in range(2):
                 target.rotary[row, k] = values[ROTARY + k] if seen & (1 << (ROTARY + k)) else np.nan
             target.vector[waits, 0] = np.nan
-            target.programmed[row] = moves | (64 if seen & (1 << FEED) and not rapid else 0)
+            if tilts:
+                for k in range(3):
+                    target.vector[waits, k] = (
+                        turn[k, 0] * values[TOOL] + turn[k, 1] * values[TOOL + 1] + turn[k, 2] * values[TOOL + 2]
+                    )
+            bits = (moves & 0b11111) | (32 if tilts else 0)
+            target.programmed[row] = bits | (64 if seen & (1 << FEED) and not rapid else 0)
             target.way[waits] = way
             row += 1
         if comment >= 0:

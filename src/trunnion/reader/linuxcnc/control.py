@@ -109,17 +109,26 @@ class LinuxcncControl(Rs274Control):
         return position
 
     def machine_position(self) -> Floats:
-        """(6,) where the axes stand in positions of the machine; with TCP, of the tip in the machine's frame."""
+        """(6,) where the axes stand in positions of the machine; with TCP, of the tip in the machine's frame.
+
+        With TCP the length of the tool counts as it does for LinuxCNC's kinematics: over the tip.
+        """
         self.settle()
         position = np.zeros(6)
         if self.tips:
-            position[:3] = forward(self.machine, self.held[None])[0][0] + self.zero[:3]
+            position[:3] = forward(self.machine, self.held[None])[0][0] + self.zero[:3] + self._length
         else:
             position[:3] = self.held[self._slides]
         for which, name in enumerate(self.names):
             if name in ORDER:
                 position[ORDER.index(name)] = float(self.held[self.machine.rotary[which]])
         return position
+
+    def without_length(self, position: Floats) -> Floats:
+        """Return a position of the machine as work offsets count it, whatever the length of the tool, (6,)."""
+        bare = position.copy()
+        bare[:3] -= self._length
+        return bare
 
     def machine_move(self, axes: dict[str, Word], *, feed_written: bool) -> None:
         """Go to positions of the machine; with TCP those of the tip in the machine's frame."""
@@ -130,7 +139,7 @@ class LinuxcncControl(Rs274Control):
         for axis, name in enumerate("XYZ"):
             if name in axes:
                 goal[axis] = axes[name][0] * self.lengths
-        place = self._back(goal - self.zero[:3]) / self.lengths
+        place = self._back(goal - self.zero[:3] - self._length) / self.lengths
         words = {name: word for name, word in axes.items() if name not in "XYZ"}
         words |= {name: (float(place[axis]), How.ABSOLUTE) for axis, name in enumerate("XYZ")}
         self.move(words, None, feed_written=feed_written)

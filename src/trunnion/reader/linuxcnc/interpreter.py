@@ -19,6 +19,7 @@ from trunnion.reader.linuxcnc.control import ORDER, LinuxcncControl, Offset
 from trunnion.reader.linuxcnc.parameters import ARITHMETIC, LOCAL, Parameters
 from trunnion.reader.linuxcnc.text import SUFFIXES, LinuxcncText
 from trunnion.reader.linuxcnc.words import (
+    LENGTHS,
     LINES,
     NAMED,
     NAMED_M,
@@ -211,6 +212,8 @@ class LinuxcncInterpreter(Rs274Interpreter[Activation]):
             control.refresh()
         elif code in (980, 990):
             self._to_initial = code == 980
+        elif code in LENGTHS:
+            control.set_length(LENGTHS[code])
         elif code in (901, 911):
             control.relative_centres = code == 911
         elif code in LINES:
@@ -312,7 +315,7 @@ class LinuxcncInterpreter(Rs274Interpreter[Activation]):
             rotation = turned
         elif turned is not None:
             raise BlockError("G10 L20 takes no R")
-        point = control.machine_position()
+        point = control.without_length(control.machine_position())
         shift = control.shift if control.shifted else np.zeros(6)
         unturned = turn(2, -rotation)
         inside = point - values

@@ -5,8 +5,11 @@ from typing import Final
 #: Work offsets, in the order of their numbers in G10 and ``#5220``.
 OFFSETS: Final = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 
-#: G codes that change how the control drives, or what is not there: tool lengths are 0.
-SILENT: Final = frozenset({80, 400, 430, 431, 432, 490, 610, 611, 640, 911, 901, 970})
+#: G codes for the length of the tool: whether it counts.
+LENGTHS: Final = {430: True, 490: False}
+
+#: G codes that change how the control drives, or what it does with tool lengths besides.
+SILENT: Final = frozenset({80, 400, 431, 432, 610, 611, 640, 911, 901, 970})
 
 #: G codes that are known and not simulated: text, and whether the path is wrong without it.
 NAMED: Final = {

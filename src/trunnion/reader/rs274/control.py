@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
+import numpy as np
+
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.reader import arcs
@@ -23,6 +25,23 @@ class Rs274Control(Control):
 
     #: I J K count from the start of the circle.
     relative_centres = True
+
+    #: The length of the tool counts along Z.
+    _lengthened = False
+
+    @property
+    def _length(self) -> Floats:
+        return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self._lengthened else np.zeros(3)
+
+    def set_length(self, on: bool) -> None:
+        """The length of the tool, if it is known, counts along Z, or no longer."""
+        if on == self._lengthened:
+            return
+        if not self.machine.tool_length:
+            self._lengthened = on
+            return
+        with self.change():
+            self._lengthened = on
 
     def circle(self, params: Mapping[str, float], turns: int = 0) -> Circle | None:
         """The circle that the motion in force makes of a block; None if it makes lines.

@@ -1,4 +1,8 @@
-"""The virtual control of a Sinumerik: what only it does with motions and planes."""
+"""The virtual control of a Sinumerik: what only it does with motions, planes and the length of the tool.
+
+The length, if it is known, is what stands in the control's tool offset. Without TRAORI an edge (D1) adds it to the
+slide that stands on the working plane, wherever the tool points; D0 takes it away.
+"""
 
 from collections.abc import Mapping
 from functools import partial
@@ -41,6 +45,29 @@ class SinumerikControl(Control):
 
     def _vectors(self, frame: Frame) -> Floats:
         return np.eye(3) if self._machine_vectors else super()._vectors(frame)
+
+    @property
+    def _length(self) -> Floats:
+        length = np.zeros(3)
+        if self.edge.now > 0:
+            length[self.plane] = self.machine.tool_length or 0.0
+        return length
+
+    def set_edge(self, edge: int) -> None:
+        """D word: the offsets of the tool."""
+        if not self.machine.tool_length or (edge > 0) == (self.edge.now > 0):
+            self.edge.set(self.row, edge)
+            return
+        with self.change():
+            self.edge.set(self.row, edge)
+
+    def set_working_plane(self, plane: int) -> None:
+        """G17, G18, G19, by the axis that stands on the plane."""
+        if not self.machine.tool_length or plane == self.plane:
+            self.plane = plane
+            return
+        with self.change():
+            self.plane = plane
 
     def set_machine_vectors(self, on: bool) -> None:
         """ORIMKS or ORIWKS."""

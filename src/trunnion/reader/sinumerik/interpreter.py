@@ -184,7 +184,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
         if block.tool is not None:
             control.choose(block.tool)
         if block.edge is not None:
-            control.edge.set(control.row, block.edge)
+            control.set_edge(block.edge)
         late = [code for code in block.m if code in M_LATE]
         for code in block.m:
             if code not in late:
@@ -221,7 +221,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER):
             control.kind = code
         elif code in G_PLANES:
-            control.plane = "XYZ".index(G_PLANES[code])
+            control.set_working_plane("XYZ".index(G_PLANES[code]))
         elif code in G_UNITS:
             control.set_units(*G_UNITS[code])
         elif code in (90, 91):

@@ -1,0 +1,177 @@
+"""What speaks against a program before it is written: what it would lack, and what its control cannot be told."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from trunnion.control.definition import Control
+from trunnion.control.family import UnsayableError
+from trunnion.control.program import Program, kind_of, setting_of, settings_of
+from trunnion.control.slides import inverse_time, slides_of
+from trunnion.errors import Problem, Severity
+from trunnion.plan import Manner, Motion
+from trunnion.plan.holes import CycleError, Turning, cycle_of, feed_of, turning
+from trunnion.toolpath import (
+    Coolant,
+    CutterComp,
+    CycleOn,
+    Dwell,
+    Event,
+    GoHome,
+    Kind,
+    LoadTool,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+)
+
+
+def check_program(program: Program) -> list[Problem]:
+    """What the program would lack, or what this control cannot yet be told; errors mean that it must not be written."""
+    problems = []
+    spindle, in_spindle = False, ""
+    rpm: float | None = None
+    for motion in program.motions:
+        operation = motion.operation
+        moves = operation.moves
+        problems += _hole_problems(program, motion)
+        if not motion.begins:
+            continue
+        unfed = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
+        if len(unfed):
+            problems.append(
+                Problem(
+                    program.file, int(moves.line[unfed[0]]), "cutting motion without a feed", "put FEDRAT before it"
+                )
+            )
+        refused = program.control.family.refused(operation, spindle)
+        problems += [Problem(program.file, line, why.what, why.cure) for line, why in refused]
+        spindle = spindle or any(isinstance(e, SpindleOn) for e in operation.events)
+        if not spindle:
+            what = f"operation {operation.name} has no spindle speed"
+            problems.append(Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING))
+        loaded = any(isinstance(e, LoadTool) for e in operation.events) or setting_of(program, "tool")
+        if not loaded and operation.tool.name and operation.tool.name != in_spindle:
+            what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
+            problems.append(
+                Problem(program.file, operation.line, what, "--set tool=NUMBER calls it by number", Severity.WARNING)
+            )
+        if operation.tool.name and (not loaded or setting_of(program, "tool_call") == "name"):
+            problems += _unsaid(program, operation.line, _call_by_name, program.control, operation.tool.name)
+        in_spindle = operation.tool.name
+        for event in operation.events:
+            rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
+            problems += _event_problems(program, motion, event, rpm)
+        if motion.manner is Manner.WITHOUT_TCP and kind_of(program, motion):
+            problems += _problems_without_tcp(program, motion)
+        if not kind_of(program, motion):
+            what = f"operation {operation.name}: {program.control.name} has no words for {motion.manner}"
+            problems.append(Problem(program.file, operation.line, what, "--set manner=… says another manner"))
+        tolerance = operation.intol is not None and operation.outtol is not None
+        if _asks_tolerance(program, motion) and not tolerance and not setting_of(program, "tolerance"):
+            fallback = setting_of(program, "fallback_tolerance")
+            what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
+            problems.append(Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING))
+    return problems
+
+
+def _asks_tolerance(program: Program, motion: Motion) -> bool:
+    """Whether an operation's beginning depends on its tolerance, and has none of its own."""
+    names = "operation_start", f"approach_{kind_of(program, motion)}"
+    templates = [program.control.templates[name] for name in names if name in program.control.templates]
+    fields = {name for each in templates for name, _ in each.fields()}
+    return "tolerance" in fields and "three_axis_tolerance" not in fields
+
+
+def _unsaid(program: Program, line: int, say: Callable[..., object], *arguments: object) -> list[Problem]:
+    """Why the control cannot say something; empty where it can."""
+    try:
+        say(*arguments)
+    except UnsayableError as why:
+        return [Problem(program.file, line, why.what, why.cure)]
+    return []
+
+
+def _call_by_name(control: Control, name: str) -> str:
+    return control.family.tool_call(0, name, by_name=True)
+
+
+def _event_problems(program: Program, motion: Motion, event: Event, rpm: float | None) -> list[Problem]:
+    operation, control = motion.operation, program.control
+    place = program.file, event.line
+    rows = len(operation.moves)
+    if isinstance(event, Dwell):
+        formats = control.number_formats(motion.three_axis)
+        return _unsaid(program, event.line, control.family.dwell, event, rpm, formats)
+    if isinstance(event, LoadTool) and event.row > 0:
+        return [Problem(*place, "tool change within an operation", "begin a new operation with the new tool")]
+    if isinstance(event, CutterComp) and event.side == "ON":
+        return [Problem(*place, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
+    if isinstance(event, GoHome) and event.row < rows:
+        return [Problem(*place, "GOHOME before the operation's end", "begin a new operation after it")]
+    if isinstance(event, Coolant) and event.kind not in program.control.coolant:
+        known = ", ".join(program.control.coolant)
+        return [Problem(*place, f"{program.control.name} has no coolant {event.kind}", f"use one of {known}")]
+    return []
+
+
+def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
+    """What cannot be said where nobody holds the tip."""
+    operation, problems = motion.operation, []
+    moves = operation.moves
+    if any(isinstance(event, CutterComp) and event.side != "OFF" for event in operation.events):
+        what = "cutter radius compensation without TCP would be that of the slides"
+        problems.append(Problem(program.file, operation.line, what, "output the path without CUTCOM"))
+    formats = program.control.number_formats(motion.three_axis)
+    slides = slides_of(program.machine, motion, formats["angle"].decimals)
+    cuts = slides.turns & (moves.kind != Kind.RAPID) & (moves.feed > 0)
+    turned = np.flatnonzero(cuts & moves.per_rev)
+    if len(turned):
+        what = "a feed per revolution without TCP while rotary axes turn"
+        problems.append(Problem(program.file, int(moves.line[turned[0]]), what, "output it in mm/min (FEDRAT/MMPM)"))
+    form = formats["inverse_time"]
+    _, slow, fast = inverse_time(slides.length[cuts], moves.feed[cuts], form)
+    rows = np.flatnonzero(cuts)
+    if slow.any():
+        row = int(rows[np.argmax(slow)])
+        took = slides.length[row] / moves.feed[row]
+        what = f"a block takes {took:.0f} minutes; inverse time has room for {1.0 / form.least:g}"
+        cure = "output the toolpath with points nearer to each other, or a higher feed"
+        problems.append(Problem(program.file, int(moves.line[row]), what, cure))
+    if fast.any():
+        what = f"{int(fast.sum())} blocks so short that F would be above {form.greatest:g}: they take as long as that"
+        place = program.file, int(moves.line[rows[np.argmax(fast)]])
+        problems.append(Problem(*place, what, "a wider tolerance puts fewer points in", Severity.WARNING))
+    shorter = np.flatnonzero(slides.shortest.any(axis=1))
+    if len(shorter) and "primary_shortest" not in program.control.family.WORDS:
+        what = "a rotary axis goes past the end of the turn that it displays, and would go the longer way"
+        cure = 'write output = "none" for the axis in the machine\'s definition'
+        problems.append(Problem(program.file, int(moves.line[shorter[0]]), what, cure))
+    return problems
+
+
+def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
+    """What the cycles of a motion ask for and this control cannot be told."""
+    operation, problems = motion.as_written(), []
+    moves = operation.moves
+    for event in operation.events:
+        if not isinstance(event, CycleOn):
+            continue
+        try:
+            cycle = cycle_of(event)
+            if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP):
+                cure = "leave the setting manner out, or end the cut before the tool axis changes"
+                raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
+            spindle = turning(operation.events, event.row, Turning(1.0, Sense.CLW))
+            formats = program.control.number_formats(motion.three_axis)
+            program.control.family.hole_call(cycle, 0.0, spindle, settings_of(program), formats)
+            feed, _ = feed_of(cycle, spindle, float(moves.feed[event.row]), False)
+            if not feed > 0.0:
+                raise CycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
+            low = event.row > 0 and moves.tip[event.row - 1, 2] < moves.tip[event.row, 2] + cycle.above - 1e-6
+            if low and moves.kind[event.row - 1] != Kind.RAPID:
+                cure = "draw the tool back before the cycle"
+                raise CycleError("CYCLE while the tool is below the height of RAPTO", cure)
+        except CycleError as error:
+            problems.append(Problem(program.file, event.line, error.what, error.cure))
+    return problems

@@ -1,0 +1,12 @@
+"""The families of controls whose programs can be written."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from trunnion.control import linuxcnc, sinumerik
+from trunnion.control.family import Family
+
+FAMILIES: Final[Mapping[str, Family]] = {
+    "sinumerik_840d": sinumerik,
+    "linuxcnc": linuxcnc,
+}

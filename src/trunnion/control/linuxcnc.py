@@ -1,0 +1,121 @@
+"""What LinuxCNC says that words and templates alone cannot: comments, messages, dwells, turns of a circle.
+
+Facts: LinuxCNC's G code reference; docs/controls/linuxcnc.md has them one by one.
+"""
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.control import iso
+from trunnion.control.family import ArcWords, Codes, Formats, UnsayableError
+from trunnion.control.iso import event_words as event_words
+from trunnion.control.iso import row_words as row_words
+from trunnion.control.template import Value
+from trunnion.nc import ABSENT
+from trunnion.plan.holes import Cycle, CycleError, Turning
+from trunnion.toolpath import Arcs, Dwell, Kind, Message, Operation, SpindleOn, Stop
+
+WORDS: tuple[str, ...] = iso.WORDS
+CODES: tuple[str, ...] = iso.CODES
+PLANES: tuple[str, ...] = ()
+CHOICES: Mapping[str, tuple[str, ...]] = {}
+FIELDS: frozenset[str] = frozenset()
+
+#: Bytes of a text in one line: a line has room for 255, with its block number and what surrounds the text.
+_ROOM: Final = 200
+
+
+def comment(text: str) -> list[str]:
+    """A semicolon begins a comment, a blank after it one that does nothing; a long one goes on in the next line."""
+    return [f"; {part}" for part in _pieces(text)]
+
+
+def inside(text: str) -> str:
+    """Nothing needs to be changed in what stands after a semicolon."""
+    return text
+
+
+def tool_call(number: int, name: str, by_name: bool) -> str:
+    """What stands after ``T``: a number; tools have no names."""
+    if by_name:
+        raise UnsayableError(f"LinuxCNC calls tools by number, and not as {name}", "write --set tool=NUMBER")
+    return str(number)
+
+
+def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
+    """Nothing: there are no tilted planes."""
+    return {}
+
+
+def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
+    """``G4 P`` waits seconds; turns of the spindle become the seconds that they take."""
+    if not event.revolutions:
+        return [f"G4 P{formats['dwell'].text(event.amount)}"]
+    if rpm is None or not rpm > 0.0:
+        raise UnsayableError("a dwell in spindle revolutions while the spindle stands", "put SPINDL before it")
+    return [f"G4 P{formats['dwell'].text(60.0 * event.amount / rpm)}"]
+
+
+def stop(event: Stop, codes: Codes) -> list[str]:
+    """M0 or M1, after the text that the operator is to see."""
+    code = codes["optional_stop" if event.optional else "stop"]
+    return [*(_shown(event.text) if event.text else ()), f"M{code}"]
+
+
+def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
+    """G95 without a spindle speed."""
+    rows = [event.row for event in operation.events if isinstance(event, SpindleOn)]
+    first = 0 if spindle_known else min(rows, default=len(operation.moves))
+    moves = operation.moves
+    early = np.flatnonzero(moves.per_rev[:first] & (moves.kind[:first] != Kind.RAPID))
+    if not len(early):
+        return []
+    why = UnsayableError("a feed per revolution before the spindle has a speed", "put SPINDL before it")
+    return [(int(moves.line[early[0]]), why)]
+
+
+def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+    """None."""
+    return []
+
+
+def hole_call(
+    cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
+) -> list[str]:
+    """Not yet."""
+    raise CycleError("hole-making cycles cannot be written for LinuxCNC yet", "output the holes as motion")
+
+
+def hole_end() -> list[str]:
+    """What ends a cycle."""
+    return ["G80"]
+
+
+def message(event: Message) -> list[str]:
+    """A comment, or for the operator ``(MSG, …)``."""
+    return _shown(event.text) if event.display else comment(event.text)
+
+
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats) -> ArcWords:
+    """As ISO has them; ``P`` counts the arc itself too: P2 is one whole turn besides."""
+    words = iso.arc_words(arcs, tip, rows, codes, formats)
+    turns = words.columns["turns"]
+    return ArcWords({**words.columns, "turns": np.where(turns == ABSENT, ABSENT, turns + 1)}, words.forced)
+
+
+def _shown(text: str) -> list[str]:
+    """``(MSG, …)``; brackets inside would end the text early."""
+    return [f"(MSG, {part})" for part in _pieces(text.translate({ord("("): "[", ord(")"): "]"}))]
+
+
+def _pieces(text: str) -> list[str]:
+    """A text in pieces of no more than ``_ROOM`` bytes; never a piece less than one."""
+    pieces = [""]
+    for character in text:
+        if len((pieces[-1] + character).encode()) > _ROOM:
+            pieces.append("")
+        pieces[-1] += character
+    return pieces

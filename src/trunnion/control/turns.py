@@ -1,0 +1,45 @@
+"""A tilted plane as three turns about axes that are already turned: the angles that controls take."""
+
+import math
+
+from trunnion.arrays import Floats
+
+
+def about_three(matrix: Floats, order: tuple[int, int, int]) -> tuple[float, float, float]:
+    """Three angles, degrees, that turn the program's axes into those of a plane, each about an axis already turned.
+
+    Parameters
+    ----------
+    matrix : (3, 3) float64
+        X, Y and Z of the plane as columns.
+    order
+        The axes in the order of their turns, 0 for X; no two alike.
+
+    With s = 1 for the orders X Y Z, Y Z X, Z X Y and s = -1 for the others, the product of the three turns has in row i
+    the columns i: cos b cos c, j: -s cos b sin c, k: s sin b, and in column k the rows j: -s sin a cos b, k: cos a
+    cos b. Where cos b vanishes only the sum or the difference of a and c counts: c is then 0.
+    """
+    i, j, k = order
+    s = 1.0 if (j - i) % 3 == 1 else -1.0
+    across = math.hypot(matrix[i, i], matrix[i, j])
+    b = math.atan2(s * matrix[i, k], across)
+    if across < 1e-9:
+        a, c = math.atan2(s * matrix[k, j], matrix[j, j]), 0.0
+    else:
+        a, c = math.atan2(-s * matrix[j, k], matrix[k, k]), math.atan2(-s * matrix[i, j], matrix[i, i])
+    return math.degrees(a), math.degrees(b), math.degrees(c)
+
+
+def about_first_and_third(matrix: Floats) -> tuple[float, float, float]:
+    """Three angles, degrees, about Z, the X that has turned with it, and the Z that has turned with both.
+
+    The product of the three turns has in its last column sin a sin b, -cos a sin b, cos b and in its last row
+    sin b sin c, sin b cos c, cos b. Where sin b vanishes only the sum or the difference of a and c counts: c is then 0.
+    """
+    across = math.hypot(matrix[0, 2], matrix[1, 2])
+    b = math.atan2(across, matrix[2, 2])
+    if across < 1e-9:
+        a, c = math.atan2(matrix[1, 0], matrix[0, 0]), 0.0
+    else:
+        a, c = math.atan2(matrix[0, 2], -matrix[1, 2]), math.atan2(matrix[2, 0], matrix[2, 1])
+    return math.degrees(a), math.degrees(b), math.degrees(c)

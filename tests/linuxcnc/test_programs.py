@@ -1,0 +1,165 @@
+"""LinuxCNC programs of ours in its own interpreter: it takes every one, and makes the motions that were planned."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from tests.convert.toolpaths import SAYABLE, operations
+from tests.linuxcnc.interpreter import Canon, Move, RefusedByLinuxcncError, interpret, needs_linuxcnc
+from trunnion.control import Program, check_program, load_control, write_program
+from trunnion.errors import Refused, Severity
+from trunnion.machine import Machine, load_machine
+from trunnion.plan import Motion, Wishes, plan
+from trunnion.toolpath import (
+    Coolant,
+    Dwell,
+    Kind,
+    Message,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+    Stop,
+    Toolpath,
+)
+
+MACHINES = {name: load_machine(name) for name in ("xyzac_trt", "xyzbc_trt", "linuxcnc_5axis")}
+CONTROLS = {name: load_control(machine.control.fresh()) for name, machine in MACHINES.items()}
+
+#: What LinuxCNC has words for; compensated paths are judged by it as paths of another tool.
+KINDS = {name: kind for name, kind in SAYABLE.items() if name not in ("comp", "coolant")} | {
+    "coolant": st.sampled_from(["ON", "MIST", "FLOOD", "TAP", "OFF"]).map(lambda kind: Coolant(0, 0, kind)),
+    "spindle off": st.just(SpindleOff(0, 0)),
+    "text stop": st.sampled_from(["look (here)", "py,print(1)", "%", "; N1 G0 X1", "(MSG,x", "x" * 700]).map(
+        lambda text: Stop(0, 0, True, text)
+    ),
+    "message": st.builds(
+        lambda text, display: Message(0, 0, text, display),
+        st.sampled_from(["MSG, x", "py,print(1)", "DEBUG,#1", "close)", "刀" * 300, "log,x"]),
+        st.booleans(),
+    ),
+}
+
+AXES = st.one_of(st.just((0.0, 0.0, 1.0)), st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.5, 1)))
+
+
+def control_moves(canon: Canon) -> list[list[Move]]:
+    """The motions under each tool, operation by operation."""
+    found: list[list[Move]] = []
+    before = False
+    for move in canon.moves:
+        if move.offset:
+            if not before:
+                found.append([])
+            # G1 with F alone is a motion to where the tool stands
+            if move.kind == "arc" or not found[-1] or found[-1][-1].end != move.end:
+                found[-1].append(move)
+        before = move.offset
+    return found
+
+
+def planned_moves(motion: Motion, machine: Machine, spindle: SpindleOn | None) -> tuple[list[Move], SpindleOn | None]:
+    """The motions that an operation asks for, and the spindle at its end."""
+    operation = motion.operation
+    moves, arcs = operation.moves, operation.arcs
+    found: list[Move] = []
+    coolant: frozenset[str] = frozenset()
+    on = spindle is not None
+    at = {int(row): k for k, row in enumerate(arcs.row)}
+    words = {"ON": "FLOOD", "FLOOD": "FLOOD", "TAP": "FLOOD", "MIST": "MIST"}
+    before: tuple[float, ...] = ()
+    for row in range(len(moves)):
+        for event in operation.events:
+            if event.row != row:
+                continue
+            if isinstance(event, SpindleOn):
+                spindle, on = event, True
+            elif isinstance(event, SpindleOff):
+                on = False
+            elif isinstance(event, Coolant):
+                coolant = coolant | {words[event.kind]} if event.kind != "OFF" else frozenset()
+        rotary = dict.fromkeys("ABC", 0.0)
+        rotary |= {machine.axes[c].name: float(motion.rotary[row, k]) for k, c in enumerate(machine.rotary)}
+        decimals = 4 if motion.three_axis else 5
+        tip = [round(float(value), decimals) + 0.0 for value in moves.tip[row]]
+        end = (*tip, *(round(rotary[name], 5) + 0.0 for name in "ABC"))
+        arc = at.get(row)
+        if arc is None and end == before:
+            continue
+        before = end
+        sense = 0 if not on or spindle is None else 1 if spindle.sense is Sense.CLW else -1
+        rpm = 0.0 if spindle is None else round(spindle.rpm)
+        state = float(moves.feed[row]), int(moves.per_rev[row]), rpm, sense, coolant, True, not motion.three_axis
+        if arc is None:
+            found.append(Move("rapid" if moves.kind[row] == Kind.RAPID else "line", end, *state))
+            continue
+        normal = int(np.argmax(np.abs(arcs.normal[arc])))
+        centre = arcs.centre[arc][[(normal + 1) % 3, (normal + 2) % 3]].tolist()
+        turns = (int(arcs.turns[arc]) + 1) * int(np.sign(arcs.normal[arc, normal]))
+        found.append(Move("arc", end, *state, (centre[0], centre[1]), turns, normal))
+    last = [event for event in operation.events if event.row == len(moves) and isinstance(event, SpindleOn)]
+    return found, last[-1] if last else spindle
+
+
+def agree(got: Move, wanted: Move) -> None:
+    assert (got.kind, got.sense, got.coolant, got.tcp) == (wanted.kind, wanted.sense, wanted.coolant, wanted.tcp)
+    np.testing.assert_allclose(got.end, wanted.end, atol=1.1e-4, rtol=0)
+    if got.sense:
+        assert got.rpm == wanted.rpm
+    if got.kind != "rapid":
+        assert got.feed_mode == wanted.feed_mode
+        assert abs(got.feed - wanted.feed) <= 6e-4
+    if got.kind == "arc":
+        assert (got.turns, got.normal) == (wanted.turns, wanted.normal)
+        np.testing.assert_allclose(got.centre, wanted.centre, atol=2.1e-4, rtol=0)
+
+
+def written(name: str, toolpath: Toolpath, **given: str) -> tuple[str, list[Motion]] | None:
+    """The program and its motions; None where there can be none."""
+    machine, control = MACHINES[name], CONTROLS[name]
+    try:
+        planned = plan([toolpath], machine, control.chord_tolerance, Wishes(manners=control.manners({})))
+    except Refused:
+        return None
+    program = Program(machine, control, planned.motions, {"tool": "7", **given}, toolpath.file)
+    if any(problem.severity is Severity.ERROR for problem in check_program(program)):
+        return None
+    sink = io.BytesIO()
+    write_program(program, sink)
+    return sink.getvalue().decode(), list(planned.motions)
+
+
+def judged(name: str, toolpath: Toolpath, folder: Path) -> None:
+    """LinuxCNC makes of the program what was planned."""
+    found = written(name, toolpath)
+    assume(found is not None)
+    assert found is not None
+    text, motions = found
+    try:
+        canon = interpret(text, folder)
+    except RefusedByLinuxcncError as refused:
+        raise AssertionError(f"{refused}\n{text}") from None
+    made = control_moves(canon)
+    spindle: SpindleOn | None = None
+    assert len(made) == len(motions)
+    for moves, motion in zip(made, motions, strict=True):
+        wanted, spindle = planned_moves(motion, MACHINES[name], spindle)
+        assert len(moves) == len(wanted)
+        for got, want in zip(moves, wanted, strict=True):
+            agree(got, want)
+    dwells = [event for motion in motions for event in motion.operation.events if isinstance(event, Dwell)]
+    assert sum(name == "DWELL" for _, name, _ in canon.notes) >= len(dwells)
+    stops = sum(isinstance(event, Stop) for motion in motions for event in motion.operation.events)
+    assert sum(name.endswith("PROGRAM_STOP") for _, name, _ in canon.notes) == stops
+
+
+@needs_linuxcnc
+@settings(max_examples=60)
+@given(st.sampled_from(sorted(MACHINES)), st.lists(operations(KINDS, AXES), min_size=1, max_size=2))
+def test_linuxcnc_takes_every_program_and_makes_the_motions_that_were_planned(
+    tmp_path_factory: pytest.TempPathFactory, name: str, found: list[object]
+) -> None:
+    judged(name, Toolpath("made.cls", tuple(found)), tmp_path_factory.getbasetemp())  # type: ignore[arg-type]
