@@ -170,6 +170,13 @@ def test_a_line_longer_than_the_control_reads_is_refused(post: Post) -> None:
     assert "a line has more than the 255 bytes that LinuxCNC reads" in err
 
 
+def test_what_was_written_is_posted_again_for_another_machine_and_control(post: Post, tmp_path: Path) -> None:
+    (tmp_path / "part.ngc").write_text("".join(f"N1 {line}\n" for line in post(LEANING + FOOT)))
+    given = ["--machine", "xyzac_trt", "--to-machine", "yl569", "--output", str(tmp_path / "part.mpf")]
+    assert main(["convert", str(tmp_path / "part.ngc"), *given]) == 0
+    assert "TRAORI" in (tmp_path / "part.mpf").read_text()
+
+
 def test_a_program_that_nobody_can_read_back_is_written_by_force_only_and_says_so(
     post: Post, monkeypatch: pytest.MonkeyPatch
 ) -> None:
