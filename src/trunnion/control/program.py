@@ -406,6 +406,9 @@ class _Author:
         turning_now = None if self._spindle is None else Turning(self._spindle.rpm, self._spindle.sense)
         feed, per_rev = feed_of(cycle, turning_now, float(moves.feed[first]), bool(moves.per_rev[first]))
         mode = codes["feed_per_revolution" if per_rev else "feed_per_minute"]
+        if mode != self._feed_mode:
+            self._writer.forget("feed")
+        self._feed_mode = mode
         self._block({"feed_mode": mode, "plane": codes["plane_xy"], "feed": self._count("feed", feed)})
         self._lines(self._family.hole_call(cycle, top, turning_now, settings_of(self._program), formats))
         decimals = self._writer.word("X").format.decimals
@@ -451,6 +454,7 @@ class _Author:
         forced: dict[str, bool | Ints] = {}
         if self._slides is not None:
             forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
+        forced["feed"] = self._feed_anew(columns, rapid)
         lines: dict[int, str] = {}
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
         if len(inside):
@@ -483,8 +487,8 @@ class _Author:
     ) -> dict[str, bool | Ints]:
         """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
 
-        Returns which words are said though they may print as before: F wherever its meaning changes, and X in rapids,
-        which without a slide would only place the rotary axes.
+        Returns which words are said though they may print as before: X in rapids, which without a slide would only
+        place the rotary axes.
         """
         turning = slides.turns[part] & ~rapid
         word = self._writer.word("inverse_feed")
@@ -498,13 +502,17 @@ class _Author:
             if jumps.any():  # which only controls do that have the word
                 columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
                 columns[key][jumps] = ABSENT
+        return {"X": rapid.astype(np.int64)}
+
+    def _feed_anew(self, columns: Mapping[str, Ints], rapid: Flags) -> Ints:
+        """(n,) 1 in the rows from which F means something else than before; there it is said, whatever its number."""
+        changes = np.zeros(len(rapid), np.int64)
         cuts = np.flatnonzero(~rapid)
-        changes = np.zeros(len(feed), np.int64)
-        if len(cuts):
+        if len(cuts) and "feed_mode" in columns:
             modes = columns["feed_mode"][cuts]
             changes[cuts] = modes != np.concatenate(([self._feed_mode], modes[:-1]))
             self._feed_mode = int(modes[-1])
-        return {"feed": changes, "X": rapid.astype(np.int64)}
+        return changes
 
     def _join(self, columns: dict[str, Ints], row: int, words: Mapping[str, int]) -> None:
         """Put words onto a row."""
