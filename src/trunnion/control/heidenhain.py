@@ -12,20 +12,21 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.family import ArcWords, Codes, Formats, UnsayableError, WordEvent
+from trunnion.control.klartext_holes import cycle_lines
 from trunnion.control.template import Value
 from trunnion.control.turns import about_three
 from trunnion.nc import ABSENT, counts
-from trunnion.plan.holes import Cycle, CycleError, Turning
+from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = (
     "line", "arc", "helix", "arc_angle", "arc_rise", "counterclockwise", "clockwise",
-    "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant", "feed_mode",
+    "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant", "feed_mode", "call",
 )  # fmt: skip
 
 CODES: tuple[str, ...] = (
     "feed_per_minute", "feed_per_revolution", "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop",
-    "optional_stop",
+    "optional_stop", "call",
 )  # fmt: skip
 
 PLANES: tuple[str, ...] = ("spatial", "vector", "cycle19")
@@ -136,8 +137,8 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
 def hole_call(
     cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    """Not yet."""
-    raise CycleError("hole-making cycles cannot be written in Klartext yet", "output the holes as motion")
+    """The definition of the cycle; ``M99`` calls it at each hole."""
+    return cycle_lines(cycle, top, turning, formats)
 
 
 def hole_end() -> list[str]:
@@ -222,8 +223,12 @@ def _corners(blank: str) -> tuple[str, str] | None:
         numbers = [float(part) for part in blank.split(",")]
     except ValueError:
         return None
-    if len(numbers) != 6 or any(not a < b or not abs(a) + abs(b) < 1e5 for a, b in zip(numbers, numbers[3:], strict=False)):
+    if len(numbers) != 6 or any(
+        not a < b or not abs(a) + abs(b) < 1e5 for a, b in zip(numbers, numbers[3:], strict=False)
+    ):
         return None
     texts = [f"{number:+.4f}".rstrip("0").rstrip(".") for number in numbers]
-    low, high = (" ".join(f"{axis}{text}" for axis, text in zip("XYZ", part, strict=True)) for part in (texts[:3], texts[3:]))
+    low, high = (
+        " ".join(f"{axis}{text}" for axis, text in zip("XYZ", part, strict=True)) for part in (texts[:3], texts[3:])
+    )
     return low, high

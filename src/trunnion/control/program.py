@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.control.definition import SPINDLE_ON, Control
+from trunnion.control.definition import CALL, SPINDLE_ON, Control
 from trunnion.control.family import WordEvent
 from trunnion.control.slides import Slides, inverse_time, slides_of
 from trunnion.control.template import Value
@@ -409,7 +409,8 @@ class _Author:
         ends = sorted(k for k in begins if k < last - first)
         for k, end in zip(ends, [*ends[1:], last - first], strict=True):
             here = [event for event in joining if event.row == first + k]
-            text = self._holes(motion, first + k, first + end, here, text, said)
+            make = self._called_holes if CALL in self._family.WORDS else self._holes
+            text = make(motion, first + k, first + end, here, text, said)
         self._progress(last - first)
         return text
 
@@ -442,6 +443,9 @@ class _Author:
         turning_now = None if self._spindle is None else Turning(self._spindle.rpm, self._spindle.sense)
         feed, per_rev = feed_of(cycle, turning_now, float(moves.feed[first]), bool(moves.per_rev[first]))
         mode = codes["feed_per_revolution" if per_rev else "feed_per_minute"]
+        if mode != self._feed_mode:
+            self._writer.forget("feed")
+        self._feed_mode = mode
         self._block({"feed_mode": mode, "plane": codes["plane_xy"], "feed": self._count("feed", feed)})
         self._lines(self._family.hole_call(cycle, top, turning_now, settings_of(self._program), formats))
         decimals = self._writer.word("X").format.decimals
@@ -454,6 +458,44 @@ class _Author:
         before = np.concatenate(([text], wanted[:-1]))
         self._writer.table(columns, {"X": True, "Y": True}, np.where(wanted != before, wanted, -1), texts)
         self._lines(self._family.hole_end())
+        self._height = retract
+        self._writer.forget("X", "Y", "Z")  # a point at which the tool already stands gets its block
+        return int(wanted[-1])
+
+    def _called_holes(
+        self, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int, cycle: Cycle
+    ) -> int:
+        """Holes of one height where each position block calls the cycle; heights are as in ``_holes``."""
+        moves, control = motion.operation.moves, self._control
+        assert cycle.retract is not None
+        top = float(moves.tip[first, 2])
+        retract = top + cycle.retract
+        n = last - first
+        rapids = self._family.row_words(np.ones(n, np.bool_), np.zeros(n, np.bool_), control.codes)
+        decimals = self._writer.word("X").format.decimals
+        places = {word: counts(np.ascontiguousarray(moves.tip[first:last, c]), decimals) for c, word in enumerate("XY")}
+        block = {word: int(column[0]) for word, column in rapids.items()}
+        for event in joining:
+            if first > 0:
+                self._event_block(event)
+            else:
+                block |= self._event_words(event)
+        if first == 0:
+            self._block(
+                block | {word: int(column[0]) for word, column in places.items()} | {"Z": self._count("X", retract)}
+            )
+        elif self._height < top + cycle.above - 1e-9:
+            self._block(block | {"Z": self._count("X", top + cycle.above)})
+        turning_now = None if self._spindle is None else Turning(self._spindle.rpm, self._spindle.sense)
+        feed, per_rev = feed_of(cycle, turning_now, float(moves.feed[first]), bool(moves.per_rev[first]))
+        formats = control.number_formats(motion.three_axis)
+        said = replace(cycle, feed=feed, per_rev=per_rev)
+        self._lines(self._family.hole_call(said, top, turning_now, settings_of(self._program), formats))
+        ids, texts = self._phase_texts()
+        wanted = ids[moves.phase[first:last]]
+        before = np.concatenate(([text], wanted[:-1]))
+        columns = {**rapids, **places, CALL: np.full(n, control.codes[CALL], np.int64)}
+        self._writer.table(columns, {"X": True, "Y": True}, np.where(wanted != before, wanted, -1), texts)
         self._height = retract
         self._writer.forget("X", "Y", "Z")  # a point at which the tool already stands gets its block
         return int(wanted[-1])
@@ -487,6 +529,7 @@ class _Author:
         forced: dict[str, bool | Ints] = {}
         if self._slides is not None:
             forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
+        forced["feed"] = self._feed_anew(columns, rapid)
         lines: dict[int, str] = {}
         elsewhere = np.zeros(stop - start, np.bool_)
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
@@ -525,8 +568,8 @@ class _Author:
     ) -> dict[str, bool | Ints]:
         """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
 
-        Returns which words are said though they may print as before: F wherever its meaning changes, and X in rapids,
-        which without a slide would only place the rotary axes.
+        Returns which words are said though they may print as before: X in rapids, which without a slide would only
+        place the rotary axes.
         """
         turning = slides.turns[part] & ~rapid
         word = self._writer.word("inverse_feed")
@@ -540,13 +583,17 @@ class _Author:
             if jumps.any():  # which only controls do that have the word
                 columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
                 columns[key][jumps] = ABSENT
+        return {"X": rapid.astype(np.int64)}
+
+    def _feed_anew(self, columns: Mapping[str, Ints], rapid: Flags) -> Ints:
+        """(n,) 1 in the rows from which F means something else than before; there it is said, whatever its number."""
+        changes = np.zeros(len(rapid), np.int64)
         cuts = np.flatnonzero(~rapid)
-        changes = np.zeros(len(feed), np.int64)
-        if len(cuts):
+        if len(cuts) and "feed_mode" in columns:
             modes = columns["feed_mode"][cuts]
             changes[cuts] = modes != np.concatenate(([self._feed_mode], modes[:-1]))
             self._feed_mode = int(modes[-1])
-        return {"feed": changes, "X": rapid.astype(np.int64)}
+        return changes
 
     def _join(self, columns: dict[str, Ints], row: int, words: Mapping[str, int]) -> None:
         """Put words onto a row."""

@@ -41,8 +41,8 @@ def arc_sweeps(operation: Operation) -> Floats:
 def plain_arcs(operation: Operation, only_about_z: bool = False) -> Flags:
     """(m,) bool: the arc may be left to a control.
 
-    It turns about X, Y or Z, or about Z where a control knows no others, and the tool axis is the same at its start and its end. It also ends clear of its start,
-    or right at it: a control takes an arc whose end prints as its start for a full circle, be it a tiny one in truth.
+    It turns about X, Y or Z, or about Z where a control knows no others, and the tool axis is the same at its start and
+    its end. It also ends clear of its start, or right at it: a control takes an arc whose end prints as its start for a full circle, be it a tiny one in truth.
     """
     arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
     aside = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
