@@ -19,6 +19,7 @@ from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
 from trunnion.machine import Machine, load_machine
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
+from trunnion.plan.arcs import off_circle
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
@@ -253,14 +254,15 @@ def _by_angles(motion: Motion, half: float, angle: float) -> float:
     """How much farther the ends of helices may be off that are said by a centre and an angle, mm.
 
     Start and centre are rounded by ``half`` mm, of which the end has that of the centre twice, once turned; the angle
-    by ``angle`` degrees.
+    by ``angle`` degrees. What the CL file's own end is off the circle comes on top.
     """
     operation = motion.as_written()
     arcs, tip = operation.arcs, operation.moves.tip
     rises = (arcs.turns > 0) | (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.5 * half)
     if not rises.any():
         return 0.0
-    return half * (1.0 + math.sqrt(2.0)) + math.radians(angle) * float(arcs.radius[rises].max())
+    rounded = half * (1.0 + math.sqrt(2.0)) + float(np.abs(off_circle(operation)[rises]).max())
+    return rounded + math.radians(angle) * float(arcs.radius[rises].max())
 
 
 def _in_plane(motion: Motion, half: float, tilt: float) -> float:

@@ -18,6 +18,9 @@ _ALONG = 1e-6
 #: Start and end of an arc that lie nearer to each other than this, mm, could print as the same point.
 _CLEAR = 0.005
 
+#: What four decimals of start, end and centre come to in the radius of an arc, mm.
+_ROUNDED = 3e-4
+
 
 def arc_sweeps(operation: Operation) -> Floats:
     """Angle that the tip turns through on each arc.
@@ -38,16 +41,29 @@ def arc_sweeps(operation: Operation) -> Floats:
     return np.asarray(np.where(closed, 2.0 * np.pi, angle) + 2.0 * np.pi * arcs.turns)
 
 
+def off_circle(operation: Operation) -> Floats:
+    """(m,) float64: how much farther from the axis of its arc an arc ends than it starts, mm."""
+    arcs, tip = operation.arcs, operation.moves.tip
+    start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
+    away = [np.linalg.norm(np.cross(arcs.normal, point), axis=1) for point in (start, end)]
+    return np.asarray(away[1] - away[0])
+
+
 def plain_arcs(operation: Operation, only_about_z: bool = False) -> Flags:
     """(m,) bool: the arc may be left to a control.
 
-    It turns about X, Y or Z, or about Z where a control knows no others, and the tool axis is the same at its start and
-    its end. It also ends clear of its start, or right at it: a control takes an arc whose end prints as its start for a full circle, be it a tiny one in truth.
+    It turns about X, Y or Z, and the tool axis is the same at its start and its end. It also ends clear of its start,
+    or right at it: a control takes an arc whose end prints as its start for a full circle, be it a tiny one in truth.
+    Where a control knows arcs about Z only, and is told a helix by its angle, that leads to the end only if start and
+    end are as far from the centre.
     """
     arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
     aside = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
     about_axis = (aside if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _ALONG
     steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _ALONG
+    if only_about_z:
+        rises = (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.0) | (arcs.turns > 0)
+        steady &= ~rises | (np.abs(off_circle(operation)) < _ROUNDED)
     apart = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
     in_plane = np.linalg.norm(np.cross(tip[arcs.row] - tip[arcs.row - 1], arcs.normal), axis=1)
     return np.asarray(
