@@ -17,7 +17,7 @@ from trunnion.plan.cone import leanest, nearest_second, off_pole
 from trunnion.plan.placing import REWIND
 from trunnion.plan.pole import Leaning, leaning
 from trunnion.plan.poses import follow
-from trunnion.plan.speed import shares
+from trunnion.plan.speed import RESTS, shares
 from trunnion.toolpath import Moves, Operation, Toolpath
 
 
@@ -116,7 +116,9 @@ def test_where_there_is_a_way_no_rotary_axis_is_too_fast(data: st.DataObject, na
     for place in found.places:
         if not place.found:
             lacking[place.first : place.end] = True
-    assert share[~lacking].max(initial=0.0) <= 1.0
+    # Where the tip rests a turn takes the time that it needs: no feed binds it.
+    way = np.linalg.norm(np.diff(operation.moves.tip, axis=0, prepend=operation.moves.tip[:1]), axis=1)
+    assert share[~lacking & (way >= RESTS)].max(initial=0.0) <= 1.0
 
 
 @settings(max_examples=100)

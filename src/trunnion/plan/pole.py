@@ -30,7 +30,7 @@ from trunnion.plan.cone import Cone, leanest, nearest_second, off_pole, way_of_s
 from trunnion.plan.motion import Pole
 from trunnion.plan.placing import FINE, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, follow, least_cost, take
-from trunnion.plan.speed import displayed, reach, turns_freely, wound
+from trunnion.plan.speed import USED, displayed, reach, turns_freely, wound
 from trunnion.plan.states import LIMIT_TOLERANCE, REWOUND, limits_of
 from trunnion.toolpath import Moves, Operation
 
@@ -163,8 +163,19 @@ def _made(work: _Work, mode: Pole, poses: Poses, cones: list[Cone]) -> _Made:
         return _Made(poses, exact, *_in_cones(work, exact, cones, even=mode is Pole.SPREAD))
     rotary, places, left = _limited(work, exact, poses.state, cones)
     rotary, _ = _in_cones(work, rotary, left, even=True)
+    places = [*places, *_missed(work, rotary, poses.state, places)]
     lean = [float(_off(work.machine, rotary[p.first : p.end], work.moves.axis[p.first : p.end]).max()) for p in places]
     return _Made(poses, exact, rotary, [replace(p, lean=most) for p, most in zip(places, lean, strict=True)])
+
+
+def _missed(work: _Work, rotary: Floats, state: Codes, places: list[Place]) -> Iterator[Place]:
+    """Rows in which an axis is too fast after all, such as those between two places: they are places without a way."""
+    fast = replace(work, far=work.far / USED).too_fast(rotary, state)
+    for place in places:
+        fast[place.first : place.end] &= place.found
+    edges = np.flatnonzero(np.diff(fast, prepend=False, append=False))
+    for first, end in edges.reshape(-1, 2).tolist():
+        yield Place(first, end, 0.0, False)
 
 
 # ---------------------------------------------------------------------------------------------------------------------
