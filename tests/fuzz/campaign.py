@@ -18,7 +18,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import NoReturn
 
-from tests.fuzz import klartext, oracle, pieces, seeds
+from tests.fuzz import klartext, oracle, pieces, rs274, seeds
 from tests.fuzz.mangle import mangle
 
 
@@ -47,6 +47,12 @@ def a_klartext(rng: random.Random) -> bytes:
     return _mangled(rng, klartext.program(rng.randint(1, 60), rng.choice).encode(), klartext.SOUND)
 
 
+def a_rs274(rng: random.Random) -> bytes:
+    """Return the bytes of a program of LinuxCNC, Fanuc or Fidia."""
+    language = rng.choice(rs274.LANGUAGES)
+    return _mangled(rng, language.program(rng.randint(1, 60), rng.choice), language.sound)
+
+
 def a_definition(rng: random.Random) -> bytes:
     """Return the bytes of a definition."""
     library = [entry.read_bytes() for entry in files("trunnion.machine").joinpath("library").iterdir()]
@@ -73,6 +79,12 @@ def judge_klartext(data: bytes, folder: Path, rng: random.Random) -> object:
     return klartext.judge(data, folder, rng.choice(klartext.MACHINES))
 
 
+def judge_rs274(data: bytes, folder: Path, rng: random.Random) -> object:
+    """Run a program as one of the three languages takes it, whichever it is in."""
+    language = rng.choice(rs274.LANGUAGES)
+    return language.judge(data, folder, rng.choice(language.machines))
+
+
 def judge_cl(data: bytes, folder: Path, rng: random.Random) -> object:
     """Read a CL file."""
     return oracle.judge_cl(data, folder, strict=rng.random() < 0.2)
@@ -86,6 +98,7 @@ def judge_definition(data: bytes, folder: Path, rng: random.Random) -> object:
 TARGETS: dict[str, tuple[Callable[[random.Random], bytes], Callable[[bytes, Path, random.Random], object]]] = {
     "program": (a_program, judge_program),
     "klartext": (a_klartext, judge_klartext),
+    "rs274": (a_rs274, judge_rs274),
     "cl": (a_cl_file, judge_cl),
     "definition": (a_definition, judge_definition),
 }

@@ -1,18 +1,18 @@
 """Which reader reads the programs of a machine."""
 
 from collections.abc import Callable
-from functools import lru_cache
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.definition import extended
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
+from trunnion.reader.fanuc.interpreter import FanucInterpreter
+from trunnion.reader.fidia.interpreter import FidiaInterpreter
 from trunnion.reader.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.reader.interpreter import STEPS, Interpreter
-from trunnion.reader.linuxcnc.interpreter import LinuxCNCInterpreter
+from trunnion.reader.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.reader.run import Run
+from trunnion.reader.settings import family_of
 from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 
 #: Readers by the family of the control.
@@ -20,11 +20,10 @@ READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
     "sinumerik_840d": SinumerikInterpreter,
     "heidenhain_itnc530": HeidenhainInterpreter,
     "heidenhain_tnc640": HeidenhainInterpreter,
-    "linuxcnc": LinuxCNCInterpreter,
+    "linuxcnc": LinuxcncInterpreter,
+    "fanuc_30i": FanucInterpreter,
+    "fidia_nc15": FidiaInterpreter,
 }
-
-#: The family of machines whose definition names no control.
-USUAL: Final = "sinumerik_840d"
 
 
 def run_program(
@@ -83,10 +82,3 @@ def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Inte
 def can_read(machine: Machine) -> bool:
     """Whether there is a reader for the programs of a machine."""
     return family_of(machine) in READERS
-
-
-@lru_cache(maxsize=8)
-def family_of(machine: Machine) -> str:
-    """Return the family of a machine's control; of all that the control's definition says, this alone is asked."""
-    table = extended(machine.control.fresh(), files("trunnion").joinpath("control", "library"))
-    return table.text("family", USUAL)

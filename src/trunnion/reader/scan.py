@@ -1,9 +1,11 @@
-"""Plain motion blocks of the ISO languages straight from bytes to columns.
+"""Plain motion blocks of letters and numbers straight from bytes to columns.
 
 In:     bytes of a program, whole lines; where the control stands; columns with room.
 Out:    rows for the blocks that hold nothing but N, G0 or G1, X Y Z, rotary words, A3= B3= C3= and F with plain
         numbers; the place of the first block that holds anything else, which is the interpreter's.
 Units:  mm and degrees; ``lengths`` and ``feeds`` turn inches into mm.
+
+What letters and signs mean in a language is in the table of ``letters``.
 
 A line is read to its end before anything is written: a line that turns out not to be plain has had no effect. Numbers
 have at most 15 digits, so that mantissa and power of ten are exact and the quotient is the nearest double, the same
@@ -23,6 +25,14 @@ PREPARATORY: Final = 2
 FEED: Final = 3
 SLIDE: Final = 4  # and the two after it: X, Y, Z
 ROTARY: Final = 7  # and the one after it
+VECTOR: Final = 9  # and the two after it: the tool axis
+COMMENT: Final = 12
+ASSIGN: Final = 13
+GAP: Final = 14
+
+#: What a byte means, and the flag that its whole numbers are none of the kernel's.
+_MEANING: Final = 15
+_POINTED: Final = 16
 
 _POWERS: Final = np.array([10.0**k for k in range(23)])
 
@@ -39,19 +49,39 @@ _POINT: Final = 46
 _ZERO: Final = 48
 _THREE: Final = 51
 _NINE: Final = 57
-_SEMICOLON: Final = 59
 _EQUALS: Final = 61
 
 
-def letters(rotary: tuple[str, str]) -> Codes:
-    """Table (256,) uint8 from a byte to what it means to ``scan``, for the names of the two rotary axes."""
+def letters(
+    rotary: tuple[str, str],
+    *,
+    comment: str = "",
+    assign: str = "",
+    gaps: bool = False,
+    pointed: str = "",
+    vector: str = "",
+) -> Codes:
+    """Table (256,) uint8 from a byte to what it means to ``scan``.
+
+    rotary    names of the two rotary axes
+    comment   what begins a comment that goes on to the end of the line
+    assign    what may stand between the letter of an axis and its number
+    gaps      blanks may stand there
+    vector    letters of the tool axis, besides A3= B3= C3=
+    pointed   letters whose numbers need a point, 0 apart: others are counted in increments
+    """
     table = np.zeros(256, np.uint8)
     meanings = {"N": NUMBER, "G": PREPARATORY, "F": FEED, "X": SLIDE, "Y": SLIDE + 1, "Z": SLIDE + 2}
     for column, name in enumerate(rotary):
         if len(name) == 1:
             meanings.setdefault(name.upper(), ROTARY + column)
+    meanings |= {letter: VECTOR + axis for axis, letter in enumerate(vector)}
     for letter, meaning in meanings.items():
-        table[ord(letter)] = table[ord(letter.lower())] = meaning
+        flag = _POINTED if letter in pointed else 0
+        table[ord(letter)] = table[ord(letter.lower())] = meaning | flag
+    for sign, meaning in ((comment, COMMENT), (assign, ASSIGN), (" " if gaps else "", GAP)):
+        if sign:
+            table[ord(sign)] = meaning
     return table
 
 
@@ -61,7 +91,6 @@ def scan(
     end: int,
     table: Codes,
     vectors: bool,
-    equals: bool,
     lengths: float,
     feeds: float,
     way: int,
@@ -77,7 +106,6 @@ def scan(
     text      (m,) uint8       the program; whole lines up to ``end``
     table     (256,) uint8     from ``letters``
     vectors   bool             A3= B3= C3= are allowed
-    equals    bool             X= is X
     frame     (3, 4) float64   from programmed position to ``target.place``
     turn      (3, 3) float64   from programmed vector to ``target.vector``
     counts    (6,) int64       KIND, ROW, COMMENTS, POSITION (byte), LINE (of the next block) and FEEDS, updated
@@ -92,6 +120,7 @@ def scan(
     comments = notes.comments
     room = min(target.kind.shape[0], target.base + target.way.shape[0])
     values = np.zeros(12)
+    gaps = table[_SPACE] == GAP
     while position < end and row < room and noted < comments.shape[0] and feeds_noted < notes.feeds.shape[0]:
         at = position
         seen = 0
@@ -106,30 +135,31 @@ def scan(
                 continue
             if char == _LF:
                 break
-            if char == _SEMICOLON:
+            if table[char] == COMMENT:
                 comment = at + 1
                 while text[at] != _LF:
                     at += 1
                 break
-            what = int(table[char])
+            what = int(table[char]) & _MEANING
+            pointed = (table[char] & _POINTED) != 0
             upper = char & 0xDF
             slot = what
             at += 1
             if vectors and 65 <= upper <= 67 and text[at] == _THREE and text[at + 1] == _EQUALS:
-                slot = 9 + upper - 65
+                slot = VECTOR + upper - 65
                 what = ROTARY
                 at += 2
-            elif what == 0:
+            elif what == 0 or what > VECTOR + 2:
                 plain = False
                 break
-            elif equals and what >= SLIDE and text[at] == _EQUALS:
+            elif what >= SLIDE and table[text[at]] == ASSIGN:
+                at += 1
+            while gaps and (text[at] == _SPACE or text[at] == _TAB):
                 at += 1
             if seen & (1 << slot) or (what == NUMBER and seen != 0):
                 plain = False
                 break
             seen |= 1 << slot
-            while text[at] == _SPACE or text[at] == _TAB:
-                at += 1
             # The number: sign, digits, point, digits.
             negative = False
             if what >= SLIDE and (text[at] == _PLUS or text[at] == _MINUS):
@@ -153,15 +183,13 @@ def scan(
                 at += 1
                 if digits > 15:
                     break
-            if digits == 0 or digits > 15:
+            if digits == 0 or digits > 15 or (pointed and not point and mantissa != 0):
                 plain = False
                 break
             # What may follow a number: a blank, the end, a comment, or a word of one letter that this kernel knows.
             follows = text[at]
             if not (
-                follows in (_SPACE, _TAB, _CR, _LF, _SEMICOLON)
-                or table[follows] != 0
-                or (vectors and 65 <= (follows & 0xDF) <= 67)
+                follows in (_SPACE, _TAB, _CR, _LF) or table[follows] != 0 or (vectors and 65 <= (follows & 0xDF) <= 67)
             ):
                 plain = False
                 break

@@ -1,1 +1,1 @@
-"""Reader of LinuxCNC programs (RS274/NGC): the language, and a control that executes it."""
+"""RS274/NGC as LinuxCNC 2.9 reads it."""

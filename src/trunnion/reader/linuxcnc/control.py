@@ -1,79 +1,150 @@
-"""The virtual control of LinuxCNC: what only it does with circles and rotary words."""
+"""The virtual control of LinuxCNC: offsets as it counts them, and positions of the machine under TCP."""
 
-from collections.abc import Mapping
-from functools import partial
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats
-from trunnion.errors import Severity
-from trunnion.machine import Axis, Machine
-from trunnion.reader import arcs
+from trunnion.arrays import Codes, Floats
+from trunnion.machine import Axis, Machine, forward
+from trunnion.reader import arcs, poses
 from trunnion.reader.columns import Changes
-from trunnion.reader.control import LINEAR, Circle, Control
-from trunnion.reader.rows import FARTHEST, Note
+from trunnion.reader.frames import Frame, turn
+from trunnion.reader.rows import Note
+from trunnion.reader.rs274.control import Rs274Control
 from trunnion.reader.scan import letters
+from trunnion.reader.word import How, Word
 
-#: Kinds of motion besides rapid and lines: G2, G3, and none before the first motion word and after G80.
-CLOCKWISE: Final = 2
-NONE: Final = 4
+#: Axes in the order of LinuxCNC's own tables.
+ORDER: Final = "XYZABC"
 
-#: More turns of a circle are none that a program means.
-MOST_TURNS: Final = 1000
+#: How much the radius may differ between start and end: always, in part of the radius, and at most, mm.
+_FINE: Final = 0.005
+_PART: Final = 0.001
+_COARSE: Final = 0.5
 
 
-class LinuxCNCControl(Control):
-    """LinuxCNC at work on a machine. TCP is its switchable kinematics."""
+@dataclass(slots=True)
+class Offset:
+    """A work offset that the program set.
 
-    winds = True
+    values     (6,) X Y Z, mm, A B C, degrees, in positions of the machine
+    rotation   about Z, degrees
+    """
+
+    values: Floats = field(default_factory=lambda: np.zeros(6))
+    rotation: float = 0.0
+
+
+class LinuxcncControl(Rs274Control):
+    """A LinuxCNC at work on a machine. Work offsets that the program does not set are the machine's workpiece zero."""
 
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
-        self._lengthened = False
         super().__init__(machine, note, file, shortest=shortest)
-        self.kind = NONE
-        self.table = letters((self.names[0], self.names[1]))
-        #: Whether I J K count from the start of a circle.
-        self.relative_centres = True
+        self.table = letters((self.names[0], self.names[1]), comment=";", gaps=True)
+        #: Number of the work offset in force, 1 for G54.
+        self.system = 1
+        self._set: dict[int, Offset] = {}
+        #: G92 and G52: (6,) mm and degrees, and whether they count.
+        self.shift = np.zeros(6)
+        self.shifted = False
 
     def shorter(self, axis: Axis) -> bool:
-        """Never: rotary words are positions."""
+        """Never: rotary axes take the number as it is."""
         return False
 
+    def way(self, which: int, how: How) -> int:
+        """The number itself, as axes take it that the machine's ini file does not call wrapped."""
+        return super().way(which, how) if self.shortest else poses.PLAIN
+
+    def check_radii(self, start: Floats, end: Floats, centre: Floats) -> None:
+        """Refuse circles whose radii differ more than LinuxCNC allows."""
+        first, second = ((self.plane + 1) % 3, (self.plane + 2) % 3)
+        r1, r2 = (float(np.hypot(p[first] - centre[first], p[second] - centre[second])) for p in (start, end))
+        off = abs(r1 - r2)
+        if off > _COARSE or (off > _FINE and off > _PART * max(r1, r2)):
+            raise arcs.ArcError(f"the radius is {r1:.4f} at the start and {r2:.4f} at the end")
+
+    # Offsets
+
     @property
-    def _length(self) -> Floats:
-        return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self._lengthened else np.zeros(3)
+    def zero(self) -> Floats:
+        """(6,) the workpiece zero in positions of the machine."""
+        return np.concatenate((self._origin_slides, np.zeros(3)))
 
-    def set_length(self, on: bool) -> None:
-        """G43 or G49: the length of the tool in the spindle, if it is known, counts along Z."""
-        if not self.machine.tool_length or on == self._lengthened:
+    def offset_of(self, system: int) -> Offset:
+        """Return a work offset; one that the program did not set is the workpiece zero."""
+        return self._set.get(system) or Offset(self.zero)
+
+    def set_values(self, system: int, offset: Offset) -> None:
+        """Set a work offset."""
+        self._set[system] = offset
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Let offsets count as they are now; the axes stand still."""
+        offset = self.offset_of(self.system)
+        linear = turn(2, offset.rotation)
+        shift = offset.values[:3] - self.zero[:3]
+        if self.shifted:
+            shift = shift + linear @ self.shift[:3]
+        self.set_program_frame(Frame(linear, shift), old=False)
+
+    @property
+    def turned(self) -> dict[str, float]:
+        """What a programmed rotary position has to grow by to be a position of the machine, by letter."""
+        offset = self.offset_of(self.system).values
+        total = offset + self.shift if self.shifted else offset
+        return {name: float(total[ORDER.index(name)]) for name in self.names if name in ORDER}
+
+    def position(self) -> Floats:
+        """(6,) programmed positions of where the axes stand, mm and degrees."""
+        self.settle()
+        turned = self.turned
+        position = np.zeros(6)
+        position[:3] = self.place[:3]
+        for which, name in enumerate(self.names):
+            if name in ORDER:
+                position[ORDER.index(name)] = float(self.held[self.machine.rotary[which]]) - turned[name]
+        return position
+
+    def machine_position(self) -> Floats:
+        """(6,) where the axes stand in positions of the machine; with TCP, of the tip in the machine's frame.
+
+        With TCP the length of the tool counts as it does for LinuxCNC's kinematics: over the tip.
+        """
+        self.settle()
+        position = np.zeros(6)
+        if self.tips:
+            position[:3] = forward(self.machine, self.held[None])[0][0] + self.zero[:3] + self._length
+        else:
+            position[:3] = self.held[self._slides]
+        for which, name in enumerate(self.names):
+            if name in ORDER:
+                position[ORDER.index(name)] = float(self.held[self.machine.rotary[which]])
+        return position
+
+    def without_length(self, position: Floats) -> Floats:
+        """Return a position of the machine as work offsets count it, whatever the length of the tool, (6,)."""
+        bare = position.copy()
+        bare[:3] -= self._length
+        return bare
+
+    def machine_move(self, axes: dict[str, Word], *, feed_written: bool) -> None:
+        """Go to positions of the machine; with TCP those of the tip in the machine's frame."""
+        if not self.tips:
+            self.move(axes, None, machine_frame=True, feed_written=feed_written)
             return
-        with self.change():
-            self._lengthened = on
+        goal = self.machine_position()[:3]
+        for axis, name in enumerate("XYZ"):
+            if name in axes:
+                goal[axis] = axes[name][0] * self.lengths
+        place = self._back(goal - self.zero[:3] - self._length) / self.lengths
+        words = {name: word for name, word in axes.items() if name not in "XYZ"}
+        words |= {name: (float(place[axis]), How.ABSOLUTE) for axis, name in enumerate("XYZ")}
+        self.move(words, None, feed_written=feed_written)
 
-    def circle(self, words: Mapping[str, float]) -> Circle | None:
-        """The circle that the motion in force makes of the words of a block; None if it makes lines."""
-        return partial(self._arc, words) if LINEAR < self.kind < NONE else None
-
-    def _arc(self, words: Mapping[str, float], start: Floats, end: Floats) -> arcs.Arc:
-        turns = words.get("P", 1.0)
-        if turns != int(turns) or not 1 <= turns <= MOST_TURNS:
-            raise arcs.ArcError(f"P{turns:g} is no number of turns")
-        said = {name: words[name] * self.lengths for name in "IJKR" if name in words}
-        if any(abs(value) > FARTHEST for value in said.values()):
-            raise arcs.ArcError("a circle with numbers that no machine has")
-        clockwise = self.kind == CLOCKWISE
-        more = int(turns) - 1
-        if "R" in said:
-            if said.keys() != {"R"}:
-                self.note("R and a centre in one block: R counts", Severity.ERROR)
-            return arcs.by_radius(start, end, said["R"], self.plane, clockwise, more)
-        centre = start.copy()
-        for axis, name in enumerate("IJK"):
-            if axis == self.plane and name in said:
-                raise arcs.ArcError(f"{name} has no meaning for a circle in this plane")
-            if name in said:
-                centre[axis] = said[name] + (start[axis] if self.relative_centres else 0.0)
-        if not said:
-            raise arcs.ArcError("the circle has no centre")
-        return arcs.by_centre(start, end, centre, self.plane, clockwise, more)
+    @property
+    def plain_table(self) -> Codes:
+        """What bytes mean to the scan kernel."""
+        return self.table

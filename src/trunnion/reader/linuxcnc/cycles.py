@@ -1,62 +1,100 @@
-"""Drilling cycles as the motions that they make at one hole; heights in the program's units."""
+"""Canned cycles of LinuxCNC as the motions that they make at one hole.
 
-from collections.abc import Mapping
+Heights are positions along the axis on the working plane, in the units of the program.
+"""
+
+from dataclasses import dataclass
 from typing import Final
 
-from trunnion.reader.drilling import FASTEST, MOST_PECKS, CycleError, Step
+from trunnion.reader.drilling import MOST_PECKS, CycleError, Step
 
-#: How far G73 backs off, and how far above the last depth G83 ends its rapid, inches.
-CLEARANCE: Final = 0.010
+#: Canned cycles that drill, by their G code in tenths.
+CYCLES: Final = frozenset({730, 740, 810, 820, 830, 840, 850, 860, 870, 880, 890})
+
+#: Those that need Q and P when they begin.
+NEED_Q: Final = frozenset({730, 830})
+NEED_P: Final = frozenset({820, 860, 880, 890})
+
+#: Words of cycles that hold until another cycle begins.
+STICKY: Final = "RZPQIJK"
+
+#: How far above the last depth G83 goes back at rapid, and how far G73 backs off, in inches.
+CLEARANCE: Final = 0.01
 
 
-def steps(code: int, words: Mapping[str, float], here: float, back: float, unit: float, turns: float) -> list[Step]:
-    """Return the motions of a cycle over the hole.
+@dataclass(frozen=True, slots=True)
+class Hole:
+    """What a cycle knows at a hole.
 
-    Parameters
-    ----------
-    code
-        Ten times the G number, one of ``words.CYCLES``.
-    words
-        Z (bottom), R, and Q and P where the cycle has them; absolute.
-    here, back
-        Height before the cycle, and where it ends.
-    unit
-        Millimetres of a length.
-    turns
-        Spindle speed, rev/min, for nothing but to refuse tapping without it.
+    clear      where it ends
+    clearance  as ``CLEARANCE``, in the units of the program
+    words      R, Z, P, Q, D, I, J, K as far as they are written; Z and R are heights already
     """
-    bottom, top = words["Z"], words["R"]
-    if bottom >= top:
-        raise CycleError("has its bottom above R")
-    pause = words.get("P", 0.0)
-    if not 0.0 <= pause <= FASTEST:
-        raise CycleError("has a dwell that is none")
-    made = [] if here == top else [Step(True, top)]
-    if code in (730, 830):
-        made += _pecks(code, bottom, top, words.get("Q"), CLEARANCE * 25.4 / unit)
-    else:
-        made.append(Step(False, bottom, dwell=pause if code in (820, 860, 890) else 0.0))
-    if code in (740, 840) and not turns:
-        raise CycleError("taps without a spindle speed")
-    if code in (740, 840, 850, 890):
-        made.append(Step(False, top))
-        return made if back == top else [*made, Step(True, back)]
-    return [*made, Step(True, back)]
+
+    retract: float
+    bottom: float
+    clear: float
+    clearance: float
+    words: dict[str, float]
 
 
-def _pecks(code: int, bottom: float, top: float, stroke: float | None, clearance: float) -> list[Step]:
-    if stroke is None or stroke <= 0.0:
-        raise CycleError("needs a positive Q")
-    if (top - bottom) / stroke > MOST_PECKS:
+def steps(code: int, hole: Hole) -> list[Step]:
+    """Return the motions of a cycle from the retract plane on."""
+    bottom, clear = hole.bottom, hole.clear
+    dwell = max(hole.words.get("P", 0.0), 0.0)
+    match code:
+        case 810:
+            return [Step(False, bottom), Step(True, clear)]
+        case 820:
+            return [Step(False, bottom, dwell=dwell), Step(True, clear)]
+        case 730 | 830:
+            return _peck(hole, full=code == 830)
+        case 740 | 840:
+            return [Step(False, bottom, dwell=dwell), Step(False, clear)]
+        case 850:
+            return [Step(False, bottom), Step(False, hole.retract), Step(True, clear)]
+        case 860:
+            return [Step(False, bottom, dwell=dwell), Step(True, clear)]
+        case 870:
+            return _back_bore(hole)
+        case 880:
+            return [Step(False, bottom, dwell=dwell)]
+        case _:
+            assert code == 890
+            return [Step(False, bottom, dwell=dwell), Step(False, clear)]
+
+
+def _peck(hole: Hole, full: bool) -> list[Step]:
+    stroke = hole.words.get("Q", 0.0)
+    if stroke <= 0.0:
+        raise CycleError("has a Q that is not above 0")
+    back = hole.words.get("D", hole.clearance)
+    if (hole.retract - hole.bottom) / stroke > MOST_PECKS:
         raise CycleError(f"would peck more than {MOST_PECKS} times")
     made: list[Step] = []
-    depth = top
-    while depth > bottom:
-        if depth < top and code == 830:
-            made.append(Step(True, top))
-            made.append(Step(True, min(depth + clearance, top)))
-        elif depth < top:
-            made.append(Step(True, min(depth + clearance, top)))
-        depth = max(depth - stroke, bottom)
+    depth = hole.retract - stroke
+    while depth > hole.bottom:
         made.append(Step(False, depth))
-    return made
+        if full:
+            made.append(Step(True, hole.retract))
+        made.append(Step(True, depth + back))
+        depth -= stroke
+    return [*made, Step(False, hole.bottom), Step(True, hole.clear)]
+
+
+def _back_bore(hole: Hole) -> list[Step]:
+    """G87: beside the hole down, over to it, up to K and back, and out beside it."""
+    missing = [letter for letter in "IJK" if letter not in hole.words]
+    if missing:
+        raise CycleError(f"has no {missing[0]}")
+    aside = hole.words["I"], hole.words["J"]
+    return [
+        Step(True, hole.retract, aside=aside),
+        Step(True, hole.bottom, aside=aside),
+        Step(True, hole.bottom),
+        Step(False, hole.words["K"]),
+        Step(False, hole.bottom),
+        Step(True, hole.bottom, aside=aside),
+        Step(True, hole.clear, aside=aside),
+        Step(True, hole.clear),
+    ]

@@ -1,103 +1,113 @@
-"""Every word that the reader knows, by what it does. ``docs/reader-linuxcnc.md`` says the same to people."""
+"""Every word of LinuxCNC that the reader knows, by what it does; G codes are in tenths."""
 
 from typing import Final
 
-#: G words by ten times their number, so that G43.1 is a whole number: what they act on.
-MOTIONS: Final = {0: 0, 10: 1, 20: 2, 30: 3}
-PLANES: Final = {170: 2, 180: 1, 190: 0}
-UNITS: Final = {200: True, 210: False}
-DISTANCES: Final = {900: True, 910: False}
-ARC_DISTANCES: Final = {901: True, 911: False}
-FEED_MODES: Final = {930: 93, 940: 94, 950: 95}
-OFFSETS: Final = {540: 1, 550: 2, 560: 3, 570: 4, 580: 5, 590: 6, 591: 7, 592: 8, 593: 9}
-RETURNS: Final = {980: True, 990: False}
-DWELL: Final = 40
-MACHINE: Final = 530
-CANCEL: Final = 800
-CYCLES: Final = frozenset({730, 740, 810, 820, 830, 840, 850, 860, 890})
+#: Work offsets, in the order of their numbers in G10 and ``#5220``.
+OFFSETS: Final = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 
-#: G words for the length of the tool: whether it counts.
+#: G codes for the length of the tool: whether it counts.
 LENGTHS: Final = {430: True, 490: False}
 
-#: G words that change how the control drives, or what it does with tool lengths besides.
-SILENT: Final = frozenset({400, 432, 610, 611, 640, 970})
+#: G codes that change how the control drives, or what it does with tool lengths besides.
+SILENT: Final = frozenset({80, 400, 431, 432, 610, 611, 640, 911, 901, 970})
 
-#: G words that are known and not simulated: what the reader says, and whether the path is doubtful.
+#: G codes that are known and not simulated: text, and whether the path is wrong without it.
 NAMED: Final = {
-    50: ("splines are not simulated", True),
-    51: ("splines are not simulated", True),
-    52: ("NURBS are not simulated", True),
-    53: ("NURBS are not simulated", True),
-    70: ("lathe diameters are not simulated", True),
-    80: ("lathe radii", False),
-    100: ("sets tables and offsets, which only the control has", True),
-    171: ("a plane of U, V and W", True),
-    181: ("a plane of U, V and W", True),
-    191: ("a plane of U, V and W", True),
-    280: ("goes to a position that only the control knows", True),
-    281: ("stores a position", False),
-    300: ("goes to a position that only the control knows", True),
-    301: ("stores a position", False),
+    50: ("a spline, taken as nothing", True),
+    51: ("a spline, taken as nothing", True),
+    52: ("a NURBS, taken as nothing", True),
+    53: ("a NURBS, taken as nothing", True),
+    62: ("a NURBS, taken as nothing", True),
+    63: ("a NURBS, taken as nothing", True),
+    70: ("turning is not simulated", True),
+    171: ("a plane of U V W is not simulated", True),
+    181: ("a plane of U V W is not simulated", True),
+    191: ("a plane of U V W is not simulated", True),
     330: ("thread cutting is taken as a straight line", False),
-    331: ("rigid tapping is taken as a straight line in, without the way out", True),
-    382: ("probes: where it ends only the machine knows", True),
-    383: ("probes: where it ends only the machine knows", True),
-    384: ("probes: where it ends only the machine knows", True),
-    385: ("probes: where it ends only the machine knows", True),
+    331: ("tapping is taken as a straight line in and out", False),
+    382: ("probing is taken as a straight line", False),
+    383: ("probing is taken as a straight line", False),
+    384: ("probing is taken as a straight line", False),
+    385: ("probing is taken as a straight line", False),
     410: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     411: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     421: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    431: ("sets tool offsets by the program: not simulated", True),
-    760: ("thread cutting is not simulated", True),
-    870: ("back boring is not simulated", True),
-    880: ("boring with a stop is not simulated", True),
-    920: ("moves the coordinate system: not simulated", True),
-    921: ("takes the G92 offsets away, which are not simulated", False),
-    922: ("takes the G92 offsets away, which are not simulated", False),
-    923: ("takes the G92 offsets back, which are not simulated", True),
-    960: ("constant surface speed: only the path is followed", False),
+    700: ("a turning cycle is not simulated", True),
+    710: ("a turning cycle is not simulated", True),
+    711: ("a turning cycle is not simulated", True),
+    712: ("a turning cycle is not simulated", True),
+    720: ("a turning cycle is not simulated", True),
+    721: ("a turning cycle is not simulated", True),
+    722: ("a turning cycle is not simulated", True),
+    760: ("a threading cycle is not simulated", True),
+    960: ("constant surface speed: only the kind of feed is followed", False),
 }
 
-#: G words after which the axis words of the same block are no positions.
-NO_MOTION: Final = frozenset({40, 100, 280, 281, 300, 301, 431, 920, 921, 922, 923})
+#: G codes whose motion is a straight line here, in force until another one.
+LINES: Final = frozenset({330, 331, 382, 383, 384, 385})
 
-#: M words that become events: kind and value.
-M_EVENTS: Final = {
-    0: ("stop", None),
-    1: ("optional_stop", None),
-    3: ("spindle", "clockwise"),
-    4: ("spindle", "counter-clockwise"),
-    5: ("spindle", "off"),
-    7: ("coolant", "mist"),
-    8: ("coolant", "flood"),
-    9: ("coolant", "off"),
-    19: ("spindle", "oriented"),
-    60: ("stop", None),
-}
-M_SPINDLE: Final = {3: 1, 4: -1, 5: 0}
-M_CHANGE: Final = 6
-M_ENDS: Final = frozenset({2, 30})
+#: G codes whose block makes no motion here, and whose words are not positions.
+NO_MOTION: Final = frozenset({431, 432, 50, 51, 52, 53, 62, 63, 700, 710, 711, 712, 720, 721, 722, 760})
 
-#: Switch the kinematics: tool centre point, and each axis by itself. Which is which is configured; these are those of
-#: the trunnion configurations that come with LinuxCNC.
-M_TCP: Final = 428
-M_IDENTITY: Final = 429
-
-#: M words that act after the motion of their block.
-M_LATE: Final = frozenset({0, 1, 60}) | M_ENDS
-
-#: M words without an effect on the path: overrides, and outputs.
-M_SILENT: Final = frozenset({48, 49, 50, 51, 52, 53, 61, 62, 63, 64, 65, 67, 68})
-
-#: M words that are known and not simulated.
-M_NAMED: Final = {
-    66: "waits for an input: not simulated",
-    70: "saves modes: not simulated",
-    71: "forgets saved modes: not simulated",
-    72: "takes modes back: not simulated",
-    73: "saves modes: not simulated",
+#: Words that belong to a code, and that need no look here.
+WORDS: Final = {
+    430: "H",
+    431: "XYZABCUVW",
+    432: "H",
+    410: "D",
+    411: "DL",
+    420: "D",
+    421: "DL",
+    640: "PQ",
+    960: "DS",
+    330: "K",
+    331: "KI",
+    50: "XYIJPQ",
+    51: "XYIJ",
+    52: "XYPL",
+    62: "XYPLDEFIJKQR",
+    700: "XZDEPQIR",
+    710: "XZDEPQIR",
+    711: "XZDEPQIR",
+    712: "XZDEPQIR",
+    720: "XZDEPQIR",
+    721: "XZDEPQIR",
+    722: "XZDEPQIR",
+    760: "XZPIJKRQHEL",
 }
 
-#: M words that call and return, which end what can be followed.
-M_CALLS: Final = frozenset({98, 99})
+#: M codes that change how the control drives, and their words.
+SILENT_M: Final = {
+    48: "",
+    49: "",
+    50: "P",
+    51: "P",
+    52: "P",
+    53: "P",
+    62: "P",
+    63: "P",
+    64: "P",
+    65: "P",
+    66: "PELQ",
+    67: "EQ",
+    68: "EQ",
+}
+
+#: M codes that are known and not simulated.
+NAMED_M: Final = {
+    70: "what is in force is not kept for later",
+    71: "what is in force is not kept for later",
+    72: "what is in force is not brought back",
+    73: "what is in force is not kept for later",
+    98: "subprograms by M98 are not simulated; O words are",
+    99: "subprograms by M98 are not simulated; O words are",
+}
+
+#: M codes of the user.
+USERS: Final = range(100, 200)
+
+#: Switchable kinematics as the five-axis examples remap them: TCP on, off, and a third one that nobody defined.
+TCP_ON: Final = 428
+TCP_OFF: Final = 429
+TCP_USER: Final = 430

@@ -37,7 +37,7 @@ class SinumerikControl(Control):
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         self._machine_vectors = False
         super().__init__(machine, note, file, shortest=shortest)
-        self.table = letters((self.names[0], self.names[1]))
+        self.table = letters((self.names[0], self.names[1]), comment=";", assign="=")
 
     def shorter(self, axis: Axis) -> bool:
         """With TRAORI, but for axes whose values are written as they wind."""

@@ -95,7 +95,6 @@ class SinumerikInterpreter(Interpreter[Activation]):
             len(text.buffer),
             control.table,
             control.tips,
-            True,
             control.lengths,
             control.feeds,
             control.default_way,

@@ -1,0 +1,1 @@
+"""Programs of a Fanuc 30i or 31i."""

@@ -1,0 +1,126 @@
+"""Every word of a Fanuc that the reader knows, by what it does; G codes are in tenths."""
+
+from typing import Final
+
+#: Work offsets G54 to G59.
+OFFSETS: Final = (540, 550, 560, 570, 580, 590)
+MORE_OFFSETS: Final = 541
+
+DWELL: Final = 40
+SET_DATA: Final = 100
+HOME: Final = 280
+OTHER_HOME: Final = 300
+LOCAL: Final = 520
+MACHINE: Final = 530
+TOOL_UPRIGHT: Final = 531
+MACRO: Final = 650
+MODAL_MACRO: Final = 660
+MODAL_MACRO_OFF: Final = 670
+ROTATE: Final = 680
+TILT: Final = 682
+UPRIGHT_OFF: Final = 690
+PRESET: Final = 920
+TCP: Final = 434
+TCP_VECTOR: Final = 435
+LENGTH_OFF: Final = 490
+
+#: Codes that use the axis words of their block, which then makes no other motion.
+TAKES_AXES: Final = frozenset({DWELL, SET_DATA, HOME, OTHER_HOME, LOCAL, MACRO, MODAL_MACRO, ROTATE, TILT, PRESET})
+
+#: G codes that change how the control drives, or what is not there: tool lengths are 0.
+SILENT: Final = frozenset(
+    {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 500, 501, 600, 610, 620, 630, 640, 970}
+)
+
+#: G codes that are known and not simulated: text, and whether the path is wrong without it.
+NAMED: Final = {
+    53: ("not simulated", False),
+    61: ("a smooth curve is not simulated", True),
+    62: ("NURBS are not simulated", True),
+    71: ("cylindrical interpolation is not simulated", True),
+    121: ("polar coordinate interpolation is not simulated", True),
+    160: ("polar positions are not simulated", True),
+    270: ("a check of the reference position: where it goes is not simulated", True),
+    290: ("back from the reference position: not simulated", True),
+    310: ("a skip is taken as a straight line", False),
+    330: ("thread cutting is taken as a straight line", False),
+    410: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
+    420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
+    412: ("radius compensation in space is not simulated", False),
+    422: ("radius compensation in space is not simulated", False),
+    431: ("the tool length along the tool axis is not simulated", True),
+    432: ("dynamic fixture offsets and rotary tool lengths are not simulated", True),
+    450: ("tool position offsets are not simulated", True),
+    460: ("tool position offsets are not simulated", True),
+    470: ("tool position offsets are not simulated", True),
+    480: ("tool position offsets are not simulated", True),
+    510: ("scaling is not simulated", True),
+    511: ("mirror images are not simulated", True),
+    536: ("turning the tool upright while the tip stays is not simulated", True),
+    544: ("workpiece setting errors are not simulated", True),
+    661: ("a modal macro call at every block is not simulated", True),
+    683: ("a plane by the tool's direction is not simulated", True),
+    684: ("a plane on top of another is not simulated", True),
+    921: ("a preset of the work coordinates is not simulated", True),
+    960: ("constant surface speed: only the kind of feed is followed", False),
+}
+
+#: G codes whose motion is a straight line here, in force until another one.
+LINES: Final = frozenset({310, 330})
+
+#: G codes whose block makes no motion here, and whose words are not positions.
+NO_MOTION: Final = frozenset({50, 51, 53, 61, 62, 80, 220, 270, 290, 501, 510, 511, 536, 661, 683, 684, 921})
+
+#: Words that belong to a code, and that need no look here.
+WORDS: Final = {
+    50: "P",
+    51: "QRXYZABC",
+    53: "P",
+    61: "XYZPR",
+    62: "XYZPKR",
+    80: "P",
+    71: "ABC",
+    220: "XYZIJK",
+    270: "XYZABC",
+    290: "XYZABC",
+    310: "P",
+    330: "Q",
+    410: "D",
+    420: "D",
+    412: "DIJK",
+    422: "DIJK",
+    430: "H",
+    440: "H",
+    431: "H",
+    432: "H",
+    450: "D",
+    460: "D",
+    470: "D",
+    480: "D",
+    501: "XYZ",
+    510: "XYZPIJK",
+    511: "XYZ",
+    536: "HPR",
+    544: "P",
+    661: "PL",
+    683: "XYZR",
+    684: "XYZIJK",
+    921: "XYZABC",
+    960: "PRS",
+}
+
+#: M codes that act after the motion of their block.
+LATE: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198})
+
+CALL: Final = 98
+RETURN: Final = 99
+CALL_FILE: Final = 198
+
+#: Local variables of a macro by the letter of its call.
+ARGUMENTS: Final = {
+    "A": 1, "B": 2, "C": 3, "I": 4, "J": 5, "K": 6, "D": 7, "E": 8, "F": 9, "H": 11, "M": 13, "Q": 17, "R": 18,
+    "S": 19, "T": 20, "U": 21, "V": 22, "W": 23, "X": 24, "Y": 25, "Z": 26,
+}  # fmt: skip
+
+#: Words of a macro's flow.
+FLOW: Final = ("IF", "GOTO", "WHILE", "DO", "END", "THEN")

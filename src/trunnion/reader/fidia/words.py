@@ -1,0 +1,38 @@
+"""Every word of a Fidia NC15 that the reader knows, by what it does; G codes are in tenths."""
+
+from typing import Final
+
+OFFSET: Final = 550
+TAKE_PLANE: Final = 1540
+NO_PLANE: Final = 690
+DWELL: Final = 40
+MACHINE: Final = 2900
+TCP_ON: Final = frozenset({960, 1960})
+TCP_OFF: Final = frozenset({970, 1970})
+UNITS: Final = {700: True, 710: False}
+
+#: G codes that change how the control drives; feeds are in mm/min on this control.
+SILENT: Final = frozenset({400, 940})
+
+#: G codes that are known and not simulated: text, and whether the path is wrong without it.
+NAMED: Final = {
+    200: ("ends a plane of G21, which is not simulated", True),
+    210: ("a plane by its angles is not simulated", True),
+    220: ("a helix by its angle is not simulated", True),
+    230: ("a helix by its angle is not simulated", True),
+    410: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
+    420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
+}
+
+#: G codes whose block makes no motion here, and whose words are not positions.
+NO_MOTION: Final = frozenset({200, 210, 220, 230})
+
+#: Words that belong to a code, and that need no look here.
+WORDS: Final = {170: "Q", 180: "Q", 190: "Q", 210: "XYZ", 220: "XYZIJKP", 230: "XYZIJKP", 410: "D", 420: "D"}
+
+#: M words: the tool and its offset, and the retract of Z.
+TOOL: Final = 306
+RETRACT: Final = 242
+
+#: M codes that act after the motion of their block.
+LATE: Final = frozenset({0, 1, 2, 5, 9, 30})

@@ -1,0 +1,251 @@
+"""Arithmetic of languages of the RS274 kind: numbers, ``#`` parameters, and expressions in square brackets.
+
+Expressions are worked out while they are read, by recursive descent. How deep they may nest is limited, so that no
+program can exhaust the stack of its reader. A value may be None: a parameter that nobody set, where the language knows
+such values.
+"""
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+#: How deep brackets and signs may nest.
+DEEPEST: Final = 40
+
+#: Larger numbers are none that a machine could mean.
+LARGEST: Final = 1e300
+
+_NUMBER = re.compile(r"[0-9]+\.?[0-9]*|\.[0-9]+")
+_NAME = re.compile(r"<([^<>#\[\]]{1,80})>")
+
+Value = float | None
+
+
+class BlockError(Exception):
+    """What is wrong with a block, in words."""
+
+
+class Parameters(Protocol):
+    """Where expressions find the values behind ``#``."""
+
+    def value(self, key: int | str) -> Value:
+        """Return the value of a parameter by number or name, or raise BlockError."""
+        ...
+
+    def known(self, key: int | str) -> bool:
+        """Whether a parameter has a value."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """The operations of a language.
+
+    levels      binary operators by how tightly they bind, loosest first
+    operate     what an operator does with two numbers
+    functions   functions of one number in brackets
+    pairs       functions of two numbers, ``NAME[a]/[b]`` or ``NAME[a,b]``
+    bare        what follows the sign = may be an expression without brackets
+    empty       how operators that compare see a value that nobody set; None: values always count as numbers
+    """
+
+    levels: tuple[tuple[str, ...], ...]
+    operate: Callable[[str, float, float], float]
+    functions: Mapping[str, Callable[[float], float]]
+    pairs: Mapping[str, Callable[[float, float], float]]
+    bare: bool = False
+    empty: Callable[[str, Value, Value], float | None] | None = None
+
+
+class Reader:
+    """A place in a block without blanks, in capitals, and how to go on from there."""
+
+    def __init__(self, text: str, arithmetic: Arithmetic, parameters: Parameters) -> None:
+        self.text = text
+        self.at = 0
+        self._arithmetic = arithmetic
+        self._parameters = parameters
+        self._depth = 0
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing is left."""
+        return self.at >= len(self.text)
+
+    @property
+    def rest(self) -> str:
+        """What is left, cut short for messages."""
+        return self.text[self.at : self.at + 40]
+
+    def takes(self, text: str) -> bool:
+        """Step over a text if it comes next."""
+        if self.text.startswith(text, self.at):
+            self.at += len(text)
+            return True
+        return False
+
+    def expect(self, text: str) -> None:
+        """Step over a text that must come next."""
+        if not self.takes(text):
+            raise BlockError(
+                f"{text} is missing before {self.rest!r}" if self.rest else f"{text} is missing at the end"
+            )
+
+    def letter(self) -> str:
+        """Step over one character and return it."""
+        self.at += 1
+        return self.text[self.at - 1]
+
+    def number(self) -> tuple[float, bool]:
+        """Return a plain number and whether it was written without a point."""
+        match = _NUMBER.match(self.text, self.at)
+        if match is None:
+            raise BlockError(
+                f"a number is missing before {self.rest!r}" if self.rest else "a number is missing at the end"
+            )
+        self.at = match.end()
+        value = float(match.group())
+        if value > LARGEST:
+            raise BlockError("a number is larger than any machine's")
+        return value, "." not in match.group()
+
+    def real(self) -> tuple[Value, bool]:
+        """Return a value behind a letter or sign, and whether it was written as digits without a point."""
+        self._deeper()
+        try:
+            if self.takes("-"):
+                value, whole = self.real()
+                return (None if value is None else -value), whole
+            if self.takes("+"):
+                return self.real()
+            if self.text.startswith("[", self.at):
+                return self.bracket(), False
+            if self.takes("#"):
+                return self._parameters.value(self.key()), False
+            name = self._function()
+            if name:
+                return self._call(name), False
+            return self.number()
+        finally:
+            self._depth -= 1
+
+    def key(self) -> int | str:
+        """Return the number or name of a parameter, behind its ``#``."""
+        match = _NAME.match(self.text, self.at)
+        if match is not None:
+            self.at = match.end()
+            return match.group(1)
+        value, _ = self.real()
+        if value is None or abs(value - round(value)) > 1e-4 or not 0 <= round(value) < 10_000_000:
+            raise BlockError("a parameter needs a whole number")
+        return round(value)
+
+    def bracket(self) -> Value:
+        """Return the value of an expression in square brackets."""
+        self.expect("[")
+        value = self._level(0)
+        self.expect("]")
+        return value
+
+    def assigned(self) -> Value:
+        """Return what follows the sign of an assignment."""
+        self.expect("=")
+        return self._level(0) if self._arithmetic.bare else self.real()[0]
+
+    def sum(self) -> float:
+        """Return the value of a bracket; what nobody set counts as 0."""
+        return _plain(self.bracket())
+
+    def _level(self, level: int) -> Value:
+        levels = self._arithmetic.levels
+        if level == len(levels):
+            return self.real()[0]
+        left = self._level(level + 1)
+        while True:
+            operator = next((name for name in levels[level] if self.takes_operator(name)), None)
+            if operator is None:
+                return left
+            right = self._level(level + 1)
+            left = self._apply(operator, left, right)
+
+    def takes_operator(self, name: str) -> bool:
+        """Step over an operator; ``*`` is not half of ``**``."""
+        if name == "*" and self.text.startswith("**", self.at):
+            return False
+        return self.takes(name)
+
+    def _apply(self, operator: str, left: Value, right: Value) -> float:
+        empty = self._arithmetic.empty
+        if empty is not None:
+            answer = empty(operator, left, right)
+            if answer is not None:
+                return answer
+        return _sane(lambda: self._arithmetic.operate(operator, _plain(left), _plain(right)), operator)
+
+    def _function(self) -> str:
+        names = (*self._arithmetic.functions, *self._arithmetic.pairs, "EXISTS")
+        return next((name for name in names if self.takes(name)), "")
+
+    def _call(self, name: str) -> float:
+        if name == "EXISTS":
+            self.expect("[")
+            self.expect("#")
+            key = self.key()
+            self.expect("]")
+            return 1.0 if self._parameters.known(key) else 0.0
+        pairs = self._arithmetic.pairs
+        if name not in pairs:
+            value = self.sum()
+            return _sane(lambda: self._arithmetic.functions[name](value), name)
+        self.expect("[")
+        first = _plain(self._level(0))
+        if self.takes(","):
+            second = _plain(self._level(0))
+            self.expect("]")
+        else:
+            self.expect("]")
+            self.expect("/")
+            second = self.sum()
+        return _sane(lambda: pairs[name](first, second), name)
+
+    def _deeper(self) -> None:
+        self._depth += 1
+        if self._depth > DEEPEST:
+            raise BlockError(f"expressions nest deeper than {DEEPEST} levels")
+
+
+def _plain(value: Value) -> float:
+    return 0.0 if value is None else value
+
+
+def _sane(work: Callable[[], float], name: str) -> float:
+    """Do arithmetic, and say in words what cannot be done."""
+    try:
+        value = work()
+    except (ValueError, OverflowError, ZeroDivisionError):
+        raise BlockError(f"{name} has no value here") from None
+    if isinstance(value, complex) or not abs(value) <= LARGEST:
+        raise BlockError(f"{name} has no value here")
+    return float(value)
+
+
+def half_away(value: float) -> float:
+    """Round to a whole number, halves away from zero."""
+    return math.copysign(math.floor(abs(value) + 0.5), value)
+
+
+#: Functions that all these languages have; angles in degrees.
+COMMON: Final[Mapping[str, Callable[[float], float]]] = {
+    "ABS": abs,
+    "ACOS": lambda a: math.degrees(math.acos(a)),
+    "ASIN": lambda a: math.degrees(math.asin(a)),
+    "COS": lambda a: math.cos(math.radians(a)),
+    "EXP": math.exp,
+    "LN": math.log,
+    "ROUND": half_away,
+    "SIN": lambda a: math.sin(math.radians(a)),
+    "SQRT": math.sqrt,
+    "TAN": lambda a: math.tan(math.radians(a)),
+}

@@ -1,0 +1,67 @@
+"""The pages about LinuxCNC, Fanuc and Fidia and their readers do not drift apart."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from trunnion.reader.fanuc import cycles as fanuc_cycles
+from trunnion.reader.fanuc import text as fanuc_text
+from trunnion.reader.fanuc import variables
+from trunnion.reader.fanuc import words as fanuc
+from trunnion.reader.fidia import cycles as fidia_cycles
+from trunnion.reader.fidia import words as fidia
+from trunnion.reader.linuxcnc import cycles as linuxcnc_cycles
+from trunnion.reader.linuxcnc import parameters
+from trunnion.reader.linuxcnc import text as linuxcnc_text
+from trunnion.reader.linuxcnc import words as linuxcnc
+from trunnion.reader.rs274 import expressions
+from trunnion.reader.rs274.block import spelled
+from trunnion.reader.rs274.interpreter import ENDS, EVENTS, FEED_MODES, MOTIONS, PLANES
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = {name: (DOCS / f"reader-{name}.md").read_text(encoding="utf-8") for name in ("linuxcnc", "fanuc", "fidia")}
+NAMED = {name: {word.split("[")[0] for word in re.findall(r"`([^`\n]+)`", page)} for name, page in PAGES.items()}
+
+COMMON = {*MOTIONS, *PLANES, 900, 910, 800}
+G_WORDS = {
+    "linuxcnc": {
+        *COMMON, *FEED_MODES, *linuxcnc.OFFSETS, *linuxcnc.SILENT, *linuxcnc.LENGTHS, *linuxcnc.NAMED, *linuxcnc.LINES,
+        *linuxcnc.NO_MOTION,
+        *linuxcnc_cycles.CYCLES, 40, 100, 200, 210, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923, 980, 990,
+    },
+    "fanuc": {
+        *COMMON, *FEED_MODES, *fanuc.OFFSETS, fanuc.MORE_OFFSETS, *fanuc.SILENT, *fanuc.NAMED, *fanuc.LINES,
+        *fanuc.NO_MOTION, *fanuc.TAKES_AXES, *fanuc_cycles.CYCLES, fanuc.TCP, fanuc.TCP_VECTOR, fanuc.LENGTH_OFF,
+        fanuc.MACHINE, fanuc.TOOL_UPRIGHT, fanuc.UPRIGHT_OFF, fanuc.MODAL_MACRO_OFF, 200, 210, 980, 990,
+    },
+    "fidia": {
+        *COMMON, fidia.OFFSET, fidia.TAKE_PLANE, fidia.NO_PLANE, fidia.DWELL, fidia.MACHINE, *fidia.TCP_ON,
+        *fidia.TCP_OFF, *fidia.UNITS, *fidia.SILENT, *fidia.NAMED, *fidia.NO_MOTION, *fidia_cycles.CYCLES,
+    },
+}  # fmt: skip
+M_WORDS = {
+    "linuxcnc": {*EVENTS, *ENDS, 6, 61, *linuxcnc.SILENT_M, *linuxcnc.NAMED_M, linuxcnc.TCP_ON, linuxcnc.TCP_OFF, 430},
+    "fanuc": {*EVENTS, *ENDS, 6, fanuc.CALL, fanuc.RETURN, fanuc.CALL_FILE},
+    "fidia": {*EVENTS, *ENDS, 6, fidia.TOOL, fidia.RETRACT},
+}
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_word_is_in_its_page(name: str) -> None:
+    assert {spelled(code) for code in G_WORDS[name]} - NAMED[name] == set()
+    assert {f"M{code}" for code in M_WORDS[name]} - NAMED[name] == set()
+
+
+@pytest.mark.parametrize(("name", "arithmetic"), [("linuxcnc", parameters.ARITHMETIC), ("fanuc", variables.ARITHMETIC)])
+def test_operators_and_functions_are_in_their_pages(name: str, arithmetic: expressions.Arithmetic) -> None:
+    assert {operator for level in arithmetic.levels for operator in level} <= NAMED[name]
+    assert {*arithmetic.functions, *arithmetic.pairs} <= NAMED[name]
+
+
+def test_limits_are_those_of_the_pages() -> None:
+    plain = " ".join(PAGES["linuxcnc"].split())
+    assert f"at most {expressions.DEEPEST} deep" in plain
+    assert f"at most {linuxcnc_text.DEEPEST} deep" in plain
+    assert f"equal within {parameters.EQUAL:.4f}" in plain
+    assert f"at most {fanuc_text.DEEPEST} inside" in PAGES["fanuc"]
