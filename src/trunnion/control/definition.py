@@ -49,6 +49,10 @@ _NO_NUMBER = NumberFormat(0)
 #: How feeds can be said where nobody holds the tip.
 FEEDS_WITHOUT_TCP = ("inverse_time",)
 
+#: From where a control goes to the next hole: the height of the last retract (whatever the next one needs above it is
+#: said before), or the retract height of the next hole itself.
+HOLES_FROM = ("above", "retract")
+
 PHASES = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 COOLANTS = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
 TOOL_TYPES = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")
@@ -84,8 +88,14 @@ class Control:
     longest_line      bytes of a line, at most
     by_method         settings that follow from the method's name where nobody gave them: setting -> (part of the name,
                       value), the first that is found in it
+    helices           it can be told circles that rise, and more than one turn
     tcp               it can hold the tip of the tool while rotary axes turn
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
+    own_blocks        spindle, coolant and radius compensation stand in blocks of their own
+    level_approach    where the tool has been drawn back, it goes to its place in X and Y first, then in Z
+    plane_from_pose   a tilted plane is the one on which the tool stands: its zero is the work offset's, its axes are
+                      those of the tool, and no words say its angles
+    holes_from        height at which the control goes from hole to hole: one of ``HOLES_FROM``
     """
 
     name: str
@@ -103,8 +113,13 @@ class Control:
     tool_types: Mapping[str, str]
     phases: Mapping[str, str]
     chord_tolerance: float
+    helices: bool
     tcp: bool
     feed_without_tcp: str
+    own_blocks: bool
+    level_approach: bool
+    plane_from_pose: bool
+    holes_from: str
     templates: Mapping[str, Template] = field(repr=False)
 
     def usual(self, setting: str, method: str) -> str | None:
@@ -169,6 +184,7 @@ def load_control(own: Table) -> Control:
     for entry in table.tables("format"):
         name = entry.text("name")
         formats[name] = _format(entry)
+    chord_tolerance, helices = _arcs(table.table("arcs"))
     control = Control(
         name=table.text("name"),
         family=family,
@@ -184,9 +200,14 @@ def load_control(own: Table) -> Control:
         by_method=_by_method(table.tables("by_method"), table.table("settings")),
         tool_types=_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_texts(table.table("phases"), PHASES),
-        chord_tolerance=_chord_tolerance(table.table("arcs")),
+        chord_tolerance=chord_tolerance,
+        helices=helices,
         tcp=table.flag("tcp", True),
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
+        own_blocks=table.flag("own_blocks", False),
+        level_approach=table.flag("level_approach", False),
+        plane_from_pose=table.flag("plane_from_pose", False),
+        holes_from=table.text("holes_from", "above", one_of=HOLES_FROM),
         templates=_templates(table.table("templates"), family),
     )
     for lacking in dict.fromkeys(name for name in words if name not in {word.name for word in control.words}):
@@ -242,6 +263,7 @@ def _numbers(table: Table) -> BlockNumbers:
         table.integer("step", 10, at_least=1),
         table.integer("highest", 99999999, at_least=1, at_most=99999999),
         table.flag("numbered", bool(letter)),
+        table.text("unnumbered", ""),
     )
     table.finish()
     return numbers
@@ -279,10 +301,10 @@ def _by_method(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tup
     return found
 
 
-def _chord_tolerance(table: Table) -> float:
-    tolerance = table.number("chord_tolerance", 0.001, above=0.0)
+def _arcs(table: Table) -> tuple[float, bool]:
+    found = table.number("chord_tolerance", 0.001, above=0.0), table.flag("helices", True)
     table.finish()
-    return tolerance
+    return found
 
 
 def _templates(table: Table, family: Family) -> dict[str, Template]:

@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from typing import Final
 
-from trunnion.control import linuxcnc, sinumerik
+from trunnion.control import fidia, linuxcnc, sinumerik
 from trunnion.control.family import Family
 
 FAMILIES: Final[Mapping[str, Family]] = {
     "sinumerik_840d": sinumerik,
     "linuxcnc": linuxcnc,
+    "fidia_nc15": fidia,
 }
