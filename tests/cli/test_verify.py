@@ -78,8 +78,10 @@ def test_what_cannot_be_used_has_exit_code_2(
     assert word in err
 
 
-def test_a_machine_whose_programs_cannot_be_read_yet_says_so(capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["verify", str(PROGRAM), "--machine", "hs664rt"]) == 2
+def test_a_machine_whose_programs_cannot_be_read_yet_says_so(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    machine = tmp_path / "strange.toml"
+    machine.write_text('extends = "hs664rt"\n[control]\nfamily = "strange"\n', encoding="utf-8")
+    assert main(["verify", str(PROGRAM), "--machine", str(machine)]) == 2
     assert "cannot be read yet" in capfd.readouterr().err
 
 

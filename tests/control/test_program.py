@@ -95,6 +95,11 @@ def test_feed_per_revolution_is_g95_and_what_was_in_force_comes_back(post: Post)
     assert lines[2:] == ["G95 X20. F.25", "G94"]
 
 
+def test_a_feed_is_said_again_when_it_means_something_else(post: Post) -> None:
+    lines = motion(post(HEAD + "FEDRAT/MMPR,500.0\nGOTO/20,0,5\n" + FOOT))
+    assert lines[2:] == ["G95 X20. F500.", "G94"]
+
+
 def test_dwells_stops_messages_and_inserts_are_blocks_of_their_own(post: Post) -> None:
     text = HEAD + "DELAY/2.5\nDELAY/30,REV\nSTOP\nOPSTOP\nPPRINT/look here\nINSERT/H1=5\nGOTO/10,0,5\n" + FOOT
     own = ["G4 F2.5", "G4 S30.", "M0", "M1", ";look here", "H1=5"]

@@ -1,6 +1,7 @@
 """LinuxCNC programs of ours in its own interpreter: it takes every one, and makes the motions that were planned."""
 
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,14 +12,16 @@ from hypothesis import strategies as st
 from tests.convert.toolpaths import SAYABLE, operations
 from tests.linuxcnc.interpreter import Canon, Move, RefusedByLinuxcncError, interpret, needs_linuxcnc
 from trunnion.control import Program, check_program, load_control, write_program
-from trunnion.errors import Refused, Severity
+from trunnion.errors import InputError, Refused, Severity
 from trunnion.machine import Machine, load_machine
-from trunnion.plan import Motion, Wishes, plan
+from trunnion.plan import Manner, Motion, Wishes, plan
+from trunnion.reader import run_program
 from trunnion.toolpath import (
     Coolant,
     Dwell,
     Kind,
     Message,
+    Operation,
     Sense,
     SpindleOff,
     SpindleOn,
@@ -26,7 +29,15 @@ from trunnion.toolpath import (
     Toolpath,
 )
 
-MACHINES = {name: load_machine(name) for name in ("xyzac_trt", "xyzbc_trt", "linuxcnc_5axis")}
+
+def roomy(machine: Machine) -> Machine:
+    """The machine with slides that have no end, and with a known workpiece and tool."""
+    axes = tuple(axis if axis.is_rotary else replace(axis, low=-1e6, high=1e6) for axis in machine.axes)
+    return replace(machine, axes=axes, workpiece_zero=(0.0, 0.0, 0.0), tool_length=25.4)
+
+
+#: Their workpiece and tool are known, as programs without TCP want it; the slides have room for everything.
+MACHINES = {name: roomy(load_machine(name)) for name in ("xyzac_trt", "xyzbc_trt", "linuxcnc_5axis")}
 CONTROLS = {name: load_control(machine.control.fresh()) for name, machine in MACHINES.items()}
 
 #: What LinuxCNC has words for; compensated paths are judged by it as paths of another tool.
@@ -117,19 +128,27 @@ def agree(got: Move, wanted: Move) -> None:
         np.testing.assert_allclose(got.centre, wanted.centre, atol=2.1e-4, rtol=0)
 
 
-def written(name: str, toolpath: Toolpath, **given: str) -> tuple[str, list[Motion]] | None:
+def written(name: str, toolpath: Toolpath, tcp: bool = True) -> tuple[str, list[Motion]] | None:
     """The program and its motions; None where there can be none."""
     machine, control = MACHINES[name], CONTROLS[name]
     try:
-        planned = plan([toolpath], machine, control.chord_tolerance, Wishes(manners=control.manners({})))
-    except Refused:
+        planned = plan([toolpath], machine, control.chord_tolerance, Wishes(manners=control.manners({}), tcp=tcp))
+    except (InputError, Refused):
         return None
-    program = Program(machine, control, planned.motions, {"tool": "7", **given}, toolpath.file)
+    program = Program(machine, control, planned.motions, {"tool": "7"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
     sink = io.BytesIO()
     write_program(program, sink)
     return sink.getvalue().decode(), list(planned.motions)
+
+
+def accepted(text: str, folder: Path) -> Canon:
+    """What LinuxCNC makes of a program, which it has to take."""
+    try:
+        return interpret(text, folder)
+    except RefusedByLinuxcncError as refused:
+        raise AssertionError(f"{refused}\n{text}") from None
 
 
 def judged(name: str, toolpath: Toolpath, folder: Path) -> None:
@@ -138,10 +157,8 @@ def judged(name: str, toolpath: Toolpath, folder: Path) -> None:
     assume(found is not None)
     assert found is not None
     text, motions = found
-    try:
-        canon = interpret(text, folder)
-    except RefusedByLinuxcncError as refused:
-        raise AssertionError(f"{refused}\n{text}") from None
+    canon = accepted(text, folder)
+    assert [str(each) for each in run_program(folder / "part.ngc", MACHINES[name]).errors] == []
     made = control_moves(canon)
     spindle: SpindleOn | None = None
     assert len(made) == len(motions)
@@ -160,6 +177,43 @@ def judged(name: str, toolpath: Toolpath, folder: Path) -> None:
 @settings(max_examples=60)
 @given(st.sampled_from(sorted(MACHINES)), st.lists(operations(KINDS, AXES), min_size=1, max_size=2))
 def test_linuxcnc_takes_every_program_and_makes_the_motions_that_were_planned(
-    tmp_path_factory: pytest.TempPathFactory, name: str, found: list[object]
+    tmp_path_factory: pytest.TempPathFactory, name: str, found: list[Operation]
 ) -> None:
-    judged(name, Toolpath("made.cls", tuple(found)), tmp_path_factory.getbasetemp())  # type: ignore[arg-type]
+    judged(name, Toolpath("made.cls", tuple(found)), tmp_path_factory.getbasetemp())
+
+
+def in_other_planes(operation: Operation, turned: int) -> Operation:
+    """An upright operation with its path turned: X becomes Y becomes Z."""
+    moves, arcs = operation.moves, operation.arcs
+    tip, centre, normal = (np.roll(column, turned, axis=1) for column in (moves.tip, arcs.centre, arcs.normal))
+    return replace(operation, moves=replace(moves, tip=tip), arcs=replace(arcs, centre=centre, normal=normal))
+
+
+@needs_linuxcnc
+@settings(max_examples=40)
+@given(operations(KINDS, st.just((0.0, 0.0, 1.0))), st.integers(1, 2))
+def test_arcs_and_helices_in_the_other_planes_are_those_that_were_planned(
+    tmp_path_factory: pytest.TempPathFactory, operation: Operation, turned: int
+) -> None:
+    assume(len(operation.arcs.row))
+    toolpath = Toolpath("made.cls", (in_other_planes(operation, turned),))
+    judged("xyzac_trt", toolpath, tmp_path_factory.getbasetemp())
+
+
+@needs_linuxcnc
+@settings(max_examples=30)
+@given(st.sampled_from(sorted(MACHINES)), operations({"dwell": SAYABLE["dwell"]}, AXES))
+def test_linuxcnc_takes_programs_without_tcp(
+    tmp_path_factory: pytest.TempPathFactory, name: str, operation: Operation
+) -> None:
+    """Inverse time and feed per minute change where rotary axes begin and cease to turn."""
+    found = written(name, Toolpath("made.cls", (operation,)), tcp=False)
+    assume(found is not None)
+    assert found is not None
+    text, motions = found
+    canon = accepted(text, tmp_path_factory.getbasetemp())
+    assert not any(move.tcp for move in canon.moves)
+    cuts = [move for moves in control_moves(canon) for move in moves if move.kind != "rapid"]
+    assert all(move.feed > 0.0 for move in cuts)
+    if any(motion.manner is Manner.WITHOUT_TCP for motion in motions):
+        assert "M428" not in text

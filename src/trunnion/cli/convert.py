@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.post import RUN_SETTINGS, check_settings, planned_program, prove, say, set_up, wishes_of, write
+from trunnion.cli.post import planned_program, prove, say, write
+from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_of
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole

@@ -20,7 +20,7 @@ _REPORTS = (".html", ".json")
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
-    from trunnion.cli.post import set_up
+    from trunnion.cli.settings import set_up
     from trunnion.reader import reader_of, run_program
     from trunnion.verify import Allowed, Settings, check_lines, place_lines, time_lines, verify
 

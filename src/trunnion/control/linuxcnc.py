@@ -16,7 +16,7 @@ from trunnion.control.iso import row_words as row_words
 from trunnion.control.template import Value
 from trunnion.nc import ABSENT
 from trunnion.plan.holes import Cycle, CycleError, Turning
-from trunnion.toolpath import Arcs, Dwell, Kind, Message, Operation, SpindleOn, Stop
+from trunnion.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Operation, SpindleOn, Stop
 
 WORDS: tuple[str, ...] = iso.WORDS
 CODES: tuple[str, ...] = iso.CODES
@@ -66,15 +66,20 @@ def stop(event: Stop, codes: Codes) -> list[str]:
 
 
 def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
-    """G95 without a spindle speed."""
+    """G95 without a spindle speed, and G41 or G42 in the plane YZ."""
+    compensated = [
+        (event.line, UnsayableError("cutter radius compensation in the plane YZ", "output the path without CUTCOM"))
+        for event in operation.events
+        if isinstance(event, CutterComp) and event.plane == "YZPLAN" and event.side != "OFF"
+    ]
     rows = [event.row for event in operation.events if isinstance(event, SpindleOn)]
     first = 0 if spindle_known else min(rows, default=len(operation.moves))
     moves = operation.moves
     early = np.flatnonzero(moves.per_rev[:first] & (moves.kind[:first] != Kind.RAPID))
     if not len(early):
-        return []
+        return compensated
     why = UnsayableError("a feed per revolution before the spindle has a speed", "put SPINDL before it")
-    return [(int(moves.line[early[0]]), why)]
+    return [*compensated, (int(moves.line[early[0]]), why)]
 
 
 def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:

@@ -464,6 +464,9 @@ class _Author:
             self._called_with_hole(lines, columns, self._count("feed", feed))
         else:
             mode = codes["feed_per_revolution" if per_rev else "feed_per_minute"]
+            if mode != self._feed_mode:
+                self._writer.forget("feed")
+            self._feed_mode = mode
             block = {"feed_mode": mode, "plane": codes["plane_xy"], "feed": self._count("feed", feed)}
             self._block(block)
             self._lines(lines)
@@ -481,16 +484,11 @@ class _Author:
         The blocks of holes say nothing but where they are: any other motion word would end the cycle.
         """
         self._block({"plane": self._control.codes["plane_xy"]})
-        place = " ".join(self._writer.word(w).letter + self._number(w, int(columns[w][0])) for w in "XY")
-        said = "" if self._writer.printed("feed") == feed else f" F{self._number('feed', feed)}"
-        said = said.replace("F", self._writer.word("feed").letter, 1)
-        self._lines([line.replace(FIRST_HOLE, place) + (said if FIRST_HOLE in line else "") for line in lines])
-        self._writer.remember("feed", feed)
+        place = " ".join(self._writer.said(word, int(columns[word][0])) for word in "XY")
+        end = "" if self._writer.printed("feed") == feed else f" {self._writer.said('feed', feed)}"
+        self._lines([line.replace(FIRST_HOLE, place) + (end if FIRST_HOLE in line else "") for line in lines])
         if len(columns["X"]) > 1:
             self._writer.table({word: column[1:] for word, column in columns.items()}, {"X": True, "Y": True})
-
-    def _number(self, word: str, count: int) -> str:
-        return self._writer.word(word).format.of_count(count)
 
     def _block(self, words: Mapping[str, int]) -> None:
         """One block of these words, as counts; nothing where all of them are in force."""
@@ -523,6 +521,7 @@ class _Author:
         forced: dict[str, bool | Ints] = {}
         if self._slides is not None:
             forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
+        forced["feed"] = self._feed_anew(columns, rapid)
         lines: dict[int, str] = {}
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
         if len(inside):
@@ -557,8 +556,8 @@ class _Author:
     ) -> dict[str, bool | Ints]:
         """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
 
-        Returns which words are said though they may print as before: F wherever its meaning changes, and X in rapids,
-        which without a slide would only place the rotary axes.
+        Returns which words are said though they may print as before: X in rapids, which without a slide would only
+        place the rotary axes.
         """
         turning = slides.turns[part] & ~rapid
         word = self._writer.word("inverse_feed")
@@ -572,13 +571,17 @@ class _Author:
             if jumps.any():  # which only controls do that have the word
                 columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
                 columns[key][jumps] = ABSENT
+        return {"X": rapid.astype(np.int64)}
+
+    def _feed_anew(self, columns: Mapping[str, Ints], rapid: Flags) -> Ints:
+        """(n,) 1 in the rows from which F means something else than before; there it is said, whatever its number."""
+        changes = np.zeros(len(rapid), np.int64)
         cuts = np.flatnonzero(~rapid)
-        changes = np.zeros(len(feed), np.int64)
-        if len(cuts):
+        if len(cuts) and "feed_mode" in columns:
             modes = columns["feed_mode"][cuts]
             changes[cuts] = modes != np.concatenate(([self._feed_mode], modes[:-1]))
             self._feed_mode = int(modes[-1])
-        return {"feed": changes, "X": rapid.astype(np.int64)}
+        return changes
 
     def _join(self, columns: dict[str, Ints], row: int, words: Mapping[str, int]) -> None:
         """Put words onto a row."""

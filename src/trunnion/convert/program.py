@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.control.definition import Control
+from trunnion.control.template import Template
 from trunnion.convert.events import Events
 from trunnion.convert.heads import marker, match, patterns
 from trunnion.convert.lost import Remarks, remark_homes, remark_poses, remark_registers, remark_ways, remark_words
@@ -37,14 +38,9 @@ _PHASES = {
     "departure": Phase.DEPARTURE,
     "traverse": Phase.TRAVERSE,
 }
-_ENDS = (
-    "operation_end_five_axis", "operation_end_three_axis", "operation_end_without_tcp", "operation_end_cycle800",
-    "operation_end_frames",
-)  # fmt: skip
-_HEADS = (
-    "operation_start", "first_tool", "tool_change", "approach_five_axis", "approach_three_axis",
-    "approach_without_tcp", "approach_cycle800", "plane_on_cycle800", "approach_frames", "plane_on_frames",
-)  # fmt: skip
+#: How the templates of an operation's head and of its end are called; those of kinds of operations by what follows.
+_HEADS = ("operation_start", "first_tool", "tool_change", "approach_", "plane_on_")
+_ENDS = ("operation_end_",)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,9 +138,14 @@ class _Converter:
 
     # Parts
 
+    def _called(self, names: tuple[str, ...]) -> list[Template]:
+        """The templates whose names begin so, in the order of ``names``."""
+        templates = self._control.templates
+        return [templates[key] for name in names for key in templates if key.startswith(name)]
+
     def _parts(self, said: Sequence[Item], start: str) -> list[_Part]:
         """Cut the program where operations begin: at the comment ``start``, or without one at tool changes."""
-        ends = {marker(self._control.templates[name]) for name in _ENDS} - {""}
+        ends = {marker(template) for template in self._called(_ENDS)} - {""}
         parts = [_Part(1, 0, 0)]
         for k, item in enumerate(said):
             last = parts[-1]
@@ -184,8 +185,8 @@ class _Converter:
         """Find the lines of templates, and what they say."""
         templates, run = self._control.templates, self._run
         start = patterns([templates["program_start"]], *self._letters)
-        head = patterns([templates[name] for name in _HEADS], *self._letters)
-        tail = patterns([templates[name] for name in (*_ENDS, "program_end")], *self._letters)
+        head = patterns(self._called(_HEADS), *self._letters)
+        tail = patterns([*self._called(_ENDS), templates["program_end"]], *self._letters)
         common: dict[str, str] = {}
         for k, part in enumerate(parts):
             after = parts[k + 1].line if k + 1 < len(parts) else self._source.count + 1

@@ -168,9 +168,9 @@ def with_holes(operation: Operation) -> Operation:
     CycleError
         When AUTO means the height before the cycle, and there is no point before it.
     """
-    holes, moves = holes_of(operation), operation.moves
     if not any(isinstance(event, CycleOn) for event in operation.events):
         return operation
+    holes, moves = holes_of(operation), operation.moves
     events: list[Event] = []
     cycle: CycleOn | None = None
     edges = np.flatnonzero(np.diff(holes, prepend=False, append=False)).tolist()

@@ -14,6 +14,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import Problem, Severity
 from trunnion.plan.frames import frame_of
 from trunnion.plan.motion import Manner
+from trunnion.plan.wishes import Wishes
 from trunnion.toolpath import Frame, Operation
 
 #: Tool axes are the same when no component differs by more than this; CL files print seven decimals or more.
@@ -39,17 +40,13 @@ def manner_of(operation: Operation, wish: Manner | None) -> Manner:
     return Manner.THREE_AXIS if _steady(axis[:1], np.array([0.0, 0.0, 1.0])) else Manner.TILTED
 
 
-def in_other_words(
-    file: str, operation: Operation, manner: Manner, manners: frozenset[Manner], tcp: bool
-) -> tuple[Manner, list[Problem]]:
-    """The manner that the control has words for, and what there is to say when it is not the one that was asked for.
-
-    ``tcp`` says whether the control is to hold the tip where rotary axes turn.
-    """
-    simultaneous = Manner.TCP if tcp else Manner.WITHOUT_TCP
-    if manner is Manner.TILTED and manner not in manners and simultaneous in manners:
+def in_other_words(file: str, operation: Operation, manner: Manner, wishes: Wishes) -> tuple[Manner, list[Problem]]:
+    """The manner that the control has words for, and what there is to say when it is not the one that the rule has."""
+    simultaneous = Manner.TCP if wishes.tcp else Manner.WITHOUT_TCP
+    open_ = wishes.manner is None and simultaneous in wishes.manners
+    if manner is Manner.TILTED and manner not in wishes.manners and open_:
         what = f"operation {operation.name} stands in a {manner}, for which the control has no words"
-        how = f"it is made {'with TCP' if tcp else 'without TCP'}"
+        how = f"it is made {'with TCP' if wishes.tcp else 'without TCP'}"
         return simultaneous, [Problem(file, operation.line, what, how, Severity.WARNING)]
     return simultaneous if manner is Manner.TCP else manner, []
 

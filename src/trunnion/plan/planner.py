@@ -70,7 +70,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
             against.append(Problem(path.file, error.line, error.what, error.cure))
             continue
         asked, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
-        manner, reworded = in_other_words(path.file, operation, asked, wishes.manners, wishes.tcp)
+        manner, reworded = in_other_words(path.file, operation, asked, wishes)
         said += reworded
         against += contradictions(path.file, operation, manner, wishes.manners)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None

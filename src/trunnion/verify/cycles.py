@@ -99,6 +99,8 @@ def holes_of(
     """
     moves = operation.moves
     rows = np.flatnonzero(holes).tolist()
+    if not rows:
+        return []
     place = first + np.concatenate(([0], np.cumsum(~holes)))
     found: list[Hole] = []
     begins = -1

@@ -1,0 +1,145 @@
+"""What ``--set`` may say besides what templates print: how to read, to place and to plan."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from trunnion.control import Control
+from trunnion.errors import InputError, Problem
+from trunnion.machine import Machine
+from trunnion.plan import Clearance, Manner, Pole, Surface, Wishes
+
+#: What the setting ``manner`` may say.
+_MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
+
+#: Settings that have but a few values, the usual one first.
+_CHOICES = {
+    "units": ("mm", "inch"),
+    "numbers": ("on", "off"),
+    "manner": tuple(_MANNERS),
+    "tcp": ("on", "off"),
+    "frame": ("first", "absolute"),
+    "rewind": ("insert", "none"),
+    "pole": tuple(Pole),
+    "lower_feed": ("no", "yes"),
+}
+
+#: Settings that are numbers: their limits, and what to write.
+_NUMBERS = {
+    "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
+    "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
+    "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
+    "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
+}
+
+#: All settings of a run; the others are its control's.
+RUN_SETTINGS = (*_CHOICES, *_NUMBERS, "zero", "clearance")
+
+
+def check_settings(settings: Mapping[str, str], control: Control) -> None:
+    """Raise ``InputError`` for settings that the control does not have, or that make no sense."""
+    known = (*control.settings, *RUN_SETTINGS)
+    problems = [
+        Problem("--set", 0, f"{key} is no setting of {control.name}", f"write one of {', '.join(known)}")
+        for key in settings
+        if key not in known
+    ]
+    problems += [
+        Problem("--set", 0, f"{key} has a line break or a control character in it", "write it in one line")
+        for key, value in settings.items()
+        if any(ord(character) < 32 for character in value)
+    ]
+    problems += [
+        Problem("--set", 0, f"{key} is {settings[key]!r}", f"write {' or '.join(f'{key}={one}' for one in choices)}")
+        for key, choices in {**_CHOICES, **control.family.CHOICES}.items()
+        if settings.get(key, choices[0]) not in choices
+    ]
+    problems += [
+        Problem("--set", 0, f"{key} is {settings[key]!r}", cure)
+        for key, cure in control.family.wrong_settings(settings)
+    ]
+    if not settings.get("edge", "1").isdigit():
+        problems.append(Problem("--set", 0, f"edge is {settings['edge']!r}", "write a whole number, such as edge=1"))
+    if problems:
+        raise InputError(problems)
+
+
+def _clearance(text: str) -> Clearance:
+    """The setting ``clearance``."""
+    kind, _, length = text.rpartition(":")
+    try:
+        surface, value = Surface(kind or Surface.DISTANCE), float(length)
+    except ValueError:
+        surface, value = Surface.DISTANCE, math.nan
+    least = -10000.0 if surface is Surface.PLANE else 0.1
+    if least <= value <= 10000.0:
+        return Clearance(value, surface)
+    cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
+    raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
+
+
+def number(settings: Mapping[str, str], key: str) -> float | None:
+    """A setting that is a number; None where nobody set it.
+
+    Raises
+    ------
+    InputError
+        If it is none, or beyond what makes sense.
+    """
+    text = settings.get(key)
+    if text is None:
+        return None
+    low, high, cure = _NUMBERS[key]
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high:
+        raise InputError(Problem("--set", 0, f"{key} is {text!r}", f"write {cure}"))
+    return value
+
+
+def set_up(machine: Machine, settings: Mapping[str, str]) -> Machine:
+    """The machine with its workpiece and its tool where the settings say so."""
+    if "zero" in settings:
+        machine = replace(machine, workpiece_zero=point(settings["zero"]))
+    length = number(settings, "tool_length")
+    return machine if length is None else replace(machine, tool_length=length)
+
+
+def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = False) -> Wishes:
+    """What the settings, checked by ``check_settings``, say to the planner."""
+    tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
+    if tcp and not control.tcp:
+        raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
+    if not tcp and settings.get("manner") == "tcp":
+        raise InputError(Problem("--set", 0, "manner is tcp, and there is no TCP", "leave the setting manner out"))
+    said = {key: number(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
+    known: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+    if "clearance" in settings:
+        known["clearance"] = _clearance(settings["clearance"])
+    return Wishes(
+        rewind=settings.get("rewind", "insert") == "insert",
+        explain=explain,
+        manner=_MANNERS[settings.get("manner", "auto")],
+        manners=control.manners(settings),
+        pole=Pole(settings.get("pole", "off")),
+        absolute=settings.get("frame", "first") == "absolute",
+        lower_feed=settings.get("lower_feed", "no") == "yes",
+        helices=control.helices,
+        pose_planes=control.plane_from_pose,
+        tcp=tcp,
+        **known,
+    )
+
+
+def point(text: str) -> tuple[float, float, float]:
+    """The setting ``zero``, mm."""
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(
+            Problem("--set", 0, f"zero is {text!r}", "write zero=X,Y,Z: the workpiece zero on the machine, mm")
+        ) from None
+    return x, y, z
