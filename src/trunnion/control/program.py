@@ -484,16 +484,11 @@ class _Author:
         The blocks of holes say nothing but where they are: any other motion word would end the cycle.
         """
         self._block({"plane": self._control.codes["plane_xy"]})
-        place = " ".join(self._writer.word(w).letter + self._number(w, int(columns[w][0])) for w in "XY")
-        said = "" if self._writer.printed("feed") == feed else f" F{self._number('feed', feed)}"
-        said = said.replace("F", self._writer.word("feed").letter, 1)
-        self._lines([line.replace(FIRST_HOLE, place) + (said if FIRST_HOLE in line else "") for line in lines])
-        self._writer.remember("feed", feed)
+        place = " ".join(self._writer.said(word, int(columns[word][0])) for word in "XY")
+        end = "" if self._writer.printed("feed") == feed else f" {self._writer.said('feed', feed)}"
+        self._lines([line.replace(FIRST_HOLE, place) + (end if FIRST_HOLE in line else "") for line in lines])
         if len(columns["X"]) > 1:
             self._writer.table({word: column[1:] for word, column in columns.items()}, {"X": True, "Y": True})
-
-    def _number(self, word: str, count: int) -> str:
-        return self._writer.word(word).format.of_count(count)
 
     def _block(self, words: Mapping[str, int]) -> None:
         """One block of these words, as counts; nothing where all of them are in force."""

@@ -286,6 +286,13 @@ class BlockWriter:
         """The count with which the word was last printed, ``ABSENT`` where that is not known."""
         return int(self._last[self._keys.index(key)])
 
+    def said(self, key: str, count: int) -> str:
+        """The word as a text that the caller puts into a line of his own; it counts as printed."""
+        word = self._words[key]
+        _check_range(word, np.array([count], np.int64))
+        self.remember(key, count)
+        return word.letter + word.format.of_count(count) + word.closing
+
     def skip_blocks(self, on: bool) -> None:
         """Begin the blocks that follow with the block-skip sign, or no longer."""
         self._skip = np.frombuffer(b"/" if on else b"", np.uint8)
