@@ -16,3 +16,8 @@ HEADS = {
 
 #: Real files of others that are not part of the project; tests that want them skip when they are not there.
 SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+FIDIA = GOLDEN / "hs664rt"
+
+#: Settings with which the program of the HS664RT was made.
+FIDIA_HEAD = {"program": "0001", "title": "3100588-02 REV-"}

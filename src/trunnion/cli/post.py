@@ -233,7 +233,11 @@ def _allowed(program: Program) -> "list[Allowed]":
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
         tip, angle = half["X"], max(half["primary"], half["secondary"])
-        if motion.plane is not None:
+        if motion.plane is not None and control.plane_from_pose:
+            # Places are worked out for the plane as it is printed; only circles stay in it that are not quite in it.
+            widest = float(motion.operation.arcs.radius.max(initial=0.0))
+            tip = _in_plane(motion, tip, 0.0) + 2.0 * widest * math.radians(2.0 * angle)
+        elif motion.plane is not None:
             turning = control.number_formats(three_axis=False)["plane_angle"].decimals
             tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
@@ -296,6 +300,7 @@ def _asked(program: Program, wishes: Wishes) -> "Settings":
         span=axis,
         span_tip=wishes.tip_tolerance if led else None,
         absolute=wishes.absolute,
+        rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
     )
 
 

@@ -129,6 +129,8 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         pole=Pole(settings.get("pole", "off")),
         absolute=settings.get("frame", "first") == "absolute",
         lower_feed=settings.get("lower_feed", "no") == "yes",
+        helices=control.helices,
+        pose_planes=control.plane_from_pose,
         tcp=tcp,
         **known,
     )

@@ -1,12 +1,13 @@
 """``trunnion verify``: an NC program, read back by an author of its own, run, and compared with its CL files."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from trunnion.control import load_control
 from trunnion.errors import InputError, Problem
-from trunnion.machine import load_machine
+from trunnion.machine import Machine, load_machine
 from trunnion.plan import Decision
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     reader_of(machine)
     given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
     machine = set_up(machine, {key: value for key, value in given.items() if value})
+    usual = _usual(machine)
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
     done = run_program(Path(arguments.file), machine)
     found = verify(
@@ -37,11 +39,12 @@ def run(arguments: argparse.Namespace) -> int:
         allowed=Allowed(tip=arguments.tolerance, angle=arguments.tolerance, chord=max(0.001, arguments.tolerance)),
         settings=Settings(
             tool=arguments.tool,
-            work_offset=_offset(arguments.offset, bool(paths)),
-            edge=1 if arguments.edge is None and paths else arguments.edge,
+            work_offset=_offset(arguments.offset, usual.get("work_offset", "G54"), bool(paths)),
+            edge=int(usual["edge"]) if arguments.edge is None and paths and "edge" in usual else arguments.edge,
             span=arguments.span,
             span_tip=arguments.span_tip,
             absolute=arguments.frame == "absolute",
+            rapid_feed=float(usual["rapid_feed"]) if usual.get("rapid_feed") else None,
         ),
         columns=bool(arguments.report),
     )
@@ -64,9 +67,18 @@ def report(found: "Verification", file: str, decisions: Sequence[Decision] = ())
     write_report(found, Path(file), decisions=[Decided(d.operation, d.file, d.line, d.why, d.text) for d in decisions])
 
 
-def _offset(text: str | None, with_cl: bool) -> int | None:
+def _usual(machine: Machine) -> Mapping[str, str]:
+    """The settings of a control's definition; those of most where its programs can be read but not written."""
+    try:
+        return load_control(machine.control.fresh()).settings
+    except InputError:
+        return {"edge": "1"}
+
+
+def _offset(text: str | None, usual: str, with_cl: bool) -> int | None:
     if text is None:
-        return 54 if with_cl else None
+        code = usual.removeprefix("G")
+        return int(code) if with_cl and code.isdigit() else None
     code = text.strip().upper().removeprefix("G")
     if not code.isdigit():
         raise InputError(Problem("--offset", 0, f"is {text!r}", "write it as the program does, such as G54"))

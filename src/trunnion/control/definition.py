@@ -57,6 +57,10 @@ _NO_NUMBER = NumberFormat(0)
 #: How feeds can be said where nobody holds the tip.
 FEEDS_WITHOUT_TCP = ("inverse_time",)
 
+#: From where a control goes to the next hole: the height of the last retract (whatever the next one needs above it is
+#: said before), or the retract height of the next hole itself.
+HOLES_FROM = ("above", "retract")
+
 PHASES = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 COOLANTS = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
 TOOL_TYPES = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")
@@ -95,8 +99,14 @@ class Control:
                       value), the first that is found in it
     arcs_about_z      only arcs about Z can be said; others become lines
     plane_along_machine  X of a tilted plane is that of the machine once it has turned, unless the CL file has its own
+    helices           it can be told circles that rise, and more than one turn
     tcp               it can hold the tip of the tool while rotary axes turn
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
+    own_blocks        spindle, coolant and radius compensation stand in blocks of their own
+    level_approach    where the tool has been drawn back, it goes to its place in X and Y first, then in Z
+    plane_from_pose   a tilted plane is the one on which the tool stands: its zero is the work offset's, its axes are
+                      those of the tool, and no words say its angles
+    holes_from        height at which the control goes from hole to hole: one of ``HOLES_FROM``
     """
 
     name: str
@@ -117,8 +127,13 @@ class Control:
     chord_tolerance: float
     arcs_about_z: bool
     plane_along_machine: bool
+    helices: bool
     tcp: bool
     feed_without_tcp: str
+    own_blocks: bool
+    level_approach: bool
+    plane_from_pose: bool
+    holes_from: str
     templates: Mapping[str, Template] = field(repr=False)
 
     def usual(self, setting: str, method: str) -> str | None:
@@ -155,6 +170,7 @@ class Control:
 class _Arcs(TypedDict):
     chord_tolerance: float
     arcs_about_z: bool
+    helices: bool
 
 
 def library() -> Traversable:
@@ -208,6 +224,10 @@ def load_control(own: Table) -> Control:
         plane_along_machine=table.text("plane_x", "program", one_of=("program", "machine")) == "machine",
         tcp=table.flag("tcp", True),
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
+        own_blocks=table.flag("own_blocks", False),
+        level_approach=table.flag("level_approach", False),
+        plane_from_pose=table.flag("plane_from_pose", False),
+        holes_from=table.text("holes_from", "above", one_of=HOLES_FROM),
         templates=_templates(table.table("templates"), family),
     )
     for lacking in dict.fromkeys(name for name in words if name not in {word.name for word in control.words}):
@@ -263,6 +283,7 @@ def _numbers(table: Table) -> BlockNumbers:
         table.integer("step", 10, at_least=1),
         table.integer("highest", 99999999, at_least=1, at_most=99999999),
         table.flag("numbered", bool(letter)),
+        table.text("unnumbered", ""),
     )
     table.finish()
     return numbers
@@ -302,9 +323,9 @@ def _by_method(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tup
 
 def _arcs(table: Table) -> _Arcs:
     tolerance = table.number("chord_tolerance", 0.001, above=0.0)
-    about = table.text("about", "XYZ", one_of=("XYZ", "Z"))
+    about, helices = table.text("about", "XYZ", one_of=("XYZ", "Z")), table.flag("helices", True)
     table.finish()
-    return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z"}
+    return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices}
 
 
 def _templates(table: Table, family: Family) -> dict[str, Template]:

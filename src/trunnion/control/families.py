@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from trunnion.control import heidenhain, linuxcnc, sinumerik
+from trunnion.control import fidia, heidenhain, linuxcnc, sinumerik
 from trunnion.control.family import Family
 
 FAMILIES: Final[Mapping[str, Family]] = {
@@ -11,4 +11,5 @@ FAMILIES: Final[Mapping[str, Family]] = {
     "linuxcnc": linuxcnc,
     "heidenhain_itnc530": heidenhain,
     "heidenhain_tnc640": heidenhain,
+    "fidia_nc15": fidia,
 }

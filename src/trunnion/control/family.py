@@ -20,6 +20,9 @@ from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operati
 Formats = Mapping[str, NumberFormat]
 Codes = Mapping[str, int]
 
+#: In the call of a cycle: here stand X and Y of the first hole, which then has no block of its own.
+FIRST_HOLE = "{at}"
+
 
 class UnsayableError(Exception):
     """A family has no way to say something; ``what`` it is, and the ``cure``."""
@@ -109,6 +112,8 @@ class Family(Protocol):
         self, cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
     ) -> list[str]:
         """The lines that make a hole-making cycle modal: each position that follows is a hole.
+
+        A line with ``FIRST_HOLE`` in it is the first hole too, with its position there and the feed at its end.
 
         Parameters
         ----------

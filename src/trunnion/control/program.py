@@ -12,8 +12,9 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.definition import CALL, SPINDLE_ON, Control
-from trunnion.control.family import WordEvent
+from trunnion.control.family import FIRST_HOLE, WordEvent
 from trunnion.control.slides import Slides, inverse_time, slides_of
+from trunnion.control.standing import carried_along, on_its_pose
 from trunnion.control.template import Value
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine, inverse
@@ -53,6 +54,9 @@ _PHASE_TEXT = {
 }
 _UNKNOWN = (None, None, None)
 
+#: Manners in which X and Y of the program are across the tool.
+LEVEL = (Manner.THREE_AXIS, Manner.TILTED)
+
 
 @dataclass(frozen=True, slots=True)
 class Program:
@@ -74,6 +78,15 @@ def kind_of(program: Program, motion: Motion) -> str:
 def settings_of(program: Program) -> dict[str, str]:
     """The settings of the run over those of the definition."""
     return {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
+
+
+def _on_poses(program: Program) -> Program:
+    """The program with the planes that its control takes from the rotary axes, where it does so."""
+    if not program.control.plane_from_pose:
+        return program
+    decimals = program.control.number_formats(three_axis=False)["angle"].decimals
+    motions = [m if m.plane is None else on_its_pose(program.machine, m, decimals) for m in program.motions]
+    return replace(program, motions=motions)
 
 
 def setting_of(program: Program, name: str) -> str:
@@ -104,7 +117,7 @@ class _Author:
     """Writes one program; holds what is in force from one operation to the next."""
 
     def __init__(self, program: Program, sink: BinaryIO, progress: Callable[[int], None]) -> None:
-        self._program = program
+        self._program = program = _on_poses(program)
         self._control = program.control
         self._family = program.control.family
         self._progress = progress
@@ -122,6 +135,9 @@ class _Author:
         self._feed_mode = ABSENT
         self._speed: Value = None  # of the spindle, as a text said it last
         self._height = 0.0  # of the tool along Z of the frame, at the last row written
+        self._before: Motion | None = None
+        rapid_feed = setting_of(program, "rapid_feed")
+        self._rapid_feed = self._count("feed", float(rapid_feed)) if rapid_feed else ABSENT
 
     def write(self) -> None:
         """The program, operation by operation."""
@@ -175,16 +191,21 @@ class _Author:
             self._tool_name = motion.operation.tool.name
         self._words = self._control.block_words(*self._letters, motion.three_axis)
         self._writer.use(self._words)
-        self._writer.forget()
-        for word, code in self._control.in_force.items():
-            self._writer.remember(word, code)
+        if not self._goes_on(motion):
+            self._writer.forget()
+            for word, code in self._control.in_force.items():
+                self._writer.remember(word, code)
+        else:
+            self._writer.forget("X", "Y", "Z", "feed")
         self._feed_mode = ABSENT
         self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
         if motion.plane is not None:
             self._expand(f"plane_on_{kind}", values, motion)
         for word, column in (("primary", self._primary), ("secondary", self._secondary)):
             self._writer.remember(word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word)[0]))
-        self._motion(replace(motion, operation=motion.as_written()))
+        written = replace(motion, operation=motion.as_written())
+        self._motion(written, int(self._stands_there(written)))
+        self._before = written
         self._back_in_force()
         if ends:
             self._expand(f"operation_end_{kind}", values, motion)
@@ -306,36 +327,56 @@ class _Author:
             count[count >= top] -= turn
         return count
 
-    def _motion(self, motion: Motion) -> None:
-        """All rows, broken where an event is a block of its own."""
+    def _goes_on(self, motion: Motion) -> bool:
+        """Whether the tool comes from another plane of the same operation, and not from home."""
+        return not motion.begins and self._control.plane_from_pose
+
+    def _stands_there(self, motion: Motion) -> bool:
+        """Whether turning the rotary axes to the next plane has already taken the tool to the first point there."""
+        before, operation = self._before, motion.operation
+        if before is None or not self._goes_on(motion) or len(operation.moves) < 2:
+            return False
+        busy = any(event.row == 0 and not isinstance(event, CycleOff) for event in operation.events)
+        if busy or operation.moves.kind[0] != Kind.RAPID:
+            return False
+        last = np.append(before.operation.moves.tip[-1, :2], self._height)
+        decimals = self._writer.word("X").format.decimals
+        there = counts(carried_along(self._program.machine, last, before, motion), decimals)
+        return bool((there == counts(np.ascontiguousarray(operation.moves.tip[0]), decimals)).all())
+
+    def _motion(self, motion: Motion, first: int = 0) -> None:
+        """All rows from ``first`` on, broken where an event is a block of its own."""
         rows = len(motion.operation.moves)
-        joining = self._spindle_again(motion.operation)
-        if SPINDLE_ON in self._control.templates:
+        joining = [] if self._goes_on(motion) else self._spindle_again(motion.operation)
+        own_spindle = SPINDLE_ON in self._control.templates
+        if self._control.own_blocks or own_spindle:
             for again in joining:
-                self._own_block(motion, again)
+                self._own_block(motion, again) if own_spindle else self._event_block(again)
             joining = []
-        done, text = 0, -1
+        done, text = first, -1
         cycle: CycleOn | None = None
         for event in motion.operation.events:
             if isinstance(event, CycleOn | CycleOff):
                 text = self._stretch(motion, done, event.row, joining, text, cycle)
-                done, joining = event.row, [e for e in joining if e.row >= event.row]
+                done, joining = max(first, event.row), [e for e in joining if e.row >= event.row]
                 cycle = event if isinstance(event, CycleOn) else None
                 continue
             off = isinstance(event, SpindleOff) or (isinstance(event, Coolant) and event.kind == "OFF")
+            alone = self._control.own_blocks and isinstance(event, SpindleOn | Coolant | CutterComp)
+            off = off or alone or (own_spindle and isinstance(event, SpindleOn))
             joins = event if isinstance(event, SpindleOn | Coolant | CutterComp) and not off else None
-            if isinstance(event, SpindleOn) and SPINDLE_ON in self._control.templates:
-                joins = None
             if joins and not any(type(e) is type(event) and e.row == event.row for e in joining):
                 joining.append(joins)
-            elif joins or off or isinstance(event, SpindleOn | Dwell | Stop | Message | Insert | BlockSkip):
+            elif joins or off or isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
                 text = self._stretch(motion, done, event.row, joining, text, cycle)
                 for earlier in (e for e in joining if e.row == event.row):
                     self._event_block(earlier)  # what is said twice before one row is said in order
                 done, joining = event.row, [e for e in joining if e.row > event.row]
                 if joins:
                     joining.append(joins)
-                elif isinstance(event, SpindleOff | Coolant):
+                elif isinstance(event, SpindleOn | SpindleOff | Coolant | CutterComp) and not (
+                    own_spindle and isinstance(event, SpindleOn)
+                ):
                     self._event_block(event)  # with the next motion the control would switch off after it
                 else:
                     self._own_block(motion, event)
@@ -354,7 +395,11 @@ class _Author:
         if event is None:
             return dict.fromkeys(("spindle_speed", "new_speed", "spindle_code"))
         code = "spindle_clockwise" if event.sense is Sense.CLW else "spindle_counterclockwise"
-        return {"spindle_speed": event.rpm, "new_speed": event.rpm, "spindle_code": str(self._control.codes[code])}
+        return {
+            "spindle_speed": event.rpm,
+            "new_speed": event.rpm,
+            "spindle_code": str(self._control.codes.get(code, "")),
+        }
 
     def _spindle_again(self, operation: Operation) -> list[WordEvent]:
         """The last operation's end stopped the spindle: what was in force is said again unless something new is."""
@@ -431,32 +476,41 @@ class _Author:
             if first > 0:
                 self._event_block(event)
         if first == 0:
-            block = {"motion": codes["rapid"], **self._edge()}
+            block = {"motion": codes["rapid"], "feed": self._rapid_feed, **self._edge()}
             block |= {word: self._count("X", value) for word, value in zip("XY", moves.tip[0], strict=False)}
+            if control.level_approach:
+                self._block(block)
             block["Z"] = self._count("X", retract)
             for event in joining:
                 block |= self._event_words(event)
             self._block(block)
             self._height = retract
-        elif self._height < top + cycle.above - 1e-9:
-            self._block({"motion": codes["rapid"], "Z": self._count("X", top + cycle.above)})
+        else:
+            low = retract if control.holes_from == "retract" else top + cycle.above
+            if self._height < low - 1e-9:
+                self._block({"motion": codes["rapid"], "feed": self._rapid_feed, "Z": self._count("X", low)})
         turning_now = None if self._spindle is None else Turning(self._spindle.rpm, self._spindle.sense)
         feed, per_rev = feed_of(cycle, turning_now, float(moves.feed[first]), bool(moves.per_rev[first]))
-        mode = codes["feed_per_revolution" if per_rev else "feed_per_minute"]
-        if mode != self._feed_mode:
-            self._writer.forget("feed")
-        self._feed_mode = mode
-        self._block({"feed_mode": mode, "plane": codes["plane_xy"], "feed": self._count("feed", feed)})
-        self._lines(self._family.hole_call(cycle, top, turning_now, settings_of(self._program), formats))
+        lines = self._family.hole_call(cycle, top, turning_now, settings_of(self._program), formats)
         decimals = self._writer.word("X").format.decimals
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[first:last, c]), decimals) for c, word in enumerate("XY")
         }
-        columns["motion"] = np.full(last - first, codes["rapid"], np.int64)
         ids, texts = self._phase_texts()
         wanted = ids[moves.phase[first:last]]
-        before = np.concatenate(([text], wanted[:-1]))
-        self._writer.table(columns, {"X": True, "Y": True}, np.where(wanted != before, wanted, -1), texts)
+        if any(FIRST_HOLE in line for line in lines):
+            self._called_with_hole(lines, columns, self._count("feed", feed))
+        else:
+            mode = codes["feed_per_revolution" if per_rev else "feed_per_minute"]
+            if mode != self._feed_mode:
+                self._writer.forget("feed")
+            self._feed_mode = mode
+            block = {"feed_mode": mode, "plane": codes["plane_xy"], "feed": self._count("feed", feed)}
+            self._block(block)
+            self._lines(lines)
+            columns["motion"] = np.full(last - first, codes["rapid"], np.int64)
+            before = np.concatenate(([text], wanted[:-1]))
+            self._writer.table(columns, {"X": True, "Y": True}, np.where(wanted != before, wanted, -1), texts)
         self._lines(self._family.hole_end())
         self._height = retract
         self._writer.forget("X", "Y", "Z")  # a point at which the tool already stands gets its block
@@ -500,6 +554,18 @@ class _Author:
         self._writer.forget("X", "Y", "Z")  # a point at which the tool already stands gets its block
         return int(wanted[-1])
 
+    def _called_with_hole(self, lines: Sequence[str], columns: Mapping[str, Ints], feed: int) -> None:
+        """The call of a cycle in the block of its first hole, with F where it is not in force; then the others.
+
+        The blocks of holes say nothing but where they are: any other motion word would end the cycle.
+        """
+        self._block({"plane": self._control.codes["plane_xy"]})
+        place = " ".join(self._writer.said(word, int(columns[word][0])) for word in "XY")
+        end = "" if self._writer.printed("feed") == feed else f" {self._writer.said('feed', feed)}"
+        self._lines([line.replace(FIRST_HOLE, place) + (end if FIRST_HOLE in line else "") for line in lines])
+        if len(columns["X"]) > 1:
+            self._writer.table({word: column[1:] for word, column in columns.items()}, {"X": True, "Y": True})
+
     def _block(self, words: Mapping[str, int]) -> None:
         """One block of these words, as counts; nothing where all of them are in force."""
         self._writer.table({word: np.array([count], np.int64) for word, count in words.items()})
@@ -524,7 +590,9 @@ class _Author:
         if motion.plane is None:  # in a plane the rotary axes stand where they were put
             columns["primary"] = self._angle_counts(motion.rotary[part, self._column[self._primary]], "primary")
             columns["secondary"] = self._angle_counts(motion.rotary[part, self._column[self._secondary]], "secondary")
-        columns["feed"] = np.where(rapid, ABSENT, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"]))
+        columns["feed"] = np.where(
+            rapid, self._rapid_feed, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"])
+        )
         columns |= self._family.row_words(rapid, moves.per_rev[part], control.codes)
         forced: dict[str, bool | Ints] = {}
         if self._slides is not None:
@@ -547,6 +615,8 @@ class _Author:
             elsewhere = columns["X"] == ABSENT
             for word in "XYZ":  # where an arc's end was said by other words, the next block says its own whole
                 forced[word] = np.concatenate(([0], elsewhere[:-1])).astype(np.int64) | forced.get(word, 0)
+        if start == 0 and rapid[0] and control.level_approach and motion.begins and motion.manner in LEVEL:
+            self._block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
         if start == 0:
             self._join(columns, 0, self._edge())
         for event in joining:

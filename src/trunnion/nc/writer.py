@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 from numba import njit
 
-from trunnion.arrays import Bytes, Ints
+from trunnion.arrays import Bytes, Flags, Ints
 from trunnion.errors import Problem, Refused
 from trunnion.nc.words import ABSENT, Word
 
@@ -30,13 +30,17 @@ _MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _
 
 @dataclass(frozen=True, slots=True)
 class BlockNumbers:
-    """Block numbers: letter (may be empty), first number, step, the highest before they start again; or none."""
+    """Block numbers: letter (may be empty), first number, step, the highest before they start again; or none.
+
+    Lines of text that begin with ``unnumbered``, if that is not empty, have neither a number nor a skip sign.
+    """
 
     letter: str = "N"
     start: int = 10
     step: int = 10
     highest: int = 99999999
     numbered: bool = True
+    unnumbered: str = ""
 
 
 @njit(cache=True, inline="always")
@@ -136,6 +140,7 @@ def _write_blocks(
     line_of: Ints,
     text_bytes: Bytes,
     text_ends: Ints,
+    bare_text: Flags,
     rule: Ints,
     spelling: Bytes,
     last: Ints,
@@ -152,6 +157,7 @@ def _write_blocks(
     line_before  (n + 1,) int64 how many lines stand before the row and all rows above it, from 0
     line_of      (l,)   int64   which text each of these lines is
     text_bytes, text_ends       the texts, end to end
+    bare_text    (t,)   bool    the text stands without skip sign and number
     rule         (w, 11) int64  modal, decimals, 10**decimals, point, leading, trailing, plus, length of letter, of
                                 zero, byte that closes the word or 0, bare
     spelling     (w, 24) uint8  letter in the first 12 bytes, spelling of zero in the last 12
@@ -164,10 +170,11 @@ def _write_blocks(
         for piece in range(line_before[row], line_before[row + 1] + 1):  # the lines, then the row itself
             # skip sign and block number are written first, and taken back when nothing follows them
             block_start = at
-            for k in range(skip.shape[0]):
+            headed = piece == line_before[row + 1] or not bare_text[line_of[piece]]
+            for k in range(skip.shape[0] if headed else 0):
                 out[at] = skip[k]
                 at += 1
-            if numbered:
+            if numbered and headed:
                 for k in range(number_letter.shape[0]):
                     out[at] = number_letter[k]
                     at += 1
@@ -223,7 +230,7 @@ def _write_blocks(
                 at = block_start
                 continue
             out[at - 1] = 10
-            if numbered:
+            if numbered and headed:
                 number[0] += number[1]
                 if number[0] > number[3]:
                     number[0] = number[2]
@@ -274,6 +281,17 @@ class BlockWriter:
     def remember(self, key: str, count: int) -> None:
         """Take it that the word has just been printed with this count."""
         self._last[self._keys.index(key)] = count
+
+    def printed(self, key: str) -> int:
+        """The count with which the word was last printed, ``ABSENT`` where that is not known."""
+        return int(self._last[self._keys.index(key)])
+
+    def said(self, key: str, count: int) -> str:
+        """The word as a text that the caller puts into a line of his own; it counts as printed."""
+        word = self._words[key]
+        _check_range(word, np.array([count], np.int64))
+        self.remember(key, count)
+        return word.letter + word.format.of_count(count) + word.closing
 
     def skip_blocks(self, on: bool) -> None:
         """Begin the blocks that follow with the block-skip sign, or no longer."""
@@ -345,6 +363,7 @@ class BlockWriter:
         width = heads + len(rule) * (_DIGITS + _LETTERS + 2) + 1
         text_room = sum(len(encoded[k]) + heads + 1 for k in line_of)
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
+        start = self._numbers.unnumbered
         written = _write_blocks(
             table,
             forced,
@@ -352,6 +371,7 @@ class BlockWriter:
             line_of,
             text_bytes,
             ends,
+            np.array([bool(start) and text.startswith(start) for text in texts] or [False], np.bool_),
             rule,
             spelling,
             last,

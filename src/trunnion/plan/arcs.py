@@ -21,6 +21,9 @@ _CLEAR = 0.005
 #: What four decimals of start, end and centre come to in the radius of an arc, mm.
 _ROUNDED = 3e-4
 
+#: An arc that rises by less than this, mm, is flat: nobody prints so many digits.
+_LEVEL = 1e-5
+
 
 def arc_sweeps(operation: Operation) -> Floats:
     """Angle that the tip turns through on each arc.
@@ -69,6 +72,20 @@ def plain_arcs(operation: Operation, only_about_z: bool = False) -> Flags:
     return np.asarray(
         about_axis & steady & ((in_plane > _CLEAR) | (apart == 0.0) | ((in_plane == 0.0) & (apart > _CLEAR)))
     )
+
+
+def flat_arcs(operation: Operation) -> Flags:
+    """(m,) bool: the arc ends at the height of its start along its normal, and makes no whole turns besides."""
+    arcs, tip = operation.arcs, operation.moves.tip
+    rise = np.einsum("ij,ij->i", tip[arcs.row] - tip[arcs.row - 1], arcs.normal)
+    return np.asarray((np.abs(rise) < _LEVEL) & (arcs.turns == 0))
+
+
+def arcs_about_tool(operation: Operation) -> Flags:
+    """(m,) bool: the arc turns about the tool axis at its end."""
+    arcs = operation.arcs
+    across = np.cross(arcs.normal, operation.moves.axis[arcs.row])
+    return np.asarray(np.linalg.norm(across, axis=1) < _ALONG)
 
 
 def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:

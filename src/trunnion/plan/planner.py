@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words
-from trunnion.plan.arcs import lines_for_arcs, plain_arcs
+from trunnion.plan.arcs import arcs_about_tool, flat_arcs, lines_for_arcs, plain_arcs
 from trunnion.plan.between import check_without_tcp, with_points
 from trunnion.plan.clearance import Clearance
 from trunnion.plan.decisions import Planned, decisions, pose_words
@@ -75,6 +75,10 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         against += contradictions(path.file, operation, manner, wishes.manners)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
         kept = plain_arcs(operation if plane is None else into_plane(operation, plane), wishes.arcs_about_z)
+        if not wishes.helices:
+            kept &= flat_arcs(operation)
+        if plane is not None and wishes.pose_planes:
+            kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         source = source_rows(original, operation)
         stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))

@@ -28,6 +28,9 @@ class Wishes:
     pole_angle      by how much the tool axis may lean for that, degrees
     absolute        the program's coordinate system is the CAM's absolute one, not that of the first operation
     lower_feed      lower the feed where a rotary axis would have to be too fast
+    helices         the control takes circles that rise, or of more than one turn; False: they become lines
+    pose_planes     the control takes a tilted plane from the rotary position: only circles about the tool axis stay
+                    circles there
     tcp             the control holds the tip (TCP); False: the slides and rotary axes themselves are led
     tip_tolerance   without TCP: how far the tip may be off its line between CL points, mm
     axis_tolerance  how far the tool axis may be off its great circle between CL points, degrees; None: with TCP it is
@@ -46,6 +49,8 @@ class Wishes:
     pole: Pole = Pole.OFF
     pole_angle: float = 0.1
     lower_feed: bool = False
+    helices: bool = True
+    pose_planes: bool = False
     tcp: bool = True
     tip_tolerance: float = 0.005
     axis_tolerance: float | None = None

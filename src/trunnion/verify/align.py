@@ -96,11 +96,18 @@ def answers(run: Run) -> Rows:
 
 def _answer(run: Run, start: int, end: int) -> Flags:
     """Which of consecutive rows ought to answer to CL points."""
-    state, programmed = run.state, run.programmed[start:end]
-    placing = (programmed & int(PLACES)) == 0
-    placing &= (programmed & int(_TURNS)) != 0
-    placing &= ~state.tcp.part(start, end) & (run.kind[start:end] == Kind.RAPID)
-    return np.asarray(~(placing | state.machine_frame.part(start, end)))
+    state, rows = run.state, np.arange(start, end)
+    placing = places_only(run, rows)
+    # Turning the table from one plane to the next takes the part along, and may be what takes the tool to a point.
+    held = state.by_tip.at(np.maximum(rows - 1, 0)) & ~state.tcp.at(np.maximum(rows - 1, 0)) & (rows > 0)
+    return np.asarray(~((placing & ~held) | state.machine_frame.part(start, end)))
+
+
+def places_only(run: Run, rows: Ints) -> Flags:
+    """(k,) bool: the row does nothing but place rotary axes at rapid, with TCP off."""
+    programmed = run.programmed[rows]
+    turns = ((programmed & int(PLACES)) == 0) & ((programmed & int(_TURNS)) != 0)
+    return np.asarray(turns & ~run.state.tcp.at(rows) & (run.kind[rows] == Kind.RAPID))
 
 
 def points(run: Run) -> Rows:

@@ -25,6 +25,7 @@ class Settings:
     span         degrees that the tool axis may be off between points; None: it is told, not judged
     span_tip     mm that the tip may be off its line between points without TCP; None: it is told, not judged
     absolute     the program's coordinate system is the CAM's absolute one, not that of the first operation
+    rapid_feed   mm/min at which lines stand for rapid motion; None: none do
     """
 
     tool: str = ""
@@ -33,6 +34,7 @@ class Settings:
     span: float | None = None
     span_tip: float | None = None
     absolute: bool = False
+    rapid_feed: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

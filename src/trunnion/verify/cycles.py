@@ -42,6 +42,7 @@ class Hole:
     feed      mm/min, or mm/rev where per_rev
     dwell     seconds, or spindle turns where dwell_turns
     tools     what the tool may be called; empty: nobody says
+    digit     how far the feed may be off for being rounded, in its unit
     rpm, sense  the spindle: rev/min and 1 clockwise, -1 the other way, 0 standing; None: nobody says
     """
 
@@ -63,6 +64,7 @@ class Hole:
     sense: int
     allowed: float
     tools: tuple[str, ...] = ()
+    digit: float = 0.005
 
 
 def without_holes(operation: Operation) -> tuple[Operation, Flags]:

@@ -11,12 +11,13 @@ from trunnion.machine import Machine
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
 from trunnion.verify.agreed import Believed, needless_feeds
-from trunnion.verify.align import CHUNK, Pairs
+from trunnion.verify.align import CHUNK, Pairs, places_only
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.cycles import made_in
 from trunnion.verify.holes import leads
 from trunnion.verify.model import Check, Place
+from trunnion.verify.rapids import levels
 from trunnion.verify.retreats import retreats
 from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Call, Spindle, Stretch, is_called
@@ -51,6 +52,9 @@ def order(case: Case) -> Check:
     back = retreats(case.run, pairs.extra, max(part.allowed.tip for part in wanted.parts))
     lawful = {row for retreat in back for row in range(retreat.first, retreat.end)}
     lawful |= leads(case.run, pairs.extra, made_in(case.run))
+    lawful |= levels(case.run, pairs.extra, pairs.nc)
+    others = np.array(pairs.extra, np.int64)
+    lawful |= set(others[places_only(case.run, others)].tolist())
     for retreat in back:
         text = f"draws back {retreat.distance:.3f} mm along the tool axis, turns, and comes back"
         told.append(case.place(retreat.first, retreat.distance, text))
@@ -100,6 +104,8 @@ def kind(case: Case) -> Check:
             is_, want = Kind(int(run.kind[row])), wanted.point(point).kind
             if want is Kind.ARC and is_ is Kind.LINEAR and (point in by_lines or _is_flat(case, point)):
                 continue
+            if is_ is Kind.RAPID and want is Kind.LINEAR and wanted.point(point).feed == case.settings.rapid_feed:
+                continue  # a cut as fast as rapids are here
             count += 1
             if len(places) < NAMED:
                 text = f"moves {_KINDS[is_]}; the CL file wants it {_KINDS[want]}"

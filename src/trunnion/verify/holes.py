@@ -18,8 +18,8 @@ from trunnion.verify.wanted import is_called
 #: A spindle speed is printed without decimals.
 _RPM = 0.5 + 1e-6
 
-#: Half of the last digit of feeds, mm/min or mm/rev, and of pitches, mm.
-_FEED, _PITCH = 0.005 + 1e-6, 5e-6
+#: Half of the last digit of the feeds of threads, mm/min or mm/rev, and of pitches, mm; and rounding here.
+_FEED, _PITCH, _NOISE = 0.005, 5e-6, 1e-6
 
 #: Cycles that leave the hole at a feed.
 _FED_OUT = ("TAP", "REAM")
@@ -76,8 +76,9 @@ def faults(run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]]) -
     if len(h) < 4:
         yield int(at[0]), 0.0, "the hole is not drilled"
         return
-    if kind[1] != Kind.RAPID or abs(h[1] - hole.above) > near:
-        yield int(at[1]), float(h[1]), f"begins to feed {h[1]:.4f} mm above the hole, not {hole.above:g}"
+    start = int(np.argmax(kind != Kind.RAPID)) - 1  # a control may come down to it in two steps
+    if start < 1 or abs(h[start] - hole.above) > near:
+        yield int(at[start]), float(h[start]), f"begins to feed {h[start]:.4f} mm above the hole, not {hole.above:g}"
     if abs(h[-1] - hole.retract) > near:
         yield int(at[-1]), float(h[-1]), f"is drawn back to {h[-1]:.4f} mm, not to {hole.retract:g}"
     if abs(h.min() + hole.depth) > near:
@@ -109,8 +110,10 @@ def _strokes(run: Run, hole: Hole, at: Ints, h: Floats, near: float) -> Iterator
         if len(ends) > 1:
             yield int(at[2]), float(len(ends)), f"drills in {len(ends)} strokes, the CL file in one"
     else:
-        strokes = np.abs(np.diff([0.0, *ends]))
-        first = min(hole.steps[0], hole.depth)
+        # Strokes count from the point of the hole, or from where the feed begins.
+        begin = 0.0 if not ends or abs(ends[0] + min(hole.steps[0], hole.depth)) <= near else hole.above
+        first = min(hole.steps[0], begin + hole.depth)
+        strokes = np.abs(np.diff([begin, *(ends or [hole.above])]))
         if abs(strokes[0] - first) > near or (np.diff(strokes) > near).any():
             said = ", ".join(f"{stroke:.4f}" for stroke in strokes[:4])
             yield int(at[2]), float(strokes[0]), f"drills in strokes of {said}, not of {first:g} and less"
@@ -142,7 +145,8 @@ def _fed(run: Run, hole: Hole, at: Ints, h: Floats, spindle: float) -> Iterator[
     mode, feed = run.state.feed_mode.at(lines), run.state.feed.at(lines)
     rate = np.where(mode == 95, feed * spindle, feed)
     want = hole.feed * spindle if hole.per_rev else hole.feed
-    last_digit = np.where(mode == 95, _FEED * spindle, _FEED + _PITCH * spindle)
+    digit = (min(hole.digit, _FEED) if hole.mode[0] == "TAP" else hole.digit) + _NOISE
+    last_digit = np.where(mode == 95, digit * spindle, digit + _PITCH * spindle)
     off = ~(np.abs(rate - want) <= last_digit + 1e-9 * want)
     if off.any():
         k = int(np.argmax(off))

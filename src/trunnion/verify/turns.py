@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.reader import Happening, Run, Written
 from trunnion.toolpath import Kind
-from trunnion.verify.align import CHUNK, PLACES
+from trunnion.verify.align import CHUNK, PLACES, places_only
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.model import Check, Place
 
@@ -147,6 +147,7 @@ def _without_a_plane(case: Case) -> list[Place]:
     places: list[Place] = []
     for nc, cl in pairs.chunks():
         turned = (np.abs(run.rotary[nc]) > _TURNED).any(axis=1) & ~run.state.by_tip.at(nc)
+        turned &= ~places_only(run, nc)  # on the way from plane to plane
         for k in np.flatnonzero(turned)[: NAMED - len(places)].tolist():
             text = "works under turned rotary axes with TCP off and in no plane: say where the workpiece zero is (zero)"
             places.append(case.place(int(nc[k]), 0.0, text, int(cl[k])))

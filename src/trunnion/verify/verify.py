@@ -18,6 +18,7 @@ from trunnion.verify.case import NAMED, Case, Settings
 from trunnion.verify.holes import holes
 from trunnion.verify.model import Check, Place, Share, Verification
 from trunnion.verify.points import Deviations, Off
+from trunnion.verify.rapids import with_rapids
 from trunnion.verify.turns import turns
 from trunnion.verify.walk import Walk, Walker, Worst
 from trunnion.verify.wanted import Allowed, Wanted
@@ -56,6 +57,7 @@ def verify(
         When the toolpaths have no motion.
     """
     settings = settings or Settings()
+    run = with_rapids(run, settings.rapid_feed)
     checks: list[Check] = []
     wanted = Wanted(toolpaths, allowed or Allowed(), settings.absolute) if toolpaths else None
     walker = Walker(run, NAMED, math.inf, times=columns)

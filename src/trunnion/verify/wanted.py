@@ -154,7 +154,7 @@ class Wanted:
             number = loads[-1] if loads else number
             tools = () if number is None else Call(number, seen.tool.name).names
             holes = holes_of(seen, rows, first, path.file, limit.tip, spindle)
-            found += [replace(hole, tools=tools) for hole in holes]
+            found += [replace(hole, tools=tools, digit=limit.feed) for hole in holes]
             spindle = spindle_at(seen, len(seen.moves), spindle)
             parts.append(Part(path.file, operation, first, limit))
             first += len(operation.moves)

@@ -1,0 +1,183 @@
+"""Values that know where they stand, and the lines of the keys of a TOML text."""
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+#: Deeper keys are refused unread: the TOML parser takes time that grows with the cube of their depth.
+DEEPEST_KEY: Final = 32
+
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+Path_: TypeAlias = tuple[str | int, ...]
+
+
+@dataclass(slots=True)
+class Entry:
+    """A value and its place. ``value`` is a scalar, a list, a dict of entries (table) or a list of table entries."""
+
+    value: object
+    file: str
+    line: int
+
+
+def _is_tables(value: object) -> bool:
+    """Say whether a raw TOML value is an array of tables."""
+    return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
+
+
+def entry_of(value: object, file: str, lines: Mapping[Path_, int], path: Path_ = (), parent_line: int = 0) -> Entry:
+    """Give a raw TOML value, and all that it holds, its place."""
+    line = lines.get(path, parent_line)
+    if isinstance(value, dict):
+        table = {str(key): entry_of(item, file, lines, (*path, key), line) for key, item in value.items()}
+        return Entry(table, file, line)
+    if isinstance(value, list) and _is_tables(value):
+        return Entry([entry_of(item, file, lines, (*path, i), line) for i, item in enumerate(value)], file, line)
+    return Entry(value, file, line)
+
+
+def key_lines(text: str) -> dict[Path_, int]:
+    """Line of every key of a TOML text, from 1; tables in arrays are told apart by their index.
+
+    ``tomllib`` keeps no lines. Nothing is checked here: of a text that is not TOML, any lines or none may come out.
+
+    Raises
+    ------
+    RecursionError
+        If tables nest too deeply.
+    """
+    try:
+        return _Lines(text).index()
+    except (IndexError, ValueError):
+        return {}
+
+
+class _Lines:
+    """One walk over a TOML text that notes where keys stand, and skips what values hold."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.at = 0
+        self.line = 1
+        self.counted = 0
+        self.found: dict[Path_, int] = {}
+        self.arrays: dict[Path_, int] = {}
+
+    def index(self) -> dict[Path_, int]:
+        here: Path_ = ()
+        while self._blank(newlines=True):
+            if self.text.startswith("[[", self.at):
+                here = self._header(2, array=True)
+            elif self.text[self.at] == "[":
+                here = self._header(1, array=False)
+            else:
+                self._pair(here)
+        return self.found
+
+    def _note(self, path: Path_) -> None:
+        self.line += self.text.count("\n", self.counted, self.at)
+        self.counted = self.at
+        self.found.setdefault(path, self.line)
+
+    def _blank(self, *, newlines: bool) -> bool:
+        """Skip blanks (with newlines: also lines and comments); say whether text is left."""
+        blanks = " \t\r\n" if newlines else " \t"
+        while self.at < len(self.text):
+            letter = self.text[self.at]
+            if letter in blanks:
+                self.at += 1
+            elif newlines and letter == "#":
+                self._to("\n")
+            else:
+                return True
+        return False
+
+    def _to(self, mark: str) -> None:
+        end = self.text.find(mark, self.at)
+        self.at = len(self.text) if end < 0 else end
+
+    def _key(self) -> list[str]:
+        """Read a dotted key and leave the cursor on what follows it."""
+        parts: list[str] = []
+        while True:
+            self._blank(newlines=False)
+            start = self.at
+            if self.text[start] in "\"'":
+                self._string()
+                # The parser itself undoes the escapes of a quoted key.
+                parts.append(tomllib.loads(f"key = {self.text[start : self.at]}")["key"])
+            else:
+                bare = _BARE_KEY.match(self.text, start)
+                self.at = bare.end() if bare else start + 1
+                parts.append(self.text[start : self.at])
+            self._blank(newlines=False)
+            if not self.text.startswith(".", self.at):
+                return parts
+            if len(parts) > DEEPEST_KEY:
+                raise RecursionError
+            self.at += 1
+
+    def _header(self, brackets: int, *, array: bool) -> Path_:
+        self.at += brackets
+        keys = self._key()
+        path: Path_ = ()
+        for depth, key in enumerate(keys):
+            path = (*path, key)
+            if array and depth == len(keys) - 1:
+                self._note(path)
+                self.arrays[path] = self.arrays.get(path, -1) + 1
+            if path in self.arrays:
+                path = (*path, self.arrays[path])
+            self._note(path)
+        self.at += brackets
+        return path
+
+    def _pair(self, here: Path_) -> None:
+        path = here
+        for key in self._key():
+            path = (*path, key)
+            self._note(path)
+        self.at += 1  # the equals sign
+        self._value(path)
+
+    def _value(self, path: Path_) -> None:
+        self._blank(newlines=False)
+        letter = self.text[self.at] if self.at < len(self.text) else ""
+        if letter == "{":
+            self._items("}", path, array=False)
+        elif letter == "[":
+            self._items("]", path, array=True)
+        elif letter and letter in "\"'":
+            self._string()
+        else:
+            while self.at < len(self.text) and self.text[self.at] not in ",]}#\n":
+                self.at += 1
+
+    def _items(self, close: str, path: Path_, *, array: bool) -> None:
+        self.at += 1
+        count = 0
+        while self._blank(newlines=True) and self.text[self.at] != close:
+            if self.text[self.at] in ",]}":
+                self.at += 1  # also a bracket that closes nothing: the parser complains of it
+            elif array:
+                self._note((*path, count))
+                self._value((*path, count))
+                count += 1
+            else:
+                self._pair(path)
+        self.at += 1
+
+    def _string(self) -> None:
+        quote = self.text[self.at]
+        if self.text.startswith(quote * 3, self.at):
+            quote *= 3
+        self.at += len(quote)
+        while self.at < len(self.text) and not self.text.startswith(quote, self.at):
+            self.at += 2 if self.text[self.at] == "\\" and quote[0] == '"' else 1
+        self.at += len(quote)
+        # A multi-line string may end with up to two quotes of its own before the closing three.
+        while len(quote) == 3 and self.text.startswith(quote[0], self.at):
+            self.at += 1
