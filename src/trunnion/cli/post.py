@@ -17,7 +17,7 @@ from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_o
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import whole
-from trunnion.machine import Machine, load_machine
+from trunnion.machine import Machine, forward, load_machine
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
 from trunnion.plan.arcs import off_circle
 from trunnion.toolpath import Toolpath
@@ -279,9 +279,18 @@ def _in_plane(motion: Motion, half: float, tilt: float) -> float:
 
 
 def _lever(motion: Motion, machine: Machine) -> float:
-    """How far a turn of the rotary axis next to the workpiece turns the tool axis: near its pole hardly at all."""
-    first = np.array(machine.axes[machine.rotary[0]].direction)
-    return max(float(np.linalg.norm(np.cross(first, motion.operation.moves.axis[0]))), 1e-3)
+    """How far a turn of the rotary axes turns the tool axis at the least: near a pole hardly at all.
+
+    The smaller singular value of the ways of the tool axis as either rotary axis turns.
+    """
+    step = 0.01
+    joints = np.zeros((3, len(machine.axes)))
+    joints[:, list(machine.rotary)] = motion.rotary[0]
+    for k, column in enumerate(machine.rotary):
+        joints[k + 1, column] += step
+    _, axis = forward(machine, joints)
+    ways = (axis[1:] - axis[0]) / math.radians(step)
+    return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), 1e-3)
 
 
 def _asked(program: Program, wishes: Wishes) -> "Settings":
