@@ -45,7 +45,11 @@ def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
         up = float(way @ poses.axis[1])
         rises = up > 0.0 and float(np.linalg.norm(way - up * poses.axis[1])) < 1e-6
         arrives = float(np.abs(poses.tip[2] - poses.tip[1]).max()) < 1e-6
-        from_home = row - 1 in approach or bool(run.state.machine_frame[row - 1]) or (int(run.programmed[row - 1]) & int(PLACES)) == 0
+        from_home = (
+            row - 1 in approach
+            or bool(run.state.machine_frame[row - 1])
+            or (int(run.programmed[row - 1]) & int(PLACES)) == 0
+        )
         if rises or (arrives and from_home):
             lawful.add(row)
     return lawful
