@@ -269,7 +269,8 @@ def speed_figures(product: Contestant | None, rivals: Sequence[Contestant], larg
     figures = []
     for rival in rivals:
         asked = C_RATIO if rival.name == "C floor" else NAIVE_RATIO
-        what, text = f"points/s, trunnion / {rival.name}", f">= {asked:g}"
+        name = "trunnion" if product is None else product.name
+        what, text = f"points/s, {name} / {rival.name}", f">= {asked:g}"
         if product is None:
             figures.append(Figure(what, text, "not measured", False))
         else:
@@ -314,7 +315,13 @@ def measure(points: int, runs: int, folder: Path) -> list[Figure]:
     naive = Contestant(
         "naive post", [sys.executable, str(HERE / "naive_post.py"), str(source), str(naive_output)], naive_output
     )
-    contestants = [product, naive]
+    bare_output = folder / "bare.mpf"
+    bare = Contestant(
+        "trunnion without its proof",
+        [sys.executable, str(HERE / "unproven.py"), str(source), MACHINE, str(bare_output)],
+        bare_output,
+    )
+    contestants = [product, bare, naive]
     if program := compile_floor(folder):
         contestants.append(Contestant("C floor", [str(program), str(source), str(floor_output)], floor_output))
     able = race(contestants, runs)
@@ -331,8 +338,9 @@ def measure(points: int, runs: int, folder: Path) -> list[Figure]:
     print()
 
     measured = product if product in able else None
-    rivals = [one for one in able if one is not product]
+    rivals = [one for one in able if one is not product and one is not bare]
     figures = speed_figures(measured, rivals, large)
+    figures += speed_figures(bare if bare in able else None, rivals, large)
     if program is None:
         figures.append(Figure("points/s, trunnion / C floor", f">= {C_RATIO:g}", "skipped: no C floor", None))
     figures.append(memory_figure(measured, size, large))

@@ -166,13 +166,16 @@ def operations(draw: st.DrawFn, kinds: dict[str, st.SearchStrategy[Any]], axes: 
 def _is_sensible(operation: Operation) -> bool:
     """Whether a program says everything of an operation at a point of its own, and nothing twice.
 
-    Points print elsewhere than those before, events of a kind stand apart, and cutter radius compensation changes on a
-    motion.
+    Points print elsewhere than those before, events of a kind stand apart, cutter radius compensation changes on a
+    motion, and coolant is switched off where nothing else happens: if it is off already, the program has no word of it,
+    but what came before it at the same place has a block of its own.
     """
     moved = (np.abs(np.diff(np.round(operation.moves.tip, 3), axis=0)) > 0.0015).any(axis=1)
     places = [(event.row, type(event)) for event in operation.events]
     moving = all(e.row < len(operation.moves) for e in operation.events if isinstance(e, CutterComp))
-    return bool(moved.all()) and len(set(places)) == len(places) and moving
+    rows = [event.row for event in operation.events]
+    alone = all(rows.count(e.row) == 1 for e in operation.events if isinstance(e, Coolant) and e.kind == "OFF")
+    return bool(moved.all()) and len(set(places)) == len(places) and moving and alone
 
 
 def sensible(paths: st.SearchStrategy[Toolpath]) -> st.SearchStrategy[Toolpath]:
