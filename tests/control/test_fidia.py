@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
 from trunnion.control import load_control
 from trunnion.errors import InputError, Refused
-from trunnion.machine import load_machine
+from trunnion.machine import Machine, load_machine
 from trunnion.reader import run_program
 from trunnion.toolpath import Moves, Toolpath
 from trunnion.verify import Verification, failures, verify
@@ -54,19 +55,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("fidia")
 
 
-def posted(toolpath: Toolpath, folder: Path, **asked: str) -> tuple[Verification, str]:
+def posted(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked: str) -> tuple[Verification, str]:
     """The proof of the program of a toolpath, and its text."""
-    program, _ = planned_program([toolpath], MACHINE, CONTROL, {}, False, wishes_of(asked, CONTROL))
+    program, _ = planned_program([toolpath], machine, CONTROL, {}, False, wishes_of(asked, CONTROL))
     target = folder / "part.txt"
     with target.open("wb") as sink:
         claim = write(program, sink)
-    found = verify(run_program(target, MACHINE), [toolpath], allowed=claim.allowed, settings=claim.settings)
+    found = verify(run_program(target, machine), [toolpath], allowed=claim.allowed, settings=claim.settings)
     return found, target.read_text(encoding="utf-8")
 
 
-def proven(toolpath: Toolpath, folder: Path, **asked: str) -> str:
+def proven(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked: str) -> str:
     """The text of a program that is proven, and has no G0 and no feed that is not a whole number."""
-    found, text = posted(toolpath, folder, **asked)
+    found, text = posted(toolpath, folder, machine, **asked)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
     assert not found.run.findings
     blocks = [line for line in text.splitlines() if not line.startswith("(")]
@@ -227,6 +228,14 @@ def test_a_feed_that_would_print_as_nothing_is_refused(folder: Path) -> None:
     for text in ("FEDRAT/MMPM,0.3\nGOTO/10,5,2\n", f"CYCLE/DRILL,{HEIGHTS}MMPM,0.3\nGOTO/10,5,2\n"):
         with pytest.raises(Refused):
             posted(read(START + "RAPID\nGOTO/10,5,50,0,0,1\n" + text + END, folder), folder)
+
+
+def test_where_the_travel_is_known_the_safe_retract_is_a_motion_home(folder: Path) -> None:
+    text = (FIDIA / "radial_holes.cls").read_text(encoding="utf-8")
+    axes = tuple(
+        replace(axis, low=-400.0, high=400.0, home=400.0) if axis.name == "Z" else axis for axis in MACHINE.axes
+    )
+    proven(read(text, folder), folder, machine=replace(MACHINE, axes=axes))
 
 
 def test_without_tcp_there_is_nothing_but_planes(folder: Path) -> None:

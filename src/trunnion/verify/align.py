@@ -20,7 +20,7 @@ from trunnion.reader import Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.arcs import Arc, arc_of
 from trunnion.verify.between import follow
-from trunnion.verify.cycles import hole_rows, made_in
+from trunnion.verify.cycles import hole_rows, leads, made_in
 from trunnion.verify.rapids import PLACES as PLACES
 from trunnion.verify.rapids import levels
 from trunnion.verify.rows import Rows
@@ -124,11 +124,9 @@ def points(run: Run, wanted: Wanted) -> Rows:
 
 def _taken_along(run: Run, wanted: Wanted) -> Ints:
     """Rows that turn the table from one plane to the next, and so take the tool to a CL point at rapid."""
-    rows = np.flatnonzero((run.programmed & int(_TURNS)) != 0)
+    rows: Ints = np.flatnonzero((run.programmed & int(_TURNS)) != 0)
     rows = rows[(rows > 0) & places_only(run, rows)]
     rows = rows[run.state.by_tip.at(rows - 1) & ~run.state.tcp.at(rows - 1)]
-    if not len(rows):
-        return rows
     is_, arrives = run.poses(rows), np.zeros(len(rows), np.bool_)
     for part in wanted.parts:
         moves, allowed = part.operation.moves, part.allowed
@@ -136,7 +134,7 @@ def _taken_along(run: Run, wanted: Wanted) -> Ints:
         for k in turns[moves.kind[turns] == Kind.RAPID].tolist():
             there = (np.abs(is_.tip - moves.tip[k]) <= allowed.tip).all(axis=1)
             arrives |= there & (np.abs(is_.axis - moves.axis[k]) <= np.radians(2.0 * allowed.angle)).all(axis=1)
-    return rows[arrives]
+    return np.asarray(rows[arrives])
 
 
 def in_order(run: Run, wanted: Wanted) -> Pairs | None:
@@ -175,6 +173,8 @@ class _Matcher:
     def __init__(self, run: Run, wanted: Wanted, bend: float | None) -> None:
         self._run, self._wanted, self._bend = run, wanted, bend
         self._rows = points(run, wanted)
+        made = made_in(run)
+        self._leads = leads(run, [hole.first - 1 for hole in made], made)
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []
@@ -200,6 +200,10 @@ class _Matcher:
             skipped = self._skip_repeats(i, j)
             if skipped:
                 j += skipped
+                continue
+            if self._rows[i] in self._leads:  # leads to a hole, and is no CL point itself
+                self._extra.append(self._rows[i])
+                i += 1
                 continue
             pieces = self._take_arc(i, j)
             if pieces:

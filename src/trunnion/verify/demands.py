@@ -13,8 +13,7 @@ from trunnion.verify.agreed import Believed, needless_feeds
 from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
-from trunnion.verify.cycles import made_in
-from trunnion.verify.holes import leads
+from trunnion.verify.cycles import leads, made_in
 from trunnion.verify.model import Check, Place
 from trunnion.verify.retreats import retreats
 from trunnion.verify.rows import Rows

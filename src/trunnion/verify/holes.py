@@ -1,7 +1,7 @@
 """Each hole against what the CL file's cycle asks for. Heights are as in ``trunnion.verify.cycles``."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -9,11 +9,9 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
-from trunnion.verify.align import PLACES
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.cycles import Hole, Made, made_in
 from trunnion.verify.model import Check, Place
-from trunnion.verify.rapids import levels
 from trunnion.verify.wanted import is_called
 
 #: A spindle speed is printed without decimals.
@@ -27,32 +25,6 @@ _FED_OUT = ("TAP", "REAM")
 
 #: A stroke that breaks chips is drawn back by less than this, mm.
 _CHIP = 5.0
-
-
-def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
-    """Which of the motions that answer to no CL point only lead to a hole.
-
-    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, or,
-    from home or after a turn, to the hole itself.
-    """
-    starts, approach = {hole.first for hole in made}, set(levels(run).tolist())
-    lawful = set()
-    for row in extra:
-        if row + 1 not in starts or run.kind[row] != Kind.RAPID or row == 0:
-            continue
-        poses = run.poses(np.array([row - 1, row, row + 1]))
-        way = poses.tip[1] - poses.tip[0]
-        up = float(way @ poses.axis[1])
-        rises = up > 0.0 and float(np.linalg.norm(way - up * poses.axis[1])) < 1e-6
-        arrives = float(np.abs(poses.tip[2] - poses.tip[1]).max()) < 1e-6
-        from_home = (
-            row - 1 in approach
-            or bool(run.state.machine_frame[row - 1])
-            or (int(run.programmed[row - 1]) & int(PLACES)) == 0
-        )
-        if rises or (arrives and from_home):
-            lawful.add(row)
-    return lawful
 
 
 def faults(run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]]) -> Iterator[tuple[int, float, str]]:
