@@ -453,6 +453,7 @@ def home(case: Case) -> Check:
     run, machine = case.run, case.run.machine
     title = "retreats to the machine's home"
     rows = run.state.machine_frame.where(True)
+    rows = rows[~np.isin(rows, [event.before_row for event in run.events if event.kind == "retract"])]
     if not len(rows):
         return Check("home", title, True, "the program does not go home")
     joints, before = run.poses(rows).joints, run.poses(rows - 1).joints
