@@ -1,12 +1,30 @@
 """Fidia programs: the one that ran, planes of the rotary position, circles, TCP, cycles; written, read back, proven."""
 
+import math
 import re
+from pathlib import Path
 
+import numpy as np
 import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
 
+from tests.control.test_program import FOOT, HEAD
 from tests.paths import FIDIA, FIDIA_HEAD
+from tests.plan.test_optimum import short_paths, smooth_paths
+from tests.plan.test_read_back import toolpath_of
 from tests.verify.proven import unproven
+from trunnion.arrays import Floats
+from trunnion.cl import read_cl
 from trunnion.cli import main
+from trunnion.cli.post import planned_program, write
+from trunnion.cli.settings import wishes_of
+from trunnion.control import load_control
+from trunnion.errors import InputError, Refused
+from trunnion.machine import Machine, load_machine
+from trunnion.reader import run_program
+from trunnion.toolpath import Moves, Toolpath
+from trunnion.verify import Verification, failures, verify
 
 #: The program that ran writes the blank behind a block number or leaves it out at whim.
 NUMBER = re.compile(rb"^(N\d+) ", re.MULTILINE)
@@ -24,3 +42,194 @@ def test_the_published_program_comes_out_and_is_proven(capfdbinary: pytest.Captu
 def test_the_published_program_is_proven_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
     program, cl = FIDIA / "radial_holes.expected.txt", FIDIA / "radial_holes.cls"
     assert main(["verify", str(program), "--cl", str(cl), "--machine", "hs664rt"]) == 0, capsys.readouterr().out
+
+
+CONTROL = load_control(load_machine("hs664rt").control)
+MACHINE = load_machine("hs664rt")
+SLOW = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("fidia")
+
+
+def posted(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked: str) -> tuple[Verification, str]:
+    """The proof of the program of a toolpath, and its text."""
+    program, _ = planned_program([toolpath], machine, CONTROL, {}, False, wishes_of(asked, CONTROL))
+    target = folder / "part.txt"
+    with target.open("wb") as sink:
+        claim = write(program, sink)
+    found = verify(run_program(target, machine), [toolpath], allowed=claim.allowed, settings=claim.settings)
+    return found, target.read_text(encoding="utf-8")
+
+
+def proven(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked: str) -> str:
+    """The text of a program that is proven, and has no G0 and no feed that is not a whole number."""
+    found, text = posted(toolpath, folder, machine, **asked)
+    assert not failures(found), [(check.key, check.summary) for check in failures(found)]
+    assert not found.run.findings
+    blocks = [line for line in text.splitlines() if not line.startswith("(")]
+    assert not [line for line in blocks if re.search(r"G0?0(?!\d)|F\d*\.", line)]
+    assert all(re.match(r"N\d+ ", line) for line in blocks)
+    return text
+
+
+@settings(max_examples=25, suppress_health_check=SLOW)
+@given(moves=smooth_paths(25.0) | smooth_paths(100.0) | short_paths(12))
+def test_simultaneous_motion_is_proven(moves: Moves, folder: Path) -> None:
+    try:
+        text = proven(toolpath_of(moves), folder)
+    except (Refused, InputError):
+        assume(False)
+        return
+    if "G154" not in text and re.search(r"A-?[1-9]", text):
+        assert 0 < text.find("G196") < text.find("G197")
+
+
+PLACE = st.floats(-80.0, 80.0)
+AXES = st.tuples(st.floats(-105.0, 105.0), st.floats(0.0, 359.0))
+
+
+def axis_of(a: float, c: float) -> str:
+    """The tool axis Rz(C) Rx(A) z."""
+    sa, ca, sc, cc = (f(math.radians(v)) for v in (a, c) for f in (math.sin, math.cos))
+    return f"{sc * sa:.12f},{-cc * sa:.12f},{ca:.12f}"
+
+
+@st.composite
+def circles(draw: st.DrawFn, axis: Floats) -> str:
+    """Lines and circles about a tool axis, and some that are not about it or that rise."""
+    across = np.cross(axis, [1.0, 0.3, 0.1])
+    x = across / np.linalg.norm(across)
+    y = np.cross(axis, x)
+    here = np.array([draw(PLACE), draw(PLACE), draw(PLACE)])
+    head = ",".join(f"{v:.12f}" for v in axis)
+    lines = [f"RAPID\nGOTO/{point(here + 20.0 * axis)},{head}", f"FEDRAT/MMPM,800\nGOTO/{point(here)}"]
+    for _ in range(draw(st.integers(1, 4))):
+        radius, begin = draw(st.floats(0.5, 60.0)), draw(st.floats(0.0, 6.28))
+        sweep, sense = draw(st.floats(0.2, 6.0)), draw(st.sampled_from([-1.0, 1.0]))
+        rise = draw(st.sampled_from([0.0, 0.0, 0.0, 5.0]))
+        centre = here - radius * (math.cos(begin) * x + math.sin(begin) * y)
+        end = begin + sense * sweep
+        here = centre + radius * (math.cos(end) * x + math.sin(end) * y) + rise * axis
+        normal = sense * axis
+        lines.append(f"CIRCLE/{point(centre)},{','.join(f'{v:.12f}' for v in normal)},{radius:.6f},0.06,0.5,6.0,0.0")
+        lines.append(f"GOTO/{point(here)}")
+        if draw(st.booleans()):
+            here = here + draw(st.floats(1.0, 9.0)) * x + draw(st.floats(-9.0, 9.0)) * axis
+            lines.append(f"GOTO/{point(here)}")
+    return "\n".join(lines) + "\n"
+
+
+def point(place: Floats) -> str:
+    return ",".join(f"{v:.6f}" for v in place)
+
+
+HEIGHTS = "RAPTO,3,FEDTO,-12,"
+CYCLES = {
+    "DRILL": ("G81", HEIGHTS + "RTRCTO,20,MMPM,90"),
+    "DRILL,DWELL": ("G82", HEIGHTS + "MMPM,90,DWELL,0.5"),
+    "DRILL,DEEP": ("G83", HEIGHTS + "STEP,2.5,RTRCTO,9,MMPM,90"),
+    "TAP": ("G84", HEIGHTS + "MMPR,1.25"),
+    "BORE": ("G85", HEIGHTS + "MMPM,90"),
+    "BORE,DWELL": ("G89", HEIGHTS + "MMPM,90,DWELL,0.5"),
+    "BORE,DRAG": ("G86", HEIGHTS + "RTRCTO,5,MMPM,90"),
+}
+
+
+@st.composite
+def holes_in(draw: st.DrawFn, axes: list[Floats]) -> str:
+    """Holes of one cycle each, under one tool axis after the other, some right behind each other."""
+    lines = []
+    for axis in axes:
+        head = ",".join(f"{v:.12f}" for v in axis)
+        place = np.array([draw(PLACE), draw(PLACE), draw(PLACE)])
+        lines.append(f"RAPID\nGOTO/{point(place + 60.0 * axis)},{head}")
+        mode = draw(st.sampled_from(sorted(CYCLES)))
+        lines.append(f"CYCLE/{mode.removesuffix(',DWELL')},{CYCLES[mode][1]}")
+        x = np.cross(axis, [0.3, 1.0, 0.1])
+        for n in range(draw(st.integers(1, 4))):
+            place = place + (15.0 * x if n else 0.0) + draw(st.sampled_from([0.0, 0.0, -7.0, 7.0])) * axis
+            lines.append(f"GOTO/{point(place)}")
+        lines.append("CYCLE/OFF")
+        if draw(st.booleans()):
+            lines.append(f"RAPID\nGOTO/{point(place + 60.0 * axis)}")
+    return "\n".join(lines) + "\n"
+
+
+def direction(a: float, c: float) -> Floats:
+    return np.array([float(v) for v in axis_of(a, c).split(",")])
+
+
+START, END = HEAD.partition("RAPID")[0], FOOT
+UPRIGHT = np.array([0.0, 0.0, 1.0])
+
+
+def read(text: str, folder: Path) -> Toolpath:
+    file = folder / "part.cls"
+    file.write_text(text, encoding="utf-8")
+    return read_cl(file)
+
+
+@settings(max_examples=25, suppress_health_check=SLOW)
+@given(data=st.data(), turns=st.lists(AXES | st.just((0.0, 0.0)), min_size=1, max_size=1))
+def test_milling_in_planes_with_circles_is_proven(
+    data: st.DataObject, turns: list[tuple[float, float]], folder: Path
+) -> None:
+    parts = [data.draw(circles(direction(*turn))) for turn in turns]
+    text = "".join(START.replace("OP1", f"OP{k}") + part + END for k, part in enumerate(parts))
+    written = proven(read(text, folder), folder)
+    tilted = sum(abs(direction(*turn)[2] - 1.0) > 1e-12 for turn in turns)
+    assert written.count("G154\n") == 2 * tilted  # taken up, and the plane of the machine at the end
+    assert not re.search(r"G[23] .*Z.*I.*J", written), "circles in G17 do not rise"
+
+
+@settings(max_examples=25, suppress_health_check=SLOW)
+@given(data=st.data(), turns=st.lists(AXES | st.just((0.0, 0.0)), min_size=1, max_size=4))
+def test_holes_of_all_cycles_are_proven(data: st.DataObject, turns: list[tuple[float, float]], folder: Path) -> None:
+    text = START + data.draw(holes_in([direction(*turn) for turn in turns])) + END
+    proven(read(text, folder), folder)
+
+
+@pytest.mark.parametrize("mode", CYCLES)
+def test_each_cycle_has_its_word(mode: str, folder: Path) -> None:
+    cycle = f"CYCLE/{mode.removesuffix(',DWELL')},{CYCLES[mode][1]}\nGOTO/10,5,2\nGOTO/20,5,2\nCYCLE/OFF\n"
+    written = proven(read(START + "RAPID\nGOTO/10,5,50,0,0,1\n" + cycle + END, folder), folder)
+    call = next(line for line in written.splitlines() if re.search(r" G8[1-9] ", line))
+    found = re.fullmatch(r"N\d+ (G8\d) X10\. Y5\. Z([\d.]+) E-10\. R5\.( D2\.5)?( H0\.5)? F(\d+)", call)
+    assert found, call
+    assert found[1] == CYCLES[mode][0]
+    assert bool(found[3]) == ("DEEP" in mode)
+    assert bool(found[4]) == ("DWELL" in mode)
+    assert found[5] == ("5000" if mode == "TAP" else "90")
+    after = written.splitlines()[written.splitlines().index(call) + 1 :][:2]
+    assert [line.partition(" ")[2] for line in after] == ["X20. Y5.", "G80"]
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        (f"CYCLE/DRILL,BRKCHP,{HEIGHTS}STEP,2,MMPM,90\nGOTO/10,5,2\n", "no cycle on this control"),
+        (f"CYCLE/DRILL,DEEP,{HEIGHTS}STEP,3,1,1,MMPM,90\nGOTO/10,5,2\n", "strokes that become shorter"),
+        (f"CYCLE/BORE,NODRAG,90,{HEIGHTS}MMPM,90\nGOTO/10,5,2\n", "no cycle on this control"),
+        (f"CYCLE/TAP,{HEIGHTS}MMPR,1.0001\nGOTO/10,5,2\n", "the pitch would be wrong"),
+        (f"SPINDL/RPM,500,CCLW\nCYCLE/TAP,{HEIGHTS}MMPR,1\nGOTO/10,5,2\n", "left hand"),
+        ("FEDRAT/MMPR,0.2\nGOTO/10,5,2\n", "feed per revolution"),
+    ],
+)
+def test_what_cannot_be_said_is_refused(text: str, what: str, folder: Path) -> None:
+    with pytest.raises((Refused, InputError), match=what):
+        posted(read(START + "RAPID\nGOTO/10,5,50,0,0,1\n" + text + END, folder), folder)
+
+
+def test_a_feed_that_would_print_as_nothing_is_refused(folder: Path) -> None:
+    for text in ("FEDRAT/MMPM,0.3\nGOTO/10,5,2\n", f"CYCLE/DRILL,{HEIGHTS}MMPM,0.3\nGOTO/10,5,2\n"):
+        with pytest.raises(Refused):
+            posted(read(START + "RAPID\nGOTO/10,5,50,0,0,1\n" + text + END, folder), folder)
+
+
+def test_without_tcp_there_is_nothing_but_planes(folder: Path) -> None:
+    text = START + "RAPID\nGOTO/10,5,50,0,0,1\nFEDRAT/MMPM,300\nGOTO/10,5,20,0.1,0,0.994987437107\n" + END
+    with pytest.raises((Refused, InputError), match="no words for"):
+        posted(read(text, folder), folder, tcp="off")

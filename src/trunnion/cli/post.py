@@ -232,7 +232,7 @@ def _allowed(program: Program) -> "list[Allowed]":
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
-        tip, angle = half["X"], max(half["primary"], half["secondary"])
+        tip, angle = half["X"], max(half["primary"], half["secondary"]) + 1e-8  # near a pole angles are noisy
         if motion.plane is not None and control.plane_from_pose:
             # Places are worked out for the plane as it is printed; only circles stay in it that are not quite in it.
             widest = float(motion.operation.arcs.radius.max(initial=0.0))

@@ -31,10 +31,12 @@ def check_program(program: Program) -> list[Problem]:
     problems = []
     spindle, in_spindle = False, ""
     rpm: float | None = None
+    held = Turning(1.0, Sense.CLW)  # where nobody says otherwise
     for motion in program.motions:
         operation = motion.operation
         moves = operation.moves
-        problems += _hole_problems(program, motion)
+        problems += _hole_problems(program, motion, held)
+        held = turning(operation.events, len(moves), held) or held
         if not motion.begins:
             continue
         unfed = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
@@ -150,8 +152,8 @@ def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
     return problems
 
 
-def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
-    """What the cycles of a motion ask for and this control cannot be told."""
+def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Problem]:
+    """What the cycles of a motion ask for and this control cannot be told; ``held``: the spindle before it."""
     operation, problems = motion.as_written(), []
     moves = operation.moves
     for event in operation.events:
@@ -162,7 +164,7 @@ def _hole_problems(program: Program, motion: Motion) -> list[Problem]:
             if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP):
                 cure = "leave the setting manner out, or end the cut before the tool axis changes"
                 raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
-            spindle = turning(operation.events, event.row, Turning(1.0, Sense.CLW))
+            spindle = turning(operation.events, event.row, held)
             formats = program.control.number_formats(motion.three_axis)
             program.control.family.hole_call(cycle, 0.0, spindle, settings_of(program), formats)
             feed, _ = feed_of(cycle, spindle, float(moves.feed[event.row]), False)

@@ -20,7 +20,9 @@ from trunnion.reader import Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.arcs import Arc, arc_of
 from trunnion.verify.between import follow
-from trunnion.verify.cycles import hole_rows, made_in
+from trunnion.verify.cycles import hole_rows, leads, made_in
+from trunnion.verify.rapids import PLACES as PLACES
+from trunnion.verify.rapids import levels
 from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Wanted
 
@@ -36,8 +38,7 @@ _WINDOWS = (8, 48, 384)
 #: Partings that are looked into; beyond them the two sides are taken to be different programs.
 _PARTINGS = 2000
 
-#: Words that say where the tip or the tool axis is to be, and those that turn rotary axes.
-PLACES = Written.X | Written.Y | Written.Z | Written.VECTOR
+#: Words that turn rotary axes.
 _TURNS = Written.FIRST | Written.SECOND
 
 
@@ -96,11 +97,8 @@ def answers(run: Run) -> Rows:
 
 def _answer(run: Run, start: int, end: int) -> Flags:
     """Which of consecutive rows ought to answer to CL points."""
-    state, rows = run.state, np.arange(start, end)
-    placing = places_only(run, rows)
-    # Turning the table from one plane to the next takes the part along, and may be what takes the tool to a point.
-    held = state.by_tip.at(np.maximum(rows - 1, 0)) & ~state.tcp.at(np.maximum(rows - 1, 0)) & (rows > 0)
-    return np.asarray(~((placing & ~held) | state.machine_frame.part(start, end)))
+    placing = places_only(run, np.arange(start, end))
+    return np.asarray(~(placing | run.state.machine_frame.part(start, end)))
 
 
 def places_only(run: Run, rows: Ints) -> Flags:
@@ -110,20 +108,38 @@ def places_only(run: Run, rows: Ints) -> Flags:
     return np.asarray(turns & ~run.state.tcp.at(rows) & (run.kind[rows] == Kind.RAPID))
 
 
-def points(run: Run) -> Rows:
-    """Rows of a run that ought to answer to CL points, without those that make holes."""
-    rows, making = answers(run), hole_rows(made_in(run))
-    if not len(making):
+def points(run: Run, wanted: Wanted) -> Rows:
+    """Rows of a run that ought to answer to CL points, without those that make holes or lead to the first point."""
+    rows = answers(run)
+    none = np.concatenate((hole_rows(made_in(run)), levels(run)))
+    more = _taken_along(run, wanted)
+    if not len(none) and not len(more):
         return rows
-    every = rows.part(0, len(rows))
     flags = np.zeros(len(run), np.bool_)
-    flags[every[~np.isin(every, making)]] = True
+    flags[rows.part(0, len(rows))] = True
+    flags[none] = False
+    flags[more] = True
     return Rows.where([(0, flags)])
+
+
+def _taken_along(run: Run, wanted: Wanted) -> Ints:
+    """Rows that turn the table from one plane to the next, and so take the tool to a CL point at rapid."""
+    rows: Ints = np.flatnonzero((run.programmed & int(_TURNS)) != 0)
+    rows = rows[(rows > 0) & places_only(run, rows)]
+    rows = rows[run.state.by_tip.at(rows - 1) & ~run.state.tcp.at(rows - 1)]
+    is_, arrives = run.poses(rows), np.zeros(len(rows), np.bool_)
+    for part in wanted.parts:
+        moves, allowed = part.operation.moves, part.allowed
+        turns = np.flatnonzero((np.abs(np.diff(moves.axis, axis=0)) > 0.0).any(axis=1)) + 1
+        for k in turns[moves.kind[turns] == Kind.RAPID].tolist():
+            there = (np.abs(is_.tip - moves.tip[k]) <= allowed.tip).all(axis=1)
+            arrives |= there & (np.abs(is_.axis - moves.axis[k]) <= np.radians(2.0 * allowed.angle)).all(axis=1)
+    return np.asarray(rows[arrives])
 
 
 def in_order(run: Run, wanted: Wanted) -> Pairs | None:
     """Pairs by counting alone, if there are as many motions as points; whether they fit is not looked at."""
-    rows = points(run)
+    rows = points(run, wanted)
     if len(rows) == len(wanted):
         return Pairs(rows, Rows.of([(0, len(wanted))]))
     fresh = Rows.where(_fresh(wanted))
@@ -156,7 +172,9 @@ class _Matcher:
 
     def __init__(self, run: Run, wanted: Wanted, bend: float | None) -> None:
         self._run, self._wanted, self._bend = run, wanted, bend
-        self._rows = points(run)
+        self._rows = points(run, wanted)
+        made = made_in(run)
+        self._leads = leads(run, [hole.first - 1 for hole in made], made)
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []
@@ -182,6 +200,10 @@ class _Matcher:
             skipped = self._skip_repeats(i, j)
             if skipped:
                 j += skipped
+                continue
+            if self._rows[i] in self._leads:  # leads to a hole, and is no CL point itself
+                self._extra.append(self._rows[i])
+                i += 1
                 continue
             pieces = self._take_arc(i, j)
             if pieces:

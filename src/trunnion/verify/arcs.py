@@ -32,6 +32,11 @@ class Arc:
         """Distance of the start from the axis."""
         return float(np.linalg.norm(self.radial))
 
+    @property
+    def slope(self) -> float:
+        """How much it rises on a millimetre of its way round."""
+        return abs(float((self.end - self.start) @ self.normal)) / max(self.radius * self.sweep, 1e-9)
+
     def fractions(self, points: Floats) -> Floats:
         """How much of the arc is done at points near it, in order, (k,)."""
         arm = points - self.centre

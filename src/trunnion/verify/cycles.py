@@ -26,6 +26,7 @@ from trunnion.toolpath import (
     SpindleOff,
     SpindleOn,
 )
+from trunnion.verify.rapids import PLACES, levels
 
 #: A spindle: rev/min, and 1 for clockwise, -1 for the other way, 0 for standing still.
 Spin = tuple[float, int]
@@ -189,3 +190,29 @@ def hole_rows(made: Sequence[Made]) -> Ints:
     """All rows that holes are made of, growing."""
     pieces = [np.arange(hole.first, hole.end) for hole in made]
     return np.concatenate(pieces) if pieces else np.zeros(0, np.int64)
+
+
+def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
+    """Which of the motions that answer to no CL point only lead to a hole.
+
+    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, or,
+    from home or after a turn, to the hole itself.
+    """
+    starts, approach = {hole.first for hole in made}, set(levels(run).tolist())
+    lawful = set()
+    for row in extra:
+        if row + 1 not in starts or run.kind[row] != Kind.RAPID or row == 0:
+            continue
+        poses = run.poses(np.array([row - 1, row, row + 1]))
+        way = poses.tip[1] - poses.tip[0]
+        up = float(way @ poses.axis[1])
+        rises = up > 0.0 and float(np.linalg.norm(way - up * poses.axis[1])) < 1e-6
+        arrives = float(np.abs(poses.tip[2] - poses.tip[1]).max()) < 1e-6
+        from_home = (
+            row - 1 in approach
+            or bool(run.state.machine_frame[row - 1])
+            or (int(run.programmed[row - 1]) & int(PLACES)) == 0
+        )
+        if rises or (arrives and from_home):
+            lawful.add(row)
+    return lawful

@@ -1,7 +1,7 @@
 """Each hole against what the CL file's cycle asks for. Heights are as in ``trunnion.verify.cycles``."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +9,6 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.reader import Run
 from trunnion.toolpath import Kind
-from trunnion.verify.align import PLACES
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.cycles import Hole, Made, made_in
 from trunnion.verify.model import Check, Place
@@ -26,28 +25,6 @@ _FED_OUT = ("TAP", "REAM")
 
 #: A stroke that breaks chips is drawn back by less than this, mm.
 _CHIP = 5.0
-
-
-def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
-    """Which of the motions that answer to no CL point only lead to a hole.
-
-    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, or,
-    from home or after a turn, to the hole itself.
-    """
-    starts = {hole.first for hole in made}
-    lawful = set()
-    for row in extra:
-        if row + 1 not in starts or run.kind[row] != Kind.RAPID or row == 0:
-            continue
-        poses = run.poses(np.array([row - 1, row, row + 1]))
-        way = poses.tip[1] - poses.tip[0]
-        up = float(way @ poses.axis[1])
-        rises = up > 0.0 and float(np.linalg.norm(way - up * poses.axis[1])) < 1e-6
-        arrives = float(np.abs(poses.tip[2] - poses.tip[1]).max()) < 1e-6
-        from_home = bool(run.state.machine_frame[row - 1]) or (int(run.programmed[row - 1]) & int(PLACES)) == 0
-        if rises or (arrives and from_home):
-            lawful.add(row)
-    return lawful
 
 
 def faults(run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]]) -> Iterator[tuple[int, float, str]]:
@@ -73,11 +50,11 @@ def faults(run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]]) -
     if kind[0] != Kind.RAPID or h[0] < hole.above - near or (aside[0] > near and height[0] < hole.above - near):
         low = min(float(h[0]), float(height[0]))
         yield int(at[0]), low, f"goes to the hole {low:.4f} mm above it; the CL file wants at least {hole.above:g}"
-    if len(h) < 4:
+    if len(h) < 3 or (kind == Kind.RAPID).all():
         yield int(at[0]), 0.0, "the hole is not drilled"
         return
     start = int(np.argmax(kind != Kind.RAPID)) - 1  # a control may come down to it in two steps
-    if start < 1 or abs(h[start] - hole.above) > near:
+    if abs(h[start] - hole.above) > near:
         yield int(at[start]), float(h[start]), f"begins to feed {h[start]:.4f} mm above the hole, not {hole.above:g}"
     if abs(h[-1] - hole.retract) > near:
         yield int(at[-1]), float(h[-1]), f"is drawn back to {h[-1]:.4f} mm, not to {hole.retract:g}"
@@ -97,7 +74,7 @@ def _strokes(run: Run, hole: Hole, at: Ints, h: Floats, near: float) -> Iterator
     deepest = hole.above
     ends: list[float] = []
     between: list[list[int]] = []
-    for k in range(2, len(h)):
+    for k in range(1, len(h)):
         if kind[k] == Kind.RAPID and h[k] < deepest - near:
             yield int(at[k]), float(h[k]), "goes at rapid where nothing is drilled yet"
         elif kind[k] == Kind.LINEAR and h[k] < deepest - 1e-9:

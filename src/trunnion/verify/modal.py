@@ -145,11 +145,14 @@ def _low_rapids(case: Case) -> list[Place]:
     every = rapids[(run.programmed[rapids] & int(PLACES)) != 0]
     before, after, tools = run.poses(np.maximum(every - 1, 0)), run.poses(every), run.state.tool.at(every)
     places: list[Place] = []
+    retracts = np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64)
     height: float | None = None
     axis = np.zeros(3)
     tool = -1
     for k, row in enumerate(every.tolist()):
-        if np.abs(after.axis[k] - axis).max() > 1e-6 or tools[k] != tool:
+        last = every[k - 1] if k else -1
+        drawn_back = bool(((retracts > last) & (retracts <= row)).any())
+        if np.abs(after.axis[k] - axis).max() > 1e-6 or tools[k] != tool or drawn_back:
             height, axis, tool = None, after.axis[k], int(tools[k])
         here, there = before.tip[k], after.tip[k]
         way = there - here

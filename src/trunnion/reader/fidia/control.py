@@ -61,7 +61,9 @@ class FidiaControl(Rs274Control):
         self.settle()
         slides = self.held[self._slides].copy()
         slides[2] = top
-        self.move_axes(Kind.RAPID, slides, [math.nan, math.nan], 0, 0)
+        self.machine_rows.set(self.row, True)
+        self.move_axes(Kind.RAPID, slides, [math.nan, math.nan], 0, int(Written.Z))
+        self.machine_rows.set(self.row, False)
 
     def go_to_machine(self, axes: dict[str, Word], *, feed_written: bool) -> None:
         """G290: positions of the machine's axes."""
