@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.machines import at_zero
 from tests.plan.naive import operation_of
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
 from trunnion.cli.post import planned_program, write
@@ -23,7 +24,7 @@ SINUMERIK = load_machine("yl569").control
 CONTROL = load_control(SINUMERIK.fresh())
 
 #: Every shipped machine with a control whose programs can be written.
-MACHINES = {name: replace(load_machine(name), control=SINUMERIK.fresh()) for name in shipped()}
+MACHINES = {name: replace(at_zero(name), control=SINUMERIK.fresh()) for name in shipped()}
 
 #: How far the rotary axes may be beyond a limit: half of what is printed.
 HALF_DIGIT = 0.5e-5 + 1e-9

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
+from tests.machines import at_zero
 from tests.plan.naive import moves_of, operation_of
 from trunnion.arrays import Codes, Floats
 from trunnion.cli.post import write
@@ -29,7 +30,7 @@ SINUMERIK = load_machine("yl569").control
 
 def machine(name: str) -> Machine:
     """A machine with room for its slides, a part off its rotary axes, and a tool where its head turns it."""
-    model = load_machine(name)
+    model = at_zero(name)
     axes = tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in model.axes)
     length = 83.7 if model.turns_tool else None
     return replace(model, axes=axes, control=SINUMERIK, workpiece_zero=(37.0, -21.0, 110.0), tool_length=length)

@@ -4,15 +4,16 @@ from pathlib import Path
 
 import pytest
 
+from tests.machines import at_zero
 from tests.reader.conftest import Runner
-from trunnion.machine import Machine, load_machine
+from trunnion.machine import Machine
 from trunnion.reader import Run, run_program
 
 
 @pytest.fixture(scope="session")
 def dmu65() -> Machine:
     """A table-table mill whose programs are Klartext: A from -90 to 0 carries the endless C."""
-    return load_machine("dmu65")
+    return at_zero("dmu65")
 
 
 @pytest.fixture

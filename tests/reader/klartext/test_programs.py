@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.machines import at_zero
 from tests.reader import naive as angles
 from tests.reader.conftest import close
 from tests.reader.klartext import naive
-from trunnion.machine import load_machine
 from trunnion.reader import Run, run_program
 from trunnion.reader.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.toolpath import Kind
 
-DMU65 = load_machine("dmu65")
+DMU65 = at_zero("dmu65")
 
 
 def ran(text: str, factory: pytest.TempPathFactory) -> Run:

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from tests.machines import at_zero
 from tests.reader.conftest import Runner, close, slides
 from trunnion.errors import Severity
-from trunnion.machine import load_machine
 from trunnion.reader import Orientation, Written
 from trunnion.toolpath import Kind
 
@@ -263,7 +263,7 @@ def test_radius_compensation_is_a_warning(run: Runner) -> None:
 
 
 def test_another_machine(run: Runner) -> None:
-    machine = load_machine("mikron_600u")
+    machine = at_zero("mikron_600u")
     found = run("M128\nL X+1 Y+2 Z+3 B-30 C+45", machine=machine)
     assert found.findings == ()
     sine, cosine, half = math.sin(math.radians(-30)), math.cos(math.radians(-30)), math.sqrt(0.5)

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.machines import at_zero
 from tests.reader.conftest import Runner
-from trunnion.machine import Machine, load_machine
+from trunnion.machine import Machine
 from trunnion.reader import Run, run_program
 
 
@@ -16,6 +17,6 @@ def run(tmp_path: Path) -> Runner:
     def runner(text: str, machine: Machine | None = None, **settings: object) -> Run:
         program = tmp_path / "main.ngc"
         program.write_text(text, encoding="utf-8")
-        return run_program(program, machine or load_machine("dmu65"), family="linuxcnc", **settings)  # type: ignore[arg-type]
+        return run_program(program, machine or at_zero("dmu65"), family="linuxcnc", **settings)  # type: ignore[arg-type]
 
     return runner
