@@ -97,8 +97,14 @@ def answers(run: Run) -> Rows:
 
 def _answer(run: Run, start: int, end: int) -> Flags:
     """Which of consecutive rows ought to answer to CL points."""
-    placing = places_only(run, np.arange(start, end))
-    return np.asarray(~(placing | run.state.machine_frame.part(start, end)))
+    return np.asarray(~(_placing(run, start, end) | run.state.machine_frame.part(start, end)))
+
+
+def _placing(run: Run, start: int, end: int) -> Flags:
+    """``places_only`` for consecutive rows."""
+    programmed = run.programmed[start:end]
+    turns = ((programmed & int(PLACES)) == 0) & ((programmed & int(_TURNS)) != 0)
+    return np.asarray(turns & ~run.state.tcp.part(start, end) & (run.kind[start:end] == Kind.RAPID))
 
 
 def places_only(run: Run, rows: Ints) -> Flags:
@@ -124,14 +130,20 @@ def points(run: Run, wanted: Wanted) -> Rows:
 
 def _taken_along(run: Run, wanted: Wanted) -> Ints:
     """Rows that turn the table from one plane to the next, and so take the tool to a CL point at rapid."""
-    rows: Ints = np.flatnonzero((run.programmed & int(_TURNS)) != 0)
-    rows = rows[(rows > 0) & places_only(run, rows)]
+    rows: Ints = np.concatenate(
+        [np.zeros(0, np.int64)]
+        + [k + np.flatnonzero(_placing(run, k, min(k + CHUNK, len(run)))) for k in range(0, len(run), CHUNK)]
+    )
+    rows = rows[rows > 0]
     rows = rows[run.state.by_tip.at(rows - 1) & ~run.state.tcp.at(rows - 1)]
+    if not len(rows):
+        return rows
     is_, arrives = run.poses(rows), np.zeros(len(rows), np.bool_)
     for part in wanted.parts:
         moves, allowed = part.operation.moves, part.allowed
-        turns = np.flatnonzero((np.abs(np.diff(moves.axis, axis=0)) > 0.0).any(axis=1)) + 1
-        for k in turns[moves.kind[turns] == Kind.RAPID].tolist():
+        rapids = np.flatnonzero(moves.kind[1:] == Kind.RAPID) + 1
+        turns = rapids[(moves.axis[rapids] != moves.axis[rapids - 1]).any(axis=1)]
+        for k in turns.tolist():
             there = (np.abs(is_.tip - moves.tip[k]) <= allowed.tip).all(axis=1)
             arrives |= there & (np.abs(is_.axis - moves.axis[k]) <= np.radians(2.0 * allowed.angle)).all(axis=1)
     return np.asarray(rows[arrives])

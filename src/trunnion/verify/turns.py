@@ -146,7 +146,10 @@ def _without_a_plane(case: Case) -> list[Place]:
         return []
     places: list[Place] = []
     for nc, cl in pairs.chunks():
-        turned = (np.abs(run.rotary[nc]) > _TURNED).any(axis=1) & ~run.state.by_tip.at(nc)
+        turned = ~run.state.by_tip.at(nc)
+        if not turned.any():  # with TCP, as most are
+            continue
+        turned &= (np.abs(run.rotary[nc]) > _TURNED).any(axis=1)
         turned &= ~places_only(run, nc)  # on the way from plane to plane
         for k in np.flatnonzero(turned)[: NAMED - len(places)].tolist():
             text = "works under turned rotary axes with TCP off and in no plane: say where the workpiece zero is (zero)"
