@@ -33,15 +33,20 @@ _TRIED = 6
 class Asked:
     """An operation in the program's coordinate system, and what is asked of it.
 
-    source  (n,) int64  the CL row that each row belongs to; rows that share one are lines for its arc
+    original  the operation as the CL file has it: its arcs are arcs
     """
 
     machine: Machine
     file: str
     operation: Operation
-    source: Ints
+    original: Operation
     wishes: Wishes
     keep_slides: bool
+
+    @property
+    def source(self) -> Ints:
+        """(n,) int64: the CL row that each row belongs to; rows that share one are lines for its arc."""
+        return source_rows(self.original, self.operation)
 
     def decision(self, row: int, why: Why, text: str) -> Decision:
         """What was decided at a row."""

@@ -13,7 +13,7 @@ from trunnion.plan.arcs import arcs_about_tool, flat_arcs, lines_for_arcs, plain
 from trunnion.plan.between import check_without_tcp, with_points
 from trunnion.plan.clearance import Clearance
 from trunnion.plan.decisions import Planned, decisions, pose_words
-from trunnion.plan.departures import Asked, near_pole, slower, source_rows
+from trunnion.plan.departures import Asked, near_pole, slower
 from trunnion.plan.frames import into_frame, into_plane, seen_from
 from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
 from trunnion.plan.kinds import contradictions, in_other_words, machine_x, manner_of, plane_of
@@ -80,8 +80,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         if plane is not None and wishes.pose_planes:
             kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)
-        source = source_rows(original, operation)
-        stretch = _stretch(Asked(machine, path.file, operation, source, wishes, keep_slides))
+        stretch = _stretch(Asked(machine, path.file, operation, original, wishes, keep_slides))
         planes = Manner.TILTED in wishes.manners and wishes.manner is None
         if plane is not None and wishes.machine_x:
             plane = plane_of(operation.moves.axis[0], own, machine_x(machine, stretch.poses.rotary[0]))

@@ -1,28 +1,24 @@
 """Which reader reads the programs of a machine."""
 
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine
-from trunnion.reader.fanuc.interpreter import FanucInterpreter
-from trunnion.reader.fidia.interpreter import FidiaInterpreter
-from trunnion.reader.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.reader.interpreter import STEPS, Interpreter
-from trunnion.reader.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.reader.run import Run
 from trunnion.reader.settings import family_of
-from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
 
-#: Readers by the family of the control.
-READERS: Final[dict[str, Callable[..., Interpreter[Any]]]] = {
-    "sinumerik_840d": SinumerikInterpreter,
-    "heidenhain_itnc530": HeidenhainInterpreter,
-    "heidenhain_tnc640": HeidenhainInterpreter,
-    "linuxcnc": LinuxcncInterpreter,
-    "fanuc_30i": FanucInterpreter,
-    "fidia_nc15": FidiaInterpreter,
+#: Where the interpreter of each family of controls stands: a run needs one of them, and imports no other.
+READERS: Final[dict[str, tuple[str, str]]] = {
+    "sinumerik_840d": ("trunnion.reader.sinumerik.interpreter", "SinumerikInterpreter"),
+    "heidenhain_itnc530": ("trunnion.reader.heidenhain.interpreter", "HeidenhainInterpreter"),
+    "heidenhain_tnc640": ("trunnion.reader.heidenhain.interpreter", "HeidenhainInterpreter"),
+    "linuxcnc": ("trunnion.reader.linuxcnc.interpreter", "LinuxcncInterpreter"),
+    "fanuc_30i": ("trunnion.reader.fanuc.interpreter", "FanucInterpreter"),
+    "fidia_nc15": ("trunnion.reader.fidia.interpreter", "FidiaInterpreter"),
 }
 
 
@@ -76,7 +72,9 @@ def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Inte
     if name not in READERS:
         what = f"its control is a {name}, whose programs cannot be read yet"
         raise InputError(Problem(machine.key, 0, what, f"name a machine with one of {', '.join(READERS)}"))
-    return READERS[name]
+    module, interpreter = READERS[name]
+    reader: Callable[..., Interpreter[Any]] = getattr(import_module(module), interpreter)
+    return reader
 
 
 def can_read(machine: Machine) -> bool:
