@@ -8,6 +8,7 @@ from typing import Final, TypeVar
 
 import numpy as np
 
+from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.reader import interpreter
 from trunnion.reader.control import LINEAR, RAPID
@@ -131,9 +132,9 @@ class Rs274Interpreter(Interpreter[A]):
         return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
 
     @property
-    def _table(self) -> np.ndarray:
+    @abstractmethod
+    def _table(self) -> Codes:
         """What bytes mean to the kernel now."""
-        raise NotImplementedError
 
     def _kernel(self, text: Text) -> None:
         control = self.control
