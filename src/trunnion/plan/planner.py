@@ -57,8 +57,6 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
     program_frame = Frame() if wishes.absolute else pairs[0][1].frame
-    if not wishes.tcp:
-        wishes = replace(wishes, rewind=False)  # nobody would hold the tip while the axes turn
     keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
     against: list[Problem] = []
@@ -101,7 +99,9 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         check_without_tcp(pairs[0][0].file, lacking, machine)
     log = [decision for stretch in stretches for decision in stretch.log]
     led = [with_points(stretch.file, motion, machine, wishes, chord_tolerance) for stretch, motion in motions]
-    problems += [problem for one in led for problem in one.problems]
+    # What is wrong between points follows from what is wrong at them, where anything is.
+    sound = (one for one, (stretch, _) in zip(led, motions, strict=True) if not stretch.refused)
+    problems += [problem for one in sound for problem in one.problems]
     log += [decision for one in led for decision in one.log]
     return Plan(tuple(one.motion for one in led), tuple(problems), tuple(log))
 
@@ -123,6 +123,10 @@ class _Stretch:
     manner: Manner = Manner.TCP
     plane: Frame | None = None
     parts: Sequence[tuple[int, int]] = ()
+
+    @property
+    def refused(self) -> bool:
+        return any(problem.severity is Severity.ERROR for problem in self.problems)
 
     def motions(self, machine: Machine, wishes: Wishes) -> list[Motion]:
         """What is to be written."""
@@ -199,8 +203,7 @@ def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes
             what = "the rotary axes would have to rewind in the cut"
             if rewind.end is not None:
                 what = f"{beyond_words(machine, rewind.end.column, rewind.end.value)} in the cut"
-            allowed = "allow rewinds (--set rewind=insert)" if wishes.tcp else "post with TCP (--set tcp=on)"
-            cure = f"{allowed}, split the operation, or turn the workpiece"
+            cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
             yield Problem(planned.file, at, what, cure)
             continue
         if not math.isfinite(rewind.way):
