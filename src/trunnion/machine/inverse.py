@@ -33,6 +33,7 @@ Status bits, kernels do not raise:
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -111,6 +112,7 @@ class Solutions:
     pole: Flags
 
 
+@lru_cache(maxsize=4)  # most runs have one machine, and ask again and again
 def pack(machine: Machine, tool_length: float | None = None) -> Packed:
     """Plain numbers for the kernels of this module, for a machine and the length (mm) of the tool in its spindle.
 

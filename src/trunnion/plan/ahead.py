@@ -14,8 +14,8 @@ from trunnion.plan.poses import cutting
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.toolpath import Moves
 
-#: Rows looked at together.
-_CHUNK = 4096
+#: Rows looked at together, at first; then twice as many each time.
+_CHUNK = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +42,9 @@ def beyond_words(machine: Machine, column: int, value: float) -> str:
 def dead_end(machine: Machine, moves: Moves, row: int, branch: int, pose: Floats, keep_slides: bool) -> DeadEnd | None:
     """Follow one branch from ``pose`` (2,), degrees, into ``row`` and on, until a limit is left or the cut ends."""
     low, high = limits_of(machine, keep_slides)
-    last = pose
-    for first in range(row, len(moves), _CHUNK):
-        touches = cutting(moves, slice(first, first + _CHUNK)) != IDLE
+    last, first, count = pose, row, _CHUNK
+    while first < len(moves):
+        touches = cutting(moves, slice(first, first + count)) != IDLE
         touches[0] |= first == row
         part = slice(first, first + (len(touches) if touches.all() else int(np.argmin(touches))))
         if part.stop == first:
@@ -59,7 +59,7 @@ def dead_end(machine: Machine, moves: Moves, row: int, branch: int, pose: Floats
             return DeadEnd(first + k, column, float(joints[k, column]))
         if not touches.all():
             return None
-        last = values[-1]
+        last, first, count = values[-1], part.stop, 2 * count
     return None
 
 

@@ -250,11 +250,15 @@ def _as_the_great_circle_winds(machine: Machine, axis: Floats, wound: Floats, si
     stray = np.zeros(len(wound), np.bool_)
     if not len(rows):
         return wound, stray
-    joints = np.zeros((len(wound), 5))
-    joints[:, second] = wound[:, 1]
-    asked, tilted = _azimuths(axis, line), _azimuths(forward(machine, joints)[1], line)
-    by_path = _wrapped(asked[rows] - asked[rows - 1])
-    turn = sense * (by_path - _wrapped(tilted[rows] - tilted[rows - 1]))
+    ends = np.concatenate((rows - 1, rows))
+    joints = np.zeros((len(ends), 5))
+    joints[:, second] = wound[ends, 1]
+    asked, tilted = (
+        np.diff(_azimuths(vectors, line).reshape(2, -1), axis=0)[0]
+        for vectors in (axis[ends], forward(machine, joints)[1])
+    )
+    by_path = _wrapped(asked)
+    turn = sense * (by_path - _wrapped(tilted))
     turns = np.rint((turn - steps[rows - 1]) / 360.0) * (np.abs(by_path) < 180.0 - 1e-6)
     if not machine.axes[first].endless:
         stray[rows[turns != 0.0]] = True

@@ -24,8 +24,8 @@ from trunnion.machine.inverse import POLE, branch_angles, solve_slides, solve_ti
 #: Share of a tolerance that is used: the samples within a span miss the worst place by less than the rest.
 _USED: Final = 0.97
 
-#: Where a span that turns but little is looked at: what it is off by is nearly a curve of the third degree. Three places
-#: miss its worst by a fifteenth at most, and all seven by less than the rest of the tolerance.
+#: Where a span that turns but little is looked at: what it is off by is nearly a curve of the third degree. Three
+#: places miss its worst by a fifteenth at most, and all seven by less than the rest of the tolerance.
 _THREE: Final = np.array([0.25, 0.5, 0.75])
 _FOUR_MORE: Final = np.array([0.125, 0.375, 0.625, 0.875])
 _SURE: Final = 0.9
@@ -445,6 +445,8 @@ def _farthest(
     """
     low, high, step = 0.0, 1.0 - done, guess
     for tries in range(_TRIES):
+        if low == 0.0 and high < _SHORT:
+            return 0.0
         _between(packed, columns, at, look, done + step, branch, begin, end, here, work[0])
         error = _error(chain, columns, begin, here, done, done + step, at, look, allowed, work)
         if error > 1.0:
@@ -453,8 +455,6 @@ def _farthest(
             low = step
             if error >= _ENOUGH or high - low < 1e-3 * low:
                 return low
-        if low == 0.0 and high < _SHORT:
-            return 0.0
         by_square = step * math.sqrt(0.5 * (1.0 + _ENOUGH) / max(error, 1e-9))
         if low == 0.0:
             step = max(by_square, 0.1 * high) if tries < _TRIES // 4 else 0.1 * high
