@@ -225,7 +225,8 @@ class Writer:
             self.lines.append("G17")
         self.settle()
         code = self.draw(st.sampled_from([73, 74, 81, 82, 83, 84, 85, 86, 89]))
-        extra = {73: " Q3.5", 74: " P.1", 83: " Q4", 82: " P.5", 84: " P.3", 86: " P.2", 89: " P1"}.get(code, "")
+        wait = self.draw(st.sampled_from(["", " P.3"]))
+        extra = {73: " Q3.5", 74: wait, 83: " Q4", 82: " P.5", 84: wait, 86: " P.2", 89: " P1"}.get(code, "")
         self.lines.append("M4 S100" if code == 74 else "M3 S100")
         self.absolute = self.draw(st.booleans())
         depth, top = self.draw(st.sampled_from([(-5, 2), (-12.5, -1), (3, 60)]))
@@ -238,6 +239,9 @@ class Writer:
         self.lines.append(self.goal([0]))
         if self.absolute:
             self.lines.append(f"{self.goal([1])} Z{depth - 1}")
+        self.lines += ["G80"] * self.draw(st.booleans())
+        if self.absolute and self.draw(st.booleans()):  # at once another one, from where the first one ended
+            self.lines.append(f"G98 G81 {self.goal([0])} Z{depth} R{top + self.draw(st.sampled_from([-0.5, 0.5]))}")
         self.lines.append("G80")
         self.absolute = True
         self.lines.append("G90 G1 F100")

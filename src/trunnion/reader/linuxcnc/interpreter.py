@@ -70,6 +70,7 @@ class LinuxcncInterpreter(OWordInterpreter):
         self._to_initial = False
         self._initial: float | None = None
         self._sticky: dict[str, float] = {}
+        self._waited = 0.0
         self._homes = {code: self._home_of(machine) for code in _HOMES}
 
     @staticmethod
@@ -366,7 +367,7 @@ class LinuxcncInterpreter(OWordInterpreter):
         """Make the motion that the words of the block ask for."""
         control = self._control
         if begun == CANCEL:
-            self.motion = CANCEL
+            self.motion, self._initial = CANCEL, None
         code = begun if begun is not None else self.motion
         if code != CANCEL and code not in cycles.CYCLES:
             self._initial = None
@@ -449,7 +450,8 @@ class LinuxcncInterpreter(OWordInterpreter):
         words |= {"Z": axes["XYZ"[control.plane]][0]} if "XYZ"[control.plane] in axes else {}
         fresh = code != self.motion
         self.motion = code
-        held = {} if fresh else self._sticky
+        self._waited = words.get("P", self._waited)
+        held = ({"P": self._waited} if code in cycles.KEEP_P else {}) if fresh else self._sticky
         needed = "ZR" + "Q" * (code in cycles.NEED_Q) + "P" * (code in cycles.NEED_P)
         missing = [letter for letter in needed if letter not in words and letter not in held]
         if missing:
