@@ -11,7 +11,7 @@ from dataclasses import replace
 from trunnion.cl.assemble import CYCLE_LENGTHS
 from trunnion.cl.draft import Draft, Feed, SurfaceSpeed
 from trunnion.cl.findings import Findings, Wrong
-from trunnion.cl.statement import Statement, numbers
+from trunnion.cl.statement import Statement, is_whole, numbers
 from trunnion.toolpath import (
     BlockSkip,
     Coolant,
