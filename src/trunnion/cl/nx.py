@@ -185,7 +185,8 @@ class Interpreter(EventStatements):
         form = words[0] if words else ""
         layouts = _TOOLS.get(form, {})
         if form in _TOOLS and len(given) not in layouts:
-            wanted = ", ".join(map(str, layouts)).replace(", 10", " or 10")
+            *others, last = map(str, layouts)
+            wanted = f"{', '.join(others)} or {last}" if others else last
             raise Wrong(f"TLDATA/{form} has {len(given)} numbers, expected {wanted}", "write TLDATA as NX does")
         fields = {field: number for field, number in zip(layouts.get(len(given), ()), given, strict=False) if field}
         self._draft.tool = Tool(kind=form if form in _TOOLS else "UNKNOWN", name=self._draft.tool.name, **fields)
