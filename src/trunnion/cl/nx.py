@@ -7,6 +7,7 @@ Here are the operations, their frames and tools, and motion; feeds and events ar
 """
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -28,6 +29,9 @@ _KEEP = 4096
 
 #: After so many statements without one that is known, the file is no CL file.
 _PATIENCE = 1000
+#: Between the names of operation and tool.
+_TOOL_WORD = re.compile(r",\s*TOOL\s*,")
+
 _NOT_CL = "not a CL file: no statement in it is known"
 _GIVE_CL = "give an NX CLSF (*.cls)"
 
@@ -145,7 +149,7 @@ class Interpreter(EventStatements):
             self._motion_outside()
             self._draft.starts.clear()
         # The tool's name may have commas in it, the word TOOL stands between the two names.
-        name, _, tool = statement.text.partition(",TOOL,")
+        name, tool = (*_TOOL_WORD.split(statement.text, maxsplit=1), "")[:2]
         outside = self._draft
         self._draft = replace(
             outside, name=name.strip(), line=self._line, first=self._row, colours=[], rapids=[], circles=[]
@@ -181,7 +185,8 @@ class Interpreter(EventStatements):
         form = words[0] if words else ""
         layouts = _TOOLS.get(form, {})
         if form in _TOOLS and len(given) not in layouts:
-            wanted = " or ".join(map(str, layouts))
+            *others, last = map(str, layouts)
+            wanted = f"{', '.join(others)} or {last}" if others else last
             raise Wrong(f"TLDATA/{form} has {len(given)} numbers, expected {wanted}", "write TLDATA as NX does")
         fields = {field: number for field, number in zip(layouts.get(len(given), ()), given, strict=False) if field}
         self._draft.tool = Tool(kind=form if form in _TOOLS else "UNKNOWN", name=self._draft.tool.name, **fields)
@@ -337,10 +342,10 @@ _T = ("diameter", "corner_radius", "upper_radius", "length", "flute_length")
 
 #: Forms of TLDATA: for each possible count of numbers, the fields of ``Tool`` that they are; empty where it has none.
 _TOOLS: dict[str, dict[int, tuple[str, ...]]] = {
-    "MILL": {5: _MILL, 10: (*_MILL, "", "", "upper_radius", "", "")},
+    "MILL": {5: _MILL, 7: (*_MILL, "", ""), 10: (*_MILL, "", "", "upper_radius", "", "")},
     "DRILL": {5: _DRILL},
     "TCUTTER": {5: _T},
-    "BARREL": {5: _MILL, 10: (*_MILL, "", "", "upper_radius", "", "")},
+    "BARREL": {5: _MILL, 7: (*_MILL, "", ""), 10: (*_MILL, "", "", "upper_radius", "", "")},
 }
 
 Rule = Callable[[Interpreter, Statement], None]
