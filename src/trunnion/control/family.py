@@ -4,7 +4,7 @@ In:     events, arcs, planes and rows, with the codes and number formats of the 
 Out:    the words and lines that say them.
 
 A family is a module that has everything of ``Family``; ``trunnion.control.families`` names those that there are.
-Programs, their order and their modal state are made by ``trunnion.control.program`` for all of them.
+Programs, their order and their modal state are made by ``trunnion.control.author`` for all of them.
 """
 
 from collections.abc import Mapping
@@ -22,6 +22,9 @@ Codes = Mapping[str, int]
 
 #: In the call of a cycle: here stand X and Y of the first hole, which then has no block of its own.
 FIRST_HOLE = "{at}"
+
+#: In the call of a cycle: here stand X and Y of every hole, each of which is said by all lines of the call.
+EACH_HOLE = "{each}"
 
 
 class UnsayableError(Exception):
@@ -113,7 +116,8 @@ class Family(Protocol):
     ) -> list[str]:
         """The lines that make a hole-making cycle modal: each position that follows is a hole.
 
-        A line with ``FIRST_HOLE`` in it is the first hole too, with its position there and the feed at its end.
+        A line with ``FIRST_HOLE`` in it is the first hole too, with its position there and the feed at its end. Lines
+        of which one has ``EACH_HOLE`` in it are no cycle: they make one hole, and are said for each.
 
         Parameters
         ----------

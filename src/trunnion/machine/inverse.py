@@ -37,9 +37,9 @@ from functools import lru_cache
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats
+from trunnion.kernels import njit
 from trunnion.machine.model import Machine
 
 UNREACHABLE: Final = 1
