@@ -1,8 +1,8 @@
 """The optimum against the nearest neighbour: ``python benchmarks/planning.py``.
 
 Four paths on five machines: how often each of the two must rewind in the cut, how far it turns the rotary axes, and how
-long it takes; how many points a second are planned, with TCP and without; and what becomes of rotary axes that are too fast near the pole.
-Prints the tables of docs/planning.md.
+long it takes; how many points a second are planned, with TCP and without; and what becomes of rotary axes that are too
+fast near the pole. Prints the tables of docs/planning.md.
 """
 
 import argparse

@@ -290,7 +290,7 @@ def _lever(motion: Motion, machine: Machine) -> float:
         joints[k + 1, column] += step
     _, axis = forward(machine, joints)
     ways = (axis[1:] - axis[0]) / math.radians(step)
-    return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), 1e-3)
+    return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), 1e-6)
 
 
 def _asked(program: Program, wishes: Wishes) -> "Settings":

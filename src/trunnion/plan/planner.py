@@ -47,7 +47,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     Raises
     ------
     InputError
-        When there is nothing to plan, or without TCP something is not known that slide positions depend on.
+        When there is nothing to plan, a wish is about an operation that there is not, or without TCP something is not
+        known that slide positions depend on.
     Refused
         When no position of the machine gives a tool axis, or an operation cannot be made in the manner that is wished
         for; of that no program can be made at all.
@@ -56,6 +57,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
+    _check_names(wishes, [operation.name for _, operation in pairs])
     program_frame = Frame() if wishes.absolute else pairs[0][1].frame
     keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
@@ -67,8 +69,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         except CycleError as error:
             against.append(Problem(path.file, error.line, error.what, error.cure))
             continue
-        asked, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
-        manner, reworded = in_other_words(path.file, operation, asked, wishes)
+        wished, own = wishes.of(original.name), seen_from(original.frame, program_frame)
+        manner, reworded = in_other_words(path.file, operation, manner_of(operation, wished.manner), wished)
         said += reworded
         against += contradictions(path.file, operation, manner, wishes.manners)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
@@ -79,7 +81,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
             kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         stretch = _stretch(Asked(machine, path.file, operation, original, wishes, keep_slides))
-        planes = Manner.TILTED in wishes.manners and wishes.manner is None
+        planes = Manner.TILTED in wishes.manners and wished.manner is None
         if plane is not None and wishes.machine_x:
             plane = plane_of(operation.moves.axis[0], own, machine_x(machine, stretch.poses.rotary[0]))
         parts = by_axis(operation) if manner in (Manner.TCP, Manner.WITHOUT_TCP) and planes else None
@@ -104,6 +106,15 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     problems += [problem for one in sound for problem in one.problems]
     log += [decision for one in led for decision in one.log]
     return Plan(tuple(one.motion for one in led), tuple(problems), tuple(log))
+
+
+def _check_names(wishes: Wishes, names: Sequence[str]) -> None:
+    """Raise ``InputError`` for wishes about operations that there are not."""
+    unknown = [name for name in wishes.own_manner if name not in names]
+    cure = f"write one of {', '.join(dict.fromkeys(names))}"
+    if unknown:
+        what = "manner is said of operation {}, and the program has none of that name"
+        raise InputError([Problem("--set", 0, what.format(name), cure) for name in unknown])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
