@@ -9,11 +9,12 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Axis, Machine, forward
+from trunnion.machine import Axis, Carries, Machine, forward
 from trunnion.machine.inverse import solve_slides
 from trunnion.reader import poses, tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.control import RAPID, Circle, Control
+from trunnion.reader.feeds import FeedPath
 from trunnion.reader.frames import Frame
 from trunnion.reader.heidenhain.planes import Datum, spatial
 from trunnion.reader.heidenhain.scan import letters
@@ -63,6 +64,7 @@ class HeidenhainControl(Control):
         #: Pole of circles and polar coordinates, programmed position, mm.
         self.pole: Floats | None = None
         super().__init__(machine, note, file, shortest=shortest)
+        self.feed_path.set(0, int(FeedPath.AXES))
         self._tables = letters((self.names[0], self.names[1])), letters(("", ""))
 
     @property
@@ -73,6 +75,14 @@ class HeidenhainControl(Control):
     def shorter(self, axis: Axis) -> bool:
         """With M126."""
         return self.shortest_path
+
+    def feed_at_tip(self, on: bool) -> None:
+        """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""
+        heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.carries is Carries.TOOL]
+        if on and heads:
+            text = f"M116 leaves out the axes of a head: how fast blocks are in which {' and '.join(heads)} turns is unknown"
+            self.note(text, Severity.WARNING)
+        self.feed_path.set(self.row, int(FeedPath.TIP if on else FeedPath.AXES))
 
     # Datum, mirror, rotation, scale
 
