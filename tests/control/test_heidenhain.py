@@ -38,7 +38,7 @@ class Post:
     """Posts CL text on the DMU 65."""
 
     def __init__(self, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
-        self._folder, self._capfd = folder, capfd
+        self.folder, self._capfd = folder, capfd
 
     def __call__(self, text: str, *arguments: str, machine: str = "dmu65") -> list[str]:
         """The blocks of the program without their numbers, which must go on by one from 0."""
@@ -49,7 +49,7 @@ class Post:
         return [block.split(" ", 1)[1] for block in blocks]
 
     def all(self, text: str, *arguments: str, machine: str = "dmu65") -> tuple[int, str, str]:
-        file = self._folder / "part.cls"
+        file = self.folder / "part.cls"
         file.write_text(text, encoding="utf-8")
         code = main(["post", str(file), "--machine", machine, "--output", "-", *arguments])
         out, err = self._capfd.readouterr()

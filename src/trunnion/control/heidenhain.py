@@ -36,13 +36,17 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "plane_move": ("turn", "move", "stay"),
     "plane_solution": ("SEQ", "SYM"),
     "tcpm": ("m128", "function"),
+    "rotary_feed": ("degrees", "tip"),
 }
 
 _VECTOR: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
 
 FIELDS: frozenset[str] = frozenset(
-    {"tcp_on", "tcp_off", "positioning", "spatial_a", "spatial_b", "spatial_c", *_VECTOR, "blank_low", "blank_high"}
-)
+    {
+        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "positioning", "spatial_a", "spatial_b", "spatial_c",
+        *_VECTOR, "blank_low", "blank_high",
+    }
+)  # fmt: skip
 
 #: Bytes of a comment in one line.
 _ROOM: Final = 100
@@ -208,6 +212,8 @@ def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Val
     on, off = _TCPM[str(settings["tcpm"])]
     low, high = _corners(str(settings.get("blank") or "")) or (None, None)
     found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
+    at_tip = settings["rotary_feed"] == "tip"
+    found |= {"feed_at_tip": "M116" if at_tip else None, "feed_in_degrees": "M117" if at_tip else None}
     found["positioning"] = _POSITIONING[str(settings["plane_move"])]
     spatial = "spatial_c", "spatial_b", "spatial_a"
     if plane is None:

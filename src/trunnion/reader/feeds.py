@@ -51,7 +51,7 @@ def ways(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats
     steps = after - before
     slides = np.linalg.norm(steps[:, list(machine.linear)], axis=1)
     turned = np.abs(steps[:, list(machine.rotary)]).max(axis=1)
-    way = np.where(slides < _RESTS, turned, slides)
+    way: Floats = np.where(slides < _RESTS, turned, slides)
     together = path == FeedPath.AXES
     way[together] = np.linalg.norm(steps[together], axis=1)
     start = path == FeedPath.TIP

@@ -209,9 +209,10 @@ def feed(case: Case, believed: Believed) -> Check:
 
 
 def _judge_times(case: Case, nc: Ints, rate: Floats, asked: Floats, near: Flags, allowed: Allowed) -> None:
-    """Write into ``near`` whether blocks take as long as they should whose F is not the tip's, and their feeds to ``rate``.
+    """Judge blocks whose F is not the tip's by their time: those with inverse time, and those that turn without TCP.
 
-    These are the blocks with inverse time, and those without TCP in which rotary axes turn.
+    Written: into ``near`` whether they take as long as they should, into ``rate`` the feed of the tip. Where F is the
+    tip's at the start of each block (``FeedPath.TIP``), it is compared as it stands.
     """
     run = case.run
     timed = np.flatnonzero(run.state.feed_mode.at(nc) == 93)
@@ -220,34 +221,39 @@ def _judge_times(case: Case, nc: Ints, rate: Floats, asked: Floats, near: Flags,
             minutes = 1.0 / rate[timed]
         near[timed], rate[timed] = _in_time(run, nc[timed], minutes, asked[timed], 2.0 * math.sqrt(3.0) * allowed.tip)
     way = counted(run, nc)
-    led = np.flatnonzero(~np.isnan(way))
+    led = np.flatnonzero(~np.isnan(way) & (run.state.feed_path.at(nc) != FeedPath.TIP))
     if not len(led):
         return
     with np.errstate(divide="ignore", invalid="ignore"):
         minutes = way[led] / rate[led]
         rounded = allowed.feed / rate[led]
-    slack = np.full(len(led), 2.0 * math.sqrt(3.0) * allowed.tip)
-    # Taken from the speed at its start, a way bends off a chord by four times as much as it leaves it half-way.
-    by_start = run.state.feed_path.at(nc[led]) == FeedPath.TIP
-    slack[by_start] += 4.0 * (case.settings.span_tip or 0.0)
-    near[led], rate[led] = _in_time(run, nc[led], minutes, asked[led], slack, rounded)
+    slack = 2.0 * math.sqrt(3.0) * allowed.tip
+    top = np.inf if case.settings.top_feed is None else case.settings.top_feed - allowed.feed
+    fastest = np.where(rate[led] >= top, minutes, _QUICKEST)
+    near[led], rate[led] = _in_time(run, nc[led], minutes, asked[led], slack, rounded, fastest)
 
 
 def _in_time(
-    run: Run, nc: Ints, minutes: Floats, asked: Floats, slack: Floats | float, rounded: Floats | float = 0.0
+    run: Run,
+    nc: Ints,
+    minutes: Floats,
+    asked: Floats,
+    slack: float,
+    rounded: Floats | float = 0.0,
+    quickest: Floats | float = _QUICKEST,
 ) -> tuple[Flags, Floats]:
     """Whether blocks take as long as their way does at the feed asked for, and their feeds, mm/min.
 
     They may be off by a thousandth, by the share ``rounded`` that a printed number is off, and by ``slack`` mm of the
-    way. Where the tip rests, a degree may count as a millimetre. A block may always take as long as no control is
-    quicker.
+    way. Where the tip rests, a degree may count as a millimetre. ``quickest`` is what a block may always take: no
+    control is quicker.
     """
     before, after = run.poses(nc - 1), run.poses(nc)
     way = np.sqrt(((after.tip - before.tip) ** 2).sum(axis=1))
     turned = np.abs(after.joints - before.joints)[:, list(run.machine.rotary)].max(axis=1)
     longest = np.where(way < _RESTS, np.maximum(way, turned), way) + slack
     soon = minutes < (1.0 - 1e-3 - rounded) * np.maximum(way - slack, 0.0) / asked
-    late = minutes > (1.0 + 1e-3 + rounded) * longest / asked + _QUICKEST
+    late = minutes > (1.0 + 1e-3 + rounded) * longest / asked + quickest
     with np.errstate(divide="ignore", invalid="ignore"):
         return ~(soon | late | np.isnan(minutes)), way / minutes
 

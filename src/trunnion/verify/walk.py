@@ -6,9 +6,9 @@ Out:    per row the time it takes and the speed of the tip; over all rows, how m
 Units:  mm and degrees; minutes inside the kernel, seconds outside.
 
 A row at feed asks for its length at its feed. Its length is the tip's way with TCP; without, it is the slides' way, or
-what the control counts besides (``FeedPath``). Where nothing but rotary axes move, degrees count as millimetres. How long it takes is in ``trunnion.verify.times``. The
-acceleration between two rows at feed is the change of speed over half the time of both: a control
-that rounds corners needs less, one that stops exactly needs more.
+what the control counts besides (``FeedPath``). Where nothing but rotary axes move, degrees count as millimetres. How
+long it takes is in ``trunnion.verify.times``. The acceleration between two rows at feed is the change of speed over
+half the time of both: a control that rounds corners needs less, one that stops exactly needs more.
 """
 
 import math
@@ -23,7 +23,6 @@ from trunnion.reader import FeedPath, Orientation, Run, Stretch, ways
 from trunnion.reader.feeds import STILL
 from trunnion.toolpath import Kind
 from trunnion.verify.times import Pace
-
 
 
 @dataclass(slots=True)
@@ -226,7 +225,8 @@ def walk_rows(
 
     joints, tip, axis (k + 1, …) with the place before the rows in front; all other columns have k rows
     rapid, most   (5,) float64   mm/min or deg/min, mm/s^2 or deg/s^2; infinite where not stated
-    ways          (k,) float64   what the feed counts where it is neither the tip's way nor the slides', else NaN; or empty
+    ways          (k,) float64   what the feed counts where that is neither the tip's way nor the slides', else NaN;
+                                 or empty
     state         (7,) float64   minutes of the row before if it was at feed (else 0), next arc, speeds of that row (5)
     times         (4, k) float64 written: length that the feed means, mm or degrees, the feed along it, infinite for
                                  rapids, the tip's way, mm, and 0, 1 or 2 where the tip, the slides or degrees are meant

@@ -61,6 +61,8 @@ class HeidenhainControl(Control):
         self._inside = Datum()
         #: The first row from which on rows mean the same by their place.
         self._since = 0
+        #: A tool has been called: where positions are those of the slides its length counts.
+        self._lengthened = False
         #: Pole of circles and polar coordinates, programmed position, mm.
         self.pole: Floats | None = None
         super().__init__(machine, note, file, shortest=shortest)
@@ -80,9 +82,32 @@ class HeidenhainControl(Control):
         """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""
         heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.carries is Carries.TOOL]
         if on and heads:
-            text = f"M116 leaves out the axes of a head: how fast blocks are in which {' and '.join(heads)} turns is unknown"
+            text = f"M116 leaves out the axes of a head: the feed where {' and '.join(heads)} turns is unknown"
             self.note(text, Severity.WARNING)
         self.feed_path.set(self.row, int(FeedPath.TIP if on else FeedPath.AXES))
+
+    # Tools
+
+    @property
+    def _length(self) -> Floats:
+        length = np.zeros(3)
+        if self._lengthened:
+            length[self.plane] = self.machine.tool_length or 0.0
+        return length
+
+    def call_tool(self, name: str | None, plane: int | None) -> None:
+        """TOOL CALL: another tool, or None; and the axis that it lies along, which stands on the working plane."""
+        if name is not None:
+            self.choose(name)
+        longer = self._lengthened if name is None else name.strip("0") != ""
+        along = self.plane if plane is None else plane
+        if self.machine.tool_length and (longer, along) != (self._lengthened, self.plane):
+            with self.change():
+                self._lengthened, self.plane = longer, along
+        else:
+            self._lengthened, self.plane = longer, along
+        if name is not None:
+            self.change_tool()
 
     # Datum, mirror, rotation, scale
 

@@ -133,11 +133,7 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     feed = values.get("F")
     if feed is not None and not 0.0 <= feed <= FASTEST:
         raise KlartextError(f"a feed is not from 0 to {FASTEST:g}")
-    if flags:
-        control.plane = "XYZ".index(flags[-1])
-    if name is not None:
-        control.choose(name)
-        control.change_tool()
+    control.call_tool(name, "XYZ".index(flags[-1]) if flags else None)
     if "S" in values:
         control.rpm.set(control.row, abs(values["S"]))
         control.event("speed", abs(values["S"]))
