@@ -15,9 +15,9 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine import Machine, forward
 from trunnion.reader import FeedPath, Orientation, Run, Stretch, ways
 from trunnion.reader.feeds import STILL
