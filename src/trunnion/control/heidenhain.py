@@ -133,6 +133,8 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
         wrong.append(("program", "write up to 24 letters, digits and _ # $ % & -"))
     if not settings.get("work_offset", "1").isdigit():
         wrong.append(("work_offset", "write the number of the preset, such as 1"))
+    if settings.get("disengage", "") not in ("", "1", "2", "3", "4"):
+        wrong.append(("disengage", "write 1 for -X, 2 for -Y, 3 for +X or 4 for +Y"))
     if blank and _corners(blank) is None:
         wrong.append(("blank", "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first"))
     return wrong
@@ -142,7 +144,7 @@ def hole_call(
     cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
     """The definition of the cycle; ``M99`` calls it at each hole."""
-    return cycle_lines(cycle, top, turning, formats)
+    return cycle_lines(cycle, top, turning, formats, settings.get("disengage", ""))
 
 
 def hole_end() -> list[str]:
