@@ -69,9 +69,7 @@ def test_cycles_of_the_200_series(number: int, values: dict[str, float], expecte
         (203, {"Q212": 0, "Q213": 9, "Q205": 0, "Q256": 1}, "R12 F4 R5 F-2 R-1 F-5 R12 R60"),
     ],
 )
-def test_out_of_the_hole_at_rapid(
-    number: int, values: dict[str, float], expected: str, word: str, run: Runner
-) -> None:
+def test_out_of_the_hole_at_rapid(number: int, values: dict[str, float], expected: str, word: str, run: Runner) -> None:
     text = define(number, **{**DRILL, **values}).rstrip("\n") + f" ~\nQ208={word}\n"
     found = run(BEFORE + text + "CYCL CALL")
     assert found.findings == ()
