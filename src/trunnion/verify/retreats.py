@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.machine import forward
-from trunnion.reader import Run, Stretch
+from trunnion.reader import Run, Stretch, counted
 from trunnion.toolpath import Kind
 
 #: The tool has to be this far from the part before it turns, mm, and has to turn by this much, degrees.
@@ -29,8 +29,7 @@ _STRAY, _SHARES = 0.5 * _OFF, np.linspace(0.0, 1.0, 9)[1:-1]
 #: How far ahead the end of a retreat is searched: most have three motions, those without TCP many more.
 _AHEAD = (8, 1024, 65536)
 
-#: A tip that moves by less than this, mm, rests: a degree counts as a millimetre then. And what a feed said by time
-#: may be off.
+#: A tip that moves by less than this, mm, rests. And what a feed said by time may be off.
 _RESTS, _SAME_FEED = 1e-3, 1e-2
 
 
@@ -143,11 +142,13 @@ def _is_gentle(run: Run, first: int, end: int, out: Floats, turns: Floats, near:
 
 
 def _feed(run: Run, row: int) -> float:
-    """Feed of a row; mm/min where it is said by the time that the row takes."""
-    feed = float(run.state.feed.part(row, row + 1)[0])
-    if run.state.feed_mode.part(row, row + 1)[0] != 93:
-        return feed
-    poses = run.poses(np.array([row - 1, row]))
-    way = float(np.linalg.norm(poses.tip[1] - poses.tip[0]))
-    turned = float(np.abs(np.diff(poses.joints[:, list(run.machine.rotary)], axis=0)).max())
-    return feed * (way if way > _RESTS else max(way, turned))
+    """Feed of the tip in a row, mm/min; as it is said where the tip rests."""
+    rows = np.array([row])
+    feed, way = (
+        float(run.state.feed.at(rows)[0]),
+        float(np.linalg.norm(np.diff(run.poses(np.array([row - 1, row])).tip, axis=0))),
+    )
+    said = float(counted(run, rows)[0])
+    if run.state.feed_mode.at(rows)[0] == 93:
+        return feed * way if way > _RESTS else np.inf
+    return feed if np.isnan(said) or way <= _RESTS else feed * way / said
