@@ -5,6 +5,7 @@ import math
 import os
 import sys
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
@@ -16,13 +17,14 @@ from trunnion.cli.progress import progress
 from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_of
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.files import whole
+from trunnion.files import Growing, whole
 from trunnion.machine import Machine, forward, load_machine
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
 from trunnion.plan.arcs import off_circle
 from trunnion.toolpath import Toolpath
 
 if TYPE_CHECKING:
+    from trunnion.reader import Run
     from trunnion.verify import Allowed, Settings, Verification
 
 
@@ -51,12 +53,12 @@ def run(arguments: argparse.Namespace) -> int:
             program, decisions = planned_program(
                 paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
             )
-            claim = write(program, sink, wishes)
+            claim, done = write_and_run(program, sink, wishes)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
             said = decisions if wishes.explain else ()
-            prove(claim, paths, sink, target, again, arguments.report, said)
+            prove(claim, done, paths, sink, target, again, arguments.report, said)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
     return 0
@@ -142,17 +144,52 @@ class Claim:
     settings: "Settings"
 
 
-def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None) -> Claim:
-    """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for."""
-    rows = sum(len(motion.operation.moves) for motion in program.motions)
+def write_and_run(program: Program, sink: BinaryIO, wishes: Wishes) -> "tuple[Claim, Run | None]":
+    """Write a program, and run it as its control does, as far as it is written; no run where nobody can read it.
+
+    The run is of what can be read under the name of the sink, as if it had waited for the end.
+    """
+    growing = Growing()
+    with ThreadPoolExecutor(1) as aside:
+        run = aside.submit(_run, Path(sink.name), program.machine, growing)
+        try:
+            claim = write(program, sink, wishes, growing)
+        finally:
+            growing.end()
+    return claim, run.result()
+
+
+def _run(path: Path, machine: Machine, growing: Growing) -> "Run | None":
+    from trunnion.reader import can_read, run_program
+
+    return run_program(path, machine, growing=growing) if can_read(machine) else None
+
+
+def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None, growing: Growing | None = None) -> Claim:
+    """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for.
+
+    ``growing`` is told how much of it can be read back.
+    """
+    rows, done = sum(len(motion.operation.moves) for motion in program.motions), 0
     with progress("writing", rows, "points") as advance:
-        write_program(program, sink, advance)
+
+        def written(points: int) -> None:
+            nonlocal done
+            advance(points)
+            done += points
+            if growing is not None:
+                sink.flush()
+                growing.grow(sink.tell(), sink.tell() * rows // done)
+
+        write_program(program, sink, written)
+    sink.flush()
     operations = sum(motion.begins for motion in program.motions)
     return Claim(program.machine, rows, operations, _allowed(program), _asked(program, wishes or Wishes()))
 
 
 def prove(
     claim: Claim,
+    run: "Run | None",
     paths: Sequence[Toolpath],
     sink: BinaryIO,
     target: str,
@@ -160,16 +197,18 @@ def prove(
     report: str | None = None,
     decisions: Sequence[Decision] = (),
 ) -> None:
-    """Read a program back, run it and compare it with its toolpaths; one line a check.
+    """Compare what a program does with its toolpaths; one line a check.
 
     Parameters
     ----------
     claim
         Of ``write``.
+    run
+        The program as it was read back and run; None: nobody can.
     paths
         What the program was made from.
     sink
-        Of ``whole``: what is written can be read back under its name.
+        Of ``whole``: where the program is written.
     target
         What messages call the program.
     again
@@ -185,15 +224,12 @@ def prove(
         When a check fails and there is no program to write again.
     """
     from trunnion.cli.verify import report as write_report
-    from trunnion.reader import can_read, run_program
     from trunnion.verify import check_lines, failures, place_lines, time_lines, verify
 
-    if not can_read(claim.machine):
+    if run is None:
         what = "it is written by --force, and nothing has been checked" + (": there is no report" if report else "")
         say([Problem(target, 0, what, severity=Severity.WARNING)])
         return
-    sink.flush()
-    run = run_program(Path(sink.name), claim.machine)
     found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
     found = replace(found, program="the program" if target == "-" else target)
     for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
