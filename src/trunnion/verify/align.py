@@ -187,6 +187,8 @@ class _Matcher:
         self._rows = points(run, wanted)
         made = made_in(run)
         self._leads = leads(run, [hole.first - 1 for hole in made], made)
+        limits = [part.allowed for part in wanted.parts]
+        self._near = np.array([(each.tip * 1.001 + 1e-9, np.radians(2.0 * each.angle) + 2e-7) for each in limits])
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []
@@ -246,15 +248,20 @@ class _Matcher:
 
     def _limits(self, j: int) -> tuple[float, float]:
         """How far apart partners may be, mm and as the length of a vector; the exact limits are judged later."""
-        allowed = self._wanted.part_of(j).allowed
-        return allowed.tip * 1.001 + 1e-9, np.radians(2.0 * allowed.angle) + 2e-7
+        tip, axis = self._near[int(np.searchsorted(self._wanted.firsts, j, "right")) - 1]
+        return float(tip), float(axis)
+
+    def _limits_of(self, rows: Ints) -> tuple[Floats, Floats]:
+        """``_limits`` at growing CL rows, (k,) and (k,): each operation has its own."""
+        near = self._near[np.searchsorted(self._wanted.firsts, rows, "right") - 1]
+        return near[:, 0], near[:, 1]
 
     def _fits(self, i: int, j: int, count: int) -> Flags:
         """Which of ``count`` motions from the i-th on are where the points from row j on want them, (count,) bool."""
-        tip, axis = self._limits(j)
         is_, points = self._run.poses(self._rows.part(i, i + count)), np.arange(j, j + count)
-        fits = (np.abs(is_.tip - self._wanted.tip(points)) <= tip).all(axis=1)
-        fits &= (np.abs(is_.axis - self._wanted.axis(points)) <= axis).all(axis=1)
+        tip, axis = self._limits_of(points)
+        fits = (np.abs(is_.tip - self._wanted.tip(points)) <= tip[:, None]).all(axis=1)
+        fits &= (np.abs(is_.axis - self._wanted.axis(points)) <= axis[:, None]).all(axis=1)
         return np.asarray(fits)
 
     def _repeats(self, j: int) -> bool:
@@ -334,7 +341,7 @@ class _Matcher:
             a, b = min(window, self._n - i), min(window, self._m - j)
             is_, points = self._run.poses(self._rows.part(i, i + a)), np.arange(j, j + b)
             want_tip, want_axis = self._wanted.tip(points), self._wanted.axis(points)
-            tip, axis = self._limits(j)
+            tip, axis = self._limits_of(points)
             fits = np.ones((a, b), np.bool_)
             for column in range(3):
                 fits &= np.abs(is_.tip[:, column, None] - want_tip[:, column]) <= tip

@@ -31,6 +31,9 @@ _SHORT: Final = 1e-3
 #: Rotary motion below this, degrees, bends nothing.
 _STILL: Final = 1e-9
 
+#: Motions that are no more than this many times as far from a CL point as they may be are still about it.
+_ABOUT: Final = 3.0
+
 #: Parts of a motion at which it is looked at.
 _LOOKS: Final = 7
 
@@ -107,19 +110,23 @@ def _follow(
     i, j, done = 0, 1, 0.0
     while i < tip.shape[0] and j < want_tip.shape[0]:
         if _is_at(tip, axis, i, want_tip, want_axis, j, near_tip, near_axis):
-            there[i], partner[i] = True, j - 1
-            # More motions of that kind at the same place lead there too: the last of them is the one.
-            if motions < i and there[i - 1] and partner[i - 1] == j - 1:
-                there[i - 1] = False
-            again = (
-                i + 1 < tip.shape[0]
-                and kind[i + 1] == kind[i]
-                and _is_at(tip, axis, i + 1, want_tip, want_axis, j, allowed, near_axis)
-            )
-            i += 1
-            if not again:
-                j, done = j + 1, 0.0
-                motions, points = i, j - 1
+            # More motions of that kind about the same place lead there too: the last of those with the right tool axis
+            # is the one. Near a pole the rotary axes turn far while the tool hardly moves.
+            last, ahead = i, i + 1
+            least = _angle(axis, i, want_axis, j)
+            while (
+                ahead < tip.shape[0]
+                and kind[ahead] == kind[i]
+                and _is_at(tip, axis, ahead, want_tip, want_axis, j, _ABOUT * near_tip, _ABOUT * near_axis)
+            ):
+                off = _angle(axis, ahead, want_axis, j)
+                if off <= least + 1e-9 and _is_at(tip, axis, ahead, want_tip, want_axis, j, allowed, near_axis):
+                    last, least = ahead, min(off, least)
+                ahead += 1
+            for k in range(i, last + 1):
+                there[k], partner[k] = k == last, j - 1
+            motions, points = last + 1, j
+            i, j, done = last + 1, j + 1, 0.0
             continue
         part = -1.0
         if want_kind[j] != 2:
