@@ -4,8 +4,9 @@ In:     a toolpath, its motion on the machine, the control's definition and the 
 Out:    the NC program, through the block writer.
 """
 
+from trunnion.control.author import write_program
 from trunnion.control.check import check_program
 from trunnion.control.definition import Control, load_control
-from trunnion.control.program import Program, write_program
+from trunnion.control.program import Program
 
 __all__ = ["Control", "Program", "check_program", "load_control", "write_program"]

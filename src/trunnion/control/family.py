@@ -4,7 +4,7 @@ In:     events, arcs, planes and rows, with the codes and number formats of the 
 Out:    the words and lines that say them.
 
 A family is a module that has everything of ``Family``; ``trunnion.control.families`` names those that there are.
-Programs, their order and their modal state are made by ``trunnion.control.program`` for all of them.
+Programs, their order and their modal state are made by ``trunnion.control.author`` for all of them.
 """
 
 from collections.abc import Mapping

@@ -1,0 +1,223 @@
+"""The program from its first line to its last: sequences from templates, motion blocks, and events between rows.
+
+Every operation goes the same way: operation start, tool, approach with the rotary axes placed first, motion, end.
+Events stand between rows; those that are words join the next motion block, the others are blocks of their own.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import BinaryIO
+
+import numpy as np
+
+from trunnion.control.blocks import Blocks
+from trunnion.control.definition import SPINDLE_ON
+from trunnion.control.family import WordEvent
+from trunnion.control.hole_blocks import write_holes
+from trunnion.control.printed import Held, Printed, spindle_values
+from trunnion.control.program import Program, kind_of
+from trunnion.control.standing import carried_along, on_its_pose
+from trunnion.control.template import Value
+from trunnion.nc import counts
+from trunnion.plan import Motion
+from trunnion.toolpath import (
+    BlockSkip,
+    Coolant,
+    CutterComp,
+    CycleOff,
+    CycleOn,
+    Dwell,
+    Event,
+    Insert,
+    Kind,
+    Message,
+    Operation,
+    SpindleOff,
+    SpindleOn,
+    Stop,
+)
+
+
+def write_program(program: Program, sink: BinaryIO, progress: Callable[[int], None] | None = None) -> None:
+    """Write the whole program.
+
+    Parameters
+    ----------
+    program
+        Checked by ``check_program``.
+    sink
+        Takes UTF-8 bytes in order.
+    progress
+        Is told how many rows were written since it was last told.
+
+    Raises
+    ------
+    InputError
+        When a value that the program cannot do without is missing.
+    """
+    _Author(program, sink, progress or (lambda _: None)).write()
+
+
+def _on_poses(program: Program) -> Program:
+    """The program with the planes that its control takes from the rotary axes, where it does so."""
+    if not program.control.plane_from_pose:
+        return program
+    decimals = program.control.number_formats(three_axis=False)["angle"].decimals
+    motions = [m if m.plane is None else on_its_pose(program.machine, m, decimals) for m in program.motions]
+    return replace(program, motions=motions)
+
+
+class _Author:
+    """Writes one program; holds what is in force from one operation to the next."""
+
+    def __init__(self, program: Program, sink: BinaryIO, progress: Callable[[int], None]) -> None:
+        self._program = program = _on_poses(program)
+        self._control = program.control
+        self._family = program.control.family
+        self._blocks = Blocks(program, sink, progress)
+        self._printed = Printed(program)
+        self._held = Held()
+        self._speed: Value = None  # of the spindle, as a text said it last
+        self._before: Motion | None = None
+
+    def write(self) -> None:
+        """The program, operation by operation."""
+        motions = self._program.motions
+        self._blocks.lines([line for text in self._program.notices for line in self._family.comment(text)])
+        self._expand("program_start", self._values(motions[0], 0), motions[0])
+        for k, motion in enumerate(motions):
+            self._operation(motion, k, k + 1 == len(motions) or motions[k + 1].begins)
+            off = f"M{self._control.coolant['OFF']}"
+            if self._blocks.coolant != "OFF" and k + 1 < len(motions) and motions[k + 1].begins:
+                end = self._control.templates[f"operation_end_{kind_of(self._program, motion)}"]
+                self._blocks.writer.lines([] if off in end.lines else [off])
+                self._blocks.coolant = "OFF"
+        self._expand("program_end", self._values(motions[-1], -1), motions[-1])
+
+    def _expand(self, name: str, values: Mapping[str, Value], motion: Motion) -> None:
+        formats = self._control.number_formats(motion.three_axis)
+        template = self._control.templates[name]
+        speed = values["spindle_speed"]
+        self._blocks.lines(template.expand({**values, "new_speed": None if speed == self._speed else speed}, formats))
+        if any(field in ("spindle_speed", "new_speed") for field, _ in template.fields()):
+            self._speed = speed
+
+    def _values(self, motion: Motion, number: int) -> dict[str, Value]:
+        """What templates may print in this operation."""
+        return self._printed.values(motion, number, self._held, self._spindle_at_start(motion.operation))
+
+    def _operation(self, motion: Motion, number: int, ends: bool) -> None:
+        """An operation, or what there is of it in one plane; ``ends``: there is no more of it."""
+        motion = self._blocks.slid(motion)
+        kind, values = kind_of(self._program, motion), self._values(motion, number)
+        if motion.begins:
+            self._expand("operation_start", values, motion)
+            tool = str(values["tool"])
+            if tool != self._held.call:
+                self._expand("tool_change" if self._held.call else "first_tool", values, motion)
+            self._held = Held(tool, motion.operation.tool.name)
+        self._blocks.begin(motion, self._goes_on(motion))
+        self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
+        if motion.plane is not None:
+            self._expand(f"plane_on_{kind}", values, motion)
+        self._blocks.rotary_stand(motion)
+        written = replace(motion, operation=motion.as_written())
+        self._motion(written, int(self._stands_there(written)))
+        self._before = written
+        self._blocks.back_in_force()
+        if ends:
+            self._expand(f"operation_end_{kind}", values, motion)
+
+    def _goes_on(self, motion: Motion) -> bool:
+        """Whether the tool comes from another plane of the same operation, and not from home."""
+        return not motion.begins and self._control.plane_from_pose
+
+    def _stands_there(self, motion: Motion) -> bool:
+        """Whether turning the rotary axes to the next plane has already taken the tool to the first point there."""
+        before, operation = self._before, motion.operation
+        if before is None or not self._goes_on(motion) or len(operation.moves) < 2:
+            return False
+        busy = any(event.row == 0 and not isinstance(event, CycleOff) for event in operation.events)
+        if busy or operation.moves.kind[0] != Kind.RAPID:
+            return False
+        last = np.append(before.operation.moves.tip[-1, :2], self._blocks.height)
+        decimals = self._blocks.writer.word("X").format.decimals
+        there = counts(carried_along(self._program.machine, last, before, motion), decimals)
+        return bool((there == counts(np.ascontiguousarray(operation.moves.tip[0]), decimals)).all())
+
+    def _motion(self, motion: Motion, first: int = 0) -> None:
+        """All rows from ``first`` on, broken where an event is a block of its own."""
+        rows = len(motion.operation.moves)
+        joining = [] if self._goes_on(motion) else self._spindle_again(motion.operation)
+        own_spindle = SPINDLE_ON in self._control.templates
+        if self._control.own_blocks or own_spindle:
+            for again in joining:
+                self._own_block(motion, again) if own_spindle else self._blocks.event_block(again)
+            joining = []
+        done, text = first, -1
+        cycle: CycleOn | None = None
+        for event in motion.operation.events:
+            if isinstance(event, CycleOn | CycleOff):
+                text = self._stretch(motion, done, event.row, joining, text, cycle)
+                done, joining = max(first, event.row), [e for e in joining if e.row >= event.row]
+                cycle = event if isinstance(event, CycleOn) else None
+                continue
+            off = isinstance(event, SpindleOff) or (isinstance(event, Coolant) and event.kind == "OFF")
+            alone = self._control.own_blocks and isinstance(event, SpindleOn | Coolant | CutterComp)
+            off = off or alone or (own_spindle and isinstance(event, SpindleOn))
+            joins = event if isinstance(event, SpindleOn | Coolant | CutterComp) and not off else None
+            if joins and not any(type(e) is type(event) and e.row == event.row for e in joining):
+                joining.append(joins)
+            elif joins or off or isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
+                text = self._stretch(motion, done, event.row, joining, text, cycle)
+                for earlier in (e for e in joining if e.row == event.row):
+                    self._blocks.event_block(earlier)  # what is said twice before one row is said in order
+                done, joining = event.row, [e for e in joining if e.row > event.row]
+                if joins:
+                    joining.append(joins)
+                elif isinstance(event, SpindleOn | SpindleOff | Coolant | CutterComp) and not (
+                    own_spindle and isinstance(event, SpindleOn)
+                ):
+                    self._blocks.event_block(event)  # with the next motion the control would switch off after it
+                else:
+                    self._own_block(motion, event)
+        self._stretch(motion, done, rows, joining, text, cycle)
+        for event in joining:
+            if event.row == rows:
+                self._blocks.event_block(event)
+
+    def _stretch(
+        self, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int, cycle: CycleOn | None
+    ) -> int:
+        """Rows ``first`` to ``last``, holes if there is a cycle; as ``Blocks.rows``."""
+        if cycle is None or first == last:
+            return self._blocks.rows(motion, first, last, joining, text)
+        return write_holes(self._blocks, motion, first, last, joining, text, cycle)
+
+    def _spindle_at_start(self, operation: Operation) -> SpindleOn | None:
+        """What the spindle does at the first row; None: nobody said so."""
+        said = [event for event in operation.events if isinstance(event, SpindleOn) and event.row == 0]
+        return said[-1] if said else self._blocks.spindle
+
+    def _spindle_again(self, operation: Operation) -> list[WordEvent]:
+        """The last operation's end stopped the spindle: what was in force is said again unless something new is."""
+        said = any(isinstance(event, SpindleOn) and event.row == 0 for event in operation.events)
+        return [] if said or self._blocks.spindle is None else [replace(self._blocks.spindle, row=0)]
+
+    def _own_block(self, motion: Motion, event: Event) -> None:
+        """Events that are no words of a motion block."""
+        if isinstance(event, SpindleOn):
+            self._blocks.spindle = event
+            self._expand(SPINDLE_ON, spindle_values(self._program, event), motion)
+        elif isinstance(event, Dwell):
+            rpm = None if self._blocks.spindle is None else self._blocks.spindle.rpm
+            self._blocks.lines(self._family.dwell(event, rpm, self._control.number_formats(motion.three_axis)))
+        elif isinstance(event, Stop):
+            self._blocks.lines(self._family.stop(event, self._control.codes))
+        elif isinstance(event, Message):
+            self._blocks.lines(self._family.message(event))
+        elif isinstance(event, Insert):
+            self._blocks.lines([event.text])
+            self._blocks.writer.forget()  # nobody knows what the text has changed
+        elif isinstance(event, BlockSkip):
+            self._blocks.writer.skip_blocks(event.on)

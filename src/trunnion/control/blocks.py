@@ -1,0 +1,244 @@
+"""Motion blocks: rows become tables of words, and events that are words join them.
+
+In:     motions as they are written, row by row, with the events at them.
+Out:    blocks through the block writer; what is in force between them is kept here.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import BinaryIO
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.control.family import WordEvent
+from trunnion.control.program import Program, angle_counts, setting_of, words_of
+from trunnion.control.slides import Slides, inverse_time, slides_of
+from trunnion.errors import InputError, Problem
+from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
+from trunnion.plan import Manner, Motion
+from trunnion.toolpath import Coolant, Kind, Phase, SpindleOn
+
+_PHASE_TEXT = {
+    Phase.RAPID: "rapid",
+    Phase.APPROACH: "approach",
+    Phase.ENGAGE: "engage",
+    Phase.CUT: "cut",
+    Phase.STEPOVER: "stepover",
+    Phase.RETRACT: "retract",
+    Phase.DEPARTURE: "departure",
+    Phase.TRAVERSE: "traverse",
+}
+
+#: Manners in which X and Y of the program are across the tool.
+_LEVEL = (Manner.THREE_AXIS, Manner.TILTED)
+
+
+class Blocks:
+    """The motion blocks of one program.
+
+    writer   the block writer
+    spindle  what the spindle was last told, also where it has been stopped since; None before
+    coolant  its kind, as it was last told
+    height   of the tool along Z of the frame, at the last row written, mm
+    """
+
+    def __init__(self, program: Program, sink: BinaryIO, progress: Callable[[int], None]) -> None:
+        self.program = program
+        self.control = program.control
+        self.family = program.control.family
+        self.progress = progress
+        self._column = {k: c for c, k in enumerate(program.machine.rotary)}
+        self._rotary = (("primary", program.machine.primary), ("secondary", program.machine.secondary))
+        self._words = words_of(program, program.motions[0])
+        self.writer = BlockWriter(sink, self._words, self.control.numbers)
+        self.spindle: SpindleOn | None = None
+        self.coolant = "OFF"
+        self.height = 0.0
+        self._slides: Slides | None = None
+        self._feed_mode = ABSENT
+        rapid_feed = setting_of(program, "rapid_feed")
+        self.rapid_feed = self.count("feed", float(rapid_feed)) if rapid_feed else ABSENT
+
+    def slid(self, motion: Motion) -> Motion:
+        """A motion in the words of its manner: without TCP these are slides. What follows is of this motion."""
+        self._slides = None
+        if motion.manner is Manner.WITHOUT_TCP:
+            angle = self.control.number_formats(motion.three_axis)["angle"]
+            self._slides = slides_of(self.program.machine, motion, angle.decimals)
+            motion = self._slides.motion
+        return motion
+
+    def begin(self, motion: Motion, goes_on: bool) -> None:
+        """An operation begins, with its own formats of words; ``goes_on``: in another plane, and not from home."""
+        self._words = words_of(self.program, motion)
+        self.writer.use(self._words)
+        if not goes_on:
+            self.writer.forget()
+            for word, code in self.control.in_force.items():
+                self.writer.remember(word, code)
+        else:
+            self.writer.forget("X", "Y", "Z", "feed")
+        self._feed_mode = ABSENT
+
+    def rotary_stand(self, motion: Motion) -> None:
+        """Templates have placed the rotary axes for a motion's first row."""
+        for word, column in self._rotary:
+            self.writer.remember(
+                word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word, column)[0])
+            )
+
+    def use_feed_mode(self, mode: int) -> int:
+        """What F means from here on; where that changes, F is said again. Returns ``mode``."""
+        if mode != self._feed_mode:
+            self.writer.forget("feed")
+        self._feed_mode = mode
+        return mode
+
+    def lines(self, lines: Sequence[str]) -> None:
+        """Lines of text, none longer than the control reads; what goes on in the next line is one block with it."""
+        room = self.control.longest_line - ROOM_OF_NUMBER
+        for line in lines:
+            if len(line.encode()) > room:
+                what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"
+                raise InputError(Problem(self.program.file, 0, f"{what}: {line[:60]}…", "shorten the text"))
+        sign, blocks, goes_on = self.control.continued, list[str](), False
+        for line in lines:
+            blocks[len(blocks) - goes_on :] = [f"{blocks[-1]}\n{line}" if goes_on else line]
+            goes_on = bool(sign) and line.endswith(sign)
+        self.writer.lines(blocks)
+
+    def event_block(self, event: WordEvent) -> None:
+        """Words of an event in a block of their own."""
+        self.writer.table({word: np.array([code], np.int64) for word, code in self.event_words(event).items()})
+
+    def event_words(self, event: WordEvent) -> dict[str, int]:
+        """The words of an event that joins a motion block, as counts."""
+        if isinstance(event, SpindleOn):
+            self.spindle = event
+        elif isinstance(event, Coolant):
+            self.coolant = event.kind
+        words = self.family.event_words(event, self.control.codes, self.control.coolant)
+        return {word: self.count(word, value) for word, value in words.items()}
+
+    def count(self, word: str, value: float) -> int:
+        return int(counts(np.array([value]), self.writer.word(word).format.decimals)[0])
+
+    def block(self, words: Mapping[str, int]) -> None:
+        """One block of these words, as counts; nothing where all of them are in force."""
+        self.writer.table({word: np.array([count], np.int64) for word, count in words.items()})
+
+    def rows(self, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int) -> int:
+        """Write rows ``first`` to ``last``; returns the index of the phase text that was printed last."""
+        for start in range(first, last, CHUNK):
+            stop = min(start + CHUNK, last)
+            text = self._chunk(motion, start, stop, [e for e in joining if start <= e.row < stop], text)
+            self.progress(stop - start)
+        return text
+
+    def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[WordEvent], text: int) -> int:
+        moves, arcs, control = motion.operation.moves, motion.operation.arcs, self.control
+        part = slice(start, stop)
+        self.height = float(moves.tip[stop - 1, 2])
+        rapid = moves.kind[part] == Kind.RAPID
+        decimals = {word: self.writer.word(word).format.decimals for word in ("X", "feed")}
+        columns = {
+            word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
+        }
+        if motion.plane is None:  # in a plane the rotary axes stand where they were put
+            for word, axis in self._rotary:
+                columns[word] = self._angle_counts(motion.rotary[part, self._column[axis]], word, axis)
+        columns["feed"] = np.where(
+            rapid, self.rapid_feed, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"])
+        )
+        columns |= self.family.row_words(rapid, moves.per_rev[part], control.codes)
+        forced: dict[str, bool | Ints] = {}
+        if self._slides is not None:
+            forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
+        forced["feed"] = self._feed_anew(columns, rapid)
+        lines: dict[int, str] = {}
+        elsewhere = np.zeros(stop - start, np.bool_)
+        inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
+        if len(inside):
+            formats = {word.key: word.format for word in self._words}
+            words = self.family.arc_words(arcs, moves.tip, inside, control.codes, formats)
+            at = arcs.row[inside] - start
+            for word, column in words.columns.items():
+                columns.setdefault(word, np.full(stop - start, ABSENT, np.int64))[at] = column
+            for word, flag in words.forced.items():
+                every = np.zeros(stop - start, np.int64)
+                every[at] = flag
+                forced[word] = every | forced.get(word, 0)
+            lines = dict(zip(at.tolist(), words.lines or (), strict=False))
+            elsewhere = columns["X"] == ABSENT
+            for word in "XYZ":  # where an arc's end was said by other words, the next block says its own whole
+                forced[word] = np.concatenate(([0], elsewhere[:-1])).astype(np.int64) | forced.get(word, 0)
+        if start == 0 and rapid[0] and control.level_approach and motion.begins and motion.manner in _LEVEL:
+            self.block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
+        if start == 0:
+            self._join(columns, 0, self.edge())
+        for event in joining:
+            self._join(columns, event.row - start, self.event_words(event))
+        ids, texts = self.phase_texts()
+        wanted = ids[moves.phase[part]]
+        before = np.concatenate(([text], wanted[:-1]))
+        self.writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
+        if elsewhere[-1]:
+            self.writer.forget("X", "Y", "Z")
+        return int(wanted[-1])
+
+    def edge(self) -> dict[str, int]:
+        """The cutting edge, on controls that have any."""
+        return {"edge": int(setting_of(self.program, "edge"))} if "edge" in self.control.settings else {}
+
+    def _angle_counts(self, angle: Floats, word: str, column: int) -> Ints:
+        return angle_counts(self.program.machine, column, angle, self.writer.word(word).format.decimals)
+
+    def _words_of_slides(
+        self, slides: Slides, feed: Floats, part: slice, rapid: Flags, columns: dict[str, Ints]
+    ) -> dict[str, bool | Ints]:
+        """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
+
+        Returns which words are said though they may print as before: X in rapids, which without a slide would only
+        place the rotary axes.
+        """
+        turning = slides.turns[part] & ~rapid
+        word = self.writer.word("inverse_feed")
+        rate = np.full(len(feed), np.nan)
+        rate[turning] = inverse_time(slides.length[part][turning], feed[turning], word.format)[0]
+        columns["inverse_feed"] = counts(rate, word.format.decimals)
+        columns["feed"][turning] = ABSENT
+        columns["feed_mode"][turning] = self.control.codes["feed_inverse_time"]
+        for key, which in self._rotary:
+            jumps = slides.shortest[part, self._column[which]]
+            if jumps.any():  # which only controls do that have the word
+                columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
+                columns[key][jumps] = ABSENT
+        return {"X": rapid.astype(np.int64)}
+
+    def _feed_anew(self, columns: Mapping[str, Ints], rapid: Flags) -> Ints:
+        """(n,) 1 in the rows from which F means something else than before; there it is said, whatever its number."""
+        changes = np.zeros(len(rapid), np.int64)
+        cuts = np.flatnonzero(~rapid)
+        if len(cuts) and "feed_mode" in columns:
+            modes = columns["feed_mode"][cuts]
+            changes[cuts] = modes != np.concatenate(([self._feed_mode], modes[:-1]))
+            self._feed_mode = int(modes[-1])
+        return changes
+
+    def _join(self, columns: dict[str, Ints], row: int, words: Mapping[str, int]) -> None:
+        """Put words onto a row."""
+        for word, code in words.items():
+            column = columns.setdefault(word, np.full(len(columns["X"]), ABSENT, np.int64))
+            column[row] = code
+
+    def phase_texts(self) -> tuple[Ints, list[str]]:
+        """(9,) int64 index of the line for each ``Phase``, -1 for none, and the lines; equal lines share an index."""
+        texts = [self.control.phases.get(_PHASE_TEXT.get(phase, ""), "") for phase in Phase]
+        lines = list(dict.fromkeys(text for text in texts if text))
+        return np.array([lines.index(text) if text else -1 for text in texts], np.int64), lines
+
+    def back_in_force(self) -> None:
+        """Say again what the program start put in force, as far as the operation has changed it."""
+        columns = {word: np.array([code], np.int64) for word, code in self.control.in_force.items()}
+        if columns:
+            self.writer.table(columns)
