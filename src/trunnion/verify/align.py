@@ -21,6 +21,7 @@ from trunnion.toolpath import Kind
 from trunnion.verify.arcs import Arc, arc_of
 from trunnion.verify.between import follow
 from trunnion.verify.cycles import hole_rows, leads, made_in
+from trunnion.verify.points import Tilt
 from trunnion.verify.rapids import PLACES as PLACES
 from trunnion.verify.rapids import levels
 from trunnion.verify.rows import Rows
@@ -185,6 +186,7 @@ class _Matcher:
     def __init__(self, run: Run, wanted: Wanted, bend: float | None) -> None:
         self._run, self._wanted, self._bend = run, wanted, bend
         self._rows = points(run, wanted)
+        self._tilt = Tilt.of(run.machine)
         made = made_in(run)
         self._leads = leads(run, [hole.first - 1 for hole in made], made)
         limits = [part.allowed for part in wanted.parts]
@@ -322,8 +324,8 @@ class _Matcher:
         wanted = self._wanted
         near, bend = self._limits(j), math.radians(self._bend)
         way = follow(
-            is_.tip, is_.axis, self._run.kind[rows], wanted.tip(points), wanted.axis(points), wanted.kind(points), near,
-            part.allowed.tip, bend + 2.0 * near[1],
+            self._tilt, is_.tip, is_.axis, is_.joints, self._run.kind[rows], wanted.tip(points), wanted.axis(points),
+            wanted.kind(points), near, (part.allowed.tip, part.allowed.angle), bend + 2.0 * near[1],
         )  # fmt: skip
         nc, cl = rows[: way.motions], j + way.partner
         there = np.flatnonzero(way.there)
