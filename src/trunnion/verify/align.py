@@ -267,11 +267,15 @@ class _Matcher:
         return np.asarray(fits)
 
     def _repeats(self, j: int) -> bool:
-        """Whether a point may print as the one before it."""
+        """Whether a point may print as the one before it; an arc only if all of it does."""
         point = self._wanted.point(j)
-        if point.kind is Kind.ARC or j in self._wanted.firsts:
+        if j in self._wanted.firsts:
             return False
         tip, axis = self._limits(j)
+        if point.kind is Kind.ARC:
+            arc = arc_of(self._wanted, j)
+            if arc.sweep * arc.radius > 2.0 * tip:
+                return False
         before = self._wanted.point(j - 1)
         return bool(
             (np.abs(point.tip - before.tip) <= 2.0 * tip).all()
@@ -300,6 +304,8 @@ class _Matcher:
                 rows = rows[: turns_off[0]]
             tips = self._run.poses(rows).tip
             there = np.flatnonzero((np.abs(tips - arc.end) <= tip).all(axis=1))
+            if arc.radius > 4.0 * tip:  # on the way of more than one turn the end may be passed
+                there = there[np.abs(arc.fractions(tips)[there] - 1.0) * arc.sweep < np.pi]
             if len(there):
                 pieces = rows[: there[0]]
                 off = np.abs(arc.deviation(tips[: there[0]])).max(axis=1, initial=0.0)
