@@ -118,7 +118,7 @@ def places_only(run: Run, rows: Ints) -> Flags:
 def points(run: Run, wanted: Wanted) -> Rows:
     """Rows of a run that ought to answer to CL points, without those that make holes or lead to the first point."""
     rows = answers(run)
-    none = np.concatenate((hole_rows(made_in(run)), levels(run)))
+    none = np.concatenate((hole_rows(made_in(run, wanted.holes)), levels(run)))
     more = _taken_along(run, wanted)
     if not len(none) and not len(more):
         return rows
@@ -187,8 +187,8 @@ class _Matcher:
         self._run, self._wanted, self._bend = run, wanted, bend
         self._rows = points(run, wanted)
         self._tilt = Tilt.of(run.machine)
-        made = made_in(run)
-        self._leads = leads(run, [hole.first - 1 for hole in made], made)
+        made = made_in(run, wanted.holes)
+        self._leads = leads(run, [hole.first - k for hole in made for k in (1, 2, 3)], made)
         limits = [part.allowed for part in wanted.parts]
         self._near = np.array([(each.tip * 1.001 + 1e-9, np.radians(2.0 * each.angle) + 2e-7) for each in limits])
         self._n, self._m = len(self._rows), len(wanted)
