@@ -13,10 +13,10 @@ import numpy as np
 
 from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
-from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_of
-from trunnion.control import Control, Program, check_program, load_control, write_program
+from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
+from trunnion.control import Control, Division, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.files import whole
+from trunnion.files import Output, output
 from trunnion.machine import Machine, forward, load_machine
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
 from trunnion.plan.arcs import off_circle
@@ -46,19 +46,22 @@ def run(arguments: argparse.Namespace) -> int:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
     for target, files in targets.items():
-        with whole(target) as sink:
+        with output(target) as made:
+            division = division_of(settings, control, target, made)
             paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
             program, decisions = planned_program(
                 paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
             )
-            claim = write(program, sink, wishes)
+            claim = write(program, made.main, wishes, division)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
             said = decisions if wishes.explain else ()
-            prove(claim, paths, sink, target, again, arguments.report, said)
+            prove(claim, paths, made, target, again, arguments.report, said)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
+        for other in made.others:
+            print(f"{Path(target).with_name(other.name)}: a subprogram of {Path(target).name}", file=sys.stderr)
     return 0
 
 
@@ -133,6 +136,7 @@ class Claim:
     rows, operations  how many points and operations it has
     allowed           half the last digit that each operation prints
     settings          what was asked for besides the CL files
+    division          how it was divided into files; None: it is one
     """
 
     machine: Machine
@@ -140,27 +144,28 @@ class Claim:
     operations: int
     allowed: "list[Allowed]"
     settings: "Settings"
+    division: Division | None = None
 
 
-def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None) -> Claim:
+def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None, division: Division | None = None) -> Claim:
     """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for."""
     rows = sum(len(motion.operation.moves) for motion in program.motions)
     with progress("writing", rows, "points") as advance:
-        write_program(program, sink, advance)
+        write_program(program, sink, advance, division)
     operations = sum(motion.begins for motion in program.motions)
-    return Claim(program.machine, rows, operations, _allowed(program), _asked(program, wishes or Wishes()))
+    return Claim(program.machine, rows, operations, _allowed(program), _asked(program, wishes or Wishes()), division)
 
 
 def prove(
     claim: Claim,
     paths: Sequence[Toolpath],
-    sink: BinaryIO,
+    made: Output,
     target: str,
     again: Program | None = None,
     report: str | None = None,
     decisions: Sequence[Decision] = (),
 ) -> None:
-    """Read a program back, run it and compare it with its toolpaths; one line a check.
+    """Read a program back with its subprograms, run it and compare it with its toolpaths; one line a check.
 
     Parameters
     ----------
@@ -168,8 +173,8 @@ def prove(
         Of ``write``.
     paths
         What the program was made from.
-    sink
-        Of ``whole``: what is written can be read back under its name.
+    made
+        What was written.
     target
         What messages call the program.
     again
@@ -192,8 +197,8 @@ def prove(
         what = "it is written by --force, and nothing has been checked" + (": there is no report" if report else "")
         say([Problem(target, 0, what, severity=Severity.WARNING)])
         return
-    sink.flush()
-    run = run_program(Path(sink.name), claim.machine)
+    made.flush()
+    run = run_program(made.path, claim.machine, subprograms=made.others)
     found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
     found = replace(found, program="the program" if target == "-" else target)
     for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
@@ -211,9 +216,8 @@ def prove(
         raise Refused(Problem(paths[0].file, 0, what, "no program is written; --force writes it"))
     if failed and again is not None:
         notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
-        sink.seek(0)
-        sink.truncate()
-        write_program(replace(again, notices=[*again.notices, *notices]), sink)
+        made.begin_again()
+        write_program(replace(again, notices=[*again.notices, *notices]), made.main, division=claim.division)
 
 
 def _too_fast(found: "Verification") -> bool:
