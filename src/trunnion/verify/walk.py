@@ -16,9 +16,9 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine import Machine, forward
 from trunnion.reader import Orientation, Run, Stretch
 from trunnion.toolpath import Kind
