@@ -63,8 +63,9 @@ _NO_NUMBER = NumberFormat(0)
 FEEDS_WITHOUT_TCP = ("inverse_time",)
 
 #: From where a control goes to the next hole: the height of the last retract (whatever the next one needs above it is
-#: said before), or the retract height of the next hole itself.
-HOLES_FROM = ("above", "retract")
+#: said before), or the retract height of the next hole itself; or it draws back to where the tool stood when the cycle
+#: began, so that this has to be the retract height, and its G80 leaves no motion word in force.
+HOLES_FROM = ("above", "retract", "initial")
 
 PHASES = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 COOLANTS = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")

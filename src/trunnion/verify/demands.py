@@ -49,7 +49,7 @@ def order(case: Case) -> Check:
     count = len(pairs.missing)
     back = retreats(case.run, pairs.extra, max(part.allowed.tip for part in wanted.parts))
     lawful = {row for retreat in back for row in range(retreat.first, retreat.end)}
-    lawful |= leads(case.run, pairs.extra, made_in(case.run))
+    lawful |= leads(case.run, pairs.extra, made_in(case.run, wanted.holes))
     for retreat in back:
         text = f"draws back {retreat.distance:.3f} mm along the tool axis, turns, and comes back"
         told.append(case.place(retreat.first, retreat.distance, text))
