@@ -5,6 +5,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
@@ -118,7 +119,10 @@ def test_each_operation_can_be_entered_alone(
         assert rows is not None
         assert rows.sum() == len(alone), k
         for name in ("tip", "axis", "kind", "spindle", "tcp", "machine_frame"):
-            assert (getattr(whole, name)[rows] == getattr(alone, name)).all(), name
+            # An endless axis may stand some turns away from where it stands after other operations.
+            np.testing.assert_allclose(
+                getattr(whole, name)[rows], getattr(alone, name), rtol=0, atol=1e-9, err_msg=name
+            )
         at_work = ~alone.machine_frame & (alone.offset > 0)
         cuts = at_work & (alone.kind != 0)
         for name, count in {"offset": at_work, "edge": at_work, "feed": cuts, "feed_mode": cuts, "rpm": cuts}.items():
