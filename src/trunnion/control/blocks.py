@@ -48,6 +48,7 @@ class Blocks:
     height   of the tool along Z of the frame, at the last row written, mm
     largest  bytes that the rows of a file may come to; None: no matter how many
     full     is called where a file has no room for another row: it turns to the next one
+    comes_level  whether the tool goes to X and Y of an operation's first point before it goes down
     """
 
     def __init__(self, program: Program, sink: BinaryIO, progress: Callable[[int], None]) -> None:
@@ -62,6 +63,7 @@ class Blocks:
         self.spindle: SpindleOn | None = None
         self.coolant = "OFF"
         self.height = 0.0
+        self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
         self._again: dict[str, int] = {}
@@ -79,8 +81,13 @@ class Blocks:
             motion = self._slides.motion
         return motion
 
-    def begin(self, motion: Motion, goes_on: bool) -> None:
-        """An operation begins, with its own formats of words; ``goes_on``: in another plane, and not from home."""
+    def begin(self, motion: Motion, goes_on: bool, *, comes_level: bool) -> None:
+        """An operation begins, with its own formats of words.
+
+        ``goes_on``: in another plane, and not from home; ``comes_level``: from where the tool has been drawn back, so
+        that it goes to X and Y before it goes down, on controls that want it so.
+        """
+        self.comes_level = comes_level and self.control.level_approach and motion.manner in _LEVEL
         self._words = words_of(self.program, motion)
         self.writer.use(self._words)
         if not goes_on:
@@ -210,7 +217,7 @@ class Blocks:
             elsewhere = columns["X"] == ABSENT
             for word in "XYZ":  # where an arc's end was said by other words, the next block says its own whole
                 forced[word] = np.concatenate(([0], elsewhere[:-1])).astype(np.int64) | forced.get(word, 0)
-        if start == 0 and rapid[0] and control.level_approach and motion.begins and motion.manner in _LEVEL:
+        if start == 0 and rapid[0] and self.comes_level:
             self.block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
         if start == 0:
             self._join(columns, 0, self.edge())

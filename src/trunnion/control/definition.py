@@ -241,7 +241,9 @@ def load_control(own: Table) -> Control:
         plane_from_pose=table.flag("plane_from_pose", False),
         holes_from=table.text("holes_from", "above", one_of=HOLES_FROM),
         subprograms=_naming(table.table("subprograms")) if "subprograms" in table else None,
-        templates=_templates(table.table("templates"), family, "subprograms" in table),
+        templates=_templates(
+            table.table("templates"), family, table.flag("plane_from_pose", False), "subprograms" in table
+        ),
     )
     for lacking in dict.fromkeys(name for name in words if name not in {word.name for word in control.words}):
         table.problem("word", f"has no entry {lacking!r}, which programs of this family need", "write it")
@@ -349,11 +351,15 @@ def _naming(table: Table) -> Naming:
     return naming
 
 
-def _templates(table: Table, family: Family, subprograms: bool) -> dict[str, Template]:
-    """Those that every definition has, those of subprograms, and those of the kinds of operations that this one has
-    any for."""
+def _templates(table: Table, family: Family, plane_from_pose: bool, subprograms: bool) -> dict[str, Template]:
+    """Those that every definition has, those of subprograms, and those of the kinds of operations that it has any for.
+
+    Where a plane is taken from the rotary position, the tool may have to be drawn back before the next one.
+    """
     found = {}
-    kinds = [_of_kind(FIVE_AXIS), _of_kind(WITHOUT_TCP), *(_of_kind(plane, plane=True) for plane in family.PLANES)]
+    of_planes = ("approach", "plane_on", *(("draw_back",) if plane_from_pose else ()), "next_plane", "operation_end")
+    kinds = [_of_kind(kind, ("approach", "operation_end")) for kind in (FIVE_AXIS, WITHOUT_TCP)]
+    kinds += [_of_kind(plane, of_planes) for plane in family.PLANES]
     wanted = [name for names in ((SPINDLE_ON,), *kinds) if any(name in table for name in names) for name in names]
     for name in (*TEMPLATES, *(SUBPROGRAM if subprograms else ()), *wanted):
         text = table.text(name)
@@ -363,9 +369,8 @@ def _templates(table: Table, family: Family, subprograms: bool) -> dict[str, Tem
     return found
 
 
-def _of_kind(kind: str, plane: bool = False) -> tuple[str, ...]:
+def _of_kind(kind: str, parts: Sequence[str]) -> tuple[str, ...]:
     """The templates of a kind of operation that not every definition has."""
-    parts = ("approach", "plane_on", "next_plane", "operation_end") if plane else ("approach", "operation_end")
     return tuple(f"{part}_{kind}" for part in parts)
 
 
