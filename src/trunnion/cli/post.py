@@ -309,6 +309,7 @@ def _asked(program: Program, wishes: Wishes) -> "Settings":
         span=axis,
         span_tip=wishes.tip_tolerance if led else None,
         absolute=wishes.absolute,
+        top_feed=program.control.formats["feed"].five_axis.greatest,
         rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
     )
 

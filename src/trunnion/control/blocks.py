@@ -11,8 +11,8 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.family import WordEvent
-from trunnion.control.program import Program, angle_counts, setting_of, words_of
-from trunnion.control.slides import Slides, inverse_time, slides_of
+from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
+from trunnion.control.slides import Slides, feed_rule, feeds, slides_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
@@ -40,6 +40,7 @@ class Blocks:
     spindle  what the spindle was last told, also where it has been stopped since; None before
     coolant  its kind, as it was last told
     height   of the tool along Z of the frame, at the last row written, mm
+    comes_level  whether the tool goes to X and Y of an operation's first point before it goes down
     """
 
     def __init__(self, program: Program, sink: BinaryIO, progress: Callable[[int], None]) -> None:
@@ -54,6 +55,7 @@ class Blocks:
         self.spindle: SpindleOn | None = None
         self.coolant = "OFF"
         self.height = 0.0
+        self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
         rapid_feed = setting_of(program, "rapid_feed")
@@ -68,8 +70,13 @@ class Blocks:
             motion = self._slides.motion
         return motion
 
-    def begin(self, motion: Motion, goes_on: bool) -> None:
-        """An operation begins, with its own formats of words; ``goes_on``: in another plane, and not from home."""
+    def begin(self, motion: Motion, goes_on: bool, *, comes_level: bool) -> None:
+        """An operation begins, with its own formats of words.
+
+        ``goes_on``: in another plane, and not from home; ``comes_level``: from where the tool has been drawn back, so
+        that it goes to X and Y before it goes down, on controls that want it so.
+        """
+        self.comes_level = comes_level and self.control.level_approach and motion.manner in _LEVEL
         self._words = words_of(self.program, motion)
         self.writer.use(self._words)
         if not goes_on:
@@ -172,7 +179,7 @@ class Blocks:
             elsewhere = columns["X"] == ABSENT
             for word in "XYZ":  # where an arc's end was said by other words, the next block says its own whole
                 forced[word] = np.concatenate(([0], elsewhere[:-1])).astype(np.int64) | forced.get(word, 0)
-        if start == 0 and rapid[0] and control.level_approach and motion.begins and motion.manner in _LEVEL:
+        if start == 0 and rapid[0] and self.comes_level:
             self.block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
         if start == 0:
             self._join(columns, 0, self.edge())
@@ -196,21 +203,25 @@ class Blocks:
     def _words_of_slides(
         self, slides: Slides, feed: Floats, part: slice, rapid: Flags, columns: dict[str, Ints]
     ) -> dict[str, bool | Ints]:
-        """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
+        """Change the words of rows without TCP: the feed of blocks that turn, and the shorter way of endless axes.
 
         Returns which words are said though they may print as before: X in rapids, which without a slide would only
         place the rotary axes.
         """
         turning = slides.turns[part] & ~rapid
-        word = self.writer.word("inverse_feed")
-        rate = np.full(len(feed), np.nan)
-        rate[turning] = inverse_time(slides.length[part][turning], feed[turning], word.format)[0]
-        columns["inverse_feed"] = counts(rate, word.format.decimals)
-        columns["feed"][turning] = ABSENT
-        columns["feed_mode"][turning] = self.control.codes["feed_inverse_time"]
+        rule = feed_rule(self.control, settings_of(self.program))
+        key = "inverse_feed" if rule == "inverse_time" else "feed"
+        form = self.writer.word(key).format
+        rate = counts(np.where(turning, feeds(slides.at(part), feed, rule, form)[0], np.nan), form.decimals)
+        if rule == "inverse_time":
+            columns["feed"][turning] = ABSENT
+            columns["feed_mode"][turning] = self.control.codes["feed_inverse_time"]
+            columns[key] = rate
+        else:
+            columns[key][turning] = rate[turning]
         for key, which in self._rotary:
             jumps = slides.shortest[part, self._column[which]]
-            if jumps.any():  # which only controls do that have the word
+            if jumps.any() and not self.control.shorter_way:  # which only controls do that have the word
                 columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
                 columns[key][jumps] = ABSENT
         return {"X": rapid.astype(np.int64)}

@@ -54,8 +54,9 @@ AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
 #: The format of words that print no number.
 _NO_NUMBER = NumberFormat(0)
 
-#: How feeds can be said where nobody holds the tip.
-FEEDS_WITHOUT_TCP = ("inverse_time",)
+#: How feeds can be said where nobody holds the tip and rotary axes turn: as the time of each block; or as an F that
+#: counts the way of all axes together, a degree as a millimetre.
+FEEDS_WITHOUT_TCP = ("inverse_time", "all_axes")
 
 #: From where a control goes to the next hole: the height of the last retract (whatever the next one needs above it is
 #: said before), or the retract height of the next hole itself; or it draws back to where the tool stood when the cycle
@@ -103,6 +104,7 @@ class Control:
     helices           it can be told circles that rise, and more than one turn
     tcp               it can hold the tip of the tool while rotary axes turn
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
+    shorter_way       endless axes go the shorter way, so that none goes past the end of the turn that it displays
     own_blocks        spindle, coolant and radius compensation stand in blocks of their own
     level_approach    where the tool has been drawn back, it goes to its place in X and Y first, then in Z
     plane_from_pose   a tilted plane is the one on which the tool stands: its zero is the work offset's, its axes are
@@ -131,6 +133,7 @@ class Control:
     helices: bool
     tcp: bool
     feed_without_tcp: str
+    shorter_way: bool
     own_blocks: bool
     level_approach: bool
     plane_from_pose: bool
@@ -225,11 +228,12 @@ def load_control(own: Table) -> Control:
         plane_along_machine=table.text("plane_x", "program", one_of=("program", "machine")) == "machine",
         tcp=table.flag("tcp", True),
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
+        shorter_way=table.flag("shorter_way", False),
         own_blocks=table.flag("own_blocks", False),
         level_approach=table.flag("level_approach", False),
         plane_from_pose=table.flag("plane_from_pose", False),
         holes_from=table.text("holes_from", "above", one_of=HOLES_FROM),
-        templates=_templates(table.table("templates"), family),
+        templates=_templates(table.table("templates"), family, table.flag("plane_from_pose", False)),
     )
     for lacking in dict.fromkeys(name for name in words if name not in {word.name for word in control.words}):
         table.problem("word", f"has no entry {lacking!r}, which programs of this family need", "write it")
@@ -329,10 +333,15 @@ def _arcs(table: Table) -> _Arcs:
     return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices}
 
 
-def _templates(table: Table, family: Family) -> dict[str, Template]:
-    """Those that every definition has, and those of the kinds of operations that this one has any for."""
+def _templates(table: Table, family: Family, plane_from_pose: bool) -> dict[str, Template]:
+    """Those that every definition has, and those of the kinds of operations that this one has any for.
+
+    Where a plane is taken from the rotary position, the tool may have to be drawn back before the next one.
+    """
     found = {}
-    kinds = [_of_kind(FIVE_AXIS), _of_kind(WITHOUT_TCP), *(_of_kind(plane, plane=True) for plane in family.PLANES)]
+    of_planes = ("approach", "plane_on", *(("draw_back",) if plane_from_pose else ()), "next_plane", "operation_end")
+    kinds = [_of_kind(kind, ("approach", "operation_end")) for kind in (FIVE_AXIS, WITHOUT_TCP)]
+    kinds += [_of_kind(plane, of_planes) for plane in family.PLANES]
     wanted = [name for names in ((SPINDLE_ON,), *kinds) if any(name in table for name in names) for name in names]
     for name in (*TEMPLATES, *wanted):
         text = table.text(name)
@@ -342,9 +351,8 @@ def _templates(table: Table, family: Family) -> dict[str, Template]:
     return found
 
 
-def _of_kind(kind: str, plane: bool = False) -> tuple[str, ...]:
+def _of_kind(kind: str, parts: Sequence[str]) -> tuple[str, ...]:
     """The templates of a kind of operation that not every definition has."""
-    parts = ("approach", "plane_on", "next_plane", "operation_end") if plane else ("approach", "operation_end")
     return tuple(f"{part}_{kind}" for part in parts)
 
 
