@@ -18,6 +18,7 @@ from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set
 from trunnion.cli.verify import check_report
 from trunnion.cli.verify import report as write_report
 from trunnion.control import Control, Division, Program, check_program, load_control, write_program
+from trunnion.control.standing import inside_limits
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import Growing, Output, output
 from trunnion.machine import Machine, forward, load_machine
@@ -285,6 +286,8 @@ def _allowed(program: Program) -> list[Allowed]:
         elif motion.plane is not None:
             turning = control.number_formats(three_axis=False)["plane_angle"].decimals
             tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
+            if inside_limits(machine, motion, turning) is not motion:
+                tilt += 1.5 * 10.0**-turning
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
         if "arc_angle" in half:
             tip += _by_angles(motion, half["X"], half["arc_angle"])

@@ -18,7 +18,7 @@ from trunnion.control.family import WordEvent
 from trunnion.control.hole_blocks import write_holes
 from trunnion.control.printed import Held, Printed, spindle_values
 from trunnion.control.program import Program, kind_of
-from trunnion.control.standing import carried_along, on_its_pose
+from trunnion.control.standing import carried_along, inside_limits, on_its_pose
 from trunnion.control.subprograms import Division, Files
 from trunnion.control.template import Value
 from trunnion.nc import counts
@@ -72,11 +72,12 @@ def write_program(
 
 
 def _on_poses(program: Program) -> Program:
-    """The program with the planes that its control takes from the rotary axes, where it does so."""
-    if not program.control.plane_from_pose:
+    """The program with its tilted planes as they are for the digits that are printed."""
+    if all(motion.plane is None for motion in program.motions):
         return program
-    decimals = program.control.number_formats(three_axis=False)["angle"].decimals
-    motions = [m if m.plane is None else on_its_pose(program.machine, m, decimals) for m in program.motions]
+    settled, word = (on_its_pose, "angle") if program.control.plane_from_pose else (inside_limits, "plane_angle")
+    decimals = program.control.number_formats(three_axis=False)[word].decimals
+    motions = [m if m.plane is None else settled(program.machine, m, decimals) for m in program.motions]
     return replace(program, motions=motions)
 
 

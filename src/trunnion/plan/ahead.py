@@ -39,6 +39,32 @@ def beyond_words(machine: Machine, column: int, value: float) -> str:
     return f"axis {axis.name} would go to {value:.5f}, {word} its limit {limit:g} {unit}"
 
 
+def cure_words(machine: Machine, column: int, value: float, other: str = "") -> str:
+    """What puts an axis back within its limits; ``other`` says why the other pose does not."""
+    axis = machine.axes[column]
+    lacking = axis.low - value if value < axis.low else value - axis.high
+    if axis.is_rotary:
+        return f"tilt the workpiece by {lacking:.3f} degrees{other}, or post for another machine"
+    return f"move the workpiece so that {axis.name} has {lacking:.3f} mm more{other}, or tilt it"
+
+
+def out_of_reach_by(machine: Machine, axis: Floats) -> float:
+    """Degrees by which a tool axis (3,) lies outside of what the rotary axes reach.
+
+    The tool axis, the first rotary axis and the second are corners of a spherical triangle whose other two sides are
+    those between the rotary axes and from the second one to the spindle.
+    """
+    first, second = (np.array(machine.axes[column].direction) for column in machine.rotary)
+    spindle = np.array(machine.spindle_direction)
+    side, one, two = (_between(first, axis), _between(first, second), _between(second, spindle))
+    return max(abs(one - two) - side, side - min(one + two, 360.0 - one - two))
+
+
+def _between(a: Floats, b: Floats) -> float:
+    """Angle between two vectors, degrees."""
+    return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
+
+
 def dead_end(machine: Machine, moves: Moves, row: int, branch: int, pose: Floats, keep_slides: bool) -> DeadEnd | None:
     """Follow one branch from ``pose`` (2,), degrees, into ``row`` and on, until a limit is left or the cut ends."""
     low, high = limits_of(machine, keep_slides)

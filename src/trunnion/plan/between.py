@@ -22,7 +22,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.machine import Machine, forward, slide_positions
-from trunnion.plan.ahead import beyond_words
+from trunnion.plan.ahead import beyond_words, cure_words
 from trunnion.plan.arcs import arc_pieces, lines_for_arcs, turned_evenly
 from trunnion.plan.motion import Decision, Manner, Motion, Why
 from trunnion.plan.rows import with_copies
@@ -366,5 +366,6 @@ def _beyond(
     for row in np.unique(rows[found])[:_NAMED].tolist():
         k = int(found[np.argmax(rows[found] == row)])
         column = int(np.argmax(outside[k]))
-        what = f"on the way to this point {beyond_words(machine, column, float(joints[k, column]))}"
-        yield Problem(file, int(operation.moves.line[row]), what, "tilt or move the workpiece")
+        value = float(joints[k, column])
+        what = f"on the way to this point {beyond_words(machine, column, value)}"
+        yield Problem(file, int(operation.moves.line[row]), what, cure_words(machine, column, value))

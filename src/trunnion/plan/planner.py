@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
-from trunnion.plan.ahead import beyond_words
+from trunnion.plan.ahead import beyond_words, cure_words, out_of_reach_by
 from trunnion.plan.arcs import arcs_about_tool, flat_arcs, lines_for_arcs, plain_arcs
 from trunnion.plan.between import check_without_tcp, with_points
 from trunnion.plan.clearance import Clearance
@@ -268,18 +268,15 @@ def _row_problem(file: str, moves: Moves, poses: Poses, machine: Machine, code: 
     if code == OUT_OF_REACH:
         i, j, k = moves.axis[row]
         what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
-        return Problem(*place, what, "tilt the workpiece or use a machine that reaches it")
+        lacking = f"{out_of_reach_by(machine, moves.axis[row]):.3f} degrees"
+        return Problem(*place, what, f"tilt the workpiece by {lacking}, or post for a machine that reaches it")
     if code == BLOCKED:
         ways = f"{pose_words(machine, poses.rotary[row - 1])} to {pose_words(machine, poses.rotary[row])}"
         what = f"the rotary axes must turn over within one step of the cut, {ways}, and no pose serves both its ends"
         return Problem(*place, what, "output the toolpath with points nearer to each other, or tilt the workpiece")
     value = float(poses.beyond[row])
-    axis = machine.axes[code - 1]
-    lacking = axis.low - value if value < axis.low else value - axis.high
-    what, other = beyond_words(machine, code - 1, value), _other_pose(machine, moves, poses, row)
-    if axis.is_rotary:
-        return Problem(*place, what, f"tilt the workpiece by {lacking:.3f} degrees{other}, or post for another machine")
-    return Problem(*place, what, f"move the workpiece so that {axis.name} has {lacking:.3f} mm more{other}, or tilt it")
+    cure = cure_words(machine, code - 1, value, _other_pose(machine, moves, poses, row))
+    return Problem(*place, beyond_words(machine, code - 1, value), cure)
 
 
 def _other_pose(machine: Machine, moves: Moves, poses: Poses, row: int) -> str:
