@@ -20,8 +20,9 @@ from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = (
-    "line", "arc", "helix", "arc_angle", "arc_rise", "counterclockwise", "clockwise",
-    "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant", "feed_mode", "call",
+    "line", "vector_line", "axis_x", "axis_y", "axis_z", "arc", "helix", "arc_angle", "arc_rise",
+    "counterclockwise", "clockwise", "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant",
+    "feed_mode", "call",
 )  # fmt: skip
 
 CODES: tuple[str, ...] = (
@@ -37,6 +38,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "plane_solution": ("SEQ", "SYM"),
     "tcpm": ("m128", "function"),
     "rotary_feed": ("degrees", "tip"),
+    "orientation": ("angles", "vector"),
 }
 
 _VECTOR: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
@@ -212,6 +214,8 @@ def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Val
     SPA, SPB and SPC turn about fixed axes X, then Y, then Z: the same as about Z, the new Y and the newest X.
     """
     on, off = _TCPM[str(settings["tcpm"])]
+    if settings["orientation"] == "vector":
+        on = on.replace("PATHCTRL AXIS", "PATHCTRL VECTOR")
     low, high = _corners(str(settings.get("blank") or "")) or (None, None)
     found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
     at_tip = settings["rotary_feed"] == "tip"
