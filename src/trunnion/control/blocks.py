@@ -159,8 +159,9 @@ class Blocks:
         )
         columns |= self.family.row_words(rapid, moves.per_rev[part], control.codes)
         if by_vector and any(word.key == VECTOR_LINE for word in self._words):
-            columns |= {VECTOR_LINE: np.ones(stop - start, np.int64), "line": np.full(stop - start, ABSENT)}
-            forced |= dict.fromkeys("XYZ", np.ones(stop - start, np.int64))
+            said = columns[AXIS_VECTOR[0]] != ABSENT
+            columns |= {VECTOR_LINE: np.where(said, 1, ABSENT), "line": np.where(said, ABSENT, columns["line"])}
+            forced |= dict.fromkeys("XYZ", said.astype(np.int64))
         if self._slides is not None:
             forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
         forced["feed"] = self._feed_anew(columns, rapid)
@@ -199,13 +200,20 @@ class Blocks:
         return int(wanted[-1])
 
     def _axis_words(self, motion: Motion, part: slice) -> dict[str, Ints]:
-        """The tool axis of rows as a vector, by where the rotary axes stand, however they lean."""
+        """The tool axis of rows as a vector, by where the rotary axes stand, however they lean.
+
+        At the first row they were placed already; a rounded vector near the pole would turn them again.
+        """
         machine = self.program.machine
         joints = np.zeros((part.stop - part.start, 5))
         joints[:, list(machine.rotary)] = motion.rotary[part]
         axis = forward(machine, joints)[1]
         decimals = self.writer.word(AXIS_VECTOR[0]).format.decimals
-        return {word: counts(np.ascontiguousarray(axis[:, c]), decimals) for c, word in enumerate(AXIS_VECTOR)}
+        said = np.arange(part.start, part.stop) > 0
+        return {
+            word: np.where(said, counts(np.ascontiguousarray(axis[:, c]), decimals), ABSENT)
+            for c, word in enumerate(AXIS_VECTOR)
+        }
 
     def edge(self) -> dict[str, int]:
         """The cutting edge, on controls that have any."""
