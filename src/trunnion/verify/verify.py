@@ -171,10 +171,8 @@ def _tip(case: Case, off: Off) -> Check:
 
 
 def _ragged(arc: Arc) -> float:
-    """By how much the radius at an arc's end differs from that at its start, mm, where that is rounding."""
-    arm = arc.end - arc.centre
-    arm = arm - (arm @ arc.normal) * arc.normal
-    return min(abs(float(np.linalg.norm(arm)) - arc.radius), 1e-3)
+    """By how much an arc's end is off its circle, or off its start where it is a full one, mm, if that is rounding."""
+    return min(arc.open, 1e-3)
 
 
 def _axis(case: Case, off: Off, believed: Believed) -> Check:
