@@ -32,13 +32,15 @@ def run(arguments: argparse.Namespace) -> int:
     settings = dict(arguments.settings)
     _check_settings(settings, target_control, arguments.to_cl)
     target_machine = set_up(target_machine, settings)
+    given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
+    machine = set_up(machine, {key: value for key, value in given.items() if value})
     wishes = wishes_of(settings, target_control)
     target = _target(arguments, target_control)
     with output(target) as made:
         division = division_of(settings, target_control, target, made)
         settings = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
         converted = _read(arguments, machine, control)
-        carried = _carried(converted.settings, target_control, arguments.file) | settings
+        carried = _carried(converted.settings, control, target_control, arguments.file) | settings
         if "tool" in settings and "tool_call" not in settings:
             carried.pop("tool_call", None)
         operations = converted.toolpath.operations
@@ -88,12 +90,16 @@ def _read(arguments: argparse.Namespace, machine: Machine, control: Control) -> 
     return converted
 
 
-def _carried(settings: Mapping[str, str], control: Control, file: str) -> dict[str, str]:
-    """The program's settings that a control has; the others are named."""
-    for key in sorted(settings.keys() - control.settings.keys()):
+def _carried(settings: Mapping[str, str], control: Control, target: Control, file: str) -> dict[str, str]:
+    """The program's settings that mean the same on the other control; the others are named."""
+    from trunnion.convert import carried_over
+
+    carried = carried_over(settings, control, target)
+    for key in sorted(settings.keys() - carried.keys()):
         what = f"{key} is {settings[key]!r}, which is not carried over"
-        say([Problem(file, 0, what, f"{control.name} has no such setting", Severity.WARNING)])
-    return {key: value for key, value in settings.items() if key in control.settings}
+        why = f"{target.name} has no such setting" if key not in target.settings else f"say it as {target.name} does"
+        say([Problem(file, 0, what, why, Severity.WARNING)])
+    return carried
 
 
 def _say_some(problems: Sequence[Problem]) -> None:

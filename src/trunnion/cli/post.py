@@ -37,6 +37,9 @@ from trunnion.verify import (
     verify,
 )
 
+#: A turn of the rotary axes turns the tool axis by no less than this part of it, however near the pole.
+_LEAST_LEVER = 1e-3
+
 
 def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     """Post every CL file; their toolpaths come one after the other."""
@@ -272,7 +275,9 @@ def _allowed(program: Program) -> list[Allowed]:
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
-        tip, angle = half["X"], max(half["primary"], half["secondary"]) + 1e-8  # near a pole angles are noisy
+        tip, angle = half["X"], max(half["primary"], half["secondary"])
+        # Near a pole angles are noisy, and the check takes the ways of the tool axis for straight.
+        angle += 1e-8 + angle * math.radians(angle) / _LEAST_LEVER
         if motion.plane is not None and control.plane_from_pose:
             # Places are worked out for the plane as it is printed; only circles stay in it that are not quite in it.
             widest = float(motion.operation.arcs.radius.max(initial=0.0))
@@ -330,7 +335,7 @@ def _lever(motion: Motion, machine: Machine) -> float:
         joints[k + 1, column] += step
     _, axis = forward(machine, joints)
     ways = (axis[1:] - axis[0]) / math.radians(step)
-    return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), 1e-3)
+    return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), _LEAST_LEVER)
 
 
 def _asked(program: Program, wishes: Wishes) -> Settings:
