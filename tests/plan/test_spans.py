@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
@@ -211,6 +212,17 @@ def test_a_turn_in_the_pole_is_cut_into_pieces_at_rest() -> None:
     upright = np.abs(spans.axis[:, 2] - 1.0) < 1e-9
     assert upright.sum() > 50
     assert np.linalg.norm(spans.tip[upright], axis=1).max() < 1e-3
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_short_way_under_a_turning_tool_keeps_the_tip_where_it_goes_back_along_its_line(name: str) -> None:
+    model = machine(name)
+    tip = np.array([[10.15, 20.395, 0.354], [10.15, 20.395, 1.314]])
+    axis = np.array([[0.0, -0.347, 1.0], [0.0, 0.597, 1.0]])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    rotary = axes_of(model, tip, axis)
+    spans = divide(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.001, axis_tolerance=0.5)
+    assert off(model, tip, axis, spans, tcp=False)[0] <= 0.001
 
 
 def test_rows_that_are_not_among_those_stay_as_they_are() -> None:

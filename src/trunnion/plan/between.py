@@ -44,7 +44,7 @@ _SHARES: Final = np.linspace(0.0, 1.0, 65)
 _PIECES: Final = 50_000
 
 #: Share of a tolerance that is used, as in ``trunnion.plan.spans``.
-_USED: Final = 0.97
+_USED: Final = 0.96
 
 #: Places that are named one by one.
 _NAMED: Final = 5

@@ -22,21 +22,20 @@ from trunnion.machine.chain import Chain, chain_row, pack_chain
 from trunnion.machine.inverse import POLE, branch_angles, solve_slides, solve_tilt
 
 #: Share of a tolerance that is used: the samples within a span miss the worst place by less than the rest.
-_USED: Final = 0.97
+_USED: Final = 0.96
 
-#: Where a span that turns but little is looked at: what it is off by is nearly a curve of the third degree. Three
-#: places miss its worst by a fifteenth at most, and all seven by less than the rest of the tolerance.
-_THREE: Final = np.array([0.25, 0.5, 0.75])
-_FOUR_MORE: Final = np.array([0.125, 0.375, 0.625, 0.875])
-_SURE: Final = 0.9
+#: Where a span is looked at first, closer together towards its ends: there the tip may go back along its line. Where
+#: not so much is off, that is all: in between it is no more than two thirds above it.
+_FIRST: Final = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 6) / 6.0)
+_SURE: Final = 0.6
 
-#: Where one that turns more is looked at; and, if nothing is wrong there, again: closer together towards its ends,
-#: where a pole nearby bends it most.
-_FIVE: Final = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 6) / 6.0)
+#: Where it is looked at again if it turns but little, so that what it is off by is nearly a curve of the third degree;
+#: and if it turns more, where a pole nearby bends it most.
+_MORE: Final = np.array([0.03, 0.125, 0.19, 0.375, 0.625, 0.81, 0.875, 0.97])
 _CLOSE: Final = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 32) / 32.0)
 
 #: As far as this a rotary axis turns but little within a span, degrees.
-_LITTLE: Final = 5.0
+_LITTLE: Final = 3.0
 
 #: Sine of the angle between the two solutions of the second axis below which they are one.
 _ONE: Final = 1e-9
@@ -373,12 +372,10 @@ def _error(
 ) -> float:
     """How far the tool is off between two axis positions, as a share of what is allowed: as often as it is needed."""
     few = abs(end[columns[0]] - begin[columns[0]]) < _LITTLE and abs(end[columns[1]] - begin[columns[1]]) < _LITTLE
-    worst = _seen_error(chain, begin, end, first, last, at, look, allowed, _THREE if few else _FIVE, work)
+    worst = _seen_error(chain, begin, end, first, last, at, look, allowed, _FIRST, work)
     if worst > 1.0 or (few and worst < _SURE):
         return worst
-    return max(
-        worst, _seen_error(chain, begin, end, first, last, at, look, allowed, _FOUR_MORE if few else _CLOSE, work)
-    )
+    return max(worst, _seen_error(chain, begin, end, first, last, at, look, allowed, _MORE if few else _CLOSE, work))
 
 
 @njit(cache=True)
@@ -489,7 +486,7 @@ def _turn_pieces(
         for k in range(2):
             rotary[k] = begin[columns[k]] + (end[columns[k]] - begin[columns[k]]) / pieces
         _place(packed, columns, tip, rotary, joints)
-        error = _seen_error(chain, begin, joints, part, part, at, look, allowed, _FIVE, work)
+        error = _seen_error(chain, begin, joints, part, part, at, look, allowed, _FIRST, work)
         if not error > 1.0:
             break
         # what a piece is off by shrinks with the square of its length
