@@ -116,7 +116,7 @@ class _Author:
             if tool != self._held.call:
                 self._expand("tool_change" if self._held.call else "first_tool", values, motion)
             self._held = Held(tool, motion.operation.tool.name)
-        self._blocks.begin(motion, self._goes_on(motion))
+        self._blocks.begin(motion, str(values["tool"]), self._goes_on(motion))
         self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
         if motion.plane is not None:
             self._expand(f"plane_on_{kind}", values, motion)

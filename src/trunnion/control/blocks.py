@@ -11,7 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.family import WordEvent
-from trunnion.control.program import Program, angle_counts, setting_of, words_of
+from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
 from trunnion.control.slides import Slides, inverse_time, slides_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
@@ -56,6 +56,8 @@ class Blocks:
         self.height = 0.0
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
+        self._tool = ""
+        self._goes_on = False
         rapid_feed = setting_of(program, "rapid_feed")
         self.rapid_feed = self.count("feed", float(rapid_feed)) if rapid_feed else ABSENT
 
@@ -68,8 +70,19 @@ class Blocks:
             motion = self._slides.motion
         return motion
 
-    def begin(self, motion: Motion, goes_on: bool) -> None:
-        """An operation begins, with its own formats of words; ``goes_on``: in another plane, and not from home."""
+    def begin(self, motion: Motion, tool: str, goes_on: bool) -> None:
+        """An operation begins, with its own formats of words.
+
+        Parameters
+        ----------
+        motion
+            What of it is made in one plane.
+        tool
+            How the program calls the tool.
+        goes_on
+            In another plane than before, and not from home.
+        """
+        self._tool, self._goes_on = tool, goes_on
         self._words = words_of(self.program, motion)
         self.writer.use(self._words)
         if not goes_on:
@@ -172,10 +185,10 @@ class Blocks:
             elsewhere = columns["X"] == ABSENT
             for word in "XYZ":  # where an arc's end was said by other words, the next block says its own whole
                 forced[word] = np.concatenate(([0], elsewhere[:-1])).astype(np.int64) | forced.get(word, 0)
-        if start == 0 and rapid[0] and control.level_approach and motion.begins and motion.manner in _LEVEL:
+        if start == 0 and rapid[0] and control.level_approach and not self._goes_on and motion.manner in _LEVEL:
             self.block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
         if start == 0:
-            self._join(columns, 0, self.edge())
+            self._join(columns, 0, self.first_words(motion))
         for event in joining:
             self._join(columns, event.row - start, self.event_words(event))
         ids, texts = self.phase_texts()
@@ -186,9 +199,10 @@ class Blocks:
             self.writer.forget("X", "Y", "Z")
         return int(wanted[-1])
 
-    def edge(self) -> dict[str, int]:
-        """The cutting edge, on controls that have any."""
-        return {"edge": int(setting_of(self.program, "edge"))} if "edge" in self.control.settings else {}
+    def first_words(self, motion: Motion) -> dict[str, int]:
+        """What the control is told of the tool with the first motion, as counts."""
+        words = self.family.first_words(motion, self._tool, settings_of(self.program))
+        return {word: self.count(word, value) for word, value in words.items()}
 
     def _angle_counts(self, angle: Floats, word: str, column: int) -> Ints:
         return angle_counts(self.program.machine, column, angle, self.writer.word(word).format.decimals)
@@ -210,7 +224,7 @@ class Blocks:
         columns["feed_mode"][turning] = self.control.codes["feed_inverse_time"]
         for key, which in self._rotary:
             jumps = slides.shortest[part, self._column[which]]
-            if jumps.any():  # which only controls do that have the word
+            if jumps.any() and not self.control.rolls_over:  # the others have the word
                 columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
                 columns[key][jumps] = ABSENT
         return {"X": rapid.astype(np.int64)}

@@ -58,8 +58,9 @@ _NO_NUMBER = NumberFormat(0)
 FEEDS_WITHOUT_TCP = ("inverse_time",)
 
 #: From where a control goes to the next hole: the height of the last retract (whatever the next one needs above it is
-#: said before), or the retract height of the next hole itself.
-HOLES_FROM = ("above", "retract")
+#: said before); the retract height of the next hole itself; or the height at which the cycle finds the tool, to which
+#: it is drawn back, too.
+HOLES_FROM = ("above", "retract", "start")
 
 PHASES = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 COOLANTS = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
@@ -100,6 +101,8 @@ class Control:
     arcs_about_z      only arcs about Z can be said; others become lines
     plane_along_machine  X of a tilted plane is that of the machine once it has turned, unless the CL file has its own
     helices           it can be told circles that rise, and more than one turn
+    turns             it can be told circles and helices of more than one turn
+    rolls_over        an endless rotary axis that displays one turn goes the shorter way by itself
     tcp               it can hold the tip of the tool while rotary axes turn
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
     own_blocks        spindle, coolant and radius compensation stand in blocks of their own
@@ -128,6 +131,8 @@ class Control:
     arcs_about_z: bool
     plane_along_machine: bool
     helices: bool
+    turns: bool
+    rolls_over: bool
     tcp: bool
     feed_without_tcp: str
     own_blocks: bool
@@ -171,6 +176,7 @@ class _Arcs(TypedDict):
     chord_tolerance: float
     arcs_about_z: bool
     helices: bool
+    turns: bool
 
 
 def library() -> Traversable:
@@ -222,6 +228,7 @@ def load_control(own: Table) -> Control:
         phases=_texts(table.table("phases"), PHASES),
         **_arcs(table.table("arcs")),
         plane_along_machine=table.text("plane_x", "program", one_of=("program", "machine")) == "machine",
+        rolls_over=table.flag("rolls_over", False),
         tcp=table.flag("tcp", True),
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
         own_blocks=table.flag("own_blocks", False),
@@ -324,8 +331,9 @@ def _by_method(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tup
 def _arcs(table: Table) -> _Arcs:
     tolerance = table.number("chord_tolerance", 0.001, above=0.0)
     about, helices = table.text("about", "XYZ", one_of=("XYZ", "Z")), table.flag("helices", True)
+    turns = table.flag("turns", True)
     table.finish()
-    return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices}
+    return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices, "turns": turns}
 
 
 def _templates(table: Table, family: Family) -> dict[str, Template]:

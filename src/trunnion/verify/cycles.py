@@ -195,10 +195,10 @@ def hole_rows(made: Sequence[Made]) -> Ints:
 def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
     """Which of the motions that answer to no CL point only lead to a hole.
 
-    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, or,
-    from home or after a turn, to the hole itself.
+    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was; or,
+    from home or after a turn, to the hole itself; or across the tool axis and then straight down to it.
     """
-    starts, approach = {hole.first for hole in made}, set(levels(run).tolist())
+    starts, approach, aside = {hole.first for hole in made}, set(levels(run).tolist()), set(extra)
     lawful = set()
     for row in extra:
         if row + 1 not in starts or run.kind[row] != Kind.RAPID or row == 0:
@@ -215,4 +215,20 @@ def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
         )
         if rises or (arrives and from_home):
             lawful.add(row)
+        elif arrives and row - 1 in aside and _comes_down(run, row):
+            lawful |= {row - 1, row}
     return lawful
+
+
+def _comes_down(run: Run, row: int) -> bool:
+    """Whether a row goes straight down where the one before it, a rapid, has gone at one height."""
+    if row < 2 or run.kind[row - 1] != Kind.RAPID:
+        return False
+    poses = run.poses(np.array([row - 2, row - 1, row]))
+    axis = poses.axis[2]
+    across, down = np.diff(poses.tip, axis=0)
+    steady = float(np.abs(poses.axis - axis).max()) < 1e-9
+    drop = -float(down @ axis)
+    return (
+        steady and abs(float(across @ axis)) < 1e-6 and drop > 0.0 and float(np.linalg.norm(down + drop * axis)) < 1e-6
+    )
