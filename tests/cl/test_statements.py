@@ -34,8 +34,9 @@ from trunnion.toolpath import (
 GO = "GOTO/0,0,0"
 
 
-def test_tool_path_names_operation_and_tool(read: Read) -> None:
-    toolpath = read("TOOL PATH/ROUGH 1, A,TOOL,END MILL,10\nGOTO/1,2,3\nEND-OF-PATH\n")
+@pytest.mark.parametrize("comma", [",", ", ", " ,\t"])
+def test_tool_path_names_operation_and_tool(read: Read, comma: str) -> None:
+    toolpath = read(f"TOOL PATH/ROUGH 1, A{comma}TOOL{comma}END MILL,10\nGOTO/1,2,3\nEND-OF-PATH\n")
     (operation,) = toolpath.operations
     assert (operation.name, operation.tool.name, operation.line) == ("ROUGH 1, A", "END MILL,10", 1)
 
@@ -64,6 +65,7 @@ def test_columns_are_read_only(body: Body) -> None:
     ("text", "tool"),
     [
         ("MILL,10.,1.,50.,2.,3.", Tool("MILL", "T1", 10, 1, 50, 2, 3)),
+        ("MILL,10.,1.,50.,2.,3.,4.,1.", Tool("MILL", "T1", 10, 1, 50, 2, 3)),
         ("MILL,10.,1.,50.,2.,3.,0,0,85.,0,0", Tool("MILL", "T1", 10, 1, 50, 2, 3, upper_radius=85)),
         ("DRILL,MILL,6.,0.,80.,118.,40.", Tool("DRILL", "T1", 6, 0, 80, tip_angle=118, flute_length=40)),
         ("TCUTTER,40.,1.,2.,50.,6.", Tool("TCUTTER", "T1", 40, 1, 50, flute_length=6, upper_radius=2)),

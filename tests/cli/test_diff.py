@@ -167,3 +167,13 @@ def test_a_tolerance_says_what_is_the_same(tmp_path: Path, capfd: pytest.Capture
     other = TEXT.replace("X47.2619 ", "X47.2629 ")
     assert diff(capfd, tmp_path, other, PROGRAM, "--tolerance", "0.0005")[0] == 1
     assert diff(capfd, tmp_path, other, PROGRAM, "--tolerance", "0.002")[0] == 0
+
+
+def test_programs_are_compared_with_the_subprograms_that_are_named(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    sub = tmp_path / "BLADE.SPF"
+    sub.write_text(TEXT.replace("M30", "M17"), encoding="utf-8")
+    text = 'EXTCALL("BLADE")\nM30\n'
+    assert diff(capfd, tmp_path, text, PROGRAM, "--to-with", str(sub))[0] == 0
+    assert diff(capfd, tmp_path, text, PROGRAM, "--with", str(sub))[0] == 1

@@ -51,6 +51,25 @@ def test_a_wrong_program_has_exit_code_1_and_names_both_lines(
     assert verify(capfd, wrong, "--cl", CL, "--tolerance", "0.2")[0] == 0
 
 
+def test_a_main_program_is_proven_with_its_subprogram_where_that_is_named(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    lines = PROGRAM.read_text(encoding="utf-8").splitlines()
+    sub, main_program = tmp_path / "BLADE.SPF", tmp_path / "main.mpf"
+    sub.write_text("\n".join([*lines[:-1], "M17"]), encoding="utf-8")
+    main_program.write_text('EXTCALL("BLADE.SPF")\nM30', encoding="utf-8")
+    code, out, _ = verify(capfd, main_program, "--cl", CL)
+    assert code == 1
+    assert f"{main_program}:1: unknown word or missing subprogram BLADE.SPF: it is not executed" in out
+    code, out, _ = verify(capfd, main_program, "--with", sub, "--cl", CL)
+    assert code == 0
+    wrong = sub.read_text(encoding="utf-8").replace("X47.2619 ", "X47.3619 ")
+    sub.write_text(wrong, encoding="utf-8")
+    code, out, _ = verify(capfd, main_program, "--with", sub, "--cl", CL)
+    assert code == 1
+    assert f"{main_program}:52 (N520), {CL}:20: BLADE.SPF: the tip is 0.100000 mm off" in out
+
+
 def test_what_the_cl_file_does_not_say_can_be_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     text = PROGRAM.read_text(encoding="utf-8")
     other = tmp_path / "other.mpf"

@@ -40,7 +40,9 @@ class Programs:
     def all(self, *lines: str) -> Converted:
         """The program as a whole."""
         (self.folder / "part.mpf").write_text("\n".join(lines) + "\nM30\n", encoding="utf-8")
-        return convert(run_program(self.folder / "part.mpf", MACHINE), CONTROL)
+        return convert(
+            run_program(self.folder / "part.mpf", MACHINE, subprograms=sorted(self.folder.glob("*.SPF"))), CONTROL
+        )
 
     def one(self, *lines: str) -> Operation:
         """Its only operation."""

@@ -46,6 +46,16 @@ def no_warnings() -> Iterator[None]:
         yield
 
 
+#: How subprograms are called in the tests, by what their control is called.
+_SUBPROGRAMS: Final = {"sinumerik": "*.[SM]PF", "heidenhain": "*.H", "linuxcnc": "*.ngc", "fanuc": "*.nc"}
+
+
+def beside(program: Path, family: str) -> list[Path]:
+    """The other programs of its folder, which it may call."""
+    pattern = _SUBPROGRAMS.get(family.split("_")[0])
+    return sorted(path for path in program.parent.glob(pattern) if path != program) if pattern else []
+
+
 def judge_program(
     data: bytes, folder: Path, key: str = "yl569", limit: int = LIMIT, family: str = "sinumerik_840d"
 ) -> Run | None:
@@ -54,7 +64,7 @@ def judge_program(
     path.write_bytes(data)
     try:
         with no_warnings():
-            run = run_program(path, machine(key), family=family, step_limit=limit)
+            run = run_program(path, machine(key), subprograms=beside(path, family), family=family, step_limit=limit)
     except InputError as error:
         _check_error(error, folder)
         return None

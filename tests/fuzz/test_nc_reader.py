@@ -246,4 +246,5 @@ def test_a_loop_before_a_long_tail_asks_for_no_room_that_it_does_not_need(folder
 
 def interpreter_run(path: Path, limit: int) -> Run:
     """Run a program of a folder."""
-    return SinumerikInterpreter(path, oracle.machine("yl569"), step_limit=limit, skip=False, shortest=None).run()
+    named = oracle.beside(path, "sinumerik_840d")
+    return SinumerikInterpreter(path, oracle.machine("yl569"), subprograms=named, step_limit=limit).run()

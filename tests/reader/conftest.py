@@ -37,7 +37,7 @@ def yl569() -> Machine:
 
 @pytest.fixture
 def run(tmp_path: Path, yl569: Machine) -> Runner:
-    """Run a text as a program; other files of its folder by name."""
+    """Run a text as a program; the files that it may call by name."""
 
     def runner(
         text: str | bytes, machine: Machine = yl569, files: dict[str, str] | None = None, **settings: object
@@ -46,6 +46,7 @@ def run(tmp_path: Path, yl569: Machine) -> Runner:
             (tmp_path / name).write_text(content, encoding="utf-8")
         program = tmp_path / "MAIN.MPF"
         program.write_bytes(text.encode() if isinstance(text, str) else text)
-        return run_program(program, machine, **settings)  # type: ignore[arg-type]
+        named = [tmp_path / name for name in files or {}]
+        return run_program(program, machine, subprograms=named, **settings)  # type: ignore[arg-type]
 
     return runner

@@ -221,7 +221,7 @@ def test_a_modal_macro_follows_every_motion(run: Runner) -> None:
     close(slides(got)[:, [0, 2]], [[1, 0], [1, 3], [1, 0], [2, 0], [2, 3], [2, 0], [3, 0]])
 
 
-def test_subprograms_of_the_file_and_of_the_folder(run: Runner) -> None:
+def test_subprograms_of_the_file_and_of_others_that_are_named(run: Runner) -> None:
     files = {"O0200.nc": "O0200\nG0 Y1.\nY0.\nM99\n"}
     got = fanuc(
         run,

@@ -96,7 +96,7 @@ SUB = {
         ("LOCAL\nX=R5", [3, 8]),
     ],
 )
-def test_subprograms_beside_the_program(run: Runner, text: str, expected: list[float]) -> None:
+def test_subprograms_that_are_named(run: Runner, text: str, expected: list[float]) -> None:
     result = run(text, files=SUB)
     assert result.findings == ()
     assert xs(result) == expected
@@ -107,15 +107,28 @@ def test_variables_of_a_subprogram_are_its_own(run: Runner) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["../SECRET", "..\\\\SECRET", "/etc/passwd", "SECRET", "LINK", "a/../../SECRET", "", "..", "N" * 300]
+    "name",
+    [
+        "../SECRET",
+        "..\\\\SECRET",
+        "/etc/passwd",
+        "SECRET",
+        "BESIDE",
+        "BESIDE.SPF",
+        "a/../../SECRET",
+        "",
+        "..",
+        "N" * 300,
+    ],
 )
-def test_nothing_outside_the_folder_is_ever_read(tmp_path: Path, yl569: Machine, name: str) -> None:
+def test_nothing_is_ever_read_that_was_not_named(tmp_path: Path, yl569: Machine, name: str) -> None:
     inner = tmp_path / "inner"
     inner.mkdir()
     (tmp_path / "SECRET.SPF").write_text("X99\nM17")
-    (inner / "LINK.SPF").symlink_to(tmp_path / "SECRET.SPF")
+    for beside in ("BESIDE.SPF", "NAMED.SPF"):
+        (inner / beside).write_text("X98\nM17")
     (inner / "MAIN.MPF").write_text(f'EXTCALL("{name}")\nX1')
-    result = run_program(inner / "MAIN.MPF", yl569)
+    result = run_program(inner / "MAIN.MPF", yl569, subprograms=[inner / "NAMED.SPF"])
     assert xs(result) == [1]
     assert "missing subprogram" in result.errors[0].text
 
@@ -206,11 +219,38 @@ def test_findings_after_a_subprogram_are_those_of_its_caller(run: Runner) -> Non
     assert [(f.line, f.file[-8:]) for f in result.findings] == [(1, "/L10.SPF"), (5, "MAIN.MPF")]
 
 
-def test_links_in_circles_lead_nowhere(tmp_path: Path, yl569: Machine) -> None:
+@pytest.mark.parametrize(
+    ("names", "what"),
+    [
+        (["LOOPY.SPF"], "LOOPY.SPF: error: is no file"),
+        (["NOWHERE.SPF"], "NOWHERE.SPF: error: is no file"),
+        (["folder"], "folder: error: is no file"),
+        (["notes.txt"], r"notes.txt: error: is no name of a subprogram; let it end in one of .SPF"),
+        (["ONE.SPF", "a/one.spf"], "a/one.spf: error: is called as .*/ONE.SPF is; name one of them"),
+    ],
+)
+def test_files_that_cannot_be_named(tmp_path: Path, yl569: Machine, names: list[str], what: str) -> None:
     (tmp_path / "LOOPY.SPF").symlink_to(tmp_path / "LOOPY.SPF")
-    (tmp_path / "MAIN.MPF").write_text("LOOPY\nX1")
-    result = run_program(tmp_path / "MAIN.MPF", yl569)
-    assert "missing subprogram LOOPY" in result.errors[0].text
+    for folder in ("folder", "a"):
+        (tmp_path / folder).mkdir()
+    for file in ("MAIN.MPF", "notes.txt", "ONE.SPF", "a/one.spf"):
+        (tmp_path / file).write_text("X1")
+    with pytest.raises(InputError, match=what):
+        run_program(tmp_path / "MAIN.MPF", yl569, subprograms=[tmp_path / name for name in names])
+
+
+def test_a_subprogram_goes_before_a_main_program_of_its_name(run: Runner) -> None:
+    assert xs(run("PART", files={"PART.MPF": "X1", "PART.SPF": "X2"})) == [2]
+
+
+def test_a_long_subprogram_leaves_no_seam_and_may_be_called_again(run: Runner) -> None:
+    body = "".join(f"X{k / 1000:.3f} Y{k % 7}\n" for k in range(30_000))
+    result = run("X-1\nLONG\nX-2\nLONG P2\nX-3", files={"LONG.SPF": body + "M17"})
+    assert result.findings == ()
+    once = list(range(30_000))
+    assert [round(1000 * x) for x in xs(result)] == [-1000, *once, -2000, *once, *once, -3000]
+    assert set(result.file[1:30_001].tolist()) == {1}
+    assert result.block[30_000] == 30_000
 
 
 def test_a_loop_over_all_r_parameters_is_none(run: Runner) -> None:

@@ -146,7 +146,7 @@ def test_subprograms_have_parameters_of_their_own_and_give_a_value_back(run: Run
     close(at(got, "XYZ"), [[30.0, 5.0, 1.0]])
 
 
-def test_a_subprogram_is_a_file_of_the_folder(run: Runner) -> None:
+def test_a_subprogram_is_a_file_that_is_named(run: Runner) -> None:
     file = {"Hop.ngc": "o<hop> sub\nG0 X#1\no<hop> endsub\n"}
     got = run("o<hop> call [3]\nG0 Y1\nM2\n", XYZAC, files=file)
     assert got.errors == ()

@@ -23,6 +23,13 @@ def _tolerance(text: str) -> float:
     return value
 
 
+def _subprograms(parser: argparse.ArgumentParser, whose: str, option: str = "--with", to: str = "subprograms") -> None:
+    parser.add_argument(
+        option, nargs="+", action="extend", default=[], metavar="NC", dest=to,
+        help=f"files of the subprograms that {whose} calls; no others are opened",
+    )  # fmt: skip
+
+
 def parse(argv: Sequence[str]) -> argparse.Namespace:
     """The command and its arguments; ``run`` is the function that carries it out.
 
@@ -66,6 +73,7 @@ def _verify(parser: argparse.ArgumentParser) -> None:
 
     parser.add_argument("file", metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
+    _subprograms(parser, "it")
     parser.add_argument(
         "--cl", action="append", default=[], metavar="CL",
         help="CL file that it was made from; may be repeated, in the order in which they are cut",
@@ -100,6 +108,8 @@ def _diff(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs=2, metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs the first program")
     parser.add_argument("--to-machine", metavar="NAME_OR_FILE", help="machine that runs the second one, if another")
+    _subprograms(parser, "the first program")
+    _subprograms(parser, "the second one", "--to-with", "to_subprograms")
     parser.add_argument(
         "--tolerance", type=_tolerance, default=0.001, metavar="MM",
         help="how far tips may be apart, and in degrees tool axes; 0.001",
@@ -112,6 +122,7 @@ def _convert(parser: argparse.ArgumentParser) -> None:
 
     parser.add_argument("file", metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that the program is for")
+    _subprograms(parser, "it")
     into = parser.add_mutually_exclusive_group(required=True)
     into.add_argument("--to-cl", action="store_true", help="write a CL file")
     into.add_argument("--to-machine", metavar="NAME_OR_FILE", help="write a program for this machine")

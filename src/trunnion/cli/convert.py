@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     settings = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
     target = _target(arguments, target_control)
     with whole(target) as sink:
-        converted = _read(arguments.file, machine, control, arguments.force)
+        converted = _read(arguments, machine, control)
         carried = _carried(converted.settings, target_control, arguments.file) | settings
         if "tool" in settings and "tool_call" not in settings:
             carried.pop("tool_call", None)
@@ -65,16 +65,17 @@ def _check_settings(settings: Mapping[str, str], control: Control, to_cl: bool) 
         raise InputError(Problem("--set", 0, "zero has no meaning in a CL file", "give it to trunnion post"))
 
 
-def _read(file: str, machine: Machine, control: Control, force: bool) -> "Converted":
+def _read(arguments: argparse.Namespace, machine: Machine, control: Control) -> "Converted":
     """The program as a toolpath; refuses one that was not understood."""
     from trunnion.convert import convert
     from trunnion.convert.said import COMPENSATION
     from trunnion.reader import run_program
 
-    run = run_program(Path(file), machine)
+    file = arguments.file
+    run = run_program(Path(file), machine, subprograms=[Path(each) for each in arguments.subprograms])
     problems = [Problem(finding.file, finding.line, finding.text, "", finding.severity) for finding in run.findings]
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
-    if errors and not force:
+    if errors and not arguments.force:
         count = f"{len(errors)} places are not understood, and nothing is written"
         raise Refused((*errors[:_PRINTED], Problem(file, 0, count, "--force converts what was understood")))
     _say_some([problem for problem in problems if not problem.what.startswith(COMPENSATION)])

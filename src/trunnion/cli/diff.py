@@ -15,7 +15,11 @@ def run(arguments: argparse.Namespace) -> int:
     second = load_machine(arguments.to_machine) if arguments.to_machine else first
     for machine in (first, second):
         reader_of(machine)
-    one, two = (run_program(Path(file), m) for file, m in zip(arguments.files, (first, second), strict=True))
+    named = [[Path(file) for file in files] for files in (arguments.subprograms, arguments.to_subprograms)]
+    one, two = (
+        run_program(Path(file), machine, subprograms=subprograms)
+        for file, machine, subprograms in zip(arguments.files, (first, second), named, strict=True)
+    )
     found = compare(one, two, arguments.tolerance)
     print(*found.lines(), sep="\n")
     return 0 if found.same else 1

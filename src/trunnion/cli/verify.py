@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     machine = set_up(machine, {key: value for key, value in given.items() if value})
     usual = _usual(machine)
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
-    done = run_program(Path(arguments.file), machine)
+    done = run_program(Path(arguments.file), machine, subprograms=[Path(file) for file in arguments.subprograms])
     found = verify(
         done,
         paths,

@@ -1,6 +1,6 @@
 """Which reader reads the programs of a machine."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
@@ -26,6 +26,7 @@ def run_program(
     path: Path | str,
     machine: Machine,
     *,
+    subprograms: Sequence[Path] = (),
     family: str | None = None,
     step_limit: int = STEPS,
     skip: bool = False,
@@ -36,7 +37,10 @@ def run_program(
     Parameters
     ----------
     path
-        The program. Subprograms are looked for in its folder, nowhere else.
+        The program.
+    subprograms
+        The files that it may call, by their names. No others are looked for: a call of one that is not here is an error
+        among ``Run.findings``.
     machine
         Three slides X, Y and Z, two rotary axes. Every tool has the length of ``machine.tool_length``, or 0: the
         tip is then where the control takes it to be.
@@ -53,11 +57,12 @@ def run_program(
     Raises
     ------
     InputError
-        If the file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
+        If a file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
         control. What is only not understood is in ``Run.findings``.
     """
     reader = reader_of(machine, family)
-    return reader(Path(path), machine, step_limit=step_limit, skip=skip, shortest=shortest).run()
+    named = tuple(subprograms)
+    return reader(Path(path), machine, subprograms=named, step_limit=step_limit, skip=skip, shortest=shortest).run()
 
 
 def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Interpreter[Any]]:

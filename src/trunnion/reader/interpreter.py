@@ -16,7 +16,7 @@ from trunnion.reader.columns import Changes
 from trunnion.reader.control import Control
 from trunnion.reader.handover import COMMENTS, LINE, POSITION
 from trunnion.reader.run import Comment, Finding, Run
-from trunnion.reader.text import Folder, Text, decode
+from trunnion.reader.text import Subprograms, Text, decode
 
 #: Blocks a program may execute besides going once through its files.
 STEPS: Final = 2_000_000
@@ -60,13 +60,13 @@ class Interpreter(ABC, Generic[A]):
     #: How texts of this language find their own places.
     text_type: type[Text] = Text
 
-    def __init__(self, path: Path, machine: Machine, folder: Folder, *, step_limit: int, skip: bool) -> None:
+    def __init__(self, path: Path, machine: Machine, named: Subprograms, *, step_limit: int, skip: bool) -> None:
         slides = {machine.axes[column].name for column in machine.linear}
         if slides != {"X", "Y", "Z"}:
             what = f"has slides {', '.join(sorted(slides))}"
             raise InputError(Problem(machine.key, 0, what, "this reader needs X, Y and Z"))
         self._path = path
-        self._folder = folder
+        self._named = named
         self._skip = skip
         self._limit = step_limit
         self._steps = 0
@@ -190,7 +190,7 @@ class Interpreter(ABC, Generic[A]):
             return
         main = self._stack[0].text
         texts = [text for text, _ in self._texts.values()]
-        allowed = self._limit + (main.lines if main.whole else main.line) + sum(text.lines for text in texts)
+        allowed = self._limit + main.known + sum(text.known for text in texts)
         allowed += sum(text.size // LONG for text in (main, *texts))
         if self._steps > allowed:
             raise self._endless(f"executes more than {self._limit} blocks")
@@ -227,11 +227,14 @@ class Interpreter(ABC, Generic[A]):
             if len(self._texts) >= MOST_FILES:
                 raise self._endless(f"calls more than {MOST_FILES} subprograms")
             self._files.append(str(path))
-            self._texts[path] = self.text_type(path, whole=True), len(self._files) - 1
-        text, file = self._texts[path]
+            self._texts[path] = self.text_type(path), len(self._files) - 1
+            text, file = self._texts[path]
+        else:
+            # The same file may be active more than once: each activation has its own place in it.
+            text, file = self._texts[path][0].again(), self._texts[path][1]
+        text.first_row = self.control.row
         self._file.set(self.control.row, file)
-        # The same file may be active more than once: each activation has its own place in it.
-        return text.again(), file
+        return text, file
 
     def _leave(self) -> None:
         """End of a subprogram, or of the program."""
@@ -242,6 +245,8 @@ class Interpreter(ABC, Generic[A]):
             self._count(1)
             return
         self._stack.pop()
+        if not call.text.whole:
+            call.text.close()
         if not self._stack:
             raise End
         self._file.set(self.control.row, self._stack[-1].file)

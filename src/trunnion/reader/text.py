@@ -50,6 +50,9 @@ class Text:
         except (OSError, ValueError) as error:
             raise InputError(Problem(str(path), 0, f"cannot be read: {error}")) from None
         self.whole = False
+        self._size = os.fstat(self._file.fileno()).st_size
+        #: Row of the run before which this text began.
+        self.first_row = 0
         self._ended = False
         self._tail = b""
         self.buffer: Bytes = np.zeros(0, np.uint8)
@@ -61,6 +64,7 @@ class Text:
 
     def again(self) -> Self:
         """Return the same text, held whole, at its first line: what it knows of itself is shared."""
+        self.load()
         other = copy(self)
         other.jump(1)
         return other
@@ -76,7 +80,7 @@ class Text:
     @property
     def size(self) -> int:
         """Bytes of the file."""
-        return len(self.buffer) if self.whole else os.fstat(self._file.fileno()).st_size
+        return len(self.buffer) if self.whole else self._size
 
     @property
     def _behind(self) -> int:
@@ -84,12 +88,12 @@ class Text:
         return self.position + (0 if self.whole else self._file.tell() - len(self.buffer) - len(self._tail))
 
     def expected(self, rows: int) -> int:
-        """How many rows there will be if the program goes on as it began, with ``rows`` up to here.
+        """How many rows there will be if the text goes on as it began, with ``rows`` up to here.
 
         A loop makes many rows of few bytes: what lies ahead bounds what may be expected of it.
         """
-        behind, size = self._behind, self.size
-        return min(rows * size // max(behind, 1), rows + (size - behind) // SHORTEST_ROW)
+        behind, size, here = self._behind, self.size, rows - self.first_row
+        return self.first_row + min(here * size // max(behind, 1), here + (size - behind) // SHORTEST_ROW)
 
     def fill(self) -> bool:
         """See that the buffer holds a line; False at the end of the program."""
@@ -139,8 +143,13 @@ class Text:
         if size > LARGEST_WHOLE:
             what = f"has {size} bytes, more than the {LARGEST_WHOLE} that a program with jumps may have"
             raise self.problem(0, what)
-        self._file.seek(0)
-        data = self._file.read(size)
+        try:
+            if self._file.closed:
+                self._file = self.path.open("rb")
+            self._file.seek(0)
+            data = self._file.read(size)
+        except OSError as error:
+            raise self.problem(0, f"cannot be read: {error}") from None
         self._file.close()
         if not data.endswith(b"\n"):
             data += b"\n"
@@ -153,6 +162,11 @@ class Text:
         """Return the whole program."""
         self.load()
         return self.buffer.tobytes()
+
+    @property
+    def known(self) -> int:
+        """Number of lines, as far as it is known without holding the program whole."""
+        return self.lines if self.whole else self.line
 
     @property
     def lines(self) -> int:
@@ -186,61 +200,60 @@ def decode(data: bytes) -> str:
         return data.decode("latin-1")
 
 
-class Folder:
-    """The folder of a program, the only place where its subprograms are looked for.
+class Subprograms:
+    """The files that a program may call: those that whoever runs it has named, and no others.
 
     suffixes   how names of programs end on this control, those first that go before others; "" for no ending
     prefix     what the control may write before a name
     """
 
-    _ENTRIES: Final = 100_000
-
-    def __init__(self, program: Path, suffixes: Sequence[str], prefix: str = "") -> None:
-        self._folder = program.parent
+    def __init__(self, named: Sequence[Path], suffixes: Sequence[str], prefix: str = "") -> None:
         self._suffixes = tuple(suffixes)
         self._prefix = prefix
-        self._files: dict[str, Path] | None = None
+        self._files: dict[str, Path] = {}
+        problems = []
+        found: dict[tuple[str, int], Path] = {}
+        for path in named:
+            rank = self._rank(path.name.upper())
+            if not _is_file(path):
+                problems.append(Problem(str(path), 0, "is no file"))
+            elif rank is None:
+                endings = ", ".join(suffix for suffix in self._suffixes if suffix)
+                problems.append(Problem(str(path), 0, "is no name of a subprogram", f"let it end in one of {endings}"))
+            elif (first := found.setdefault((self._stem(path.name), rank), path)) is not path:
+                problems.append(Problem(str(path), 0, f"is called as {first} is", "name one of them"))
+        if problems:
+            raise InputError(problems)
+        for (stem, _), path in sorted(found.items(), key=lambda each: each[0][1]):
+            self._files.setdefault(stem, path)
 
     def find(self, name: str) -> Path | None:
         """Return the subprogram of this name, whatever the case of its letters, or None.
 
-        A name may have its ending and prefix or not. Folders of the control are not those of this computer: a file of
-        another folder is looked for beside the program, and a name that climbs out of its folder is refused. So is a
-        link that leads elsewhere.
+        A name may have its ending and prefix or not. Folders of the control are not those of this computer: of a name
+        with a folder its last part counts.
         """
         parts = [part for part in re.split(r"[/\\:]", name.strip()) if part]
-        if not parts or ".." in parts or len(name) > 200 or "\0" in name:
+        if not parts or ".." in parts or len(name) > 200:
             return None
-        stem = self._stem(parts[-1])
-        if self._files is None:
-            self._files = self._list()
-        path = self._files.get(stem)
-        return path if path is not None and self._is_inside(path) else None
+        return self._files.get(self._stem(parts[-1]))
 
-    def _is_inside(self, path: Path) -> bool:
-        """Whether a file of the folder really lies in it; links that go in circles lie nowhere."""
-        try:
-            return path.resolve().parent == self._folder.resolve() and path.is_file()
-        except (OSError, RuntimeError):
-            return False
-
-    def _list(self) -> dict[str, Path]:
-        """Programs of the folder by stem."""
-        found: dict[str, Path] = {}
-        try:
-            with os.scandir(self._folder) as entries:
-                names = sorted(entry.name for entry, _ in zip(entries, range(self._ENTRIES), strict=False))
-        except OSError:
-            return found
-        for suffix in self._suffixes:
-            for name in names:
-                upper = name.upper()
-                if upper.endswith(suffix) if suffix else "." not in upper:
-                    found.setdefault(self._stem(name), self._folder / name)
-        return found
+    def _rank(self, upper: str) -> int | None:
+        """Place among the suffixes of the one with which a name ends."""
+        for k, suffix in enumerate(self._suffixes):
+            if upper.endswith(suffix) if suffix else "." not in upper:
+                return k
+        return None
 
     def _stem(self, name: str) -> str:
         stem = name.upper()
         for suffix in self._suffixes:
             stem = stem.removesuffix(suffix)
         return stem.removeprefix(self._prefix)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError, RuntimeError):  # links in circles, names that no system has
+        return False

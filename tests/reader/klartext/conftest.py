@@ -18,7 +18,7 @@ def dmu65() -> Machine:
 
 @pytest.fixture
 def run(tmp_path: Path, dmu65: Machine) -> Runner:
-    """Run a text as a program; other files of its folder by name."""
+    """Run a text as a program; the files that it may call by name."""
 
     def runner(text: str, machine: Machine = dmu65, files: dict[str, str] | None = None, **settings: object) -> Run:
         for name, content in (files or {}).items():
@@ -26,6 +26,7 @@ def run(tmp_path: Path, dmu65: Machine) -> Runner:
         program = tmp_path / "MAIN.H"
         program.write_text(text, encoding="utf-8")
         family = None if machine is dmu65 else "heidenhain_itnc530"
-        return run_program(program, machine, family=family, **settings)  # type: ignore[arg-type]
+        named = [tmp_path / name for name in files or {}]
+        return run_program(program, machine, subprograms=named, family=family, **settings)  # type: ignore[arg-type]
 
     return runner

@@ -124,7 +124,7 @@ def test_formulas_are_those_of_arithmetic(text: str) -> None:
         assert formula(text, Parameters()) == pytest.approx(wanted, rel=1e-12, abs=1e-12)
 
 
-def test_a_program_calls_another_beside_it(run: Runner) -> None:
+def test_a_program_calls_another_that_is_named(run: Runner) -> None:
     files = {"SUB.H": "0 BEGIN PGM SUB MM\n1 L X+Q1\n2 Q2 = 8\n3 QL1 = 9\n4 END PGM SUB MM\nL X+77\n"}
     found = run("Q1 = 4\nCALL PGM TNC:\\PARTS\\sub.h\nL X+Q2\nCALL PGM SUB\nL X+QL1", files=files)
     assert xs(found) == [4, 8, 4]
@@ -138,14 +138,15 @@ def test_m30_in_a_called_program_ends_all(run: Runner) -> None:
     assert xs(run("CALL PGM SUB\nL X+2", files={"SUB.H": "L X+1\nM30\n"})) == [1]
 
 
-def test_programs_outside_of_the_folder_are_not_found(tmp_path: Path) -> None:
+def test_programs_that_are_not_named_are_not_found(tmp_path: Path) -> None:
     (tmp_path / "SECRET.H").write_text("L X+666\n")
     inner = tmp_path / "part"
     inner.mkdir()
-    (inner / "LINK.H").symlink_to(tmp_path / "SECRET.H")
-    names = ["../SECRET.H", "..\\SECRET", "LINK", str(tmp_path / "SECRET.H"), "TNC:\\..\\SECRET.H"]
+    for beside in ("BESIDE.H", "NAMED.H"):
+        (inner / beside).write_text("L X+666\n")
+    names = ["../SECRET.H", "..\\SECRET", "BESIDE", str(tmp_path / "SECRET.H"), "TNC:\\..\\SECRET.H"]
     (inner / "MAIN.H").write_text("\n".join(f"CALL PGM {name}" for name in names))
-    found = run_program(inner / "MAIN.H", load_machine("dmu65"))
+    found = run_program(inner / "MAIN.H", load_machine("dmu65"), subprograms=[inner / "NAMED.H"])
     assert len(found) == 0
     assert [f.line for f in found.errors] == [1, 2, 3, 4, 5]
 

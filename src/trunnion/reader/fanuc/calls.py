@@ -1,6 +1,7 @@
 """Subprograms and macros of a Fanuc program."""
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -15,7 +16,7 @@ from trunnion.reader.interpreter import End
 from trunnion.reader.rs274.block import Block, Number
 from trunnion.reader.rs274.expressions import BlockError
 from trunnion.reader.rs274.interpreter import Rs274Interpreter
-from trunnion.reader.text import Folder
+from trunnion.reader.text import Subprograms
 
 #: Times that a subprogram may be called at once.
 _MOST_CALLS: Final = 1_000_000_000
@@ -27,8 +28,11 @@ _FOUR: Final = 10_000
 class CallInterpreter(Rs274Interpreter[Activation]):
     """Calls and returns; what blocks say besides is for the class below."""
 
-    def __init__(self, path: Path, machine: Machine, *, step_limit: int, skip: bool) -> None:
-        super().__init__(path, machine, Folder(path, SUFFIXES), step_limit=step_limit, skip=skip)
+    def __init__(
+        self, path: Path, machine: Machine, *, subprograms: Sequence[Path], step_limit: int, skip: bool
+    ) -> None:
+        named = Subprograms(subprograms, SUFFIXES)
+        super().__init__(path, machine, named, step_limit=step_limit, skip=skip)
         self._settings = settings_of(machine)
         self._variables = Variables(self._system)
         self._flow = Flow(self._note, self._variables)
@@ -80,7 +84,7 @@ class CallInterpreter(Rs274Interpreter[Activation]):
         self._enter(program, _times(times), None)
 
     def _enter(self, number: int, times: int, arguments: dict[int, float] | None) -> None:
-        """Begin a subprogram: of this file, or a file of the folder."""
+        """Begin a subprogram: of this file, or of those that were named."""
         if times < 1:
             return
         self._check_depth()
@@ -93,12 +97,12 @@ class CallInterpreter(Rs274Interpreter[Activation]):
                 (
                     path
                     for name in (f"O{number:04d}", f"O{number}", f"{number:04d}", f"{number}")
-                    if (path := self._folder.find(name))
+                    if (path := self._named.find(name))
                 ),
                 None,
             )
             if path is None:
-                raise BlockError(f"missing subprogram O{number:04d}")
+                raise BlockError(f"missing subprogram O{number:04d}; name its file")
             text, file = self._open(path)
             assert isinstance(text, FanucText)
             entered = Activation(text, file, times)

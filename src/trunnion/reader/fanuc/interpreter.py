@@ -1,5 +1,6 @@
 """Fanuc programs, block by block: what each one says goes to the virtual control, and where it goes on."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -34,9 +35,16 @@ class FanucInterpreter(CallInterpreter):
     text_type = FanucText
 
     def __init__(
-        self, path: Path, machine: Machine, *, step_limit: int = STEPS, skip: bool = False, shortest: bool | None = None
+        self,
+        path: Path,
+        machine: Machine,
+        *,
+        subprograms: Sequence[Path] = (),
+        step_limit: int = STEPS,
+        skip: bool = False,
+        shortest: bool | None = None,
     ) -> None:
-        super().__init__(path, machine, step_limit=step_limit, skip=skip)
+        super().__init__(path, machine, subprograms=subprograms, step_limit=step_limit, skip=skip)
         self._control = FanucControl(
             machine, self._note, self._file, shortest=shortest, calculator=self._settings.calculator
         )

@@ -1,6 +1,7 @@
 """Fidia programs, block by block: what each one says goes to the virtual control. They have no jumps and no loops."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -15,7 +16,7 @@ from trunnion.reader.interpreter import STEPS
 from trunnion.reader.rs274.block import Block, block_reader, read_block
 from trunnion.reader.rs274.expressions import Arithmetic, BlockError, Value
 from trunnion.reader.rs274.interpreter import CANCEL, MOTIONS, Activation, Rs274Interpreter
-from trunnion.reader.text import Folder, Text
+from trunnion.reader.text import Subprograms, Text
 from trunnion.reader.word import Word
 
 #: A tool's number may stand behind a point: T.1.
@@ -46,9 +47,16 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
     """Runs one Fidia program on one machine."""
 
     def __init__(
-        self, path: Path, machine: Machine, *, step_limit: int = STEPS, skip: bool = False, shortest: bool | None = None
+        self,
+        path: Path,
+        machine: Machine,
+        *,
+        subprograms: Sequence[Path] = (),
+        step_limit: int = STEPS,
+        skip: bool = False,
+        shortest: bool | None = None,
     ) -> None:
-        super().__init__(path, machine, Folder(path, ()), step_limit=step_limit, skip=skip)
+        super().__init__(path, machine, Subprograms(subprograms, ()), step_limit=step_limit, skip=skip)
         self._control = FidiaControl(machine, self._note, self._file, shortest=shortest)
         self._sticky: dict[str, float] = {}
 

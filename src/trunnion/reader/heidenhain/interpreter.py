@@ -1,7 +1,7 @@
 """Klartext programs, block by block: what each one says goes to the virtual control, and where it goes on."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -23,7 +23,7 @@ from trunnion.reader.heidenhain.text import SUFFIXES, KlartextText
 from trunnion.reader.heidenhain.tilting import plane_block, tcpm_block
 from trunnion.reader.heidenhain.words import BLOCKS_NAMED, M_CALL, M_MACHINE, M_SECOND_MACHINE, PATHS
 from trunnion.reader.interpreter import STEPS, End, Interpreter
-from trunnion.reader.text import Folder, Text
+from trunnion.reader.text import Subprograms, Text
 from trunnion.reader.word import How
 
 #: Subprograms by label inside each other.
@@ -63,9 +63,16 @@ class HeidenhainInterpreter(Interpreter[Activation]):
     text_type = KlartextText
 
     def __init__(
-        self, path: Path, machine: Machine, *, step_limit: int = STEPS, skip: bool = False, shortest: bool | None = None
+        self,
+        path: Path,
+        machine: Machine,
+        *,
+        subprograms: Sequence[Path] = (),
+        step_limit: int = STEPS,
+        skip: bool = False,
+        shortest: bool | None = None,
     ) -> None:
-        super().__init__(path, machine, Folder(path, SUFFIXES), step_limit=step_limit, skip=skip)
+        super().__init__(path, machine, Subprograms(subprograms, SUFFIXES), step_limit=step_limit, skip=skip)
         self._control = HeidenhainControl(machine, self._note, self._file, shortest=shortest)
         self._definitions = Definitions(self._control, self._note)
         #: Parts of a block that goes on over several lines.
@@ -382,10 +389,10 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         return found
 
     def _enter(self, name: str) -> None:
-        """Call a program that lies beside this one."""
-        path = self._folder.find(name)
+        """Call a program, one of the files that were named."""
+        path = self._named.find(name)
         if path is None:
-            self._note(f"missing program {name[:80]}: it is not executed", Severity.ERROR)
+            self._note(f"missing program {name[:80]}: it is not executed; name its file", Severity.ERROR)
             return
         self._check_depth()
         parameters = Parameters(self._stack[-1].parameters)

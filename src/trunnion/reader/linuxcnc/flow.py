@@ -2,6 +2,7 @@
 
 import re
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from trunnion.reader.rs274 import interpreter
 from trunnion.reader.rs274.block import block_reader, split
 from trunnion.reader.rs274.expressions import BlockError, Reader
 from trunnion.reader.rs274.interpreter import Rs274Interpreter
-from trunnion.reader.text import Folder
+from trunnion.reader.text import Subprograms
 
 _KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE|CALL|RETURN")
 
@@ -29,8 +30,11 @@ class Activation(interpreter.Activation):
 class OWordInterpreter(Rs274Interpreter[Activation]):
     """Branches, loops and subprograms; what blocks say besides is for the class below."""
 
-    def __init__(self, path: Path, machine: Machine, *, step_limit: int, skip: bool) -> None:
-        super().__init__(path, machine, Folder(path, SUFFIXES), step_limit=step_limit, skip=skip)
+    def __init__(
+        self, path: Path, machine: Machine, *, subprograms: Sequence[Path], step_limit: int, skip: bool
+    ) -> None:
+        named = Subprograms(subprograms, SUFFIXES)
+        super().__init__(path, machine, named, step_limit=step_limit, skip=skip)
         self._parameters = Parameters(self._system)
         self._returned: float | None = None
 
@@ -118,9 +122,9 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
             entered = Activation(call.text.again(), call.file)
             begin = here.begin
         else:
-            path = self._folder.find(label.strip("<>"))
+            path = self._named.find(label.strip("<>"))
             if path is None:
-                raise BlockError(f"missing subprogram O{label[:80]}")
+                raise BlockError(f"missing subprogram O{label[:80]}; name its file")
             text, file = self._open(path)
             assert isinstance(text, LinuxcncText)
             found = text.subprogram(label)

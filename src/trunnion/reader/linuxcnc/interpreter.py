@@ -1,6 +1,7 @@
 """LinuxCNC programs, block by block: what each one says goes to the virtual control, and where it goes on."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -62,9 +63,16 @@ class LinuxcncInterpreter(OWordInterpreter):
     motion = CANCEL
 
     def __init__(
-        self, path: Path, machine: Machine, *, step_limit: int = STEPS, skip: bool = False, shortest: bool | None = None
+        self,
+        path: Path,
+        machine: Machine,
+        *,
+        subprograms: Sequence[Path] = (),
+        step_limit: int = STEPS,
+        skip: bool = False,
+        shortest: bool | None = None,
     ) -> None:
-        super().__init__(path, machine, step_limit=step_limit, skip=skip)
+        super().__init__(path, machine, subprograms=subprograms, step_limit=step_limit, skip=skip)
         self._control = LinuxcncControl(machine, self._note, self._file, shortest=shortest)
         self._to_initial = False
         self._initial: float | None = None

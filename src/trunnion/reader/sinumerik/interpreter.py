@@ -43,7 +43,7 @@ from trunnion.reader.sinumerik.words import (
     M_SPINDLE,
     SILENT,
 )
-from trunnion.reader.text import Folder, Text
+from trunnion.reader.text import Subprograms, Text
 
 #: Names with arguments that the interpreter knows; all others are subprograms.
 _BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SETAL"})
@@ -59,9 +59,16 @@ class SinumerikInterpreter(Interpreter[Activation]):
     text_type = SinumerikText
 
     def __init__(
-        self, path: Path, machine: Machine, *, step_limit: int = STEPS, skip: bool = False, shortest: bool | None = None
+        self,
+        path: Path,
+        machine: Machine,
+        *,
+        subprograms: Sequence[Path] = (),
+        step_limit: int = STEPS,
+        skip: bool = False,
+        shortest: bool | None = None,
     ) -> None:
-        super().__init__(path, machine, Folder(path, SUFFIXES, "_N_"), step_limit=step_limit, skip=skip)
+        super().__init__(path, machine, Subprograms(subprograms, SUFFIXES, "_N_"), step_limit=step_limit, skip=skip)
         self._control = SinumerikControl(machine, self._note, self._file, shortest=shortest)
         self._reader = BlockReader(self._control.names, self._note)
         self._flow = {
@@ -356,10 +363,13 @@ class SinumerikInterpreter(Interpreter[Activation]):
         return value
 
     def _enter(self, name: str, made: Call) -> None:
-        """Call a subprogram that lies beside the program."""
-        path = self._folder.find(name)
+        """Call a subprogram, one of the files that were named."""
+        path = self._named.find(name)
         if path is None:
-            self._note(f"unknown word or missing subprogram {name[:80]}: it is not executed", Severity.ERROR)
+            self._note(
+                f"unknown word or missing subprogram {name[:80]}: it is not executed; name its file, if it is one",
+                Severity.ERROR,
+            )
             return
         if made.repeats < 1:
             return
