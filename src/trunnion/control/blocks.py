@@ -224,7 +224,7 @@ class Blocks:
         columns["feed_mode"][turning] = self.control.codes["feed_inverse_time"]
         for key, which in self._rotary:
             jumps = slides.shortest[part, self._column[which]]
-            if jumps.any() and not self.control.rolls_over:  # the others have the word
+            if jumps.any() and not self.control.shorter_way:  # which only controls do that have the word
                 columns[f"{key}_shortest"] = np.where(jumps, columns[key], ABSENT)
                 columns[key][jumps] = ABSENT
         return {"X": rapid.astype(np.int64)}

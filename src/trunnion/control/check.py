@@ -145,8 +145,7 @@ def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
         place = program.file, int(moves.line[rows[np.argmax(fast)]])
         problems.append(Problem(*place, what, "a wider tolerance puts fewer points in", Severity.WARNING))
     shorter = np.flatnonzero(slides.shortest.any(axis=1))
-    said = program.control.rolls_over or "primary_shortest" in program.control.family.WORDS
-    if len(shorter) and not said:
+    if len(shorter) and "primary_shortest" not in program.control.family.WORDS and not program.control.shorter_way:
         what = "a rotary axis goes past the end of the turn that it displays, and would go the longer way"
         cure = 'write output = "none" for the axis in the machine\'s definition'
         problems.append(Problem(program.file, int(moves.line[shorter[0]]), what, cure))

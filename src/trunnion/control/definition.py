@@ -102,7 +102,7 @@ class Control:
     plane_along_machine  X of a tilted plane is that of the machine once it has turned, unless the CL file has its own
     helices           it can be told circles that rise, and more than one turn
     turns             it can be told circles and helices of more than one turn
-    rolls_over        an endless rotary axis that displays one turn goes the shorter way by itself
+    shorter_way       endless axes go the shorter way, so that none goes past the end of the turn that it displays
     tcp               it can hold the tip of the tool while rotary axes turn
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
     own_blocks        spindle, coolant and radius compensation stand in blocks of their own
@@ -132,7 +132,7 @@ class Control:
     plane_along_machine: bool
     helices: bool
     turns: bool
-    rolls_over: bool
+    shorter_way: bool
     tcp: bool
     feed_without_tcp: str
     own_blocks: bool
@@ -228,7 +228,7 @@ def load_control(own: Table) -> Control:
         phases=_texts(table.table("phases"), PHASES),
         **_arcs(table.table("arcs")),
         plane_along_machine=table.text("plane_x", "program", one_of=("program", "machine")) == "machine",
-        rolls_over=table.flag("rolls_over", False),
+        shorter_way=table.flag("shorter_way", False),
         tcp=table.flag("tcp", True),
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
         own_blocks=table.flag("own_blocks", False),

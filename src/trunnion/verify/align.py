@@ -186,7 +186,7 @@ class _Matcher:
         self._run, self._wanted, self._bend = run, wanted, bend
         self._rows = points(run, wanted)
         made = made_in(run)
-        self._leads = leads(run, [hole.first - 1 for hole in made], made)
+        self._leads = leads(run, [hole.first - k for hole in made for k in (1, 2)], made)
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []

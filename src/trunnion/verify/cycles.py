@@ -195,13 +195,14 @@ def hole_rows(made: Sequence[Made]) -> Ints:
 def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
     """Which of the motions that answer to no CL point only lead to a hole.
 
-    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was; or,
-    from home or after a turn, to the hole itself; or across the tool axis and then straight down to it.
+    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, or
+    straight down to the hole, after a motion across at one height or without; or, from home or after a turn, to the
+    hole itself.
     """
-    starts, approach, aside = {hole.first for hole in made}, set(levels(run).tolist()), set(extra)
+    starts, approach, others = {hole.first for hole in made}, set(levels(run).tolist()), set(extra)
     lawful = set()
     for row in extra:
-        if row + 1 not in starts or run.kind[row] != Kind.RAPID or row == 0:
+        if row < 1 or row + 1 not in starts or run.kind[row] != Kind.RAPID:
             continue
         poses = run.poses(np.array([row - 1, row, row + 1]))
         way = poses.tip[1] - poses.tip[0]
@@ -213,22 +214,18 @@ def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
             or bool(run.state.machine_frame[row - 1])
             or (int(run.programmed[row - 1]) & int(PLACES)) == 0
         )
-        if rises or (arrives and from_home):
+        falls = arrives and up < 0.0 and float(np.linalg.norm(way - up * poses.axis[1])) < 1e-6
+        if rises or falls or (arrives and from_home):
             lawful.add(row)
-        elif arrives and row - 1 in aside and _comes_down(run, row):
-            lawful |= {row - 1, row}
+        if falls and row - 1 in others and _is_level(run, row - 1):
+            lawful.add(row - 1)
     return lawful
 
 
-def _comes_down(run: Run, row: int) -> bool:
-    """Whether a row goes straight down where the one before it, a rapid, has gone at one height."""
-    if row < 2 or run.kind[row - 1] != Kind.RAPID:
+def _is_level(run: Run, row: int) -> bool:
+    """Whether a row is a rapid straight across the tool axis, which stands still."""
+    if row == 0 or run.kind[row] != Kind.RAPID:
         return False
-    poses = run.poses(np.array([row - 2, row - 1, row]))
-    axis = poses.axis[2]
-    across, down = np.diff(poses.tip, axis=0)
-    steady = float(np.abs(poses.axis - axis).max()) < 1e-9
-    drop = -float(down @ axis)
-    return (
-        steady and abs(float(across @ axis)) < 1e-6 and drop > 0.0 and float(np.linalg.norm(down + drop * axis)) < 1e-6
-    )
+    poses = run.poses(np.array([row - 1, row]))
+    steady = float(np.abs(poses.axis[1] - poses.axis[0]).max()) < 1e-9
+    return steady and abs(float((poses.tip[1] - poses.tip[0]) @ poses.axis[1])) < 1e-6

@@ -28,11 +28,14 @@ _COOLANT = {"OFF": "off", "ON": "flood", "FLOOD": "flood", "TAP": "flood", "MIST
 #: A spindle speed is printed without decimals.
 _RPM = 0.5 + 1e-6
 
-#: A tip that moves by less than this, mm, may be said to rest.
+#: A tip that moves by less than this, mm, or by less than rounding comes to, may be said to rest.
 _RESTS = 1e-3
 
 #: No control makes a block in less than this, minutes.
 _QUICKEST = 1e-6
+
+#: A number is the greatest if it is less by no more than this.
+_LAST = 1e-6
 
 #: Home is met within this, mm or degrees.
 _HOME = 1e-6
@@ -175,7 +178,7 @@ def feed(case: Case, believed: Believed) -> Check:
         timed = np.flatnonzero(mode == 93)
         if len(timed):
             rounded = max(part.allowed.tip for part in wanted.parts)
-            near[timed], rate[timed] = _in_time(run, nc[timed], rate[timed], asked[timed], rounded)
+            near[timed], rate[timed] = _in_time(case, nc[timed], rate[timed], asked[timed], rounded)
         wrong = cuts & ((mode == 95) != per_rev)
         wrong |= cuts & ~near & ~np.isnan(asked)
         known = asked[cuts & ~np.isnan(asked)]
@@ -197,7 +200,7 @@ def feed(case: Case, believed: Believed) -> Check:
         near = np.abs(rate - asked_here) <= limits.feed + 1e-9
         timed = np.flatnonzero(mode == 93)
         asked = np.full(len(timed), asked_here)
-        near[timed], rate[timed] = _in_time(run, pieces.nc[timed], rate[timed], asked, limits.tip)
+        near[timed], rate[timed] = _in_time(case, pieces.nc[timed], rate[timed], asked, limits.tip)
         for k in np.flatnonzero(~near).tolist():
             count += 1
             text = f"moves with {rate[k]:g} mm/min; the CL file wants {asked_here:g}"
@@ -211,21 +214,24 @@ def feed(case: Case, believed: Believed) -> Check:
     return judged("feed", "feeds as the CL file says", places, good, count)
 
 
-def _in_time(run: Run, nc: Ints, rate: Floats, asked: Floats, rounded: float) -> tuple[Flags, Floats]:
+def _in_time(case: Case, nc: Ints, rate: Floats, asked: Floats, rounded: float) -> tuple[Flags, Floats]:
     """Whether blocks with inverse time take as long as their way does at the feed asked for; and their feeds, mm/min.
 
     They may be off by a thousandth and by what rounding moves the ends, ``rounded`` mm in each coordinate. Where the
-    tip rests, a degree may count as a millimetre. A block may always take as long as no control is quicker.
+    tip rests, a degree may count as a millimetre. A block may always take as long as no control is quicker, and
+    one with the greatest F that there is as long as that.
     """
+    run, top = case.run, case.settings.top_rate
     before, after = run.poses(nc - 1), run.poses(nc)
     way = np.sqrt(((after.tip - before.tip) ** 2).sum(axis=1))
     turned = np.abs(after.joints - before.joints)[:, list(run.machine.rotary)].max(axis=1)
     slack = 2.0 * math.sqrt(3.0) * rounded
-    longest = np.where(way < _RESTS, np.maximum(way, turned), way) + slack
+    longest = np.where(way < max(_RESTS, slack), np.maximum(way, turned), way) + slack
     with np.errstate(divide="ignore"):
         minutes = 1.0 / rate
     soon = minutes < (1.0 - 1e-3) * np.maximum(way - slack, 0.0) / asked
-    late = minutes > (1.0 + 1e-3) * longest / asked + _QUICKEST
+    quickest = _QUICKEST if top is None else np.where(rate > top - _LAST, minutes, _QUICKEST)
+    late = minutes > (1.0 + 1e-3) * longest / asked + quickest
     return ~(soon | late | np.isnan(minutes)), rate * way
 
 

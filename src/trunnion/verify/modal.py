@@ -10,7 +10,7 @@ from trunnion.reader import Finding, Happening, Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.align import CHUNK, PLACES
 from trunnion.verify.case import NAMED, Case, judged
-from trunnion.verify.cycles import hole_rows, made_in
+from trunnion.verify.cycles import hole_rows, leads, made_in
 from trunnion.verify.model import Check, Place
 
 _FEEDLESS = {
@@ -139,7 +139,10 @@ def _low_rapids(case: Case) -> list[Place]:
         assert case.wanted is not None
         for nc, cl in case.pairs.all_chunks():
             suspect[nc[case.wanted.kind(cl) == Kind.RAPID]] = False
-    suspect[hole_rows(made_in(run))] = False  # they have a check of their own
+    made = made_in(run)
+    suspect[hole_rows(made)] = False  # they have a check of their own
+    if case.pairs is not None:
+        suspect[sorted(leads(run, case.pairs.extra, made))] = False  # and what leads to them is looked at there
     if not suspect.any():
         return []
     every = rapids[(run.programmed[rapids] & int(PLACES)) != 0]

@@ -212,7 +212,10 @@ def compare_rows(
             # At a pole, or at the edge of what the axes reach: what each of them is off by cannot be told apart.
             off_axis[k] = math.degrees(max(angle - left_open, 0.0) / (math.sqrt(pp) + math.sqrt(rr)))
             continue
-        one = abs((rr * pe - pr * re) / volume) - noise / math.sqrt(pp)
-        two = abs((pp * re - pr * pe) / volume) - noise / math.sqrt(rr)
-        off_axis[k] = math.degrees(max(one, two, 0.0))
+        one, two = abs((rr * pe - pr * re) / volume), abs((pp * re - pr * pe) / volume)
+        # The split is one of small turns: products of both, which grow towards the pole, are left open.
+        height = abs(w0 * a0 + w1 * a1 + w2 * a2)
+        first_off = one * (1.0 - two * height / math.sqrt(pp)) - noise / math.sqrt(pp)
+        second_off = two - 0.5 * one * one - noise / math.sqrt(rr)
+        off_axis[k] = math.degrees(max(first_off, second_off, 0.0))
     return squares_tip, squares_axis * (180.0 / math.pi) ** 2
