@@ -9,25 +9,18 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
-from tests.control.test_fidia import END, START, circles, holes_in, point
+from tests.control.test_fidia import END, START, circles, holes_in
 from tests.control.test_planes import SHARES, reachable
-from tests.control.test_program import FOOT, HEAD
 from tests.machines import at_zero
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.plan.test_read_back import toolpath_of
-from tests.verify.proven import unproven
-from trunnion.arrays import Floats
 from trunnion.cl import read_cl
-from trunnion.cli import main
 from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
 from trunnion.control import load_control
-from trunnion.control.fanuc import inside
-from trunnion.control.turns import about_first_and_third
 from trunnion.errors import InputError, Refused
 from trunnion.machine import Machine, load_machine
 from trunnion.reader import run_program
-from trunnion.reader.frames import turn
 from trunnion.toolpath import Moves, Toolpath
 from trunnion.verify import Verification, failures, verify
 

@@ -38,7 +38,7 @@ class Post:
     """Posts CL text on the DMU 65."""
 
     def __init__(self, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
-        self._folder, self._capfd = folder, capfd
+        self.folder, self._capfd = folder, capfd
 
     def __call__(self, text: str, *arguments: str, machine: str = "dmu65") -> list[str]:
         """The blocks of the program without their numbers, which must go on by one from 0."""
@@ -49,7 +49,7 @@ class Post:
         return [block.split(" ", 1)[1] for block in blocks]
 
     def all(self, text: str, *arguments: str, machine: str = "dmu65") -> tuple[int, str, str]:
-        file = self._folder / "part.cls"
+        file = self.folder / "part.cls"
         file.write_text(text, encoding="utf-8")
         code = main(["post", str(file), "--machine", machine, "--output", "-", *arguments])
         out, err = self._capfd.readouterr()
@@ -208,7 +208,14 @@ def test_an_arc_in_another_plane_becomes_lines(post: Post) -> None:
     assert len(blocks) > 40
 
 
-WRONG = {"program": "A B", "blank": "0,0,0,1,1", "work_offset": "G54", "plane": "euler", "tcpm": "m130"}
+WRONG = {
+    "disengage": "5",
+    "program": "A B",
+    "blank": "0,0,0,1,1",
+    "work_offset": "G54",
+    "plane": "euler",
+    "tcpm": "m130",
+}
 
 
 @pytest.mark.parametrize(("key", "value"), WRONG.items())
@@ -396,6 +403,31 @@ CYCLES = [
         "205 UNIVERSAL PECKING",
         "200+3 201-20 206+250 202+20 203+0 204+3 212+0 205+0 258+0.2 259+0.2 257+6 256+0.2 211+0 379+0 253+250",
     ),
+    (
+        f"DRILL,BRKCHP,{HEIGHTS},STEP,6.0,1.0,2.0,MMPM,250",
+        "203 UNIVERSAL DRILLING",
+        "200+3 201-20 206+250 202+6 210+0 203+0 204+3 212+1 213+99999 205+2 211+0 208MAX 256+0.2",
+    ),
+    (
+        f"BORE,DRAG,{HEIGHTS},MMPM,100,DWELL,0.5",
+        "202 BORING",
+        "200+3 201-20 206+100 211+0.5 208MAX 203+0 204+3 214+0 336+0",
+    ),
+    (
+        f"BORE,NODRAG,90,{HEIGHTS},MMPM,100",
+        "202 BORING",
+        "200+3 201-20 206+100 211+0 208MAX 203+0 204+3 214+3 336+90",
+    ),
+    (
+        f"TAP,BRKCHP,{HEIGHTS},STEP,5.0,MMPR,1.25",
+        "209 TAPPING W/ CHIP BRKG",
+        "200+3 201-20 239+1.25 203+0 204+3 257+5 256+1 336+0 403+1",
+    ),
+    (
+        f"TAP,DEEP,{HEIGHTS},STEP,30.0,MMPR,1.25",
+        "209 TAPPING W/ CHIP BRKG",
+        "200+3 201-20 239+1.25 203+0 204+3 257+20 256+0 336+0 403+1",
+    ),
     (f"TAP,{HEIGHTS},MMPR,1.25", "207 RIGID TAPPING NEW", "200+3 201-20 239+1.25 203+0 204+3"),
     (f"TAP,{HEIGHTS},MMPR,1.25,OPTION", "206 TAPPING NEW", "200+3 201-20 206+5000 211+0 203+0 204+3"),
 ]
@@ -404,13 +436,13 @@ CYCLES = [
 @pytest.mark.parametrize(("words", "name", "values"), CYCLES)
 def test_each_cycle_is_defined_once_and_called_at_each_hole(words: str, name: str, values: str, post: Post) -> None:
     text = CLEAR + f"CYCLE/{words}\nGOTO/10,0,0\nGOTO/20,0,0\nCYCLE/OFF\nRAPID\nGOTO/20,0,50\n" + FOOT
-    blocks = motion(post(text))
+    blocks = motion(post(text, "--set", "disengage=3"))
     definition = next(block for block in blocks if "Q200" in block)
     lines = definition.split("\n")
     assert all(line.endswith(" ~") for line in lines[:-1])
     assert not lines[-1].endswith("~")
     assert lines[0] == f"CYCL DEF {name} ~"
-    found = [re.match(r"  Q(\d+)=([-+][\d.]+) ;[A-Z0-9 .-]+$", line.removesuffix(" ~")) for line in lines[1:]]
+    found = [re.match(r"  Q(\d+)=([-+][\d.]+|MAX) ;[A-Z0-9 .-]+$", line.removesuffix(" ~")) for line in lines[1:]]
     assert " ".join("".join(q.groups()) for q in found if q) == values
     after = blocks[blocks.index(definition) + 1 :]
     assert after == ["L X+10 Y+0 FMAX M99", "L X+20 Y+0 FMAX M99", "L X+20 Y+0 Z+50 FMAX"]
@@ -422,10 +454,11 @@ def test_a_left_hand_tap_has_a_negative_pitch(post: Post) -> None:
 
 
 UNSAID = {
-    "BORE,DRAG,RAPTO,3.0,FEDTO,-20.0,MMPM,100": "no cycle of the control",
-    "BORE,NODRAG,90,RAPTO,3.0,FEDTO,-20.0,MMPM,100": "no cycle of the control",
+    "BORE,NODRAG,90,RAPTO,3.0,FEDTO,-20.0,MMPM,100": "--set disengage=1",
     "BORE,MANUAL,RAPTO,3.0,FEDTO,-20.0,MMPM,100": "no cycle of the control",
-    "DRILL,BRKCHP,RAPTO,3.0,FEDTO,-20.0,STEP,6.0,1.0,2.0,MMPM,250": "write STEP with one number",
+    "DRILL,BRKCHP,RAPTO,3.0,FEDTO,-20.0,STEP,6.0,1.0,MMPM,250": "write STEP,first,less,shortest",
+    "TAP,BRKCHP,RAPTO,3.0,FEDTO,-20.0,STEP,6.0,1.0,2.0,MMPR,1.25": "write STEP with one number",
+    "TAP,BRKCHP,RAPTO,3.0,FEDTO,-20.0,MMPR,1.25": "write STEP,first stroke",
     "DRILL,DEEP,RAPTO,3.0,FEDTO,-20.0,STEP,6.0,1.0,MMPM,250": "write STEP,first,less,shortest",
     "TAP,RAPTO,3.0,FEDTO,-20.0,MMPR,1.25,DWELL,1": "leave DWELL out",
 }
@@ -438,7 +471,10 @@ def test_a_cycle_that_klartext_does_not_have_is_refused(words: str, why: str, po
     assert why in err
 
 
-MODES = ["DRILL", "REAM", "DRILL,DEEP,STEP,4.0", "DRILL,DEEP,STEP,6.0,1.0,2.0", "DRILL,BRKCHP,STEP,4.0", "TAP"]
+MODES = [
+    "DRILL", "REAM", "DRILL,DEEP,STEP,4.0", "DRILL,DEEP,STEP,6.0,1.0,2.0", "DRILL,BRKCHP,STEP,4.0",
+    "DRILL,BRKCHP,STEP,6.0,1.0,2.0", "BORE,DRAG", "BORE,NODRAG,30", "TAP", "TAP,DEEP,STEP,6.0", "TAP,BRKCHP,STEP,6.0",
+]  # fmt: skip
 HEIGHT = st.integers(0, 800).map(lambda n: n / 100.0)
 HOLE = st.tuples(*[st.integers(-6000, 6000).map(lambda n: n / 100.0)] * 2, st.sampled_from([0.0, 12.5, -4.0]))
 
@@ -464,7 +500,7 @@ def test_holes_are_proven_on_every_machine_also_where_the_axis_changes_between_t
     folder: Path,
 ) -> None:
     machine, lines = MACHINES[name], []
-    feed = "MMPR,1.25" if mode == "TAP" else "MMPM,250"
+    feed = "MMPR,1.25" if mode.startswith("TAP") else "MMPM,250"
     for share in shares:
         axis = reachable(machine, share)
         vector = ",".join(f"{v:.9f}" for v in axis)
@@ -477,6 +513,6 @@ def test_holes_are_proven_on_every_machine_also_where_the_axis_changes_between_t
     file = folder / "holes.cls"
     file.write_text(start + words + "\n".join(lines) + "\nCYCLE/OFF\n" + FOOT, encoding="utf-8")
     try:
-        proven(read_cl(file), machine, CONTROLS["mikron_600u"], folder)
+        proven(read_cl(file), machine, CONTROLS["mikron_600u"], folder, disengage="2")
     except (Refused, InputError):
         assume(False)

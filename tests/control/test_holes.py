@@ -115,6 +115,7 @@ def test_the_feed_of_a_cycle_is_its_own_and_the_modal_one_comes_back(post: Post)
         ("DRILL,CSINK,RAPTO,3,CSKDIA,10,MMPM,100", "without the angle"),
         ("DRILL,RAPTO,3,FEDTO,-1e12,MMPM,100", "no machine has"),
         ("BORE,BACK,RAPTO,3,FEDTO,-20,MMPM,100", "cannot be written"),
+        ("TAP,BRKCHP,RAPTO,3,FEDTO,-20,STEP,5,MMPR,1.25", "not written for this control"),
         ("DRILL,THRU,RAPTO,3,FEDTO,-20,MMPM,100", "cannot be written"),
     ],
 )

@@ -137,10 +137,6 @@ def test_texts_for_the_operator_lose_their_brackets_and_long_ones_go_on(post: Po
 REFUSED = {
     "a compensation": ("CUTCOM/LEFT,YZPLAN\nGOTO/20,0,5\n", "cutter radius compensation in the plane YZ"),
     "a coolant": ("COOLNT/THRU\nGOTO/20,0,5\n", "LinuxCNC has no coolant THRU"),
-    "a cycle": (
-        "CYCLE/DRILL,RAPTO,3.0,FEDTO,-5.0,MMPM,100.0\nGOTO/20,0,5\nCYCLE/OFF\n",
-        "cannot be written for LinuxCNC",
-    ),
 }
 
 

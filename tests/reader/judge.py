@@ -69,7 +69,8 @@ def canonical(program: Path) -> Canon:
     canon = Canon()
     unit = 1.0
     g5x, g92 = np.zeros(6), np.zeros(6)
-    angle = feed = 0.0
+    angle = feed = rpm = pitch = 0.0
+    here = [0.0] * 6
     plane = "XY"
 
     def machine(point: list[float]) -> list[float]:
@@ -106,9 +107,20 @@ def canonical(program: Path) -> Canon:
                 canon.dwells.append(values[0])
             case "STRAIGHT_TRAVERSE" | "STRAIGHT_FEED":
                 canon.kind.append("traverse" if name == "STRAIGHT_TRAVERSE" else "feed")
-                canon.end.append(machine(values[:6]))
+                here = values[:6]
+                canon.end.append(machine(here))
                 canon.feed.append(feed)
                 canon.unit.append(unit)
+            case "SET_SPINDLE_SPEED":
+                rpm = values[1]
+            case "START_SPEED_FEED_SYNC":
+                pitch = values[0] * unit
+            case "RIGID_TAP":  # in, and back to where it began
+                for goal in ([*values[:3], *here[3:]], here):
+                    canon.kind.append("feed")
+                    canon.end.append(machine(goal))
+                    canon.feed.append(pitch * rpm)
+                    canon.unit.append(unit)
             case "ARC_FEED":
                 first, second, c1, c2, turns, height, *rotary = values
                 order = {"XY": (0, 1, 2), "YZ": (1, 2, 0), "XZ": (2, 0, 1)}[plane]
@@ -116,6 +128,7 @@ def canonical(program: Path) -> Canon:
                 for axis, value, middle in zip(order, (first, second, height), (c1, c2, height), strict=True):
                     end[axis], centre[axis] = value, middle
                 end[3:] = centre[3:] = rotary
+                here = end
                 placed = machine(centre)
                 canon.arcs.append((len(canon.kind), placed[order[0]], placed[order[1]], int(turns)))
                 canon.kind.append("arc")

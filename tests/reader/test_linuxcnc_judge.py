@@ -224,9 +224,10 @@ class Writer:
             self.plane = 2
             self.lines.append("G17")
         self.settle()
-        code = self.draw(st.sampled_from([73, 81, 82, 83, 84, 85, 86, 89]))
-        extra = {73: " Q3.5", 83: " Q4", 82: " P.5", 84: " P.3", 86: " P.2", 89: " P1"}.get(code, "")
-        self.lines.append("M3 S100")
+        code = self.draw(st.sampled_from([73, 74, 81, 82, 83, 84, 85, 86, 89]))
+        wait = self.draw(st.sampled_from(["", " P.3"]))
+        extra = {73: " Q3.5", 74: wait, 83: " Q4", 82: " P.5", 84: wait, 86: " P.2", 89: " P1"}.get(code, "")
+        self.lines.append("M4 S100" if code == 74 else "M3 S100")
         self.absolute = self.draw(st.booleans())
         depth, top = self.draw(st.sampled_from([(-5, 2), (-12.5, -1), (3, 60)]))
         if not self.absolute:
@@ -238,10 +239,23 @@ class Writer:
         self.lines.append(self.goal([0]))
         if self.absolute:
             self.lines.append(f"{self.goal([1])} Z{depth - 1}")
+        self.lines += ["G80"] * self.draw(st.booleans())
+        if self.absolute and self.draw(st.booleans()):  # at once another one, from where the first one ended
+            self.lines.append(f"G98 G81 {self.goal([0])} Z{depth} R{top + self.draw(st.sampled_from([-0.5, 0.5]))}")
         self.lines.append("G80")
         self.absolute = True
         self.lines.append("G90 G1 F100")
         self.fed = True
+        self.settle()
+
+    def thread(self) -> None:
+        if self.absolute:
+            self.settle()
+        self.lines += [f"{self.draw(st.sampled_from(['M3', 'M4']))} S{self.draw(st.integers(50, 900))}"]
+        self.lines.append(f"G33.1 Z{number(self.value())} K{self.draw(st.sampled_from(['.5', '1.25']))}")
+        if self.draw(st.booleans()):
+            self.lines.append("Z-3 K1")
+        self.lines.append("G80")
         self.settle()
 
     def arithmetic(self) -> None:
@@ -287,7 +301,7 @@ def programs(draw: st.DrawFn) -> str:
     writer = Writer(draw, [*SUB, "G21 G90 G17 G94 G54", "G0 X0 Y0 Z10"])
     parts = [
         writer.line, writer.line, writer.circle, writer.radius, writer.units, writer.modes, writer.inverse,
-        writer.offset, writer.machine, writer.cycle, writer.arithmetic,
+        writer.offset, writer.machine, writer.cycle, writer.thread, writer.arithmetic,
     ]  # fmt: skip
     for which in draw(st.lists(st.integers(0, len(parts) - 1), min_size=1, max_size=8)):
         parts[which]()
@@ -317,6 +331,9 @@ REFUSED = {
     "a cycle without a plane to come back to": "F100\nG81 X1 Z-5",
     "a cycle whose plane lies below its depth": "F100\nG81 X1 Z5 R1",
     "a peck without a depth": "F100\nG83 X1 Z-5 R1",
+    "a thread without a pitch": "M3 S100\nG33.1 Z-5",
+    "a thread while the spindle stands": "G33.1 Z-5 K1",
+    "a thread with a feed": "M3 S100\nG33.1 Z-5 K1 F5",
     "a cycle in inverse time": "G93\nG81 X1 Z-5 R1 F2",
     "G53 with G91": "G91\nG53 G0 X1",
     "a dwell without a time": "G4",

@@ -75,6 +75,7 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
             inches=same(0, np.bool_),
             orientation=same(0, np.uint8),
             by_tip=same(0, np.bool_),
+            feed_path=same(0, np.uint8),
         ),
         start=np.zeros(5),
         arcs=Arcs.none(),

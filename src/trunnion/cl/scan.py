@@ -8,9 +8,9 @@ The kernels check nothing but syntax: what a statement means is the business of 
 """
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Bytes, Floats, Ints, Lines
+from trunnion.kernels import njit
 
 #: A statement longer than this is no CL statement; it bounds the memory that one statement can take.
 LONGEST = 1 << 20

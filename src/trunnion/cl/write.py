@@ -13,12 +13,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import BinaryIO
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Bytes, Floats
 from trunnion.cl.assemble import COLOURS, RADIUS_TOLERANCE, fill_phases
 from trunnion.cl.encoding import Guess
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.kernels import njit
 from trunnion.toolpath import (
     BlockSkip,
     Coolant,

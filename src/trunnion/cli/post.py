@@ -311,6 +311,7 @@ def _asked(program: Program, wishes: Wishes) -> "Settings":
         span_tip=wishes.tip_tolerance if led else None,
         absolute=wishes.absolute,
         top_rate=rate.five_axis.greatest if rate else None,
+        top_feed=program.control.formats["feed"].five_axis.greatest,
         rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
     )
 

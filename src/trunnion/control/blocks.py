@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.family import WordEvent
 from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
-from trunnion.control.slides import Slides, inverse_time, slides_of
+from trunnion.control.slides import Slides, feed_rule, feeds, slides_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
@@ -210,18 +210,22 @@ class Blocks:
     def _words_of_slides(
         self, slides: Slides, feed: Floats, part: slice, rapid: Flags, columns: dict[str, Ints]
     ) -> dict[str, bool | Ints]:
-        """Change the words of rows without TCP: the time of blocks that turn, and the shorter way of endless axes.
+        """Change the words of rows without TCP: the feed of blocks that turn, and the shorter way of endless axes.
 
         Returns which words are said though they may print as before: X in rapids, which without a slide would only
         place the rotary axes.
         """
         turning = slides.turns[part] & ~rapid
-        word = self.writer.word("inverse_feed")
-        rate = np.full(len(feed), np.nan)
-        rate[turning] = inverse_time(slides.length[part][turning], feed[turning], word.format)[0]
-        columns["inverse_feed"] = counts(rate, word.format.decimals)
-        columns["feed"][turning] = ABSENT
-        columns["feed_mode"][turning] = self.control.codes["feed_inverse_time"]
+        rule = feed_rule(self.control, settings_of(self.program))
+        key = "inverse_feed" if rule == "inverse_time" else "feed"
+        form = self.writer.word(key).format
+        rate = counts(np.where(turning, feeds(slides.at(part), feed, rule, form)[0], np.nan), form.decimals)
+        if rule == "inverse_time":
+            columns["feed"][turning] = ABSENT
+            columns["feed_mode"][turning] = self.control.codes["feed_inverse_time"]
+            columns[key] = rate
+        else:
+            columns[key][turning] = rate[turning]
         for key, which in self._rotary:
             jumps = slides.shortest[part, self._column[which]]
             if jumps.any() and not self.control.shorter_way:  # which only controls do that have the word

@@ -7,8 +7,9 @@ import numpy as np
 from trunnion.control.definition import Control
 from trunnion.control.family import UnsayableError
 from trunnion.control.program import Program, kind_of, setting_of, settings_of
-from trunnion.control.slides import inverse_time, slides_of
+from trunnion.control.slides import TIP, feed_format, feed_rule, feeds, slides_of
 from trunnion.errors import Problem, Severity
+from trunnion.machine import Carries
 from trunnion.plan import Manner, Motion
 from trunnion.plan.holes import CycleError, Turning, cycle_of, feed_of, turning
 from trunnion.toolpath import (
@@ -131,19 +132,26 @@ def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
     if len(turned):
         what = "a feed per revolution without TCP while rotary axes turn"
         problems.append(Problem(program.file, int(moves.line[turned[0]]), what, "output it in mm/min (FEDRAT/MMPM)"))
-    form = formats["inverse_time"]
-    _, slow, fast = inverse_time(slides.length[cuts], moves.feed[cuts], form)
     rows = np.flatnonzero(cuts)
+    rule = feed_rule(program.control, settings_of(program))
+    form = formats[feed_format(rule)]
+    _, slow, fast = feeds(slides.at(rows), moves.feed[rows], rule, form)
     if slow.any():
         row = int(rows[np.argmax(slow)])
         took = slides.length[row] / moves.feed[row]
         what = f"a block takes {took:.0f} minutes; inverse time has room for {1.0 / form.least:g}"
         cure = "output the toolpath with points nearer to each other, or a higher feed"
+        if rule != "inverse_time":
+            what, cure = f"F of a block would be below {form.least:g}, the least that there is", "ask for a higher feed"
         problems.append(Problem(program.file, int(moves.line[row]), what, cure))
     if fast.any():
         what = f"{int(fast.sum())} blocks so short that F would be above {form.greatest:g}: they take as long as that"
         place = program.file, int(moves.line[rows[np.argmax(fast)]])
         problems.append(Problem(*place, what, "a wider tolerance puts fewer points in", Severity.WARNING))
+    heads = [axis.name for axis in program.machine.axes if axis.is_rotary and axis.carries is Carries.TOOL]
+    if rule == TIP and heads:
+        what = f"rotary_feed is tip, and {' and '.join(heads)} turns in the head, which the control leaves out"
+        problems.append(Problem(program.file, operation.line, what, "leave the setting rotary_feed out"))
     shorter = np.flatnonzero(slides.shortest.any(axis=1))
     if len(shorter) and "primary_shortest" not in program.control.family.WORDS and not program.control.shorter_way:
         what = "a rotary axis goes past the end of the turn that it displays, and would go the longer way"

@@ -54,13 +54,14 @@ AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
 #: The format of words that print no number.
 _NO_NUMBER = NumberFormat(0)
 
-#: How feeds can be said where nobody holds the tip.
-FEEDS_WITHOUT_TCP = ("inverse_time",)
+#: How feeds can be said where nobody holds the tip and rotary axes turn: as the time of each block; or as an F that
+#: counts the way of all axes together, a degree as a millimetre.
+FEEDS_WITHOUT_TCP = ("inverse_time", "all_axes")
 
 #: From where a control goes to the next hole: the height of the last retract (whatever the next one needs above it is
-#: said before); the retract height of the next hole itself; or the height at which the cycle finds the tool, to which
-#: it is drawn back, too.
-HOLES_FROM = ("above", "retract", "start")
+#: said before), or the retract height of the next hole itself; or it draws back to where the tool stood when the cycle
+#: began, so that this has to be the retract height, and its G80 leaves no motion word in force.
+HOLES_FROM = ("above", "retract", "initial")
 
 PHASES = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 COOLANTS = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
@@ -102,9 +103,9 @@ class Control:
     plane_along_machine  X of a tilted plane is that of the machine once it has turned, unless the CL file has its own
     helices           it can be told circles that rise, and more than one turn
     turns             it can be told circles and helices of more than one turn
-    shorter_way       endless axes go the shorter way, so that none goes past the end of the turn that it displays
     tcp               it can hold the tip of the tool while rotary axes turn
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
+    shorter_way       endless axes go the shorter way, so that none goes past the end of the turn that it displays
     own_blocks        spindle, coolant and radius compensation stand in blocks of their own
     level_approach    where the tool has been drawn back, it goes to its place in X and Y first, then in Z
     plane_from_pose   a tilted plane is the one on which the tool stands: its zero is the work offset's, its axes are
@@ -132,9 +133,9 @@ class Control:
     plane_along_machine: bool
     helices: bool
     turns: bool
-    shorter_way: bool
     tcp: bool
     feed_without_tcp: str
+    shorter_way: bool
     own_blocks: bool
     level_approach: bool
     plane_from_pose: bool
@@ -228,9 +229,9 @@ def load_control(own: Table) -> Control:
         phases=_texts(table.table("phases"), PHASES),
         **_arcs(table.table("arcs")),
         plane_along_machine=table.text("plane_x", "program", one_of=("program", "machine")) == "machine",
-        shorter_way=table.flag("shorter_way", False),
         tcp=table.flag("tcp", True),
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
+        shorter_way=table.flag("shorter_way", False),
         own_blocks=table.flag("own_blocks", False),
         level_approach=table.flag("level_approach", False),
         plane_from_pose=table.flag("plane_from_pose", False),

@@ -24,6 +24,9 @@ Codes = Mapping[str, int]
 #: In the call of a cycle: here stand X and Y of the first hole, which then has no block of its own.
 FIRST_HOLE = "{at}"
 
+#: In the call of a cycle: here stand X and Y of every hole, each of which is said by all lines of the call.
+EACH_HOLE = "{each}"
+
 
 class UnsayableError(Exception):
     """A family has no way to say something; ``what`` it is, and the ``cure``."""
@@ -129,7 +132,8 @@ class Family(Protocol):
     ) -> list[str]:
         """The lines that make a hole-making cycle modal: each position that follows is a hole.
 
-        A line with ``FIRST_HOLE`` in it is the first hole too, with its position there and the feed at its end.
+        A line with ``FIRST_HOLE`` in it is the first hole too, with its position there and the feed at its end. Lines
+        of which one has ``EACH_HOLE`` in it are no cycle: they make one hole, and are said for each.
 
         Parameters
         ----------

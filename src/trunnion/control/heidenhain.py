@@ -37,13 +37,17 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "plane_move": ("turn", "move", "stay"),
     "plane_solution": ("SEQ", "SYM"),
     "tcpm": ("m128", "function"),
+    "rotary_feed": ("degrees", "tip"),
 }
 
 _VECTOR: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
 
 FIELDS: frozenset[str] = frozenset(
-    {"tcp_on", "tcp_off", "positioning", "spatial_a", "spatial_b", "spatial_c", *_VECTOR, "blank_low", "blank_high"}
-)
+    {
+        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "positioning", "spatial_a", "spatial_b", "spatial_c",
+        *_VECTOR, "blank_low", "blank_high",
+    }
+)  # fmt: skip
 
 #: Bytes of a comment in one line.
 _ROOM: Final = 100
@@ -135,6 +139,8 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
         wrong.append(("program", "write up to 24 letters, digits and _ # $ % & -"))
     if not settings.get("work_offset", "1").isdigit():
         wrong.append(("work_offset", "write the number of the preset, such as 1"))
+    if settings.get("disengage", "") not in ("", "1", "2", "3", "4"):
+        wrong.append(("disengage", "write 1 for -X, 2 for -Y, 3 for +X or 4 for +Y"))
     if blank and _corners(blank) is None:
         wrong.append(("blank", "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first"))
     return wrong
@@ -144,7 +150,7 @@ def hole_call(
     cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
     """The definition of the cycle; ``M99`` calls it at each hole."""
-    return cycle_lines(cycle, top, turning, formats)
+    return cycle_lines(cycle, top, turning, formats, settings.get("disengage", ""))
 
 
 def hole_end() -> list[str]:
@@ -214,6 +220,8 @@ def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Val
     on, off = _TCPM[str(settings["tcpm"])]
     low, high = _corners(str(settings.get("blank") or "")) or (None, None)
     found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
+    at_tip = settings["rotary_feed"] == "tip"
+    found |= {"feed_at_tip": "M116" if at_tip else None, "feed_in_degrees": "M117" if at_tip else None}
     found["positioning"] = _POSITIONING[str(settings["plane_move"])]
     spatial = "spatial_c", "spatial_b", "spatial_a"
     if plane is None:

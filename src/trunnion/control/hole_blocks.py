@@ -8,7 +8,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.control.blocks import Blocks
 from trunnion.control.definition import CALL
-from trunnion.control.family import FIRST_HOLE, WordEvent
+from trunnion.control.family import EACH_HOLE, FIRST_HOLE, WordEvent
 from trunnion.control.program import settings_of
 from trunnion.nc import counts
 from trunnion.plan import Motion
@@ -21,8 +21,8 @@ def write_holes(
 ) -> int:
     """Rows ``first`` to ``last`` as holes, with the events that join them; arguments and result as ``Blocks.rows``."""
     said = cycle_of(cycle)
-    decimals = blocks.writer.word("X").format.decimals
-    tops = counts(np.ascontiguousarray(motion.operation.moves.tip[first:last, 2]), decimals)
+    place = blocks.writer.word("X").format.decimals
+    tops = counts(np.ascontiguousarray(motion.operation.moves.tip[first:last, 2]), place)
     begins = {0, *(np.flatnonzero(np.diff(tops)) + 1).tolist(), *(e.row - first for e in joining if e.row >= first)}
     ends = sorted(k for k in begins if k < last - first)
     for k, end in zip(ends, [*ends[1:], last - first], strict=True):
@@ -49,37 +49,49 @@ def _of_one_height(
     n = last - first
     rapids = blocks.family.row_words(np.ones(n, np.bool_), np.zeros(n, np.bool_), control.codes)
     rapid = {word: int(column[0]) for word, column in rapids.items()} | {"feed": blocks.rapid_feed}
-    place = {word: int(column[0]) for word, column in places.items()}
+    over_first = {word: int(column[0]) for word, column in places.items()}
     for event in joining:
         if first > 0:
             blocks.event_block(event)
     if first == 0:
-        _approach(blocks, motion, place, rapid, retract, joining)
-    else:
-        _to_height(blocks, place, rapid, top + cycle.above, retract)
+        _approach(blocks, motion, over_first, rapid, retract, joining)
     turning = None if blocks.spindle is None else Turning(blocks.spindle.rpm, blocks.spindle.sense)
     feed, per_rev = feed_of(cycle, turning, float(moves.feed[first]), bool(moves.per_rev[first]))
     ids, texts = blocks.phase_texts()
     wanted = ids[moves.phase[first:last]]
     spoken = np.where(wanted != np.concatenate(([text], wanted[:-1])), wanted, -1)
     formats, settings = control.number_formats(motion.three_axis), settings_of(blocks.program)
+    called = CALL in blocks.family.WORDS
+    said = replace(cycle, feed=feed, per_rev=per_rev) if called else cycle
+    lines = blocks.family.hole_call(said, top, turning, settings, formats)
+    each = any(EACH_HOLE in line for line in lines)
+    if first > 0:
+        exact = control.holes_from == "initial" and retract > top + cycle.above and not each
+        low = retract if exact or control.holes_from == "retract" else top + cycle.above
+        _stand(blocks, rapid, over_first, low, exact)
     said_anew = {"X": True, "Y": True}  # a point at which the tool already stands gets its block
-    if CALL in blocks.family.WORDS:
-        said = replace(cycle, feed=feed, per_rev=per_rev)
-        blocks.lines(blocks.family.hole_call(said, top, turning, settings, formats))
+    if called:
+        blocks.lines(lines)
         calls = np.full(n, control.codes[CALL], np.int64)
         writer.table({**rapids, **places, CALL: calls}, said_anew, spoken, texts)
     else:
-        lines = blocks.family.hole_call(cycle, top, turning, settings, formats)
-        if any(FIRST_HOLE in line for line in lines):
-            _called_with_hole(blocks, lines, places, blocks.count("feed", feed), per_rev)
-        else:
-            mode = blocks.use_feed_mode(control.codes["feed_per_revolution" if per_rev else "feed_per_minute"])
-            plane = {"feed_mode": mode, "plane": control.codes["plane_xy"], "feed": blocks.count("feed", feed)}
+        plane = {"plane": control.codes["plane_xy"]}
+        if "feed_mode" in blocks.family.WORDS and not each:
+            code = control.codes["feed_per_revolution" if per_rev else "feed_per_minute"]
+            plane["feed_mode"] = blocks.use_feed_mode(code)
+        if each:
+            _one_by_one(blocks, lines, places, [texts[k] if k >= 0 else "" for k in spoken.tolist()])
+        elif any(FIRST_HOLE in line for line in lines):
             blocks.block(plane)
+            blocks.lines([texts[spoken[0]]] if spoken[0] >= 0 else [])
+            _called_with_hole(blocks, lines, places, blocks.count("feed", feed), spoken, texts)
+        else:
+            blocks.block(plane | {"feed": blocks.count("feed", feed)})
             blocks.lines(lines)
             writer.table({**places, "motion": rapids["motion"]}, said_anew, spoken, texts)
         blocks.lines(blocks.family.hole_end())
+        if control.holes_from == "initial":
+            writer.forget("motion")
     blocks.height = retract
     writer.forget("X", "Y", "Z")
     return int(wanted[-1])
@@ -104,36 +116,40 @@ def _approach(
     blocks.height = retract
 
 
-def _to_height(
-    blocks: Blocks, place: Mapping[str, int], rapid: Mapping[str, int], above: float, retract: float
-) -> None:
-    """From the height of the last row or hole to the one at which the control begins to go to holes.
-
-    A control that draws the tool back to where the cycle found it (``holes_from = "start"``) has to be there; it comes
-    down over the first hole.
-    """
-    low = above if blocks.control.holes_from == "above" else retract
-    if blocks.height < low - 1e-9:
-        blocks.block({**rapid, "Z": blocks.count("X", low)})
-    elif blocks.control.holes_from == "start" and retract > above + 1e-9 and blocks.height > retract + 1e-9:
+def _stand(blocks: Blocks, rapid: Mapping[str, int], place: Mapping[str, int], low: float, exact: bool) -> None:
+    """No lower than ``low`` before the tool goes to the first hole, or ``exact`` there: as heights are printed."""
+    here, there = blocks.count("X", blocks.height), blocks.count("X", low)
+    down = exact and here > there
+    if down:  # over the hole first, and not aslant
         blocks.block({**rapid, **place})
-        blocks.block({**rapid, "Z": blocks.count("X", retract)})
+    if down or blocks.height < low - 1e-9:
+        blocks.block({**rapid, "Z": there})
+
+
+def _one_by_one(blocks: Blocks, lines: Sequence[str], places: Mapping[str, Ints], spoken: Sequence[str]) -> None:
+    """All lines for each hole, after what is spoken there."""
+    writer = blocks.writer
+    for x, y, before in zip(places["X"].tolist(), places["Y"].tolist(), spoken, strict=True):
+        place = f"{writer.said('X', x)} {writer.said('Y', y)}"
+        blocks.lines([before, *(line.replace(EACH_HOLE, place) for line in lines)][not before :])
 
 
 def _called_with_hole(
-    blocks: Blocks, lines: Sequence[str], places: Mapping[str, Ints], feed: int, per_rev: bool
+    blocks: Blocks,
+    lines: Sequence[str],
+    places: Mapping[str, Ints],
+    feed: int,
+    spoken: Ints,
+    texts: Sequence[str],
 ) -> None:
     """The call of a cycle in the block of its first hole, with F where it is not in force; then the others.
 
     The blocks of holes say nothing but where they are: any other motion word would end the cycle.
     """
-    writer, codes = blocks.writer, blocks.control.codes
-    block = {"plane": codes["plane_xy"]}
-    if "feed_mode" in blocks.family.WORDS:
-        block["feed_mode"] = blocks.use_feed_mode(codes["feed_per_revolution" if per_rev else "feed_per_minute"])
-    blocks.block(block)
+    writer = blocks.writer
     place = " ".join(writer.said(word, int(places[word][0])) for word in "XY")
     end = "" if writer.printed("feed") == feed else f" {writer.said('feed', feed)}"
     blocks.lines([line.replace(FIRST_HOLE, place) + (end if FIRST_HOLE in line else "") for line in lines])
     if len(places["X"]) > 1:
-        writer.table({word: column[1:] for word, column in places.items()}, {"X": True, "Y": True})
+        others = {word: column[1:] for word, column in places.items()}
+        writer.table(others, {"X": True, "Y": True}, spoken[1:], texts)

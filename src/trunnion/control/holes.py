@@ -62,8 +62,10 @@ def cycle_call(
     heights = Heights.of(cycle, top)
     number = formats["coordinate"].text
     first = [number(value) for value in (heights.retract, heights.top, heights.above, heights.depth)]
-    rest = _REST[cycle.making](cycle, turning, _dwell(cycle, turning, formats), lift, number)
-    name, arguments = rest
+    say = _REST.get(cycle.making)
+    if say is None:
+        raise CycleError(f"CYCLE/{cycle.making}, which is not written for this control", "leave DEEP or BRKCHP out")
+    name, arguments = say(cycle, turning, _dwell(cycle, turning, formats), lift, number)
     return f"{name}({','.join([*first, *arguments])})"
 
 

@@ -3,6 +3,7 @@
 Facts: the cycles manuals of both controls; docs/controls/heidenhain.md has the parameters one by one.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Final
 
@@ -12,11 +13,16 @@ from trunnion.toolpath import Sense
 
 Formats = Mapping[str, NumberFormat]
 
-#: Number of a parameter -> value, in the order in which the cycle has them.
+#: Number of a parameter -> value, in the order in which the cycle has them; ``RAPID`` is a feed.
 Parameters = dict[int, float]
+RAPID: Final = math.inf
 
 #: How far a chip-breaking stroke is drawn back, and how far above the last depth a rapid into the hole ends, mm.
 _CHIP_BREAK: Final = 0.2
+
+#: The same of a thread, in pitches.
+_CHIP_BREAK_PITCHES: Final = 1.0
+
 _ADVANCED_STOP: Final = 0.2
 
 #: Number and name of a cycle, and its parameters from the set-up clearance on.
@@ -34,19 +40,26 @@ _NAMES: Final = {
     210: "DWELL TIME AT TOP",
     211: "DWELL TIME AT DEPTH",
     212: "DECREMENT",
+    213: "NR OF BREAKS",
+    214: "DISENGAGING DIRECTN",
     239: "THREAD PITCH",
     253: "F PRE-POSITIONING",
     256: "DIST FOR CHIP BRKNG",
     257: "DEPTH FOR CHIP BRKNG",
     258: "UPPER ADV STOP DIST",
     259: "LOWER ADV STOP DIST",
+    336: "ANGLE OF SPINDLE",
     379: "STARTING POINT",
+    403: "RPM FACTOR",
 }
 
-_FORMATS: Final = {206: "feed", 208: "feed", 253: "feed", 210: "dwell", 211: "dwell"}
+_FORMATS: Final = {206: "feed", 208: "feed", 253: "feed", 210: "dwell", 211: "dwell", 336: "angle"}
+
+#: Most chip breaks that Q213 counts.
+_MOST_BREAKS: Final = 99999
 
 
-def cycle_lines(cycle: Cycle, top: float, turning: Turning | None, formats: Formats) -> list[str]:
+def cycle_lines(cycle: Cycle, top: float, turning: Turning | None, formats: Formats, side: str = "") -> list[str]:
     """The lines of one ``CYCL DEF``, all but the last of which go on in the next.
 
     Parameters
@@ -58,7 +71,9 @@ def cycle_lines(cycle: Cycle, top: float, turning: Turning | None, formats: Form
     turning
         The spindle.
     formats
-        ``coordinate``, ``feed`` and ``dwell`` of the control.
+        ``coordinate``, ``feed``, ``dwell`` and ``angle`` of the control.
+    side
+        To which side a tool is moved off the wall of a bore, as Q214 counts them; empty: nobody said so.
 
     Raises
     ------
@@ -70,9 +85,17 @@ def cycle_lines(cycle: Cycle, top: float, turning: Turning | None, formats: Form
         what = f"CYCLE/{cycle.making}: no cycle of the control leaves the hole as it asks for"
         raise CycleError(what, "output the holes as motion")
     number, name, values = say(cycle, top, turning)
+    if cycle.making is Making.LIFT:
+        if not side:
+            what = "BORE,NODRAG does not say to which side the tool moves off the wall"
+            raise CycleError(what, "--set disengage=1 is -X, 2 -Y, 3 +X, 4 +Y, with the spindle at its angle")
+        values = {**values, 214: float(side), 336: cycle.angle}
     lines = [f"CYCL DEF {number} {name}"]
     for q, value in values.items():
         form = formats[_FORMATS.get(q, "coordinate")]
+        if value == RAPID:
+            lines.append(f"  Q{q}=MAX ;{_NAMES[q]}")
+            continue
         if value and not form.least <= value <= form.greatest:
             raise CycleError(f"CYCLE with Q{q}={value:g} ({_NAMES[q].lower()})", f"up to {form.greatest:g} can be said")
         text = form.text(value)
@@ -119,11 +142,10 @@ def _peck(cycle: Cycle, top: float, turning: Turning | None) -> Definition:
     """All the way out after each stroke; or one stroke in which chips are broken, always after the same depth."""
     stroke, less, least = cycle.steps
     full = cycle.making is Making.DEEP
-    if less and not full:
-        what = "BRKCHP with strokes that become shorter: the control breaks chips after equal ones"
-        raise CycleError(what, "write STEP with one number")
     if less and not least > 0.0:
         raise CycleError("STEP without a shortest stroke", "write STEP,first,less,shortest")
+    if less and not full:
+        return _break_sooner(cycle, top, turning)
     low, high = _heights(cycle, top)
     stroke = min(stroke, cycle.depth)
     values = {206: _feed(cycle, turning), 202: stroke if full else cycle.depth, **high}
@@ -135,6 +157,16 @@ def _peck(cycle: Cycle, top: float, turning: Turning | None) -> Definition:
         256: 0.0 if full else _CHIP_BREAK,
     }
     return 205, "UNIVERSAL PECKING", {**low, **values, **_dwell(cycle, turning), 379: 0.0, 253: _feed(cycle, turning)}
+
+
+def _break_sooner(cycle: Cycle, top: float, turning: Turning | None) -> Definition:
+    """Strokes that become shorter, with as many chip breaks as there can be before a full retract."""
+    stroke, less, least = cycle.steps
+    low, high = _heights(cycle, top)
+    stroke = min(stroke, cycle.depth)
+    values = {206: _feed(cycle, turning), 202: stroke, 210: 0.0, **high, 212: less, 213: _MOST_BREAKS}
+    values |= {205: min(least, stroke), **_dwell(cycle, turning), 208: RAPID, 256: _CHIP_BREAK}
+    return 203, "UNIVERSAL DRILLING", {**low, **values}
 
 
 def _tap(cycle: Cycle, top: float, turning: Turning | None) -> Definition:
@@ -154,6 +186,25 @@ def _tap_chuck(cycle: Cycle, top: float, turning: Turning | None) -> Definition:
     return 206, "TAPPING NEW", {**low, 206: _feed(cycle, turning), **_dwell(cycle, turning), **high}
 
 
+def _tap_in_strokes(cycle: Cycle, top: float, turning: Turning | None) -> Definition:
+    """As a rigid tap, in strokes: all the way out between them, or back by so many pitches."""
+    if any(cycle.steps[1:]):
+        raise CycleError(
+            "a thread in strokes that become shorter: the control has equal ones", "write STEP with one number"
+        )
+    _, _, values = _tap(cycle, top, turning)
+    back = 0.0 if cycle.making is Making.TAP_DEEP else _CHIP_BREAK_PITCHES
+    strokes = {257: min(cycle.steps[0], cycle.depth), 256: back, 336: 0.0, 403: 1.0}
+    return 209, "TAPPING W/ CHIP BRKG", {**values, **strokes}
+
+
+def _bore(cycle: Cycle, top: float, turning: Turning | None) -> Definition:
+    """The spindle stops at an angle at the bottom, and the tool comes out at rapid."""
+    low, high = _heights(cycle, top)
+    feeds = {206: _feed(cycle, turning), **_dwell(cycle, turning), 208: RAPID}
+    return 202, "BORING", {**low, **feeds, **high, 214: 0.0, 336: 0.0}
+
+
 def _ream(cycle: Cycle, top: float, turning: Turning | None) -> Definition:
     """In and out at the feed of the cycle."""
     low, high = _heights(cycle, top)
@@ -167,5 +218,9 @@ _SAY: Final[dict[Making, Callable[[Cycle, float, Turning | None], Definition]]] 
     Making.CHIPS: _peck,
     Making.TAP: _tap,
     Making.TAP_CHUCK: _tap_chuck,
+    Making.TAP_DEEP: _tap_in_strokes,
+    Making.TAP_CHIPS: _tap_in_strokes,
+    Making.DRAG: _bore,
+    Making.LIFT: _bore,
     Making.REAM: _ream,
 }

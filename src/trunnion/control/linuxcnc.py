@@ -13,10 +13,11 @@ from trunnion.control import iso
 from trunnion.control.family import ArcWords, Codes, Formats, UnsayableError
 from trunnion.control.iso import event_words as event_words
 from trunnion.control.iso import row_words as row_words
+from trunnion.control.linuxcnc_holes import cycle_lines
 from trunnion.control.template import Value
 from trunnion.nc import ABSENT
 from trunnion.plan import Motion
-from trunnion.plan.holes import Cycle, CycleError, Turning
+from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = iso.WORDS
@@ -89,8 +90,8 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
 def hole_call(
     cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    """Not yet."""
-    raise CycleError("hole-making cycles cannot be written for LinuxCNC yet", "output the holes as motion")
+    """The cycle with its first hole, or the blocks of each hole of a rigid tap."""
+    return cycle_lines(cycle, top, turning, formats)
 
 
 def hole_end() -> list[str]:

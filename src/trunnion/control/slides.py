@@ -5,18 +5,23 @@ axes at zero: that is the work offset, with the tool's length in it. They are wo
 they are printed, so that rounding an angle costs nothing at the tip.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.control.definition import Control
 from trunnion.machine import Machine, forward, slide_positions
 from trunnion.nc import NumberFormat
 from trunnion.plan import Motion
 
 #: A tip that moves by less than this, mm, rests: a degree counts as a millimetre then.
 RESTS: Final = 1e-4
+
+#: The setting ``rotary_feed`` of controls that can be told that F is the tip's all the same.
+TIP: Final = "tip"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,13 +31,19 @@ class Slides:
     motion    tips and centres of circles are positions of the slides X, Y and Z
     turns     (n,) bool     a rotary axis turns on the way to the row
     length    (n,) float64  of the way to the row that the feed means: mm of the tip, or degrees where it rests
+    together  (n,) float64  of the way to the row with all axes as one, a degree as a millimetre
     shortest  (n, 2) bool   the rotary axis goes past the end of the turn that it displays
     """
 
     motion: Motion
     turns: Flags
     length: Floats
+    together: Floats
     shortest: Flags
+
+    def at(self, rows: Ints | slice) -> "Slides":
+        """Some rows, without their motion, which stays whole."""
+        return Slides(self.motion, self.turns[rows], self.length[rows], self.together[rows], self.shortest[rows])
 
 
 def slides_of(machine: Machine, motion: Motion, decimals: int) -> Slides:
@@ -58,11 +69,13 @@ def slides_of(machine: Machine, motion: Motion, decimals: int) -> Slides:
             steps[:, r] -= 360.0 * np.rint(steps[:, r] / 360.0)
     turned = np.abs(steps).max(axis=1)
     way = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
+    apart = np.hypot(np.linalg.norm(np.diff(slides, axis=0, prepend=slides[:1]), axis=1), np.linalg.norm(steps, axis=1))
     operation = replace(motion.operation, moves=replace(moves, tip=np.ascontiguousarray(slides)), arcs=arcs)
     return Slides(
         replace(motion, operation=operation, rotary=rotary),
         turned > 0.0,
         np.where(way < RESTS, turned, way),
+        apart,
         jumps,
     )
 
@@ -89,22 +102,37 @@ def _third_slide(machine: Machine, rotary: Floats) -> Floats:
     return np.asarray(tip[len(rotary) :] - tip[: len(rotary)])
 
 
-def inverse_time(length: Floats, feed: Floats, form: NumberFormat) -> tuple[Floats, Flags, Flags]:
-    """One over the minutes that ways take at their feeds.
+def feed_rule(control: Control, settings: Mapping[str, str]) -> str:
+    """How the feed is said where rotary axes turn: one of ``FEEDS_WITHOUT_TCP``, or ``TIP`` by a setting."""
+    return TIP if settings.get("rotary_feed") == TIP else control.feed_without_tcp
+
+
+def feed_format(rule: str) -> str:
+    """The format of the word that says it."""
+    return "inverse_time" if rule == "inverse_time" else "feed"
+
+
+def feeds(slides: Slides, feed: Floats, rule: str, form: NumberFormat) -> tuple[Floats, Flags, Flags]:
+    """What F is so that the tip has its feed: one over the minutes of the block, or what the control counts a minute.
 
     Parameters
     ----------
-    length : (n,) float64
-        mm, above 0.
+    slides
+        Of n rows.
     feed : (n,) float64
-        mm/min, above 0.
+        Of the tip, mm/min; NaN in rapids.
+    rule
+        Of ``feed_rule``.
     form
         Of the word: its limits.
 
     Returns
     -------
     rate, slow, fast
-        (n,) float64 1/min, put onto the limit where beyond it; (n,) bool below the least; (n,) bool above the greatest.
+        (n,) float64, put onto the limit where beyond it; (n,) bool below the least; (n,) bool above the greatest. Only
+        rows in which rotary axes turn mean anything.
     """
-    rate = feed / np.maximum(length, 1e-12)
+    ones = np.ones(len(feed))
+    counted: Floats = {"inverse_time": ones, "all_axes": slides.together, TIP: slides.length}[rule]
+    rate = feed * counted / np.maximum(slides.length, 1e-12)
     return np.clip(rate, form.least, form.greatest), rate < form.least, rate > form.greatest

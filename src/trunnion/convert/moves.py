@@ -4,7 +4,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.convert.lost import Remarks
-from trunnion.reader import Run
+from trunnion.reader import Run, counted
 from trunnion.toolpath import Arcs, Kind, Moves
 
 #: Positions are taken to so many decimals: what is beyond them comes from computing with binary fractions.
@@ -40,9 +40,13 @@ def _feeds(run: Run, rows: Ints, remark: Remarks) -> tuple[Floats, Flags]:
     rapid = run.kind[rows] == Kind.RAPID
     inverse = np.flatnonzero((mode == 93) & ~rapid)
     feed[inverse] *= _lengths(run, rows[inverse])
-    lost = run.block[rows[inverse[feed[inverse] == 0.0]]]
+    way = counted(run, rows)
+    free = np.flatnonzero(~np.isnan(way))
+    feed[free] *= _lengths(run, rows[free]) / way[free]
+    led = np.union1d(inverse, free)
+    lost = run.block[rows[led[feed[led] == 0.0]]]
     if len(lost):
-        what = f"{len(lost)} blocks with G93 turn the tool about a tip that rests: they have no feed in mm/min"
+        what = f"{len(lost)} blocks turn the tool about a tip that rests: they have no feed in mm/min"
         remark(int(lost[0]), what, "their feed becomes 0")
     last_cut = np.maximum.accumulate(np.where(rapid, -1, np.arange(len(feed))))
     feed = np.where(last_cut >= 0, feed[last_cut], np.nan)

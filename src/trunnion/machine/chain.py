@@ -12,9 +12,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Flags, Floats
+from trunnion.kernels import njit
 from trunnion.machine.model import Machine
 
 

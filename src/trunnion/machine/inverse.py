@@ -36,9 +36,9 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats
+from trunnion.kernels import njit
 from trunnion.machine.model import Machine
 
 UNREACHABLE: Final = 1

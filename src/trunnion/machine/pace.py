@@ -11,9 +11,9 @@ Units: mm and degrees, seconds. What the definition does not state limits nothin
 import math
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Flags, Floats
+from trunnion.kernels import njit
 from trunnion.machine.model import Machine
 
 #: How far an axis may leave a corner, mm or degrees: what controls take for cuts of usual accuracy.

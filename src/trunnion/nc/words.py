@@ -7,9 +7,9 @@ compared for modality is what is printed, and -0.0004 with three decimals is sim
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Floats, Ints
+from trunnion.kernels import njit
 
 #: The count that stands for "this word is not in this block".
 ABSENT = np.iinfo(np.int64).min

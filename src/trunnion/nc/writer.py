@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import BinaryIO
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Bytes, Flags, Ints
 from trunnion.errors import Problem, Refused
+from trunnion.kernels import njit
 from trunnion.nc.words import ABSENT, Word
 
 #: Rows that a caller best hands over at a time: the table of one chunk stays in the processor's cache.

@@ -21,9 +21,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Flags, Floats
+from trunnion.kernels import njit
 from trunnion.machine import Machine, Packed
 
 #: Halvings by which the least angle is found.

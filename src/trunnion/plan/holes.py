@@ -28,6 +28,8 @@ class Making(StrEnum):
     CHIPS = "DRILL,BRKCHP"
     TAP = "TAP"
     TAP_CHUCK = "TAP,OPTION"
+    TAP_DEEP = "TAP,DEEP"
+    TAP_CHIPS = "TAP,BRKCHP"
     REAM = "REAM"
     DRAG = "BORE,DRAG"
     LIFT = "BORE,NODRAG"
@@ -43,6 +45,8 @@ _MAKINGS = {
     ("DRILL", "DEEP"): Making.DEEP,
     ("DRILL", "BRKCHP"): Making.CHIPS,
     ("TAP",): Making.TAP,
+    ("TAP", "DEEP"): Making.TAP_DEEP,
+    ("TAP", "BRKCHP"): Making.TAP_CHIPS,
     ("BORE",): Making.REAM,
     ("REAM",): Making.REAM,
     ("BORE", "DRAG"): Making.DRAG,
@@ -50,6 +54,9 @@ _MAKINGS = {
     ("BORE", "MANUAL"): Making.MANUAL,
 }
 
+
+#: Those that say the length of a stroke.
+_IN_STROKES = (Making.DEEP, Making.CHIPS, Making.TAP_DEEP, Making.TAP_CHIPS)
 
 #: No length, feed or angle of a cycle is so large.
 _FARTHEST = 1e6
@@ -109,7 +116,7 @@ def cycle_of(event: CycleOn) -> Cycle:
     if not above >= 0.0:
         raise CycleError("CYCLE without RAPTO, or with one below the hole", "write RAPTO,distance above the point")
     steps = (*values.get("STEP", ()), 0.0, 0.0, 0.0)[:3]
-    if making in (Making.DEEP, Making.CHIPS) and not steps[0] > 0.0:
+    if making in _IN_STROKES and not steps[0] > 0.0:
         raise CycleError(f"CYCLE/{making} without STEP", "write STEP,first stroke")
     if words.get("RTRCTO") == "MANUAL":
         raise CycleError("RTRCTO,MANUAL does not say how far", "write RTRCTO,distance or RTRCTO,AUTO")

@@ -20,12 +20,12 @@ why they are handed all that they work with: calls and counting took longer than
 """
 
 import math
-from typing import Any, Final, TypeAlias, TypeVar
+from typing import Final, TypeAlias
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine import Packed
 from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, place_slides, solve_tilt, turned
 from trunnion.plan.placing import beyond, first_of, folded
@@ -62,19 +62,10 @@ _CLEARLY: Final = 1e-3
 #: Motion below this, degrees, has no direction: vectors of CL files are rounded.
 _STILL: Final = 1e-3
 
-Kernel = TypeVar("Kernel")
-
 #: What ``solve_tilt`` returns.
 Tilt: TypeAlias = tuple[int, float, float, float, float]
 
 _COS_BEND: Final = math.cos(math.radians(BEND))
-
-
-def _without_counting(kernel: Kernel) -> Kernel:
-    """Compile a kernel that counts no references: by an option of Numba's that its type hints do not know."""
-    options: dict[str, Any] = {"cache": True, "nogil": True, "_nrt": False}
-    compiled: Kernel = njit(**options)(kernel)
-    return compiled
 
 
 @njit(cache=True)
@@ -369,7 +360,7 @@ def workspace(states: int) -> tuple[Floats, Ints, Floats, Floats, Ints, Ints, Fl
     )  # fmt: skip
 
 
-@_without_counting
+@njit(cache=True, nogil=True, _nrt=False)
 def cheapest(
     packed: Packed,
     choice: Choice,
@@ -444,7 +435,7 @@ def cheapest(
     return end
 
 
-@_without_counting
+@njit(cache=True, nogil=True, _nrt=False)
 def nearest(
     packed: Packed,
     choice: Choice,

@@ -9,9 +9,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine import Packed
 from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, place_slides, solve_tilt
 from trunnion.plan.states import LIMIT_TOLERANCE, POLE_JUMP, REWOUND, STATE, STUCK_FAST, Choice

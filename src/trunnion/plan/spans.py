@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine import Machine, Packed, pack
 from trunnion.machine.chain import Chain, chain_row, pack_chain
 from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, solve_slides, solve_tilt

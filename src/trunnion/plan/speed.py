@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine import Machine
 from trunnion.toolpath import Kind, Moves, Operation, SpindleOn
 

@@ -5,11 +5,13 @@ This room is written from the language of the controls. It shares nothing with w
 
 from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.families import can_read, reader_of, run_program
+from trunnion.reader.feeds import FeedPath, counted, ways
 from trunnion.reader.run import Comment, Finding, Happening, Orientation, Poses, Run, State, Stretch, Written
 from trunnion.reader.subdivide import Samples, subdivide
 
 __all__ = [
     "Comment",
+    "FeedPath",
     "Finding",
     "Happening",
     "Orientation",
@@ -22,7 +24,9 @@ __all__ = [
     "Stretch",
     "Written",
     "can_read",
+    "counted",
     "reader_of",
     "run_program",
     "subdivide",
+    "ways",
 ]

@@ -11,9 +11,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats
+from trunnion.kernels import njit
 from trunnion.machine import Machine, inverse
 from trunnion.machine.inverse import Packed, solve_slides
 

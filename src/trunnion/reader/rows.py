@@ -15,6 +15,7 @@ from trunnion.machine import Machine
 from trunnion.machine.inverse import pack
 from trunnion.reader import poses
 from trunnion.reader.columns import Changes, Columns, affine
+from trunnion.reader.feeds import FeedPath
 from trunnion.reader.handover import COMMENTS, FEEDS, FIELDS, KIND, LINE, POSITION, ROOM, ROW, Notes, Target
 from trunnion.reader.run import BY_WORDS, Comment, Finding, Happening, Run, State, Value, Written
 from trunnion.toolpath import Arcs, Kind
@@ -64,6 +65,7 @@ class Rows:
         self.inch_rows = Changes(False)
         self.orientation = Changes(BY_WORDS)
         self.by_tip = Changes(False)
+        self.feed_path = Changes(int(FeedPath.SLIDES))
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
 
         self.counts = np.zeros(FIELDS, np.int64)
@@ -249,6 +251,7 @@ class Rows:
                 inches=self.inch_rows.steps(n, np.bool_),
                 orientation=self.orientation.steps(n, np.uint8),
                 by_tip=self.by_tip.steps(n, np.bool_),
+                feed_path=self.feed_path.steps(n, np.uint8),
             ),
             start=self.start,
             arcs=self._curves(),

@@ -103,7 +103,8 @@ BY_WORDS = 2
 class State:
     """What changes seldom, as columns that are kept by their changes. The same names in ``Run`` are the whole columns.
 
-    by_tip   ``Run.place`` is the tool tip, not the slides
+    by_tip     ``Run.place`` is the tool tip, not the slides
+    feed_path  a ``FeedPath``: what the feed would count where rotary axes turn without TCP
     """
 
     file: Steps
@@ -119,6 +120,7 @@ class State:
     inches: Steps
     orientation: Steps
     by_tip: Steps
+    feed_path: Steps
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,9 +15,9 @@ that Python would read; longer ones are the interpreter's.
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Bytes, Codes, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.reader.handover import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, Notes, Target
 
 NUMBER: Final = 1

@@ -117,7 +117,7 @@ def places_only(run: Run, rows: Ints) -> Flags:
 def points(run: Run, wanted: Wanted) -> Rows:
     """Rows of a run that ought to answer to CL points, without those that make holes or lead to the first point."""
     rows = answers(run)
-    none = np.concatenate((hole_rows(made_in(run)), levels(run)))
+    none = np.concatenate((hole_rows(made_in(run, wanted.holes)), levels(run)))
     more = _taken_along(run, wanted)
     if not len(none) and not len(more):
         return rows
@@ -185,8 +185,8 @@ class _Matcher:
     def __init__(self, run: Run, wanted: Wanted, bend: float | None) -> None:
         self._run, self._wanted, self._bend = run, wanted, bend
         self._rows = points(run, wanted)
-        made = made_in(run)
-        self._leads = leads(run, [hole.first - k for hole in made for k in (1, 2)], made)
+        made = made_in(run, wanted.holes)
+        self._leads = leads(run, [hole.first - k for hole in made for k in (1, 2, 3)], made)
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine.chain import Chain, chain_row, pack_chain
 from trunnion.reader import Orientation, Poses, Run, Written
 from trunnion.toolpath import Kind

@@ -15,7 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machine import forward
-from trunnion.reader import Run
+from trunnion.reader import Run, counted
 from trunnion.toolpath import Kind
 from trunnion.verify.align import CHUNK, answers, first_meeting
 
@@ -126,11 +126,13 @@ class _Side:
         """Feeds in mm/min, 0 for rapids."""
         run = self.run
         rate = np.where(run.feed_mode[rows] == 95, run.feed[rows] * run.rpm[rows], run.feed[rows])
-        inverse = run.feed_mode[rows] == 93
-        if inverse.any():
+        inverse, way = run.feed_mode[rows] == 93, counted(run, rows)
+        free = ~np.isnan(way)
+        if inverse.any() or free.any():
             before = np.maximum(rows - 1, 0)
             length = np.sqrt(((run.tip[rows] - run.tip[before]) ** 2).sum(axis=1))
             rate = np.where(inverse, rate * length, rate)
+            rate[free] *= length[free] / way[free]
         return np.asarray(np.where(run.kind[rows] == Kind.RAPID, 0.0, np.nan_to_num(rate)))
 
     def arc(self, k: int) -> tuple[Floats, Floats] | None:

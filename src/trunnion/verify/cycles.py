@@ -28,6 +28,9 @@ from trunnion.toolpath import (
 )
 from trunnion.verify.rapids import PLACES, levels
 
+#: A motion is along the tool axis, or across it, when it is off by less than this, mm.
+_STRAIGHT = 1e-6
+
 #: A spindle: rev/min, and 1 for clockwise, -1 for the other way, 0 for standing still.
 Spin = tuple[float, int]
 
@@ -173,17 +176,34 @@ class Made:
     end: int
 
 
-def made_in(run: Run) -> list[Made]:
-    """The motions of a run that its drilling cycles made, hole by hole."""
+def made_in(run: Run, holes: Sequence[Hole] = ()) -> list[Made]:
+    """The motions of a run that its drilling cycles made, hole by hole.
+
+    A thread that is cut by a block of its own has besides the rapid to it and, where the ``holes`` of the CL files want
+    that, the rapid straight up behind it.
+    """
     cycle = np.flatnonzero((run.programmed == 0) & (run.kind != Kind.ARC))
     if not len(cycle):
         return []
     found: list[Made] = []
-    for part in np.split(cycle, np.flatnonzero(np.diff(cycle) != 1) + 1):
-        first = int(part[0])
+    for k, part in enumerate(np.split(cycle, np.flatnonzero(np.diff(cycle) != 1) + 1)):
+        first, end = int(part[0]), int(part[-1]) + 1
         to = first - 1 if first and run.blocks[first - 1] == run.blocks[first] else first
-        found.append(Made(to, int(part[-1]) + 1))
+        if to == first and first and run.kind[first] != Kind.RAPID and run.kind[first - 1] == Kind.RAPID:
+            to -= 1
+            back = k < len(holes) and holes[k].retract > holes[k].above + 1e-9
+            end += back and end < len(run) and run.kind[end] == Kind.RAPID and _leg(run, end)[1] > 0.0
+        found.append(Made(to, end))
     return found
+
+
+def _leg(run: Run, row: int) -> tuple[float, float]:
+    """How far a row goes across the tool axis and, if it does so by nothing else, along it, mm."""
+    poses = run.poses(np.array([row - 1, row]))
+    way = poses.tip[1] - poses.tip[0]
+    up = float(way @ poses.axis[1])
+    across = float(np.linalg.norm(way - up * poses.axis[1]))
+    return across, up if across < _STRAIGHT else 0.0
 
 
 def hole_rows(made: Sequence[Made]) -> Ints:
@@ -195,37 +215,39 @@ def hole_rows(made: Sequence[Made]) -> Ints:
 def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
     """Which of the motions that answer to no CL point only lead to a hole.
 
-    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, or
-    straight down to the hole, after a motion across at one height or without; or, from home or after a turn, to the
-    hole itself.
+    They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, over
+    the hole at that height, and straight down; or, from home or after a turn, to the hole itself.
     """
-    starts, approach, others = {hole.first for hole in made}, set(levels(run).tolist()), set(extra)
+    approach, unasked = set(levels(run).tolist()), set(extra)
     lawful = set()
-    for row in extra:
-        if row < 1 or row + 1 not in starts or run.kind[row] != Kind.RAPID:
-            continue
-        poses = run.poses(np.array([row - 1, row, row + 1]))
-        way = poses.tip[1] - poses.tip[0]
-        up = float(way @ poses.axis[1])
-        rises = up > 0.0 and float(np.linalg.norm(way - up * poses.axis[1])) < 1e-6
-        arrives = float(np.abs(poses.tip[2] - poses.tip[1]).max()) < 1e-6
-        from_home = (
-            row - 1 in approach
-            or bool(run.state.machine_frame[row - 1])
-            or (int(run.programmed[row - 1]) & int(PLACES)) == 0
-        )
-        falls = arrives and up < 0.0 and float(np.linalg.norm(way - up * poses.axis[1])) < 1e-6
-        if rises or falls or (arrives and from_home):
-            lawful.add(row)
-        if falls and row - 1 in others and _is_level(run, row - 1):
-            lawful.add(row - 1)
+    for hole in made:
+        row = hole.first - 1
+        while row > 0 and row in unasked and run.kind[row] == Kind.RAPID:
+            leg = _leads_how(run, row, hole.first, approach)
+            if leg:
+                lawful.add(row)
+            if leg not in ("down", "across"):
+                break
+            row -= 1
     return lawful
 
 
-def _is_level(run: Run, row: int) -> bool:
-    """Whether a row is a rapid straight across the tool axis, which stands still."""
-    if row == 0 or run.kind[row] != Kind.RAPID:
-        return False
-    poses = run.poses(np.array([row - 1, row]))
-    steady = float(np.abs(poses.axis[1] - poses.axis[0]).max()) < 1e-9
-    return steady and abs(float((poses.tip[1] - poses.tip[0]) @ poses.axis[1])) < 1e-6
+def _leads_how(run: Run, row: int, first: int, approach: set[int]) -> str:
+    """How a rapid leads to the hole to which row ``first`` goes; empty if it does not."""
+    poses = run.poses(np.array([row - 1, row, first]))
+    way, rest, axis = poses.tip[1] - poses.tip[0], poses.tip[2] - poses.tip[1], poses.axis[1]
+    up, left = float(way @ axis), float(rest @ axis)
+    straight = float(np.linalg.norm(way - up * axis)) < _STRAIGHT
+    over = float(np.linalg.norm(rest - left * axis)) < _STRAIGHT and left < _STRAIGHT
+    from_home = (
+        row - 1 in approach
+        or bool(run.state.machine_frame[row - 1])
+        or (int(run.programmed[row - 1]) & int(PLACES)) == 0
+    )
+    if straight and up > 0.0:
+        return "up"
+    if float(np.abs(rest).max()) < _STRAIGHT and from_home:
+        return "from home"
+    if straight and over:
+        return "down"
+    return "across" if over and abs(up) < _STRAIGHT else ""

@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machine import Machine
-from trunnion.reader import Run
+from trunnion.reader import FeedPath, Run, counted
 from trunnion.toolpath import Kind
 from trunnion.verify.agreed import Believed, needless_feeds
 from trunnion.verify.align import CHUNK, Pairs
@@ -18,7 +18,7 @@ from trunnion.verify.cycles import leads, made_in
 from trunnion.verify.model import Check, Place
 from trunnion.verify.retreats import retreats
 from trunnion.verify.rows import Rows
-from trunnion.verify.wanted import Call, Spindle, Stretch, is_called
+from trunnion.verify.wanted import Allowed, Call, Spindle, Stretch, is_called
 
 _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
 
@@ -52,7 +52,7 @@ def order(case: Case) -> Check:
     count = len(pairs.missing)
     back = retreats(case.run, pairs.extra, max(part.allowed.tip for part in wanted.parts))
     lawful = {row for retreat in back for row in range(retreat.first, retreat.end)}
-    lawful |= leads(case.run, pairs.extra, made_in(case.run))
+    lawful |= leads(case.run, pairs.extra, made_in(case.run, wanted.holes))
     for retreat in back:
         text = f"draws back {retreat.distance:.3f} mm along the tool axis, turns, and comes back"
         told.append(case.place(retreat.first, retreat.distance, text))
@@ -172,13 +172,12 @@ def feed(case: Case, believed: Believed) -> Check:
         cuts = (run.kind[nc] != Kind.RAPID) & (wanted.kind(cl) != Kind.RAPID)
         rate, per_rev = run.state.feed.at(nc), wanted.per_rev(cl)
         asked = wanted.feed(cl)
-        allowed = max(part.allowed.feed for part in wanted.parts) + 1e-9
+        limits = Allowed(
+            tip=max(part.allowed.tip for part in wanted.parts), feed=max(part.allowed.feed for part in wanted.parts)
+        )
         mode = run.state.feed_mode.at(nc)
-        near = np.abs(rate - asked) <= allowed
-        timed = np.flatnonzero(mode == 93)
-        if len(timed):
-            rounded = max(part.allowed.tip for part in wanted.parts)
-            near[timed], rate[timed] = _in_time(case, nc[timed], rate[timed], asked[timed], rounded)
+        near = np.abs(rate - asked) <= limits.feed + 1e-9
+        _judge_times(case, nc, rate, asked, near, limits)
         wrong = cuts & ((mode == 95) != per_rev)
         wrong |= cuts & ~near & ~np.isnan(asked)
         known = asked[cuts & ~np.isnan(asked)]
@@ -196,11 +195,9 @@ def feed(case: Case, believed: Believed) -> Check:
             places.append(case.place(int(nc[k]), float(rate[k]), text, int(cl[k])))
     for pieces in pairs.pieces:
         asked_here, limits = wanted.point(pieces.cl).feed, wanted.part_of(pieces.cl).allowed
-        rate, mode = run.state.feed.at(pieces.nc), run.state.feed_mode.at(pieces.nc)
+        rate = run.state.feed.at(pieces.nc)
         near = np.abs(rate - asked_here) <= limits.feed + 1e-9
-        timed = np.flatnonzero(mode == 93)
-        asked = np.full(len(timed), asked_here)
-        near[timed], rate[timed] = _in_time(case, pieces.nc[timed], rate[timed], asked, limits.tip)
+        _judge_times(case, pieces.nc, rate, np.full(len(rate), asked_here), near, limits)
         for k in np.flatnonzero(~near).tolist():
             count += 1
             text = f"moves with {rate[k]:g} mm/min; the CL file wants {asked_here:g}"
@@ -214,25 +211,57 @@ def feed(case: Case, believed: Believed) -> Check:
     return judged("feed", "feeds as the CL file says", places, good, count)
 
 
-def _in_time(case: Case, nc: Ints, rate: Floats, asked: Floats, rounded: float) -> tuple[Flags, Floats]:
-    """Whether blocks with inverse time take as long as their way does at the feed asked for; and their feeds, mm/min.
+def _judge_times(case: Case, nc: Ints, rate: Floats, asked: Floats, near: Flags, allowed: Allowed) -> None:
+    """Judge blocks whose F is not the tip's by their time: those with inverse time, and those that turn without TCP.
 
-    They may be off by a thousandth and by what rounding moves the ends, ``rounded`` mm in each coordinate. Where the
-    tip rests, a degree may count as a millimetre. A block may always take as long as no control is quicker, and
-    one with the greatest F that there is as long as that.
+    Written: into ``near`` whether they take as long as they should, into ``rate`` the feed of the tip. Where F is the
+    tip's at the start of each block (``FeedPath.TIP``), it is compared as it stands.
     """
-    run, top = case.run, case.settings.top_rate
+    run = case.run
+    timed = np.flatnonzero(run.state.feed_mode.at(nc) == 93)
+    if len(timed):
+        with np.errstate(divide="ignore"):
+            minutes = 1.0 / rate[timed]
+        top = np.inf if case.settings.top_rate is None else case.settings.top_rate - _LAST
+        fastest = np.where(rate[timed] >= top, minutes, _QUICKEST)
+        slack = 2.0 * math.sqrt(3.0) * allowed.tip
+        near[timed], rate[timed] = _in_time(run, nc[timed], minutes, asked[timed], slack, quickest=fastest)
+    way = counted(run, nc)
+    led = np.flatnonzero(~np.isnan(way) & (run.state.feed_path.at(nc) != FeedPath.TIP))
+    if not len(led):
+        return
+    with np.errstate(divide="ignore", invalid="ignore"):
+        minutes = way[led] / rate[led]
+        rounded = allowed.feed / rate[led]
+    slack = 2.0 * math.sqrt(3.0) * allowed.tip
+    top = np.inf if case.settings.top_feed is None else case.settings.top_feed - allowed.feed
+    fastest = np.where(rate[led] >= top, minutes, _QUICKEST)
+    near[led], rate[led] = _in_time(run, nc[led], minutes, asked[led], slack, rounded, fastest)
+
+
+def _in_time(
+    run: Run,
+    nc: Ints,
+    minutes: Floats,
+    asked: Floats,
+    slack: float,
+    rounded: Floats | float = 0.0,
+    quickest: Floats | float = _QUICKEST,
+) -> tuple[Flags, Floats]:
+    """Whether blocks take as long as their way does at the feed asked for, and their feeds, mm/min.
+
+    They may be off by a thousandth, by the share ``rounded`` that a printed number is off, and by ``slack`` mm of the
+    way. Where the tip rests, a degree may count as a millimetre. ``quickest`` is what a block may always take: no
+    control is quicker.
+    """
     before, after = run.poses(nc - 1), run.poses(nc)
     way = np.sqrt(((after.tip - before.tip) ** 2).sum(axis=1))
     turned = np.abs(after.joints - before.joints)[:, list(run.machine.rotary)].max(axis=1)
-    slack = 2.0 * math.sqrt(3.0) * rounded
     longest = np.where(way < max(_RESTS, slack), np.maximum(way, turned), way) + slack
-    with np.errstate(divide="ignore"):
-        minutes = 1.0 / rate
-    soon = minutes < (1.0 - 1e-3) * np.maximum(way - slack, 0.0) / asked
-    quickest = _QUICKEST if top is None else np.where(rate > top - _LAST, minutes, _QUICKEST)
-    late = minutes > (1.0 + 1e-3) * longest / asked + quickest
-    return ~(soon | late | np.isnan(minutes)), rate * way
+    soon = minutes < (1.0 - 1e-3 - rounded) * np.maximum(way - slack, 0.0) / asked
+    late = minutes > (1.0 + 1e-3 + rounded) * longest / asked + quickest
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return ~(soon | late | np.isnan(minutes)), way / minutes
 
 
 def _part(case: Case, stretch: Stretch) -> tuple[int, int]:

@@ -147,7 +147,7 @@ def holes(case: Case) -> Check:
     assert wanted is not None
     assert pairs is not None
     title = "holes as the cycles of the CL file ask"
-    made = made_in(run)
+    made = made_in(run, wanted.holes)
     waits: dict[int, list[float]] = {}
     for event in run.events:
         if event.kind == "dwell" and isinstance(event.value, float):

@@ -139,10 +139,10 @@ def _low_rapids(case: Case) -> list[Place]:
         assert case.wanted is not None
         for nc, cl in case.pairs.all_chunks():
             suspect[nc[case.wanted.kind(cl) == Kind.RAPID]] = False
-    made = made_in(run)
+    made = made_in(run, () if case.wanted is None else case.wanted.holes)
     suspect[hole_rows(made)] = False  # they have a check of their own
     if case.pairs is not None:
-        suspect[sorted(leads(run, case.pairs.extra, made))] = False  # and what leads to them is looked at there
+        suspect[list(leads(run, case.pairs.extra, made))] = False
     if not suspect.any():
         return []
     every = rapids[(run.programmed[rapids] & int(PLACES)) != 0]

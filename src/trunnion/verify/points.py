@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine import Machine
 from trunnion.reader import Poses
 from trunnion.verify.align import Pairs

@@ -5,28 +5,25 @@ Out:    per row the time it takes and the speed of the tip; over all rows, how m
         acceleration is asked for, how far they go, and how far the tool is off half-way.
 Units:  mm and degrees; minutes inside the kernel, seconds outside.
 
-A row at feed asks for its length at its feed. Its length is the tip's way with TCP, the slides' way without; where
-nothing but rotary axes move, degrees count as millimetres. How long it takes is in ``trunnion.verify.times``. The
-acceleration between two rows at feed is the change of speed over half the time of both: a control
-that rounds corners needs less, one that stops exactly needs more.
+A row at feed asks for its length at its feed. Its length is the tip's way with TCP; without, it is the slides' way, or
+what the control counts besides (``FeedPath``). Where nothing but rotary axes move, degrees count as millimetres. How
+long it takes is in ``trunnion.verify.times``. The acceleration between two rows at feed is the change of speed over
+half the time of both: a control that rounds corners needs less, one that stops exactly needs more.
 """
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Final
 
 import numpy as np
-from numba import njit
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.kernels import njit
 from trunnion.machine import Machine, forward
-from trunnion.reader import Orientation, Run, Stretch
+from trunnion.reader import FeedPath, Orientation, Run, Stretch, ways
+from trunnion.reader.feeds import STILL
 from trunnion.toolpath import Kind
 from trunnion.verify.rapids import levels
 from trunnion.verify.times import Pace
-
-#: Rotary motion below this, degrees, bends nothing.
-_STILL: Final = 1e-9
 
 
 @dataclass(slots=True)
@@ -118,11 +115,12 @@ class Walker:
         machine_frame[here - first] = True
         angles = run.oriented(first, end) == Orientation.ANGLES
         times, shares, bend = np.empty((4, count)), np.empty((2, 5, count)), np.empty(count)
+        ways = self._ways(first, end, poses, tcp)
         walk_rows(
             first, poses.joints, poses.tip, poses.axis, poses.half_way, kind, programmed, tcp, machine_frame,
             state.feed.part(first, end), state.feed_mode.part(first, end), state.rpm.part(first, end), run.arcs.row,
             self._arc_length, self._rotary,
-            self._rapid, self._acceleration, self._state, walk.extremes, walk.places, times, shares, angles, bend,
+            self._rapid, self._acceleration, ways, self._state, walk.extremes, walk.places, times, shares, angles, bend,
         )  # fmt: skip
         if self._pace is not None:
             self._pace.take(first, end, poses, times)
@@ -133,9 +131,23 @@ class Walker:
                 walk.acceleration[k].take(first, shares[1, k])
         walk.bend_axis.take(first, bend)
         if not tcp.all():
-            turned = np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > _STILL
+            turned = np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > STILL
             free = np.flatnonzero(turned & ~tcp & (kind == Kind.LINEAR))
             walk.bend_tip.take(first, _off_tip(run.machine, poses, free, count))
+
+    def _ways(self, first: int, end: int, poses: Stretch, tcp: Flags) -> Floats:
+        """What F counts in rows in which rotary axes turn without TCP, NaN in the others; empty where there are none.
+
+        A rule that counts the slides alone is left to the kernel.
+        """
+        path = self._run.state.feed_path.part(first, end)
+        led = ~tcp & (path != FeedPath.SLIDES)
+        if not led.any():
+            return np.zeros(0)
+        led &= np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > STILL
+        found, rows = np.full(end - first, np.nan), np.flatnonzero(led)
+        found[rows] = ways(self._run.machine, poses.joints[rows], poses.joints[rows + 1], path[rows])
+        return found
 
     def walked(self) -> Walk:
         """Everything, when all rows have gone by."""
@@ -205,6 +217,7 @@ def walk_rows(
     rotary: Flags,
     rapid: Floats,
     most: Floats,
+    ways: Floats,
     state: Floats,
     extremes: Floats,
     places: Ints,
@@ -217,6 +230,8 @@ def walk_rows(
 
     joints, tip, axis (k + 1, …) with the place before the rows in front; all other columns have k rows
     rapid, most   (5,) float64   mm/min or deg/min, mm/s^2 or deg/s^2; infinite where not stated
+    ways          (k,) float64   what the feed counts where that is neither the tip's way nor the slides', else NaN;
+                                 or empty
     state         (7,) float64   minutes of the row before if it was at feed (else 0), next arc, speeds of that row (5)
     times         (4, k) float64 written: length that the feed means, mm or degrees, the feed along it, infinite for
                                  rapids, the tip's way, mm, and 0, 1 or 2 where the tip, the slides or degrees are meant
@@ -256,6 +271,8 @@ def walk_rows(
         minutes = 0.0
         meant = 0.0 if tcp[at] or on_arc else 1.0
         length = way if tcp[at] or on_arc else math.sqrt(slides)
+        if ways.shape[0] and not on_arc and ways[at] == ways[at]:
+            length = ways[at]
         if length < 1e-9:
             length = turned
             meant = 2.0
@@ -274,7 +291,7 @@ def walk_rows(
         times[2, at] = way
         times[3, at] = meant
         bend[at] = 0.0
-        if turned > _STILL and kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
+        if turned > STILL and kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
             bend[at] = beside(axis, half_way, at)
         for k in range(5):
             shares[0, k, at] = 0.0

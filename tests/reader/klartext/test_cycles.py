@@ -60,6 +60,23 @@ def test_cycles_of_the_200_series(number: int, values: dict[str, float], expecte
     close(found.tip[-1, :2], [3, 4])
 
 
+@pytest.mark.parametrize("word", ["MAX", "FMAX"])
+@pytest.mark.parametrize(
+    ("number", "values", "expected"),
+    [
+        (202, {"Q214": 0}, "R12 F-5 R12 R60"),
+        (202, {"Q214": 1, "Q336": 0}, "R12 F-5 R-5 R12 R12 R60"),
+        (203, {"Q212": 0, "Q213": 9, "Q205": 0, "Q256": 1}, "R12 F4 R5 F-2 R-1 F-5 R12 R60"),
+    ],
+)
+def test_out_of_the_hole_at_rapid(number: int, values: dict[str, float], expected: str, word: str, run: Runner) -> None:
+    text = define(number, **{**DRILL, **values}).rstrip("\n") + f" ~\nQ208={word}\n"
+    found = run(BEFORE + text + "CYCL CALL")
+    assert found.findings == ()
+    assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
+    assert run(BEFORE + text.replace("Q208", "Q206") + "CYCL CALL").findings
+
+
 def test_feeds_of_cycles(run: Runner) -> None:
     def feeds(number: int, **values: float) -> list[float]:
         found = run(BEFORE + "L Z+90 F888\n" + define(number, **{**DRILL, "Q202": 15, **values}) + "CYCL CALL\nL Z+1")

@@ -9,11 +9,12 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Axis, Machine, forward
+from trunnion.machine import Axis, Carries, Machine, forward
 from trunnion.machine.inverse import solve_slides
 from trunnion.reader import poses, tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.control import RAPID, Circle, Control
+from trunnion.reader.feeds import FeedPath
 from trunnion.reader.frames import Frame
 from trunnion.reader.heidenhain.planes import Datum, spatial
 from trunnion.reader.heidenhain.scan import letters
@@ -60,9 +61,12 @@ class HeidenhainControl(Control):
         self._inside = Datum()
         #: The first row from which on rows mean the same by their place.
         self._since = 0
+        #: A tool has been called: where positions are those of the slides its length counts.
+        self._lengthened = False
         #: Pole of circles and polar coordinates, programmed position, mm.
         self.pole: Floats | None = None
         super().__init__(machine, note, file, shortest=shortest)
+        self.feed_path.set(0, int(FeedPath.AXES))
         self._tables = letters((self.names[0], self.names[1])), letters(("", ""))
 
     @property
@@ -73,6 +77,37 @@ class HeidenhainControl(Control):
     def shorter(self, axis: Axis) -> bool:
         """With M126."""
         return self.shortest_path
+
+    def feed_at_tip(self, on: bool) -> None:
+        """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""
+        heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.carries is Carries.TOOL]
+        if on and heads:
+            text = f"M116 leaves out the axes of a head: the feed where {' and '.join(heads)} turns is unknown"
+            self.note(text, Severity.WARNING)
+        self.feed_path.set(self.row, int(FeedPath.TIP if on else FeedPath.AXES))
+
+    # Tools
+
+    @property
+    def _length(self) -> Floats:
+        length = np.zeros(3)
+        if self._lengthened:
+            length[self.plane] = self.machine.tool_length or 0.0
+        return length
+
+    def call_tool(self, name: str | None, plane: int | None) -> None:
+        """TOOL CALL: another tool, or None; and the axis that it lies along, which stands on the working plane."""
+        if name is not None:
+            self.choose(name)
+        longer = self._lengthened if name is None else name.strip("0") != ""
+        along = self.plane if plane is None else plane
+        if self.machine.tool_length and (longer, along) != (self._lengthened, self.plane):
+            with self.change():
+                self._lengthened, self.plane = longer, along
+        else:
+            self._lengthened, self.plane = longer, along
+        if name is not None:
+            self.change_tool()
 
     # Datum, mirror, rotation, scale
 

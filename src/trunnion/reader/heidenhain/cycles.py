@@ -3,13 +3,18 @@
 Heights are positions along the tool axis in the program's coordinate system and units; depths count from the surface.
 """
 
+import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Final
 
 from trunnion.reader.drilling import FASTEST, MOST_PECKS, CycleError, Step, sane
 
 #: How far the tool moves off the wall of a bored hole, mm; the control has it fixed.
 DISENGAGE: Final = 0.2
+
+#: Feeds out of the hole, which may be rapid: infinite.
+MAY_BE_RAPID: Final = frozenset({208})
 
 #: Directions of Q214: first and second axis of the plane.
 _ASIDE: Final = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
@@ -37,7 +42,10 @@ class Hole:
 
     def get(self, number: int, default: float = 0.0) -> float:
         """A value, or a default where the cycle does not have it."""
-        value = sane(self._values.get(number, default))
+        given = self._values.get(number, default)
+        if number in MAY_BE_RAPID and given == math.inf:
+            return given
+        value = sane(given)
         assert value is not None
         return value
 
@@ -73,7 +81,7 @@ def steps(number: int, values: Mapping[int, float], rpm: float) -> list[Step]:
         Spindle speed in force, for rigid taps.
     """
     hole = Hole(values, rpm)
-    made = CYCLES[number](hole)
+    made = [replace(step, rapid=True, feed=None) if step.feed == math.inf else step for step in CYCLES[number](hole)]
     if any(step.feed is not None and not 0.0 <= step.feed <= FASTEST for step in made):
         raise CycleError("has a feed that no machine has")
     made = [Step(True, hole.start), *made]

@@ -1,5 +1,6 @@
 """CYCL DEF blocks: cycles that act at once, and those that wait for their call."""
 
+import math
 import re
 from dataclasses import dataclass, field, replace
 from typing import Final
@@ -8,7 +9,7 @@ from trunnion.errors import Severity
 from trunnion.reader.drilling import CycleError, Step
 from trunnion.reader.heidenhain.blocks import Word, words
 from trunnion.reader.heidenhain.control import HeidenhainControl, Positioning
-from trunnion.reader.heidenhain.cycles import CYCLES, OLD, old_steps, steps
+from trunnion.reader.heidenhain.cycles import CYCLES, MAY_BE_RAPID, OLD, old_steps, steps
 from trunnion.reader.heidenhain.motion import value_of
 from trunnion.reader.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.reader.heidenhain.planes import spatial
@@ -39,6 +40,9 @@ _FIELDS: Final = {
     2: {1: "DIST", 2: "DEPTH", 3: "DWELL", 4: "F"},
     17: {1: "DIST", 2: "DEPTH", 3: "PITCH"},
 }
+
+#: Rapid as a feed of a cycle.
+_RAPID: Final = ("MAX", "FMAX")
 
 #: Scales beyond these are slips.
 _LEAST_SCALE: Final = 1e-6
@@ -189,6 +193,10 @@ class Definitions:
                 raise KlartextError(f"{rest[at : at + 20].strip()} is no parameter of a cycle")
             at = match.end()
             target, sign, parameter, figures, word = match.groups()
+            if word in _RAPID and int(target[1:]) in MAY_BE_RAPID:
+                named[int(target[1:])] = math.inf
+                parameters.forget(canonical(target))
+                continue
             if word is not None:
                 self._note(f"cycle {number}: {target}={word} is not simulated", Severity.ERROR)
                 continue

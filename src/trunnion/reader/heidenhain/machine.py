@@ -14,6 +14,8 @@ from trunnion.reader.heidenhain.words import (
     M_CALL_MODAL,
     M_ENDS,
     M_EVENTS,
+    M_FEED_AT_TIP,
+    M_FEED_IN_DEGREES,
     M_LATE,
     M_MACHINE,
     M_NAMED,
@@ -76,6 +78,8 @@ class Functions:
             control.set_tcp(code == M_TCP)
         elif code in (M_PER_TURN, M_PER_MINUTE):
             control.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
+        elif code in (M_FEED_AT_TIP, M_FEED_IN_DEGREES):
+            control.feed_at_tip(code == M_FEED_AT_TIP)
         elif code == M_RETRACT:
             self._retract(arguments)
         elif code == M_CALL_MODAL:
@@ -129,11 +133,7 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     feed = values.get("F")
     if feed is not None and not 0.0 <= feed <= FASTEST:
         raise KlartextError(f"a feed is not from 0 to {FASTEST:g}")
-    if flags:
-        control.plane = "XYZ".index(flags[-1])
-    if name is not None:
-        control.choose(name)
-        control.change_tool()
+    control.call_tool(name, "XYZ".index(flags[-1]) if flags else None)
     if "S" in values:
         control.rpm.set(control.row, abs(values["S"]))
         control.event("speed", abs(values["S"]))

@@ -44,6 +44,8 @@ M_CALL: Final = 99
 M_CALL_MODAL: Final = 89
 M_PER_TURN: Final = 136
 M_PER_MINUTE: Final = 137
+M_FEED_AT_TIP: Final = 116
+M_FEED_IN_DEGREES: Final = 117
 M_ENDS: Final = frozenset({2, 30})
 
 #: M words that become events: kind and value, in the order in which they happen.
@@ -63,7 +65,7 @@ M_EVENTS: Final = {
 M_SPINDLE: Final = {3: 1, 4: -1, 5: 0, 13: 1, 14: -1}
 
 #: M words that act after the motion of their block.
-M_LATE: Final = frozenset({0, 1, 5, 9, 117, M_NOT_SHORTEST, M_TCP_OFF, M_CALL}) | M_ENDS
+M_LATE: Final = frozenset({0, 1, 5, 9, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_CALL}) | M_ENDS
 
 #: M words that change how the control drives, not where to.
 M_SILENT: Final = {
@@ -78,8 +80,6 @@ M_SILENT: Final = {
     109: "contour speed at the cutting edge",
     110: "contour speed at the cutting edge, reduced only",
     111: "contour speed as usual",
-    116: "feed of rotary axes in mm/min",
-    117: "feed of rotary axes in degrees/min",
     120: "look-ahead for compensated contours",
     124: "points that are left out",
     134: "exact stop at corners with rotary axes",

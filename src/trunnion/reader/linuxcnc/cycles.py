@@ -15,6 +15,9 @@ CYCLES: Final = frozenset({730, 740, 810, 820, 830, 840, 850, 860, 870, 880, 890
 NEED_Q: Final = frozenset({730, 830})
 NEED_P: Final = frozenset({820, 860, 880, 890})
 
+#: Taps, which wait as the last cycle that waited where they have no P of their own.
+KEEP_P: Final = frozenset({740, 840})
+
 #: Words of cycles that hold until another cycle begins.
 STICKY: Final = "RZPQIJK"
 

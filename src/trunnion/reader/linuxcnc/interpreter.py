@@ -26,6 +26,7 @@ from trunnion.reader.linuxcnc.words import (
     NAMED_M,
     NO_MOTION,
     OFFSETS,
+    RIGID_TAP,
     SILENT,
     SILENT_M,
     TCP_OFF,
@@ -77,6 +78,7 @@ class LinuxcncInterpreter(OWordInterpreter):
         self._to_initial = False
         self._initial: float | None = None
         self._sticky: dict[str, float] = {}
+        self._waited = 0.0
         self._homes = {code: self._home_of(machine) for code in _HOMES}
 
     @staticmethod
@@ -173,7 +175,7 @@ class LinuxcncInterpreter(OWordInterpreter):
         machine_frame = False
         explicit = False
         for code in block.g:
-            if code in MOTIONS or code in cycles.CYCLES or code in LINES or code == CANCEL:
+            if code in MOTIONS or code in cycles.CYCLES or code in LINES or code in (CANCEL, RIGID_TAP):
                 explicit = code != CANCEL
             if code in (_DWELL, _SETUP, *_HOMES, *_HOMES.values(), *_AXIS_OFFSETS, 921, 922, 923):
                 special = code
@@ -213,6 +215,8 @@ class LinuxcncInterpreter(OWordInterpreter):
             control.relative_centres = code == 911
         elif code in LINES:
             self._name_code(code, NAMED, SILENT)
+            self.motion = code
+        elif code == RIGID_TAP:
             self.motion = code
         elif code == 960:
             control.feed_mode.set(control.row, 95)
@@ -371,7 +375,7 @@ class LinuxcncInterpreter(OWordInterpreter):
         """Make the motion that the words of the block ask for."""
         control = self._control
         if begun == CANCEL:
-            self.motion = CANCEL
+            self.motion, self._initial = CANCEL, None
         code = begun if begun is not None else self.motion
         if code != CANCEL and code not in cycles.CYCLES:
             self._initial = None
@@ -388,6 +392,9 @@ class LinuxcncInterpreter(OWordInterpreter):
             return
         if code in cycles.CYCLES:
             self._cycle(code, block, axes)
+            return
+        if code == RIGID_TAP:
+            self._tap(block, axes)
             return
         turns = block.take("P") if code in (20, 30) else None
         if machine_frame:
@@ -406,6 +413,42 @@ class LinuxcncInterpreter(OWordInterpreter):
         self._move(block, self._programmed(axes), turns=int(turns) - 1 if turns else 0)
         self.motion = here
 
+    def _tap(self, block: Block, axes: dict[str, Word]) -> None:
+        """G33.1: in by the pitch K a turn, and back to where it began, I times as fast."""
+        control = self._control
+        pitch, faster = block.take("K"), block.take("I")
+        if pitch is None:
+            raise BlockError("G33.1 has no K")
+        if "F" in block.words:
+            raise BlockError("G33.1 takes no F")
+        if not control.spindle.now or not control.rpm.now > 0.0:
+            raise BlockError("the spindle does not turn, and G33.1 follows it")
+        if set(axes) - set("XYZ"):
+            self._note("rotary words in a thread: they are not executed", Severity.ERROR)
+        start = control.place[:3] / control.lengths
+        end = start.copy()
+        for axis, name in enumerate("XYZ"):
+            if name in axes:
+                end[axis] = axes[name][0] if control.absolute else start[axis] + axes[name][0]
+        feed = self._by_pitch(abs(pitch) * control.lengths, float(np.linalg.norm(end - start)) * control.lengths)
+        first, second = (control.plane + 1) % 3, (control.plane + 2) % 3
+        aside = float(end[first] - start[first]), float(end[second] - start[second])
+        self._count(2)
+        control.drill(
+            [
+                Step(False, float(end[control.plane]), feed, aside=aside),
+                Step(False, float(start[control.plane]), feed * (faster or 1.0)),
+            ]
+        )
+
+    def _by_pitch(self, pitch: float, length: float) -> float:
+        """F, as it counts now, of a motion of so many mm with so many mm a turn of the spindle."""
+        control = self._control
+        if control.feed_mode.now == 95:
+            return pitch
+        rate = pitch * control.rpm.now
+        return rate / max(length, 1e-9) if control.feed_mode.now == 93 else rate
+
     def _cycle(self, code: int, block: Block, axes: dict[str, Word]) -> None:
         """Drill at the positions of a block."""
         control = self._control
@@ -415,7 +458,8 @@ class LinuxcncInterpreter(OWordInterpreter):
         words |= {"Z": axes["XYZ"[control.plane]][0]} if "XYZ"[control.plane] in axes else {}
         fresh = code != self.motion
         self.motion = code
-        held = {} if fresh else self._sticky
+        self._waited = words.get("P", self._waited)
+        held = ({"P": self._waited} if code in cycles.KEEP_P else {}) if fresh else self._sticky
         needed = "ZR" + "Q" * (code in cycles.NEED_Q) + "P" * (code in cycles.NEED_P)
         missing = [letter for letter in needed if letter not in words and letter not in held]
         if missing:

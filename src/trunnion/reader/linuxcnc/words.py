@@ -24,7 +24,6 @@ NAMED: Final = {
     181: ("a plane of U V W is not simulated", True),
     191: ("a plane of U V W is not simulated", True),
     330: ("thread cutting is taken as a straight line", False),
-    331: ("tapping is taken as a straight line in and out", False),
     382: ("probing is taken as a straight line", False),
     383: ("probing is taken as a straight line", False),
     384: ("probing is taken as a straight line", False),
@@ -45,7 +44,10 @@ NAMED: Final = {
 }
 
 #: G codes whose motion is a straight line here, in force until another one.
-LINES: Final = frozenset({330, 331, 382, 383, 384, 385})
+LINES: Final = frozenset({330, 382, 383, 384, 385})
+
+#: Rigid tapping: in by the pitch, and by the spindle's turning back out to where it began.
+RIGID_TAP: Final = 331
 
 #: G codes whose block makes no motion here, and whose words are not positions.
 NO_MOTION: Final = frozenset({431, 432, 50, 51, 52, 53, 62, 63, 700, 710, 711, 712, 720, 721, 722, 760})
@@ -62,7 +64,6 @@ WORDS: Final = {
     640: "PQ",
     960: "DS",
     330: "K",
-    331: "KI",
     50: "XYIJPQ",
     51: "XYIJ",
     52: "XYPL",

@@ -1,0 +1,71 @@
+"""Numba's ``njit``, for functions whose machine code is kept: it is loaded without preparing Numba for compiling.
+
+To compile, Numba knows by name all that Python and NumPy can do. It learns that before it looks whether a function was
+compiled earlier, and forgets no part of it: a fifth of the time in which a small file is posted, for nothing. Machine
+code needs none of it, only the functions that give it memory. What has to be compiled after all is compiled as ever,
+for the compiler sees to itself that it is prepared.
+
+This rests on two parts of Numba that are not promised. Where they are missing, Numba's own way is taken.
+"""
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, TypeVar
+
+import numba
+from numba.core import caching
+from numba.core.runtime.nrt import rtsys
+
+Kernel = TypeVar("Kernel", bound=Callable[..., Any])
+
+_KNOWN = hasattr(caching, "FunctionCache") and hasattr(caching.FunctionCache, "_load_overload")
+
+
+def njit(**options: Any) -> Callable[[Kernel], Kernel]:
+    """Compile a function as ``numba.njit`` does, with its options; with ``cache`` its machine code is kept."""
+    kept = options.pop("cache", False)
+
+    def compiled(function: Kernel) -> Kernel:
+        kernel: Any = numba.njit(**options)(function)
+        if kept and hasattr(kernel, "_cache") and _KNOWN:
+            kernel._cache = _MachineCode(function)
+        elif kept and hasattr(kernel, "enable_caching"):
+            kernel.enable_caching()
+        return kernel  # type: ignore[no-any-return]
+
+    return compiled
+
+
+class _MachineCode:
+    """The machine code of one kernel, by the types of its arguments: a cache as Numba's dispatchers want one.
+
+    Files are looked for when the kernel is first called. Most are called by other kernels only, and stand in theirs.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+
+    @cached_property
+    def _files(self) -> Any:
+        files: Any = caching.FunctionCache
+        return files(self._function)
+
+    @property
+    def cache_path(self) -> str:
+        """The folder."""
+        path: str = self._files.cache_path
+        return path
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """What was compiled for a signature, or None."""
+        rtsys.initialize(context)
+        with self._files._guard_against_spurious_io_errors():
+            return self._files._load_overload(signature, context)
+
+    def save_overload(self, signature: Any, compiled: Any) -> None:
+        """Keep what was compiled for a signature."""
+        self._files.save_overload(signature, compiled)
+
+    def flush(self) -> None:
+        """Throw away what is kept."""
+        self._files.flush()
