@@ -61,9 +61,9 @@ def inside(text: str) -> str:
 
     Round brackets become square ones: a closing one would end the comment early.
     """
-    plain = unicodedata.normalize("NFKD", text.upper().translate(_LETTERS))
-    letters = (c for c in plain if not unicodedata.combining(c))
-    return "".join(c if c.isascii() and (c.isalnum() or c in _SIGNS) else "?" for c in letters)
+    letters = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
+    capitals = letters.upper().translate(_LETTERS)
+    return "".join(c if c.isascii() and (c.isalnum() or c in _SIGNS) else "?" for c in capitals)
 
 
 def tool_call(number: int, name: str, by_name: bool) -> str:
