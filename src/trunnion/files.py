@@ -7,9 +7,43 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Condition
 from typing import BinaryIO
 
 from trunnion.errors import InputError, Problem
+
+
+class Growing:
+    """How far the writing of a file has come, for whoever reads it at the same time."""
+
+    def __init__(self) -> None:
+        self._news = Condition()
+        self._size = self._foreseen = 0
+        self._ended = False
+
+    def grow(self, size: int, foreseen: int = 0) -> None:
+        """Say that ``size`` bytes can be read, and how many there will be if the file goes on as it began."""
+        with self._news:
+            self._size, self._foreseen = size, foreseen
+            self._news.notify_all()
+
+    def end(self) -> None:
+        """Say that nothing more will be written."""
+        with self._news:
+            self._ended = True
+            self._news.notify_all()
+
+    def reach(self, size: int) -> bool:
+        """Wait until so many bytes can be read, or nothing more is written: then False, be they there or not."""
+        with self._news:
+            self._news.wait_for(lambda: self._ended or self._size >= size)
+            return not self._ended
+
+    @property
+    def foreseen(self) -> int:
+        """About how many bytes there will be, and no fewer than there are."""
+        with self._news:
+            return max(self._size, self._foreseen)
 
 
 @contextmanager

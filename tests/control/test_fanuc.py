@@ -268,7 +268,9 @@ def test_holes_in_two_planes_with_the_plane_off_before_the_axes_turn(folder: Pat
 
 def test_without_options_the_slides_are_led_with_inverse_time(folder: Path) -> None:
     model = replace(load_machine("matsuura_mx330"), workpiece_zero=(0.0, 0.0, 40.0), tool_length=100.0)
-    text = proven(read(LEANING + END, folder), folder, model, tcp="off", contour="none", tip_tolerance="10", axis_tolerance="5")
+    text = proven(
+        read(LEANING + END, folder), folder, model, tcp="off", contour="none", tip_tolerance="10", axis_tolerance="5"
+    )
     assert body(text) == [
         "G0 A-30. C0.",
         "G54",

@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,7 @@ from trunnion.errors import InputError, Refused
 from trunnion.machine import Machine, load_machine
 from trunnion.reader import run_program
 from trunnion.toolpath import Moves, Toolpath
-from trunnion.verify import Verification, failures, verify
+from trunnion.verify import Settings, Verification, failures, verify
 
 #: The program that ran writes the blank behind a block number or leaves it out at whim.
 NUMBER = re.compile(rb"^(N\d+) ", re.MULTILINE)
@@ -46,6 +47,19 @@ def test_the_published_program_is_proven_as_it_is(capsys: pytest.CaptureFixture[
 
 CONTROL = load_control(load_machine("hs664rt").control)
 MACHINE = load_machine("hs664rt")
+
+
+def with_travel(low: float, high: float, home: float) -> Machine:
+    """The machine with a travel of Z that is known."""
+    axes = tuple(
+        replace(axis, low=low, high=high, home=home) if axis.name == "Z" else axis
+        for axis in load_machine("hs664rt").axes
+    )
+    return replace(load_machine("hs664rt"), axes=axes)
+
+
+#: M242 is no motion, one to the machine's home, or one beyond it.
+MACHINES = {"unknown": MACHINE, "home": with_travel(-500.0, 500.0, 500.0), "beyond": with_travel(-400.0, 600.0, 0.0)}
 SLOW = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
 
 
@@ -173,23 +187,68 @@ def read(text: str, folder: Path) -> Toolpath:
 
 
 @settings(max_examples=25, suppress_health_check=SLOW)
-@given(data=st.data(), turns=st.lists(AXES | st.just((0.0, 0.0)), min_size=1, max_size=1))
+@given(data=st.data(), turns=st.lists(AXES | st.just((0.0, 0.0)), min_size=1, max_size=3))
 def test_milling_in_planes_with_circles_is_proven(
     data: st.DataObject, turns: list[tuple[float, float]], folder: Path
 ) -> None:
     parts = [data.draw(circles(direction(*turn))) for turn in turns]
     text = "".join(START.replace("OP1", f"OP{k}") + part + END for k, part in enumerate(parts))
     written = proven(read(text, folder), folder)
-    tilted = sum(abs(direction(*turn)[2] - 1.0) > 1e-12 for turn in turns)
+    tilted = sum(float(np.abs(direction(*turn) - UPRIGHT).max()) > 1e-7 for turn in turns)
     assert written.count("G154\n") == 2 * tilted  # taken up, and the plane of the machine at the end
     assert not re.search(r"G[23] .*Z.*I.*J", written), "circles in G17 do not rise"
 
 
-@settings(max_examples=25, suppress_health_check=SLOW)
-@given(data=st.data(), turns=st.lists(AXES | st.just((0.0, 0.0)), min_size=1, max_size=4))
-def test_holes_of_all_cycles_are_proven(data: st.DataObject, turns: list[tuple[float, float]], folder: Path) -> None:
+@settings(max_examples=40, suppress_health_check=SLOW)
+@given(
+    data=st.data(),
+    turns=st.lists(AXES | st.just((0.0, 0.0)), min_size=1, max_size=4),
+    travel=st.sampled_from(sorted(MACHINES)),
+)
+def test_holes_of_all_cycles_are_proven(
+    data: st.DataObject, turns: list[tuple[float, float]], travel: str, folder: Path
+) -> None:
     text = START + data.draw(holes_in([direction(*turn) for turn in turns])) + END
-    proven(read(text, folder), folder)
+    proven(read(text, folder), folder, MACHINES[travel])
+
+
+@pytest.mark.parametrize("travel", MACHINES)
+def test_the_published_holes_are_proven_whatever_is_known_of_the_travel(travel: str, folder: Path) -> None:
+    found, text = posted(read_cl(FIDIA / "radial_holes.cls"), folder, MACHINES[travel])
+    assert not failures(found), [(check.key, check.summary) for check in failures(found)]
+    assert text.count("M242") == 2, "the CL file draws the tool back between its holes"
+
+
+HOLES = (
+    f"CYCLE/DRILL,{HEIGHTS}RTRCTO,3,MMPM,90\nGOTO/0,0,0,0,0,1\n"
+    "GOTO/0,-30,0,0.0,-0.707106781187,0.707106781187\nCYCLE/OFF\n"
+)
+
+
+@pytest.mark.parametrize("travel", MACHINES)
+def test_between_planes_the_tool_is_drawn_back_where_the_cl_file_does_not(travel: str, folder: Path) -> None:
+    start = START + "RAPID\nGOTO/0,0,50,0,0,1\n"
+    found, text = posted(read(start + HOLES + END, folder), folder, MACHINES[travel])
+    assert not failures(found), [(check.key, check.summary) for check in failures(found)]
+    lines = [line.partition(" ")[2] for line in text.splitlines()]
+    turn = lines.index("G01 C0. A45. F3000")
+    assert lines[turn - 2 : turn] == ["G80", "M242"]
+    number = next(k for k, line in enumerate(text.splitlines()) if line.endswith(" G01 C0. A45. F3000"))
+    dropped = [line for k, line in enumerate(text.splitlines()) if k != number - 1]
+    (folder / "low.txt").write_text("\n".join(dropped) + "\n", encoding="utf-8")
+    run = run_program(folder / "low.txt", MACHINES[travel])
+    asked = Settings(rapid_feed=3000.0)
+    assert "turns" in [
+        check.key for check in failures(verify(run, [read(start + HOLES + END, folder)], settings=asked))
+    ]
+
+
+def test_what_the_end_of_an_operation_switches_off_is_not_switched_off_twice(folder: Path) -> None:
+    text = "RAPID\nGOTO/0,0,50,0,0,1\nCOOLNT/FLOOD\nFEDRAT/MMPM,500\nGOTO/9,0,5\nCOOLNT/OFF\nSPINDL/OFF\n"
+    written = proven(read(START + text + END, folder), folder)
+    assert [written.count(f"{word}\n") for word in ("M5", "M8", "M9")] == [1, 1, 1]
+    later = text.replace("COOLNT/OFF", "COOLNT/OFF\nGOTO/20,0,5")
+    assert proven(read(START + later + END, folder), folder).count("M9\n") == 2
 
 
 @pytest.mark.parametrize("mode", CYCLES)

@@ -292,15 +292,16 @@ def test_every_start_change_and_rewind_is_in_the_log() -> None:
     found = planned(operation_of(round_part(), "ROUND"), wishes=Wishes(explain=True))
     assert [d.why for d in found.decisions] == [Why.START, Why.REWIND, Why.NEAREST]
     assert all(d.operation == "ROUND" and d.file == "part.cls" and d.line >= 10 for d in found.decisions)
-    near = planned(operation_of(winding(40.0, 100.0, 200.0)))
-    assert [d.why for d in near.decisions] == [Why.START]
+    near = planned(operation_of(winding(40.0, 100.0, 200.0)), wishes=Wishes(explain=True))
+    assert [d.why for d in near.decisions] == [Why.START, Why.NEAREST]
     assert "the pose nearest to home" in near.decisions[0].text
+    assert not planned(operation_of(round_part(), "ROUND")).decisions, "nobody asked"
 
 
 def test_a_path_over_the_pole_is_in_the_log() -> None:
     moves = moves_of(np.zeros((121, 3)), directions(np.linspace(-60.0, 60.0, 121), np.full(121, 30.0)))
-    log = planned(operation_of(moves)).decisions
-    assert [d.why for d in log] == [Why.START, Why.POLE]
+    log = planned(operation_of(moves), wishes=Wishes(explain=True)).decisions
+    assert [d.why for d in log] == [Why.START, Why.POLE, Why.NEAREST]
     assert "goes through the pole" in log[1].text
 
 

@@ -124,8 +124,7 @@ def minutes(run: Run, rows: Sequence[int]) -> float:
 
 
 steps = st.tuples(st.floats(-30.0, 30.0), st.floats(-30.0, 30.0), st.floats(-20.0, 20.0))
-#: Nearer to the pole than a hundred thousandth it is the pole, or CL files cannot tell.
-lean = st.one_of(st.floats(-0.6, 0.6), st.just(0.0), st.floats(-1e-3, 1e-3)).map(lambda v: v if abs(v) > 1e-5 else 0.0)
+lean = st.one_of(st.floats(-0.6, 0.6), st.just(0.0), st.floats(-1e-3, 1e-3), st.floats(-1e-6, 1e-6))
 kinds = st.sampled_from([Kind.LINEAR, Kind.LINEAR, Kind.RAPID])
 rough = st.lists(st.tuples(steps, lean, lean, kinds), min_size=2, max_size=4)
 

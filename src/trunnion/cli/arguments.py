@@ -1,7 +1,8 @@
 """What can be written on the command line."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib import import_module
 
 from trunnion import __version__
 
@@ -30,6 +31,16 @@ def _subprograms(parser: argparse.ArgumentParser, whose: str, option: str = "--w
     )  # fmt: skip
 
 
+def _command(module: str, name: str) -> Callable[[argparse.Namespace], int]:
+    """What carries out a command. Its part of the house is imported when it is called, and nothing else."""
+
+    def run(arguments: argparse.Namespace) -> int:
+        carry_out: Callable[[argparse.Namespace], int] = getattr(import_module(f"trunnion.cli.{module}"), name)
+        return carry_out(arguments)
+
+    return run
+
+
 def parse(argv: Sequence[str]) -> argparse.Namespace:
     """The command and its arguments; ``run`` is the function that carries it out.
 
@@ -50,8 +61,6 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
 
 
 def _post(parser: argparse.ArgumentParser) -> None:
-    from trunnion.cli.post import run
-
     parser.add_argument("files", nargs="+", metavar="CL", help="CL file")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
     parser.add_argument(
@@ -65,12 +74,10 @@ def _post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
     parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=_command("ahead", "run"))
 
 
 def _verify(parser: argparse.ArgumentParser) -> None:
-    from trunnion.cli.verify import run
-
     parser.add_argument("file", metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
     _subprograms(parser, "it")
@@ -99,12 +106,10 @@ def _verify(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=_command("verify", "run"))
 
 
 def _diff(parser: argparse.ArgumentParser) -> None:
-    from trunnion.cli.diff import run
-
     parser.add_argument("files", nargs=2, metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs the first program")
     parser.add_argument("--to-machine", metavar="NAME_OR_FILE", help="machine that runs the second one, if another")
@@ -114,12 +119,10 @@ def _diff(parser: argparse.ArgumentParser) -> None:
         "--tolerance", type=_tolerance, default=0.001, metavar="MM",
         help="how far tips may be apart, and in degrees tool axes; 0.001",
     )  # fmt: skip
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=_command("diff", "run"))
 
 
 def _convert(parser: argparse.ArgumentParser) -> None:
-    from trunnion.cli.convert import run
-
     parser.add_argument("file", metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that the program is for")
     _subprograms(parser, "it")
@@ -134,18 +137,14 @@ def _convert(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--force", action="store_true", help="convert what was understood, and write a program that must not run"
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=_command("convert", "run"))
 
 
 def _machines(parser: argparse.ArgumentParser) -> None:
-    from trunnion.cli.definitions import machines
-
     parser.add_argument("name", nargs="?", metavar="NAME", help="machine whose definition is printed")
-    parser.set_defaults(run=machines)
+    parser.set_defaults(run=_command("definitions", "machines"))
 
 
 def _check(parser: argparse.ArgumentParser) -> None:
-    from trunnion.cli.definitions import check
-
     parser.add_argument("file", metavar="MACHINE.toml", help="definition to validate")
-    parser.set_defaults(run=check)
+    parser.set_defaults(run=_command("definitions", "check"))

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.post import planned_program, prove, say, write
+from trunnion.cli.post import planned_program, prove, say, write_and_run
 from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_of
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
@@ -48,7 +48,8 @@ def run(arguments: argparse.Namespace) -> int:
         else:
             paths = [converted.toolpath]
             program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
-            prove(write(program, sink, wishes), paths, sink, target, program if arguments.force else None)
+            claim, run = write_and_run(program, sink, wishes)
+            prove(claim, run, paths, sink, target, program if arguments.force else None)
     if arguments.to_cl and carried:
         print(_hint(target, arguments.machine, carried), file=sys.stderr)
     if target != "-":

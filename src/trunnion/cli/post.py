@@ -4,33 +4,43 @@ import argparse
 import math
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 
-from trunnion.cl import read_cl
 from trunnion.cli.progress import progress
 from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_of
+from trunnion.cli.verify import check_report
+from trunnion.cli.verify import report as write_report
 from trunnion.control import Control, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.files import whole
+from trunnion.files import Growing, whole
 from trunnion.machine import Machine, forward, load_machine
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
 from trunnion.plan.arcs import off_circle
+from trunnion.reader import Run, can_read, run_program
 from trunnion.toolpath import Toolpath
+from trunnion.verify import (
+    Agreed,
+    Allowed,
+    Settings,
+    Verification,
+    check_lines,
+    failures,
+    place_lines,
+    time_lines,
+    verify,
+)
 
-if TYPE_CHECKING:
-    from trunnion.verify import Allowed, Settings, Verification
 
-
-def run(arguments: argparse.Namespace) -> int:
-    """Post every CL file."""
+def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
+    """Post every CL file; their toolpaths come one after the other."""
     if arguments.report:
-        from trunnion.cli.verify import check_report
-
         check_report(arguments.report)
     machine = load_machine(arguments.machine)
     control = load_control(machine.control)
@@ -47,35 +57,21 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
     for target, files in targets.items():
         with whole(target) as sink:
-            paths = [_read(file, settings.get("units"), arguments.strict) for file in files]
+            paths = list(islice(toolpaths, len(files)))
+            for path in paths:
+                say(path.remarks)
             program, decisions = planned_program(
                 paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
             )
-            claim = write(program, sink, wishes)
+            claim, done = write_and_run(program, sink, wishes)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
             said = decisions if wishes.explain else ()
-            prove(claim, paths, sink, target, again, arguments.report, said)
+            prove(claim, done, paths, sink, target, again, arguments.report, said)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
     return 0
-
-
-def _read(file: str, units: str | None, strict: bool) -> Toolpath:
-    path = Path(file)
-    size = path.stat().st_size if path.is_file() else 0
-    with progress(path.name, size, "B") as advance:
-        done = 0
-
-        def so_far(read: int) -> None:
-            nonlocal done
-            advance(read - done)
-            done = read
-
-        toolpath = read_cl(path, units=units, strict=strict, progress=so_far)
-    say(toolpath.remarks)
-    return toolpath
 
 
 def planned_program(
@@ -118,8 +114,6 @@ def planned_program(
 
 def _unprovable(machine: Machine, control: Control) -> list[Problem]:
     """Why a program of this machine can be written but not read back; empty where it can."""
-    from trunnion.reader import can_read
-
     if can_read(machine):
         return []
     what = f"programs for {control.name} cannot be read back yet: nothing proves this one"
@@ -138,21 +132,54 @@ class Claim:
     machine: Machine
     rows: int
     operations: int
-    allowed: "list[Allowed]"
-    settings: "Settings"
+    allowed: list[Allowed]
+    settings: Settings
 
 
-def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None) -> Claim:
-    """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for."""
-    rows = sum(len(motion.operation.moves) for motion in program.motions)
+def write_and_run(program: Program, sink: BinaryIO, wishes: Wishes) -> tuple[Claim, Run | None]:
+    """Write a program, and run it as its control does, as far as it is written; no run where nobody can read it.
+
+    The run is of what can be read under the name of the sink, as if it had waited for the end.
+    """
+    growing = Growing()
+    with ThreadPoolExecutor(1) as aside:
+        run = aside.submit(_run, Path(sink.name), program.machine, growing)
+        try:
+            claim = write(program, sink, wishes, growing)
+        finally:
+            growing.end()
+    return claim, run.result()
+
+
+def _run(path: Path, machine: Machine, growing: Growing) -> Run | None:
+    return run_program(path, machine, growing=growing) if can_read(machine) else None
+
+
+def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None, growing: Growing | None = None) -> Claim:
+    """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for.
+
+    ``growing`` is told how much of it can be read back.
+    """
+    rows, done = sum(len(motion.operation.moves) for motion in program.motions), 0
     with progress("writing", rows, "points") as advance:
-        write_program(program, sink, advance)
+
+        def written(points: int) -> None:
+            nonlocal done
+            advance(points)
+            done += points
+            if growing is not None:
+                sink.flush()
+                growing.grow(sink.tell(), sink.tell() * rows // done)
+
+        write_program(program, sink, written)
+    sink.flush()
     operations = sum(motion.begins for motion in program.motions)
     return Claim(program.machine, rows, operations, _allowed(program), _asked(program, wishes or Wishes()))
 
 
 def prove(
     claim: Claim,
+    run: Run | None,
     paths: Sequence[Toolpath],
     sink: BinaryIO,
     target: str,
@@ -160,16 +187,18 @@ def prove(
     report: str | None = None,
     decisions: Sequence[Decision] = (),
 ) -> None:
-    """Read a program back, run it and compare it with its toolpaths; one line a check.
+    """Compare what a program does with its toolpaths; one line a check.
 
     Parameters
     ----------
     claim
         Of ``write``.
+    run
+        The program as it was read back and run; None: nobody can.
     paths
         What the program was made from.
     sink
-        Of ``whole``: what is written can be read back under its name.
+        Of ``whole``: where the program is written.
     target
         What messages call the program.
     again
@@ -184,16 +213,10 @@ def prove(
     Refused
         When a check fails and there is no program to write again.
     """
-    from trunnion.cli.verify import report as write_report
-    from trunnion.reader import can_read, run_program
-    from trunnion.verify import check_lines, failures, place_lines, time_lines, verify
-
-    if not can_read(claim.machine):
+    if run is None:
         what = "it is written by --force, and nothing has been checked" + (": there is no report" if report else "")
         say([Problem(target, 0, what, severity=Severity.WARNING)])
         return
-    sink.flush()
-    run = run_program(Path(sink.name), claim.machine)
     found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
     found = replace(found, program="the program" if target == "-" else target)
     for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
@@ -216,16 +239,14 @@ def prove(
         write_program(replace(again, notices=[*again.notices, *notices]), sink)
 
 
-def _too_fast(found: "Verification") -> bool:
+def _too_fast(found: Verification) -> bool:
     """Whether a rotary axis would have to be faster than it can."""
     names = tuple(f"{axis.name} " for axis in found.machine.axes if axis.is_rotary)
     return any(c.key == "speed" and any(place.text.startswith(names) for place in c.places) for c in found.checks)
 
 
-def _allowed(program: Program) -> "list[Allowed]":
+def _allowed(program: Program) -> list[Allowed]:
     """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
-    from trunnion.verify import Agreed, Allowed
-
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
     allowed: list[Allowed] = []
@@ -293,10 +314,8 @@ def _lever(motion: Motion, machine: Machine) -> float:
     return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), 1e-3)
 
 
-def _asked(program: Program, wishes: Wishes) -> "Settings":
+def _asked(program: Program, wishes: Wishes) -> Settings:
     """What the settings of the run say that the CL files do not."""
-    from trunnion.verify import Settings
-
     led = any(motion.manner is Manner.WITHOUT_TCP for motion in program.motions)
     axis = wishes.axis_between if led or math.isfinite(wishes.axis_between) else None
 

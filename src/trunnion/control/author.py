@@ -4,9 +4,11 @@ Every operation goes the same way: operation start, tool, approach with the rota
 Events stand between rows; those that are words join the next motion block, the others are blocks of their own.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import BinaryIO
+from itertools import takewhile
+from typing import BinaryIO, Final
 
 import numpy as np
 
@@ -36,6 +38,9 @@ from trunnion.toolpath import (
     SpindleOn,
     Stop,
 )
+
+#: A line of a template that switches something, and moves nothing.
+_SWITCH: Final = re.compile(r"M\d+|\{\w+\}")
 
 
 def write_program(program: Program, sink: BinaryIO, progress: Callable[[int], None] | None = None) -> None:
@@ -116,13 +121,18 @@ class _Author:
             if tool != self._held.call:
                 self._expand("tool_change" if self._held.call else "first_tool", values, motion)
             self._held = Held(tool, motion.operation.tool.name)
-        self._blocks.begin(motion, str(values["tool"]), self._goes_on(motion))
+        below = self._goes_on(motion) and not self._drawn_back()
+        level = below or not self._goes_on(motion)
+        self._blocks.begin(motion, str(values["tool"]), self._goes_on(motion), comes_level=level)
+        if below:
+            self._expand(f"draw_back_{kind}", values, motion)
         self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
         if motion.plane is not None:
             self._expand(f"plane_on_{kind}", values, motion)
         self._blocks.rotary_stand(motion)
         written = replace(motion, operation=motion.as_written())
-        self._motion(written, int(self._stands_there(written)))
+        end = self._control.templates[f"operation_end_{kind}"].lines if ends else ()
+        self._motion(written, int(not below and self._stands_there(written)), end)
         self._before = written
         self._blocks.back_in_force()
         if ends:
@@ -131,6 +141,14 @@ class _Author:
     def _goes_on(self, motion: Motion) -> bool:
         """Whether the tool comes from another plane of the same operation, and not from home."""
         return not motion.begins and self._control.plane_from_pose
+
+    def _drawn_back(self) -> bool:
+        """Whether the CL file itself has drawn the tool back, at rapid, at the end of the motion before this one."""
+        assert self._before is not None
+        operation = self._before.operation
+        cycles = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
+        in_hole = bool(cycles) and isinstance(cycles[-1], CycleOn)
+        return not in_hole and bool(operation.moves.kind[-1] == Kind.RAPID)
 
     def _stands_there(self, motion: Motion) -> bool:
         """Whether turning the rotary axes to the next plane has already taken the tool to the first point there."""
@@ -145,8 +163,11 @@ class _Author:
         there = counts(carried_along(self._program.machine, last, before, motion), decimals)
         return bool((there == counts(np.ascontiguousarray(operation.moves.tip[0]), decimals)).all())
 
-    def _motion(self, motion: Motion, first: int = 0) -> None:
-        """All rows from ``first`` on, broken where an event is a block of its own."""
+    def _motion(self, motion: Motion, first: int, end: Sequence[str]) -> None:
+        """All rows from ``first`` on, broken where an event is a block of its own.
+
+        ``end``: the lines that come next; what they begin with is not said right before them as well.
+        """
         rows = len(motion.operation.moves)
         joining = [] if self._goes_on(motion) else self._spindle_again(motion.operation)
         own_spindle = SPINDLE_ON in self._control.templates
@@ -178,6 +199,8 @@ class _Author:
                 elif isinstance(event, SpindleOn | SpindleOff | Coolant | CutterComp) and not (
                     own_spindle and isinstance(event, SpindleOn)
                 ):
+                    if event.row == rows and self._said_in(end, event):
+                        continue
                     self._blocks.event_block(event)  # with the next motion the control would switch off after it
                 else:
                     self._own_block(motion, event)
@@ -193,6 +216,12 @@ class _Author:
         if cycle is None or first == last:
             return self._blocks.rows(motion, first, last, joining, text)
         return write_holes(self._blocks, motion, first, last, joining, text, cycle)
+
+    def _said_in(self, lines: Sequence[str], event: WordEvent) -> bool:
+        """Whether lines begin with what an event says, among other M words and names of settings."""
+        words = self._blocks.event_words(event)
+        head = list(takewhile(_SWITCH.fullmatch, lines))
+        return bool(words) and all(f"M{code}" in head for code in words.values())
 
     def _spindle_at_start(self, operation: Operation) -> SpindleOn | None:
         """What the spindle does at the first row; None: nobody said so."""

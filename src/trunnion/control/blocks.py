@@ -40,6 +40,7 @@ class Blocks:
     spindle  what the spindle was last told, also where it has been stopped since; None before
     coolant  its kind, as it was last told
     height   of the tool along Z of the frame, at the last row written, mm
+    comes_level  whether the tool goes to X and Y of an operation's first point before it goes down
     """
 
     def __init__(self, program: Program, sink: BinaryIO, progress: Callable[[int], None]) -> None:
@@ -54,10 +55,10 @@ class Blocks:
         self.spindle: SpindleOn | None = None
         self.coolant = "OFF"
         self.height = 0.0
+        self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
         self._tool = ""
-        self._goes_on = False
         rapid_feed = setting_of(program, "rapid_feed")
         self.rapid_feed = self.count("feed", float(rapid_feed)) if rapid_feed else ABSENT
 
@@ -70,7 +71,7 @@ class Blocks:
             motion = self._slides.motion
         return motion
 
-    def begin(self, motion: Motion, tool: str, goes_on: bool) -> None:
+    def begin(self, motion: Motion, tool: str, goes_on: bool, *, comes_level: bool) -> None:
         """An operation begins, with its own formats of words.
 
         Parameters
@@ -81,8 +82,12 @@ class Blocks:
             How the program calls the tool.
         goes_on
             In another plane than before, and not from home.
+        comes_level
+            From where the tool has been drawn back, so that it goes to X and Y before it goes down, on controls that
+            want it so.
         """
-        self._tool, self._goes_on = tool, goes_on
+        self._tool = tool
+        self.comes_level = comes_level and self.control.level_approach and motion.manner in _LEVEL
         self._words = words_of(self.program, motion)
         self.writer.use(self._words)
         if not goes_on:
@@ -185,7 +190,7 @@ class Blocks:
             elsewhere = columns["X"] == ABSENT
             for word in "XYZ":  # where an arc's end was said by other words, the next block says its own whole
                 forced[word] = np.concatenate(([0], elsewhere[:-1])).astype(np.int64) | forced.get(word, 0)
-        if start == 0 and rapid[0] and control.level_approach and not self._goes_on and motion.manner in _LEVEL:
+        if start == 0 and rapid[0] and self.comes_level:
             self.block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
         if start == 0:
             self._join(columns, 0, self.first_words(motion))

@@ -236,7 +236,7 @@ def load_control(own: Table) -> Control:
         level_approach=table.flag("level_approach", False),
         plane_from_pose=table.flag("plane_from_pose", False),
         holes_from=table.text("holes_from", "above", one_of=HOLES_FROM),
-        templates=_templates(table.table("templates"), family),
+        templates=_templates(table.table("templates"), family, table.flag("plane_from_pose", False)),
     )
     for lacking in dict.fromkeys(name for name in words if name not in {word.name for word in control.words}):
         table.problem("word", f"has no entry {lacking!r}, which programs of this family need", "write it")
@@ -337,10 +337,15 @@ def _arcs(table: Table) -> _Arcs:
     return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices, "turns": turns}
 
 
-def _templates(table: Table, family: Family) -> dict[str, Template]:
-    """Those that every definition has, and those of the kinds of operations that this one has any for."""
+def _templates(table: Table, family: Family, plane_from_pose: bool) -> dict[str, Template]:
+    """Those that every definition has, and those of the kinds of operations that this one has any for.
+
+    Where a plane is taken from the rotary position, the tool may have to be drawn back before the next one.
+    """
     found = {}
-    kinds = [_of_kind(FIVE_AXIS), _of_kind(WITHOUT_TCP), *(_of_kind(plane, plane=True) for plane in family.PLANES)]
+    of_planes = ("approach", "plane_on", *(("draw_back",) if plane_from_pose else ()), "next_plane", "operation_end")
+    kinds = [_of_kind(kind, ("approach", "operation_end")) for kind in (FIVE_AXIS, WITHOUT_TCP)]
+    kinds += [_of_kind(plane, of_planes) for plane in family.PLANES]
     wanted = [name for names in ((SPINDLE_ON,), *kinds) if any(name in table for name in names) for name in names]
     for name in (*TEMPLATES, *wanted):
         text = table.text(name)
@@ -350,9 +355,8 @@ def _templates(table: Table, family: Family) -> dict[str, Template]:
     return found
 
 
-def _of_kind(kind: str, plane: bool = False) -> tuple[str, ...]:
+def _of_kind(kind: str, parts: Sequence[str]) -> tuple[str, ...]:
     """The templates of a kind of operation that not every definition has."""
-    parts = ("approach", "plane_on", "next_plane", "operation_end") if plane else ("approach", "operation_end")
     return tuple(f"{part}_{kind}" for part in parts)
 
 

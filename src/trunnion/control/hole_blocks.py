@@ -107,7 +107,7 @@ def _approach(
 ) -> None:
     """To the retract height over the first hole, in one block or across the tool first."""
     block = {**rapid, **place}
-    if blocks.control.level_approach:
+    if blocks.comes_level:
         blocks.block(block)
     block |= {"Z": blocks.count("X", retract), **blocks.first_words(motion)}
     for event in joining:

@@ -95,8 +95,8 @@ def travel(machine: Machine, rotary: Floats) -> float:
     return float(np.abs(steps(machine, rotary)).sum())
 
 
-def decisions(planned: Planned, changes: Ints, rewound: dict[int, str], explain: bool) -> list[Decision]:
-    """The log.
+def decisions(planned: Planned, changes: Ints, rewound: dict[int, str]) -> list[Decision]:
+    """The log, with what the nearest neighbour would have done.
 
     Parameters
     ----------
@@ -104,15 +104,13 @@ def decisions(planned: Planned, changes: Ints, rewound: dict[int, str], explain:
         As in ``Poses``.
     rewound
         Why each rewind is needed, by its row.
-    explain
-        Compare with the nearest neighbour.
     """
     log = [_start(planned)]
     count, last, *rows = changes.tolist()
     log += [_change(planned, row, rewound) for row in rows[:count]]
     if count > len(rows):
         log.append(_decision(planned, last, Why.MORE, f"and {count - len(rows)} further changes, the last here"))
-    return [*log, _comparison(planned)] if explain else log
+    return [*log, _comparison(planned)]
 
 
 def _decision(planned: Planned, row: int, why: Why, text: str) -> Decision:

@@ -164,8 +164,9 @@ def _stretch(asked: Asked) -> _Stretch:
     problems = (*lacking, *_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, wishes))
     if wishes.rewind:
         _widen(poses, machine, moves, needed)
-    said = decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}, wishes.explain)
-    log = [*said, *log, *too_fast]
+    if wishes.explain:
+        log = [*decisions(planned, poses.changes, {rewind.row: rewind.reason for rewind in needed}), *log]
+    log = [*log, *too_fast]
     return _Stretch(file, operation, poses, needed if wishes.rewind else (), problems, tuple(log), departures)
 
 

@@ -19,7 +19,8 @@ class Wishes:
     rewind          insert retreats where an axis must wind back in the cut; False: refuse the program
     clearance       how far the tool draws back along its axis for that
     engage          share of the feed with which it comes back
-    explain         say more in the log: what the nearest neighbour would have done, where a rotary axis is too fast
+    explain         write the log: what was decided and why, what the nearest neighbour would have done, where a rotary
+                    axis is too fast
     manner          how every operation is to be made, whatever the rule says; None: by the rule
     manners         those that the control has words for
     arcs_about_z    the control knows arcs about Z only

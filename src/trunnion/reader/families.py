@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from trunnion.errors import InputError, Problem
+from trunnion.files import Growing
 from trunnion.machine import Machine
 from trunnion.reader.interpreter import STEPS, Interpreter
 from trunnion.reader.run import Run
@@ -31,6 +32,7 @@ def run_program(
     step_limit: int = STEPS,
     skip: bool = False,
     shortest: bool | None = None,
+    growing: Growing | None = None,
 ) -> Run:
     """Read a program and run it on a machine.
 
@@ -53,6 +55,9 @@ def run_program(
     shortest
         How endless rotary axes reach plain words: True the shorter way, False inside the turn displayed; None as the
         control does. Axes whose values are written as they wind take the number as it is, but for True.
+    growing
+        How far the program's file has come, if it is still being written: it is run as far as it is there, and the
+        rest is waited for. None: it is complete. What comes out is the same.
 
     Raises
     ------
@@ -62,7 +67,9 @@ def run_program(
     """
     reader = reader_of(machine, family)
     named = tuple(subprograms)
-    return reader(Path(path), machine, subprograms=named, step_limit=step_limit, skip=skip, shortest=shortest).run()
+    return reader(Path(path), machine, subprograms=named, step_limit=step_limit, skip=skip, shortest=shortest).run(
+        growing
+    )
 
 
 def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Interpreter[Any]]:

@@ -11,6 +11,7 @@ from typing import Final, Generic, TypeVar
 
 from trunnion.arrays import Ints
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.files import Growing
 from trunnion.machine import Machine
 from trunnion.reader.columns import Changes
 from trunnion.reader.control import Control
@@ -101,9 +102,11 @@ class Interpreter(ABC, Generic[A]):
     def _kernel(self, text: Text) -> None:
         """Let the kernel take plain blocks."""
 
-    def run(self) -> Run:
-        """Execute the program."""
+    def run(self, growing: Growing | None = None) -> Run:
+        """Execute the program; ``growing`` says how far its file has come if it is still being written."""
         main = self.text_type(self._path)
+        if growing is not None:
+            main.follow(growing)
         try:
             self._stack.append(self._first(main))
             self._execute()

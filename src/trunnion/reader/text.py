@@ -14,6 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Ints
 from trunnion.errors import InputError, Problem
+from trunnion.files import Growing
 
 #: Bytes read at a time.
 CHUNK: Final = 1 << 18
@@ -46,10 +47,11 @@ class Text:
             if not path.is_file():
                 raise InputError(Problem(str(path), 0, "is no file"))
             # Held open while the program is read; ``close`` is called by whoever runs it.
-            self._file = path.open("rb")
+            self._file = path.open("rb", buffering=0)
         except (OSError, ValueError) as error:
             raise InputError(Problem(str(path), 0, f"cannot be read: {error}")) from None
         self.whole = False
+        self._growing: Growing | None = None
         self._size = os.fstat(self._file.fileno()).st_size
         #: Row of the run before which this text began.
         self.first_row = 0
@@ -77,9 +79,15 @@ class Text:
         """Return the error that says what is wrong at a line."""
         return InputError(Problem(str(self.path), line, what, cure))
 
+    def follow(self, growing: Growing) -> None:
+        """Take it that the file is still being written: what is not there yet is waited for."""
+        self._growing = growing
+
     @property
     def size(self) -> int:
-        """Bytes of the file."""
+        """Bytes of the file; while it is being written, about as many as it will have, and no fewer than it has."""
+        if self._growing is not None:
+            return self._growing.foreseen
         return len(self.buffer) if self.whole else self._size
 
     @property
@@ -120,6 +128,7 @@ class Text:
         return decode(window[:length])
 
     def _read(self) -> None:
+        self._wait(self._file.tell() + CHUNK)
         try:
             chunk = self._file.read(CHUNK)
         except OSError as error:
@@ -135,17 +144,25 @@ class Text:
         self.buffer = np.frombuffer(data, np.uint8)[:cut]
         self.position = 0
 
+    def _wait(self, size: int) -> None:
+        """See that so many bytes of a file that is being written are there, or all of them."""
+        if self._growing is not None and not self._growing.reach(size):
+            self._growing = None
+            self._size = os.fstat(self._file.fileno()).st_size
+
     def load(self) -> None:
         """Hold the whole program, at the same line: from now on it may jump."""
         if self.whole:
             return
+        while self._growing is not None:
+            self._wait(self.size + 1)
         size = self.size
         if size > LARGEST_WHOLE:
             what = f"has {size} bytes, more than the {LARGEST_WHOLE} that a program with jumps may have"
             raise self.problem(0, what)
         try:
             if self._file.closed:
-                self._file = self.path.open("rb")
+                self._file = self.path.open("rb", buffering=0)
             self._file.seek(0)
             data = self._file.read(size)
         except OSError as error:

@@ -21,6 +21,7 @@ from trunnion.toolpath import Kind
 from trunnion.verify.arcs import Arc, arc_of
 from trunnion.verify.between import follow
 from trunnion.verify.cycles import hole_rows, leads, made_in
+from trunnion.verify.points import Tilt
 from trunnion.verify.rapids import PLACES as PLACES
 from trunnion.verify.rapids import levels
 from trunnion.verify.rows import Rows
@@ -185,8 +186,11 @@ class _Matcher:
     def __init__(self, run: Run, wanted: Wanted, bend: float | None) -> None:
         self._run, self._wanted, self._bend = run, wanted, bend
         self._rows = points(run, wanted)
+        self._tilt = Tilt.of(run.machine)
         made = made_in(run, wanted.holes)
         self._leads = leads(run, [hole.first - k for hole in made for k in (1, 2, 3)], made)
+        limits = [part.allowed for part in wanted.parts]
+        self._near = np.array([(each.tip * 1.001 + 1e-9, np.radians(2.0 * each.angle) + 2e-7) for each in limits])
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []
@@ -246,23 +250,32 @@ class _Matcher:
 
     def _limits(self, j: int) -> tuple[float, float]:
         """How far apart partners may be, mm and as the length of a vector; the exact limits are judged later."""
-        allowed = self._wanted.part_of(j).allowed
-        return allowed.tip * 1.001 + 1e-9, np.radians(2.0 * allowed.angle) + 2e-7
+        tip, axis = self._near[int(np.searchsorted(self._wanted.firsts, j, "right")) - 1]
+        return float(tip), float(axis)
+
+    def _limits_of(self, rows: Ints) -> tuple[Floats, Floats]:
+        """``_limits`` at growing CL rows, (k,) and (k,): each operation has its own."""
+        near = self._near[np.searchsorted(self._wanted.firsts, rows, "right") - 1]
+        return near[:, 0], near[:, 1]
 
     def _fits(self, i: int, j: int, count: int) -> Flags:
         """Which of ``count`` motions from the i-th on are where the points from row j on want them, (count,) bool."""
-        tip, axis = self._limits(j)
         is_, points = self._run.poses(self._rows.part(i, i + count)), np.arange(j, j + count)
-        fits = (np.abs(is_.tip - self._wanted.tip(points)) <= tip).all(axis=1)
-        fits &= (np.abs(is_.axis - self._wanted.axis(points)) <= axis).all(axis=1)
+        tip, axis = self._limits_of(points)
+        fits = (np.abs(is_.tip - self._wanted.tip(points)) <= tip[:, None]).all(axis=1)
+        fits &= (np.abs(is_.axis - self._wanted.axis(points)) <= axis[:, None]).all(axis=1)
         return np.asarray(fits)
 
     def _repeats(self, j: int) -> bool:
-        """Whether a point may print as the one before it."""
+        """Whether a point may print as the one before it; an arc only if all of it does."""
         point = self._wanted.point(j)
-        if point.kind is Kind.ARC or j in self._wanted.firsts:
+        if j in self._wanted.firsts:
             return False
         tip, axis = self._limits(j)
+        if point.kind is Kind.ARC:
+            arc = arc_of(self._wanted, j)
+            if arc.sweep * arc.radius > 2.0 * tip:
+                return False
         before = self._wanted.point(j - 1)
         return bool(
             (np.abs(point.tip - before.tip) <= 2.0 * tip).all()
@@ -291,6 +304,8 @@ class _Matcher:
                 rows = rows[: turns_off[0]]
             tips = self._run.poses(rows).tip
             there = np.flatnonzero((np.abs(tips - arc.end) <= tip).all(axis=1))
+            if arc.radius > 4.0 * tip:  # on the way of more than one turn the end may be passed
+                there = there[np.abs(arc.fractions(tips)[there] - 1.0) * arc.sweep < np.pi]
             if len(there):
                 pieces = rows[: there[0]]
                 off = np.abs(arc.deviation(tips[: there[0]])).max(axis=1, initial=0.0)
@@ -315,8 +330,8 @@ class _Matcher:
         wanted = self._wanted
         near, bend = self._limits(j), math.radians(self._bend)
         way = follow(
-            is_.tip, is_.axis, self._run.kind[rows], wanted.tip(points), wanted.axis(points), wanted.kind(points), near,
-            part.allowed.tip, bend + 2.0 * near[1],
+            self._tilt, is_.tip, is_.axis, is_.joints, self._run.kind[rows], wanted.tip(points), wanted.axis(points),
+            wanted.kind(points), near, (part.allowed.tip, part.allowed.angle), bend + 2.0 * near[1],
         )  # fmt: skip
         nc, cl = rows[: way.motions], j + way.partner
         there = np.flatnonzero(way.there)
@@ -334,7 +349,7 @@ class _Matcher:
             a, b = min(window, self._n - i), min(window, self._m - j)
             is_, points = self._run.poses(self._rows.part(i, i + a)), np.arange(j, j + b)
             want_tip, want_axis = self._wanted.tip(points), self._wanted.axis(points)
-            tip, axis = self._limits(j)
+            tip, axis = self._limits_of(points)
             fits = np.ones((a, b), np.bool_)
             for column in range(3):
                 fits &= np.abs(is_.tip[:, column, None] - want_tip[:, column]) <= tip

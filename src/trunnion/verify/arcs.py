@@ -37,6 +37,13 @@ class Arc:
         """How much it rises on a millimetre of its way round."""
         return abs(float((self.end - self.start) @ self.normal)) / max(self.radius * self.sweep, 1e-9)
 
+    @property
+    def open(self) -> float:
+        """How far the end is from where the circle ends, seen along its axis, mm: what the file rounds off."""
+        radial, across = self.radial, np.cross(self.normal, self.radial)
+        off = self.end - self.centre - np.cos(self.sweep) * radial - np.sin(self.sweep) * across
+        return float(np.linalg.norm(off - (off @ self.normal) * self.normal))
+
     def fractions(self, points: Floats) -> Floats:
         """How much of the arc is done at points near it, in order, (k,)."""
         arm = points - self.centre

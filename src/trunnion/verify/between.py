@@ -19,6 +19,7 @@ from trunnion.kernels import njit
 from trunnion.machine.chain import Chain, chain_row, pack_chain
 from trunnion.reader import Orientation, Poses, Run, Written
 from trunnion.toolpath import Kind
+from trunnion.verify.points import Tilt, axes_apart
 from trunnion.verify.walk import Worst
 from trunnion.verify.wanted import Wanted
 
@@ -30,6 +31,9 @@ _SHORT: Final = 1e-3
 
 #: Rotary motion below this, degrees, bends nothing.
 _STILL: Final = 1e-9
+
+#: Motions that are no more than this many times as far from a CL point as they may be are still about it.
+_ABOUT: Final = 3.0
 
 #: Parts of a motion at which it is looked at.
 _LOOKS: Final = 7
@@ -51,22 +55,28 @@ class Way:
 
 
 def follow(
+    tilt: Tilt,
     tip: Floats,
     axis: Floats,
+    joints: Floats,
     kind: Codes,
     want_tip: Floats,
     want_axis: Floats,
     want_kind: Codes,
     near: tuple[float, float],
-    allowed: float,
+    allowed: tuple[float, float],
     bend: float,
 ) -> Way:
     """Go along CL points as far as motions go to them, straight or by points between.
 
     Parameters
     ----------
+    tilt
+        The machine's rotary axes.
     tip, axis : (n, 3) float64
         Of motions in their order.
+    joints : (n, 5) float64
+        Positions of the axes there.
     kind : (n,) uint8
         A ``Kind``.
     want_tip, want_axis : (m, 3) float64
@@ -76,14 +86,15 @@ def follow(
     near
         How far a coordinate of the tip may be off, mm, and one of the tool axis, with a little more than is judged.
     allowed
-        How far a coordinate of the tip may be off as it is judged, mm.
+        How far a coordinate of the tip, mm, and a rotary axis, degrees, may be off as it is judged.
     bend
         How far the tool axis of points between may be off the great circle, rad.
     """
     partner, there = np.zeros(len(tip), np.int64), np.zeros(len(tip), np.bool_)
     motions, points = _follow(
-        tip, axis, kind, want_tip, want_axis, want_kind, near[0], near[1], allowed, bend, partner, there
-    )
+        tip, axis, joints[:, tilt.column], tilt.sense, tilt.first, tilt.second, kind, want_tip, want_axis, want_kind,
+        near[0], near[1], allowed[0], allowed[1], bend, partner, there,
+    )  # fmt: skip
     return Way(motions, points, partner[:motions], there[:motions])
 
 
@@ -91,6 +102,10 @@ def follow(
 def _follow(
     tip: Floats,
     axis: Floats,
+    value: Floats,
+    sense: float,
+    first: Floats,
+    second: Floats,
     kind: Codes,
     want_tip: Floats,
     want_axis: Floats,
@@ -98,6 +113,7 @@ def _follow(
     near_tip: float,
     near_axis: float,
     allowed: float,
+    allowed_angle: float,
     bend: float,
     partner: Ints,
     there: Flags,
@@ -107,19 +123,22 @@ def _follow(
     i, j, done = 0, 1, 0.0
     while i < tip.shape[0] and j < want_tip.shape[0]:
         if _is_at(tip, axis, i, want_tip, want_axis, j, near_tip, near_axis):
-            there[i], partner[i] = True, j - 1
-            # More motions of that kind at the same place lead there too: the last of them is the one.
-            if motions < i and there[i - 1] and partner[i - 1] == j - 1:
-                there[i - 1] = False
-            again = (
-                i + 1 < tip.shape[0]
-                and kind[i + 1] == kind[i]
-                and _is_at(tip, axis, i + 1, want_tip, want_axis, j, allowed, near_axis)
-            )
-            i += 1
-            if not again:
-                j, done = j + 1, 0.0
-                motions, points = i, j - 1
+            # More motions of that kind about the same place lead there too: the last that is there as it is judged is
+            # the one. Near a pole the rotary axes turn far while the tool hardly moves.
+            last, ahead = i, i + 1
+            while (
+                ahead < tip.shape[0]
+                and kind[ahead] == kind[i]
+                and _is_at(tip, axis, ahead, want_tip, want_axis, j, _ABOUT * near_tip, _ABOUT * near_axis)
+            ):
+                _, off = axes_apart(axis, ahead, want_axis, j, value[ahead], sense, first, second)
+                if off <= allowed_angle and _is_at(tip, axis, ahead, want_tip, want_axis, j, allowed, near_axis):
+                    last = ahead
+                ahead += 1
+            for k in range(i, last + 1):
+                there[k], partner[k] = k == last, j - 1
+            motions, points = last + 1, j
+            i, j, done = last + 1, j + 1, 0.0
             continue
         part = -1.0
         if want_kind[j] != 2:
@@ -226,10 +245,12 @@ class Spans:
         named: int,
         tip_limit: float,
         axis_limit: float,
+        rounded: float = 0.0,
         wanted: Wanted | None = None,
         pairs: "Pairs | None" = None,
     ) -> None:
         self._run = run
+        self._unsure = 2.0 * math.sqrt(3.0) * rounded
         self._chain = pack_chain(run.machine)
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._wanted = wanted
@@ -267,7 +288,10 @@ class Spans:
             axes[led[cuts]] = np.stack((self._wanted.axis(cl[cuts] - 1), self._wanted.axis(cl[cuts])), axis=1)
         off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
         free = kind[rows] == Kind.RAPID
-        _leave(self._chain, poses.joints, poses.tip, poses.axis, rows, tips, axes, free, tcp, off_tip, off_axis)
+        _leave(
+            self._chain, poses.joints, poses.tip, poses.axis, rows, tips, axes, free, tcp, self._unsure,
+            off_tip, off_axis,
+        )  # fmt: skip
         self.tip.take(first, off_tip)
         self.axis.take(first, off_axis)
 
@@ -283,13 +307,15 @@ def _leave(
     axes: Floats,
     free: Flags,
     tcp: Flags,
+    unsure: float,
     off_tip: Floats,
     off_axis: Floats,
 ) -> None:
     """Write how far the tool is off within ``rows``, mm and degrees.
 
     ``joints``, ``tip_at`` and ``axis_at`` have the place before the rows in front. ``tips`` and ``axes`` (k, 2, 3) are
-    the ends of the ways that the k rows are on; ``free`` ones have their own ends for the tool axis.
+    the ends of the ways that the k rows are on; ``free`` ones have their own ends for the tool axis. By
+    ``unsure`` mm of its way a tip may be off.
     """
     here, tip, axis = np.empty(5), np.empty(3), np.empty(3)
     for k in range(rows.shape[0]):
@@ -320,6 +346,8 @@ def _leave(
             for c in range(3):
                 off += (axis[c] - first * axes[k, 0, c] - second * axes[k, 1, c]) ** 2
             worst_axis = max(worst_axis, 2.0 * math.asin(min(0.5 * math.sqrt(off), 1.0)))
+        if not free[k] and way > _SHORT * _SHORT:
+            worst_axis = max(worst_axis - unsure / math.sqrt(way) * turn, 0.0)
         off_tip[row], off_axis[row] = worst_tip, math.degrees(worst_axis)
 
 

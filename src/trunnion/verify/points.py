@@ -11,7 +11,7 @@ stands. That says what each rotary axis is off by, with the forward map alone, a
 import math
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -19,8 +19,10 @@ from trunnion.arrays import Floats, Ints
 from trunnion.kernels import njit
 from trunnion.machine import Machine
 from trunnion.reader import Poses
-from trunnion.verify.align import Pairs
 from trunnion.verify.wanted import Part, Wanted
+
+if TYPE_CHECKING:
+    from trunnion.verify.align import Pairs
 
 #: What the two maps, there and back, may differ by, rad.
 _NOISE: Final = 1e-11
@@ -49,7 +51,7 @@ class Off:
 class Deviations:
     """Tip and tool axis of all pairs, gathered as a run goes by; of what is off, ``named`` pairs are named."""
 
-    def __init__(self, machine: Machine, wanted: Wanted, pairs: Pairs, named: int) -> None:
+    def __init__(self, machine: Machine, wanted: Wanted, pairs: "Pairs", named: int) -> None:
         self._wanted, self._pairs = wanted, pairs
         self._tip, self._axis = _Gatherer(named), _Gatherer(named)
         self._frame = Tilt.of(machine)
@@ -72,7 +74,7 @@ class Deviations:
         off_tip, off_axis = np.empty(count), np.empty(count)
         squares = compare_rows(
             poses.tip, poses.axis, poses.joints, moves.tip, moves.axis, nc, cl, frame.column, frame.sense, frame.first,
-            frame.second, _NOISE, _OPEN, off_tip, off_axis,
+            frame.second, off_tip, off_axis,
         )  # fmt: skip
         self._tip.take(start, off_tip, squares[0], part.allowed.tip)
         self._axis.take(start, off_axis, squares[1], part.allowed.angle)
@@ -158,8 +160,6 @@ def compare_rows(
     sense: float,
     first: Floats,
     second: Floats,
-    noise: float,
-    left_open: float,
     off_tip: Floats,
     off_axis: Floats,
 ) -> tuple[float, float]:
@@ -167,9 +167,6 @@ def compare_rows(
 
     Returns the sums of squared distances: of tips in mm, of tool axes in degrees.
     """
-    w0, w1, w2 = first[0], first[1], first[2]
-    v0, v1, v2 = second[0], second[1], second[2]
-    along = w0 * v0 + w1 * v1 + w2 * v2
     squares_tip = 0.0
     squares_axis = 0.0
     for k in range(nc.shape[0]):
@@ -180,42 +177,51 @@ def compare_rows(
         squares_tip += dx * dx + dy * dy + dz * dz
         largest = max(abs(dx), abs(dy), abs(dz))
         off_tip[k] = largest if largest == largest else np.inf
-        a0, a1, a2 = nc_axis[i, 0], nc_axis[i, 1], nc_axis[i, 2]
-        e0, e1, e2 = a0 - cl_axis[j, 0], a1 - cl_axis[j, 1], a2 - cl_axis[j, 2]
-        chord = e0 * e0 + e1 * e1 + e2 * e2
-        if not chord > noise * noise:
-            off_axis[k] = 0.0 if chord == chord else np.inf
-            if chord == chord:
-                squares_axis += chord
-            continue
-        angle = 2.0 * math.asin(min(0.5 * math.sqrt(chord), 1.0))
+        angle, off_axis[k] = axes_apart(nc_axis, i, cl_axis, j, joints[i, column], sense, first, second)
         squares_axis += angle * angle
-        if chord > 1e-4:  # not a small difference any more: the angle itself
-            off_axis[k] = math.degrees(angle)
-            continue
-        # The second axis where the first has turned it to, and the ways into which both turn the tool.
-        q = math.radians(sense * joints[i, column])
-        cos, sin = math.cos(q), math.sin(q)
-        rest = along * (1.0 - cos)
-        s0 = v0 * cos + (w1 * v2 - w2 * v1) * sin + w0 * rest
-        s1 = v1 * cos + (w2 * v0 - w0 * v2) * sin + w1 * rest
-        s2 = v2 * cos + (w0 * v1 - w1 * v0) * sin + w2 * rest
-        p0, p1, p2 = w1 * a2 - w2 * a1, w2 * a0 - w0 * a2, w0 * a1 - w1 * a0
-        r0, r1, r2 = s1 * a2 - s2 * a1, s2 * a0 - s0 * a2, s0 * a1 - s1 * a0
-        pp = p0 * p0 + p1 * p1 + p2 * p2
-        pr = p0 * r0 + p1 * r1 + p2 * r2
-        rr = r0 * r0 + r1 * r1 + r2 * r2
-        pe = p0 * e0 + p1 * e1 + p2 * e2
-        re = r0 * e0 + r1 * e1 + r2 * e2
-        volume = pp * rr - pr * pr
-        if volume < 1e-5 * pp * rr or pp < 1e-12 or rr < 1e-12:
-            # At a pole, or at the edge of what the axes reach: what each of them is off by cannot be told apart.
-            off_axis[k] = math.degrees(max(angle - left_open, 0.0) / (math.sqrt(pp) + math.sqrt(rr)))
-            continue
-        one, two = abs((rr * pe - pr * re) / volume), abs((pp * re - pr * pe) / volume)
-        # The split is one of small turns: products of both, which grow towards the pole, are left open.
-        height = abs(w0 * a0 + w1 * a1 + w2 * a2)
-        first_off = one * (1.0 - two * height / math.sqrt(pp)) - noise / math.sqrt(pp)
-        second_off = two - 0.5 * one * one - noise / math.sqrt(rr)
-        off_axis[k] = math.degrees(max(first_off, second_off, 0.0))
     return squares_tip, squares_axis * (180.0 / math.pi) ** 2
+
+
+@njit(cache=True, nogil=True)
+def axes_apart(
+    is_: Floats, i: int, want: Floats, j: int, value: float, sense: float, first: Floats, second: Floats
+) -> tuple[float, float]:
+    """Angle between two tool axes, rad, and what either rotary axis is off by for that, degrees.
+
+    ``value`` is that of the rotary axis next to the workpiece under the tool axis ``is_[i]``, degrees; ``sense``,
+    ``first`` and ``second`` are as in ``Tilt``. An angle that is free is left out.
+    """
+    w0, w1, w2 = first[0], first[1], first[2]
+    v0, v1, v2 = second[0], second[1], second[2]
+    a0, a1, a2 = is_[i, 0], is_[i, 1], is_[i, 2]
+    e0, e1, e2 = a0 - want[j, 0], a1 - want[j, 1], a2 - want[j, 2]
+    chord = e0 * e0 + e1 * e1 + e2 * e2
+    if not chord > _NOISE * _NOISE:
+        return (math.sqrt(chord), 0.0) if chord == chord else (0.0, np.inf)
+    angle = 2.0 * math.asin(min(0.5 * math.sqrt(chord), 1.0))
+    if chord > 1e-4:  # not a small difference any more: the angle itself
+        return angle, math.degrees(angle)
+    # The second axis where the first has turned it to, and the ways into which both turn the tool.
+    q = math.radians(sense * value)
+    cos, sin = math.cos(q), math.sin(q)
+    rest = (w0 * v0 + w1 * v1 + w2 * v2) * (1.0 - cos)
+    s0 = v0 * cos + (w1 * v2 - w2 * v1) * sin + w0 * rest
+    s1 = v1 * cos + (w2 * v0 - w0 * v2) * sin + w1 * rest
+    s2 = v2 * cos + (w0 * v1 - w1 * v0) * sin + w2 * rest
+    p0, p1, p2 = w1 * a2 - w2 * a1, w2 * a0 - w0 * a2, w0 * a1 - w1 * a0
+    r0, r1, r2 = s1 * a2 - s2 * a1, s2 * a0 - s0 * a2, s0 * a1 - s1 * a0
+    pp = p0 * p0 + p1 * p1 + p2 * p2
+    pr = p0 * r0 + p1 * r1 + p2 * r2
+    rr = r0 * r0 + r1 * r1 + r2 * r2
+    pe = p0 * e0 + p1 * e1 + p2 * e2
+    re = r0 * e0 + r1 * e1 + r2 * e2
+    volume = pp * rr - pr * pr
+    if volume < 1e-5 * pp * rr or pp < 1e-12 or rr < 1e-12:
+        # At a pole, or at the edge of what the axes reach: what each of them is off by cannot be told apart.
+        return angle, math.degrees(max(angle - _OPEN, 0.0) / (math.sqrt(pp) + math.sqrt(rr)))
+    one, two = abs((rr * pe - pr * re) / volume), abs((pp * re - pr * pe) / volume)
+    # The split is one of small turns: products of both, which grow towards the pole, are left open.
+    height = abs(w0 * a0 + w1 * a1 + w2 * a2)
+    first_off = one * (1.0 - two * height / math.sqrt(pp)) - _NOISE / math.sqrt(pp)
+    second_off = two - 0.5 * one * one - _NOISE / math.sqrt(rr)
+    return angle, math.degrees(max(first_off, second_off, 0.0))

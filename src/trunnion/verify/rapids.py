@@ -42,7 +42,7 @@ def levels(run: Run) -> Ints:
     starts.update(row for row in run.state.machine_frame.begins(False) if row > 0)
     for start in sorted(starts):
         row = start
-        while row + 1 < len(run) and not int(run.programmed[row]) & int(PLACES):
+        while row + 1 < len(run) and (run.state.machine_frame[row] or not int(run.programmed[row]) & int(PLACES)):
             row += 1
         if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any() or run.state.tcp[row]:
             continue

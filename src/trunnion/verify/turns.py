@@ -89,26 +89,30 @@ def _turning(run: Run, rows: Ints) -> Flags:
 
 
 def _at_the_part(case: Case) -> list[Place]:
-    """Turns for which the tool has not been drawn back to the home of the slide along the spindle.
+    """Turns for which the tool was not drawn back: to the home of the slide along the spindle, or by a word for it.
 
-    A program that never goes there has positions of its own, which nobody can judge.
+    The CL file itself may have drawn it back, if it turns the tool axis at rapid there. A program that never goes home
+    has positions of its own, which nobody can judge without a CL file.
     """
     run, machine = case.run, case.run.machine
     along = max(machine.linear, key=lambda k: abs(np.dot(machine.axes[k].direction, machine.spindle_direction)))
     home = float(machine.home[along])
-    rows = _placing(run)
+    retracts = np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64)
     frame = run.state.machine_frame.where(True)
-    if not len(rows) or not len(frame) or (np.abs(run.poses(frame).joints[:, along] - home) > _HOME).all():
+    frame = frame[~np.isin(frame, retracts)]
+    goes_home = len(frame) > 0 and bool((np.abs(run.poses(frame).joints[:, along] - home) <= _HOME).any())
+    if not goes_home and not (len(retracts) and case.pairs is not None):
         return []
-    rows = rows[rows > 0]
+    placing = _placing(run)
+    rows = placing[placing > 0]
     rows = rows[_turning(run, rows)]
-    placing = set(_placing(run).tolist())
+    every = set(placing.tolist())
     places = []
     for row in rows.tolist():
         before = row - 1
-        while before in placing:
+        while before in every:
             before -= 1
-        if before < 0:
+        if before < 0 or _drawn_back(run, retracts, before, row) or _asked_for(case, before):
             continue
         slide = float(run.poses(np.array([before])).joints[0, along])
         if not run.state.machine_frame[before] or abs(slide - home) > _HOME:
@@ -116,6 +120,24 @@ def _at_the_part(case: Case) -> list[Place]:
             text = f"turns a rotary axis while the tool is at the part: go home in {name} first"
             places.append(case.place(row, 0.0, text))
     return places[:NAMED]
+
+
+def _drawn_back(run: Run, retracts: Ints, before: int, row: int) -> bool:
+    """Whether a word for it has drawn the tool back between two rows; where that is a motion, it is ``before``."""
+    first = before if run.state.machine_frame[before] else before + 1
+    return bool(((retracts >= first) & (retracts <= row)).any())
+
+
+def _asked_for(case: Case, row: int) -> bool:
+    """Whether a row answers to a CL point at rapid, from which the CL file goes on at rapid under another tool axis."""
+    wanted, pairs = case.wanted, case.pairs
+    if wanted is None or pairs is None or row not in pairs.nc:
+        return False
+    cl = pairs.cl[pairs.nc.before(row)]
+    if cl + 1 >= wanted.part_of(cl).end:
+        return False
+    here, there = wanted.point(cl), wanted.point(cl + 1)
+    return here.kind is Kind.RAPID and there.kind is Kind.RAPID and bool((here.axis != there.axis).any())
 
 
 def _in_a_plane(case: Case, planes: list[_Plane]) -> list[Place]:

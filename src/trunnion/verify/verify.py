@@ -101,9 +101,10 @@ def _spans(run: Run, settings: Settings, wanted: Wanted | None = None, pairs: Pa
     if settings.span is None and settings.span_tip is None:
         return ()
     limits = [part.allowed for part in wanted.parts] if wanted is not None else [Allowed()]
-    tip = math.inf if settings.span_tip is None else settings.span_tip + max(limit.tip for limit in limits)
+    rounded = max(limit.tip for limit in limits)
+    tip = math.inf if settings.span_tip is None else settings.span_tip + rounded
     axis = math.inf if settings.span is None else settings.span + 2.0 * max(limit.angle for limit in limits)
-    return (Spans(run, NAMED, tip, axis, wanted, pairs),)
+    return (Spans(run, NAMED, tip, axis, rounded, wanted, pairs),)
 
 
 def _cl_lines(case: Case) -> Lines:
@@ -171,10 +172,8 @@ def _tip(case: Case, off: Off) -> Check:
 
 
 def _ragged(arc: Arc) -> float:
-    """By how much the radius at an arc's end differs from that at its start, mm, where that is rounding."""
-    arm = arc.end - arc.centre
-    arm = arm - (arm @ arc.normal) * arc.normal
-    return min(abs(float(np.linalg.norm(arm)) - arc.radius), 1e-3)
+    """By how much an arc's end is off its circle, or off its start where it is a full one, mm, if that is rounding."""
+    return min(arc.open, 1e-3)
 
 
 def _axis(case: Case, off: Off, believed: Believed) -> Check:

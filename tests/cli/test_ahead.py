@@ -1,0 +1,58 @@
+"""A command imports what it needs, and ``post`` while its first CL file is being read."""
+
+import subprocess
+import sys
+import weakref
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from tests.paths import GOLDEN, YL569
+from trunnion.cli import main
+from trunnion.cli.reading import toolpaths
+from trunnion.errors import InputError
+
+FILES = [str(YL569 / "2_hub_rough.cls"), str(YL569 / "3_blade_finish.cls"), str(GOLDEN / "dmu65" / "corner.cls")]
+
+
+def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> None:
+    script = (
+        "import sys\nfrom trunnion.cli.arguments import parse\nparse(['post', 'a.cls', '--machine', 'yl569'])\n"
+        "print(*(name for name in sys.modules if name in ('numpy', 'numba') or name.startswith('trunnion.')))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert set(done.stdout.split()) == {
+        "trunnion.compiled",
+        "trunnion.cli",
+        "trunnion.cli.arguments",
+        "trunnion.errors",
+    }
+
+
+def test_toolpaths_come_in_order_and_are_not_kept() -> None:
+    with ThreadPoolExecutor(1) as aside:
+        coming = toolpaths(FILES, None, False, aside)
+        first = next(coming)
+        assert first.file == FILES[0]
+        gone = weakref.ref(first.operations[0].moves.tip)
+        del first
+        assert next(coming).file == FILES[1]
+        assert gone() is None
+        assert [path.file for path in coming] == [FILES[2]]
+
+
+def test_a_file_that_cannot_be_read_is_said_where_its_toolpath_is_wanted(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(1) as aside:
+        coming = toolpaths([str(tmp_path / "none.cls"), *FILES], None, False, aside)
+        with pytest.raises(InputError, match="No such file"):
+            next(coming)
+
+
+def test_an_unknown_machine_is_said_before_a_file_that_cannot_be_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["post", str(tmp_path / "none.cls"), "--machine", "no_such_machine"]) == 2
+    error = capsys.readouterr().err
+    assert "no_such_machine" in error
+    assert "none.cls" not in error

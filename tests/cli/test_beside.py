@@ -1,0 +1,80 @@
+"""The proof of a program begins while it is being written: it finds what one afterwards would, on the bytes on disk."""
+
+from pathlib import Path
+from typing import Any, BinaryIO, cast
+
+import pytest
+
+from tests.paths import GOLDEN, YL569
+from tests.reader.test_growing import facts
+from trunnion.cl import read_cl
+from trunnion.cli.post import planned_program, prove, write, write_and_run
+from trunnion.control import Program, load_control
+from trunnion.errors import Refused
+from trunnion.machine import load_machine
+from trunnion.plan import Wishes
+from trunnion.reader import run_program
+from trunnion.toolpath import Toolpath
+
+CASES = {
+    "yl569": YL569 / "2_hub_rough.cls",
+    "dmu65": GOLDEN / "dmu65" / "corner.cls",
+    "hs664rt": GOLDEN / "hs664rt" / "radial_holes.cls",
+    "xyzbc_trt": YL569 / "3_blade_finish.cls",
+}
+
+
+class Spoiled:
+    """A sink that lets one byte of what is written become another one."""
+
+    def __init__(self, sink: BinaryIO, old: bytes, new: bytes) -> None:
+        self._sink, self._old, self._new = sink, old, new
+
+    def write(self, data: Any) -> int:
+        return self._sink.write(bytes(data).replace(self._old, self._new, 1))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._sink, name)
+
+
+def planned(name: str) -> tuple[Program, Wishes, Toolpath]:
+    """The program of a case for its machine."""
+    machine, toolpath = load_machine(name), read_cl(CASES[name])
+    control = load_control(machine.control)
+    wishes = Wishes(manners=control.manners({}))
+    return planned_program([toolpath], machine, control, {}, True, wishes)[0], wishes, toolpath
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+def test_beside_and_afterwards_are_one(name: str, tmp_path: Path) -> None:
+    program, wishes, _ = planned(name)
+    file = tmp_path / "program"
+    with file.open("wb") as sink:
+        claim, run = write_and_run(program, sink, wishes)
+    beside = file.read_bytes()
+    with file.open("wb") as sink:
+        alone = write(program, sink, wishes)
+    assert beside == file.read_bytes()
+    assert (claim.rows, claim.operations, claim.settings) == (alone.rows, alone.operations, alone.settings)
+    assert run is not None
+    assert list(facts(run)) == list(facts(run_program(file, program.machine)))
+
+
+def test_what_is_proven_is_what_is_on_disk(tmp_path: Path) -> None:
+    program, wishes, toolpath = planned("yl569")
+    with (tmp_path / "program").open("wb") as sink:
+        spoiled = cast("BinaryIO", Spoiled(sink, b" Y12.98584 ", b" Y12.98684 "))
+        claim, run = write_and_run(program, spoiled, wishes)
+        with pytest.raises(Refused, match="does not do what this file asks for: tip"):
+            prove(claim, run, [toolpath], spoiled, "program")
+
+
+def test_a_program_that_cannot_be_written_to_its_end_is_not_run_on_for_ever(tmp_path: Path) -> None:
+    program, wishes, _ = planned("yl569")
+
+    class Full(Spoiled):
+        def write(self, data: Any) -> int:
+            raise OSError(28, "No space left on device")
+
+    with (tmp_path / "program").open("wb") as sink, pytest.raises(OSError, match="No space left"):
+        write_and_run(program, cast("BinaryIO", Full(sink, b"", b"")), wishes)

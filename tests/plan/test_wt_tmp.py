@@ -1,0 +1,332 @@
+"""Programs without TCP, read back by the reader's own control: tip and tool axis on the way, and how long it takes."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pytest
+from hypothesis import Phase, assume, event, given, settings
+from hypothesis import strategies as st
+
+from tests.machines import at_zero
+from tests.plan.naive import moves_of, operation_of
+from trunnion.arrays import Codes, Floats
+from trunnion.cli.post import write
+from trunnion.control import Program, check_program, load_control
+from trunnion.errors import Severity
+from trunnion.machine import Machine, forward, load_machine, shipped
+from trunnion.plan import Plan, Wishes, plan
+from trunnion.plan.arcs import turned_evenly
+from trunnion.reader import Run, run_program, subdivide
+from trunnion.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Toolpath
+from trunnion.verify import Verification, verify
+
+NAMES = sorted(shipped())
+SINUMERIK = load_machine("yl569").control
+
+
+def machine(name: str) -> Machine:
+    """A machine with room for its slides, a part off its rotary axes, and a tool where its head turns it."""
+    model = at_zero(name)
+    axes = tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in model.axes)
+    length = 83.7 if model.turns_tool else None
+    return replace(model, axes=axes, control=SINUMERIK, workpiece_zero=(37.0, -21.0, 110.0), tool_length=length)
+
+
+def toolpath(operation: Operation) -> Toolpath:
+    events = (LoadTool(0, 1, 1), SpindleOn(0, 1, 1000.0), *operation.events)
+    return Toolpath("part.cls", (replace(operation, events=events, intol=0.01, outtol=0.01),))
+
+
+@dataclass(frozen=True, eq=False)
+class Posted:
+    """A program, run, and what verification says of it."""
+
+    plan: Plan
+    text: str
+    run: Run
+    found: Verification
+
+
+def post(model: Machine, path: Toolpath, wishes: Wishes) -> Posted:
+    """Plan, write, read back and prove, whatever speaks against the plan."""
+    control = load_control(model.control)
+    planned = plan([path], model, control.chord_tolerance, wishes)
+    program = Program(model, control, planned.motions, {}, "part.cls")
+    assert [p for p in check_program(program) if p.severity is Severity.ERROR] == []
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "part.mpf"
+        with file.open("wb") as sink:
+            claim = write(program, sink, wishes)
+        run = run_program(file, model)
+        found = verify(run, [path], allowed=claim.allowed, settings=claim.settings)
+        return Posted(planned, file.read_text(encoding="utf-8"), run, found)
+
+
+def rows_of_points(run: Run, tip: Floats, axis: Floats) -> list[int]:
+    """The row of the run that ends at each point, found one after the other."""
+    rows, at = [], 0
+    for point, look in zip(tip, axis, strict=True):
+        near = (np.abs(run.tip - point).max(axis=1) < 3e-5) & (np.abs(run.axis - look).max(axis=1) < 1e-6)
+        near &= ~run.machine_frame & ((run.programmed & 7) != 0)
+        candidates = np.flatnonzero(near[at:])
+        assert len(candidates), "a CL point that the program does not reach"
+        rows.append(at + int(candidates[0]))
+        at = rows[-1]
+    return rows
+
+
+def great_circle_distance(look: Floats, begin: Floats, end: Floats) -> Floats:
+    """Degrees from vectors (n, 3) to the arc of the great circle from ``begin`` to ``end``."""
+    pole = np.cross(begin, end)
+    length = float(np.linalg.norm(pole))
+    if length < 1e-9:
+        return apart(look, end)
+    pole /= length
+    foot = look - np.outer(look @ pole, pole)
+    foot /= np.linalg.norm(foot, axis=1)[:, None]
+    inside = (np.cross(begin, foot) @ pole >= 0.0) & (np.cross(foot, end) @ pole >= 0.0)
+    return np.where(inside, apart(look, foot), np.minimum(apart(look, begin), apart(look, end)))
+
+
+def apart(look: Floats, other: Floats) -> Floats:
+    """Degrees between unit vectors (n, 3)."""
+    return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(look - other, axis=1), 1.0))))
+
+
+def worst_off(run: Run, tip: Floats, axis: Floats, kind: Sequence[int]) -> tuple[float, float]:
+    """How far tip (mm) and, in cuts, tool axis (deg) are off the CAM's way, at fifty places of every block."""
+    rows = rows_of_points(run, tip, axis)
+    worst_tip = worst_axis = 0.0
+    for k in range(1, len(tip)):
+        samples = subdivide(run, 50, slice(rows[k - 1] + 1, rows[k] + 1))
+        if not len(samples.row):
+            continue
+        p, way = tip[k - 1], tip[k] - tip[k - 1]
+        part = np.clip((samples.tip - p) @ way / max(float(way @ way), 1e-30), 0.0, 1.0)
+        off = np.linalg.norm(samples.tip - p - part[:, None] * way, axis=1).max()
+        worst_tip = max(worst_tip, float(off))
+        if kind[k] != Kind.RAPID:
+            worst_axis = max(worst_axis, float(great_circle_distance(samples.axis, axis[k - 1], axis[k]).max()))
+    return worst_tip, worst_axis
+
+
+def minutes(run: Run, rows: Sequence[int]) -> float:
+    """How long blocks at feed take, by their F and what it means."""
+    total = 0.0
+    for row in rows:
+        way = float(np.linalg.norm(run.tip[row] - run.tip[row - 1]))
+        total += 1.0 / run.feed[row] if run.feed_mode[row] == 93 else way / run.feed[row]
+    return total
+
+
+steps = st.tuples(st.floats(-30.0, 30.0), st.floats(-30.0, 30.0), st.floats(-20.0, 20.0))
+lean = st.one_of(st.floats(-0.6, 0.6), st.just(0.0), st.floats(-1e-3, 1e-3), st.floats(-1e-6, 1e-6))
+kinds = st.sampled_from([Kind.LINEAR, Kind.LINEAR, Kind.RAPID])
+rough = st.lists(st.tuples(steps, lean, lean, kinds), min_size=2, max_size=4)
+
+
+@settings(deadline=None, max_examples=600, phases=[Phase.generate])
+@given(
+    st.sampled_from(NAMES),
+    rough,
+    st.sampled_from([0.001, 0.01, 0.1]),
+    st.sampled_from([0.01, 0.05, 0.5]),
+)
+def test_the_tool_stays_on_its_way_between_blocks(
+    name: str,
+    path: list[tuple[tuple[float, float, float], float, float, Kind]],
+    tip_tolerance: float,
+    axis_tolerance: float,
+) -> None:
+    tip = np.round(np.cumsum([step for step, _, _, _ in path], axis=0), 5)
+    assume(np.linalg.norm(np.diff(tip, axis=0), axis=1).min() > 0.1)
+    axis = np.array([[i, j, 1.0] for _, i, j, _ in path])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    assume(np.abs(axis - [0.0, 0.0, 1.0]).max() > 1e-6)
+    kind = np.array([Kind.RAPID, *(k for _, _, _, k in path[1:])], np.uint8)
+    moves = replace(moves_of(tip, axis), kind=kind)
+    done = post(
+        machine(name),
+        toolpath(operation_of(moves)),
+        Wishes(tcp=False, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance),
+    )
+    refused = [problem.what for problem in done.plan.problems if problem.severity is Severity.ERROR]
+    event(f"refused: {bool(refused)}")
+    if refused:
+        return
+    failed = [str(check) for check in done.found.checks if not check.passed]
+    assert failed == []
+    worst_tip, worst_axis = worst_off(done.run, tip, axis, kind.tolist())
+    assert worst_tip <= tip_tolerance + 3e-5
+    assert worst_axis <= axis_tolerance + 2e-5
+    rows = rows_of_points(done.run, tip, axis)
+    for k in np.flatnonzero(kind != Kind.RAPID).tolist():
+        blocks = list(range(rows[k - 1] + 1, rows[k] + 1))
+        way = float(np.linalg.norm(tip[k] - tip[k - 1]))
+        at_rest = np.linalg.norm(np.diff(done.run.tip[rows[k - 1] : rows[k] + 1], axis=0), axis=1) < 2e-4
+        if not at_rest.any():
+            assert minutes(done.run, blocks) == pytest.approx(way / 100.0, rel=2e-3)
+
+
+def smooth(form: str, turns: float, tilt: float, n: int) -> tuple[Floats, Floats]:
+    """A path and its tool axes: round a part, over the pole and back, or a spiral close by the pole."""
+    part = np.linspace(0.0, 1.0, n)
+    azimuth = np.radians(20.0 + 360.0 * turns * part)
+    lean = np.full(n, math.radians(tilt))
+    if form == "over the pole":
+        lean, azimuth = np.radians(tilt * (1.0 - 2.0 * part)), np.full(n, 0.4)
+    if form == "spiral":
+        lean = np.radians(tilt * part)
+    axis = np.column_stack((np.sin(lean) * np.cos(azimuth), np.sin(lean) * np.sin(azimuth), np.cos(lean)))
+    tip = 25.0 * axis + np.column_stack((60.0 * part, np.zeros((n, 2))))
+    return np.round(tip, 5), axis
+
+
+@settings(deadline=None, max_examples=25, phases=[Phase.generate])
+@given(
+    st.sampled_from(NAMES),
+    st.sampled_from(["round", "over the pole", "spiral"]),
+    st.floats(-2.4, 2.4),
+    st.floats(1.0, 25.0),
+    st.integers(5, 30),
+    st.sampled_from([0.001, 0.01, 0.1]),
+)
+def test_smooth_paths_also_past_the_pole_and_round_and_round(
+    name: str, form: str, turns: float, tilt: float, n: int, tip_tolerance: float
+) -> None:
+    tip, axis = smooth(form, turns, tilt, n)
+    done = post(
+        machine(name), toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False, tip_tolerance=tip_tolerance)
+    )
+    if any(problem.severity is Severity.ERROR for problem in done.plan.problems):
+        event("refused")
+        return
+    assert [str(check) for check in done.found.checks if not check.passed] == []
+    worst_tip, worst_axis = worst_off(done.run, tip, axis, [Kind.LINEAR] * n)
+    assert worst_tip <= tip_tolerance + 3e-5
+    assert worst_axis <= 0.05 + 2e-5
+
+
+# With TCP
+
+
+@settings(deadline=None, max_examples=25, phases=[Phase.generate])
+@given(st.sampled_from(NAMES), rough, st.sampled_from([0.01, 0.1, 1.0]))
+def test_with_tcp_points_keep_the_tool_axis_where_somebody_asks(
+    name: str, path: list[tuple[tuple[float, float, float], float, float, Kind]], tolerance: float
+) -> None:
+    tip = np.round(np.cumsum([step for step, _, _, _ in path], axis=0), 5)
+    assume(np.linalg.norm(np.diff(tip, axis=0), axis=1).min() > 0.1)
+    axis = np.array([[i, j, 1.0] for _, i, j, _ in path])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    assume(np.abs(axis - [0.0, 0.0, 1.0]).max() > 1e-6)
+    kind = np.array([Kind.RAPID, *(k for _, _, _, k in path[1:])], np.uint8)
+    asked = toolpath(operation_of(replace(moves_of(tip, axis), kind=kind)))
+    done = post(machine(name), asked, Wishes(axis_tolerance=tolerance))
+    if any(problem.severity is Severity.ERROR for problem in done.plan.problems):
+        event("refused")
+        return
+    assert [check.key for check in done.found.checks if not check.passed] == []
+    assert worst_off(done.run, tip, axis, kind.tolist())[1] <= tolerance + 2e-5
+    left_alone = plan([asked], machine(name), 0.001)
+    added = len(done.plan.motions[0].operation.moves) - len(left_alone.motions[0].operation.moves)
+    if done.found.passed and worst_of(left_alone, machine(name), tip, axis, kind) < 0.9 * tolerance:
+        assert added == 0, "nothing is put in where nothing bends"
+
+
+def worst_of(planned: Plan, model: Machine, tip: Floats, axis: Floats, kind: Codes) -> float:
+    """How far the tool axis bends between the points in cuts, degrees, if nothing is put in."""
+    rotary = planned.motions[0].rotary
+    worst = 0.0
+    for k in np.flatnonzero(kind[1:] != Kind.RAPID).tolist():
+        step = rotary[k + 1] - rotary[k]
+        for r, column in enumerate(model.rotary):
+            if model.axes[column].endless:
+                step[r] -= 360.0 * round(step[r] / 360.0)
+        joints = np.zeros((51, 5))
+        joints[:, list(model.rotary)] = rotary[k] + np.linspace(0.0, 1.0, 51)[:, None] * step
+        look = forward(model, joints)[1]
+        part = np.linspace(0.0, 1.0, 51)
+        worst = max(worst, float(apart(look, turned_evenly(axis[k], axis[k + 1], part)).max()))
+    return worst
+
+
+# What the numbers are, by hand
+
+
+def test_slides_of_a_tilting_head_follow_pivot_and_tool_length() -> None:
+    """X = x + R sin B and Z = z + R (cos B - 1), R from the pivot to the tip; the table's C turns what is asked for."""
+    model = replace(machine("generic_head_table_bc"), workpiece_zero=(0.0, 0.0, 50.0), tool_length=120.0)
+    tip, b = np.array([[10.0, 4.0, 2.0], [12.0, 4.0, 1.0]]), np.array([30.0, 40.0])
+    axis = np.column_stack((np.sin(np.radians(b)), np.zeros(2), np.cos(np.radians(b))))
+    done = post(model, toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False))
+    rows = rows_of_points(done.run, tip, axis)
+    places = [done.run.joints[row] for row in rows]
+    arm = 180.0 + 120.0
+    for point, joints, angle in zip(tip, places, np.radians(b), strict=True):
+        x, y, z = (joints[model.column(name)] for name in "XYZ")
+        assert x == pytest.approx(point[0] + arm * math.sin(angle), abs=2e-5)
+        assert y == pytest.approx(point[1], abs=2e-5)
+        assert z == pytest.approx(50.0 + 120.0 + point[2] + arm * (math.cos(angle) - 1.0), abs=2e-5)
+    blocks = [line for line in done.text.splitlines() if " B40." in line]
+    words = {word[0]: float(word[1:]) for word in blocks[-1].split(" ")[1:] if word[0] in "XYZB"}
+    assert words["X"] == pytest.approx(12.0 + arm * math.sin(math.radians(40.0)), abs=2e-5)
+    assert words["Z"] == pytest.approx(1.0 + arm * (math.cos(math.radians(40.0)) - 1.0), abs=2e-5)
+
+
+def test_slides_of_a_tilting_table_turn_with_the_part() -> None:
+    """YL569 with B alone: the part turns by -B about Y through the machine's zero."""
+    model = replace(machine("yl569"), workpiece_zero=(5.0, 0.0, 80.0))
+    tip, b = np.array([[10.0, 4.0, 2.0], [12.0, 4.0, 1.0]]), np.array([30.0, 35.0])
+    axis = np.column_stack((np.sin(np.radians(b)), np.zeros(2), np.cos(np.radians(b))))
+    done = post(model, toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False))
+    for point, row, angle in zip(tip, rows_of_points(done.run, tip, axis), np.radians(b), strict=True):
+        x, z = point[0] + 5.0, point[2] + 80.0
+        place = done.run.joints[row]
+        assert place[model.column("X")] == pytest.approx(x * math.cos(angle) - z * math.sin(angle), abs=2e-5)
+        assert place[model.column("Z")] == pytest.approx(x * math.sin(angle) + z * math.cos(angle), abs=2e-5)
+
+
+# Circles
+
+
+def arc_moves(normal: Floats, axis: Floats) -> tuple[Operation, Floats]:
+    """Half a circle of radius 10 about ``normal`` under a steady tool axis, then on under another; and its points."""
+    across = np.cross(normal, [0.3, 0.5, 0.8])
+    across /= np.linalg.norm(across)
+    tip = np.array([10.0 * across, -10.0 * across, -12.0 * across])
+    axes = np.array([axis, axis, axis + np.array([0.01, 0.02, 0.0])])
+    axes[2] /= np.linalg.norm(axes[2])
+    moves = replace(moves_of(tip, axes), kind=np.array([Kind.RAPID, Kind.ARC, Kind.LINEAR], np.uint8))
+    arcs = Arcs(np.array([1]), np.zeros((1, 3)), normal[None], np.array([10.0]), np.zeros(1, np.int64))
+    return replace(operation_of(moves), arcs=arcs), tip
+
+
+@pytest.mark.parametrize(
+    ("name", "normal", "axis", "circles"),
+    [
+        (
+            "generic_head_table_bc",
+            [0.0, 0.0, 1.0],
+            [0.5, 0.0, math.sqrt(0.75)],
+            1,
+        ),  # the head leans, the slides lie flat
+        ("generic_head_table_bc", [1.0, 0.0, 0.0], [0.5, 0.0, math.sqrt(0.75)], 0),  # not in the plane of X and Y
+        ("yl569", [0.0, 0.0, 1.0], [0.5, 0.0, math.sqrt(0.75)], 0),  # the table leans, and the circle with it
+        ("generic_head_head_ca", [0.0, 0.0, -1.0], [0.5, 0.2, math.sqrt(0.71)], 1),
+    ],
+)
+def test_circles_stay_where_the_slides_make_them(
+    name: str, normal: list[float], axis: list[float], circles: int
+) -> None:
+    operation, tip = arc_moves(np.array(normal), np.array(axis))
+    done = post(machine(name), toolpath(operation), Wishes(tcp=False))
+    assert [check.key for check in done.found.checks if not check.passed] == []
+    assert len(done.run.arcs.row) == circles
+    rows = rows_of_points(done.run, tip, operation.moves.axis)
+    radius = np.linalg.norm(subdivide(done.run, 50, slice(rows[0] + 1, rows[1] + 1)).tip, axis=1)
+    assert np.abs(radius - 10.0).max() < 0.001 + 0.005

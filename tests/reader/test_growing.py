@@ -1,0 +1,89 @@
+"""A program is run while it is being written as it is run afterwards."""
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.paths import YL569
+from trunnion.errors import InputError
+from trunnion.files import Growing
+from trunnion.machine import Machine, load_machine
+from trunnion.reader import Run, run_program
+
+LOOP = b"R1=3\nAGAIN:\nG1 X=R1 F100\n;and again\nR1=R1-1\nIF R1>0 GOTOB AGAIN\nX9\nM30\n"
+
+PROGRAMS = {
+    "plain": (YL569 / "2_hub_rough.expected.mpf").read_bytes(),
+    "with circles": (YL569 / "1_contour_rough.expected.mpf").read_bytes(),
+    "with a jump": LOOP,
+    "without an end": LOOP[:-5],
+    "with a jump far on": (YL569 / "3_blade_finish.expected.mpf").read_bytes().replace(b"M30", b"") + LOOP,
+    "longer than what is read at a time": b"".join(b"N%d G1 X%d Y.5 F%d\n" % (k, k % 7, k) for k in range(20_000)),
+    "empty": b"",
+}
+
+
+def written(data: bytes, ends: Sequence[int], file: Path, growing: Growing) -> None:
+    """Write a file in pieces, and say so."""
+    with file.open("wb") as sink:
+        for start, end in zip([0, *ends], [*ends, len(data)], strict=True):
+            sink.write(data[start:end])
+            sink.flush()
+            growing.grow(end, len(data) // 2)
+    growing.end()
+
+
+def run_beside(data: bytes, ends: Sequence[int], file: Path, machine: Machine) -> Run:
+    """The run of a program that somebody writes at the same time."""
+    file.write_bytes(b"")
+    growing = Growing()
+    with ThreadPoolExecutor(1) as aside:
+        writing = aside.submit(written, data, ends, file, growing)
+        run = run_program(file, machine, growing=growing)
+        writing.result()
+    return run
+
+
+def facts(value: Any) -> Iterator[Any]:
+    """All that a run holds, so that it can be compared."""
+    for field in fields(value):
+        one = getattr(value, field.name)
+        if isinstance(one, np.ndarray):
+            yield field.name, one.dtype, one.tobytes()
+        elif hasattr(one, "__dataclass_fields__") and not isinstance(one, Machine):
+            yield from facts(one)
+        else:
+            yield field.name, one
+
+
+@given(name=st.sampled_from(sorted(PROGRAMS)), data=st.data())
+def test_a_program_that_is_still_written_runs_as_when_it_is_complete(
+    name: str, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    machine, text = load_machine("yl569"), PROGRAMS[name]
+    file = tmp_path_factory.getbasetemp() / "growing.mpf"
+    ends = sorted(data.draw(st.lists(st.integers(0, len(text)), max_size=8)))
+    beside = run_beside(text, ends, file, machine)
+    afterwards = run_program(file, machine)
+    assert len(beside) == len(afterwards)
+    assert list(facts(beside)) == list(facts(afterwards))
+
+
+def test_what_cannot_be_read_is_said_while_it_is_written(tmp_path: Path, yl569: Machine) -> None:
+    text = b"G1 X1 F100\n" * 1000 + b"X" * 400_000 + b"\nM30\n"
+    with pytest.raises(InputError, match="is longer than"):
+        run_beside(text, [500, 20_000, 300_000], tmp_path / "long.mpf", yl569)
+
+
+def test_a_jump_waits_for_the_place_that_it_leads_to(tmp_path: Path, yl569: Machine) -> None:
+    text = b"G1 X1 F100\nGOTOF THERE\n" + b"X2\n" * 5000 + b"THERE:\nX3\nM30\n"
+    run = run_beside(text, [15, 30, 9000], tmp_path / "jump.mpf", yl569)
+    assert run.place[:, 0].tolist() == [1.0, 3.0]
+    assert run.block.tolist() == [1, 5004]
