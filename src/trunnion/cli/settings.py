@@ -3,10 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
-from trunnion.control import Control
+from trunnion.control import Control, Division
+from trunnion.control.subprograms import LEAST_SIZE
 from trunnion.errors import InputError, Problem
+from trunnion.files import Output
 from trunnion.machine import Machine
 from trunnion.plan import Clearance, Manner, Pole, Surface, Wishes
 
@@ -17,6 +20,7 @@ _MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILT
 _CHOICES = {
     "units": ("mm", "inch"),
     "numbers": ("on", "off"),
+    "programs": ("one", "operations"),
     "manner": tuple(_MANNERS),
     "tcp": ("on", "off"),
     "frame": ("first", "absolute"),
@@ -30,6 +34,7 @@ _NUMBERS = {
     "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
     "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
     "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
+    "split": (LEAST_SIZE, 1e12, f"split=BYTES, the largest size of a subprogram, at least {LEAST_SIZE}"),
     "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
 }
 
@@ -135,6 +140,28 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         tcp=tcp,
         **known,
     )
+
+
+def division_of(settings: Mapping[str, str], control: Control, target: str, made: Output) -> Division | None:
+    """How the program of ``target`` is divided into files, which are made as ``made``; None: it is one file.
+
+    Raises
+    ------
+    InputError
+        If the control or the target cannot have several, or if the settings make no sense together.
+    """
+    size = number(settings, "split")
+    if settings.get("programs", "one") == "one":
+        if size is not None:
+            cure = "write programs=operations too"
+            raise InputError(Problem("--set", 0, "split divides subprograms, and there are none", cure))
+        return None
+    if control.subprograms is None:
+        what = f"programs is operations, and {control.name} has no words for subprograms here"
+        raise InputError(Problem("--set", 0, what, "leave it out"))
+    if target == "-":
+        raise InputError(Problem("--output", 0, "stdout takes one file", "name a file or a folder, or programs=one"))
+    return Division(Path(target).stem, made.begin, None if size is None else int(size))
 
 
 def point(text: str) -> tuple[float, float, float]:
