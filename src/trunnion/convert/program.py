@@ -223,7 +223,7 @@ class _Converter:
         return np.asarray(alone & ((machine > worked) | after))
 
     def _across(self, rows: Ints) -> Flags:
-        """(n,) bool: the first leg of an approach, on controls that go from home to X and Y first, and then down in Z."""
+        """(n,) bool: the first leg of an approach, on controls that go from home to X and Y first, then down in Z."""
         found = np.zeros(len(rows), np.bool_)
         if not self._control.level_approach:
             return found
