@@ -125,6 +125,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         manner=_MANNERS[settings.get("manner", "auto")],
         manners=control.manners(settings),
         arcs_about_z=control.arcs_about_z,
+        helices_by_angle="arc_angle" in control.family.WORDS,
         machine_x=control.plane_along_machine,
         pole=Pole(settings.get("pole", "off")),
         absolute=settings.get("frame", "first") == "absolute",
