@@ -41,6 +41,7 @@ CYCLES: Final = {
 
 PLACE: Final = st.floats(-60.0, 60.0).map(lambda value: round(value, 4))
 LENGTH: Final = st.floats(1.0, 20.0).map(lambda value: round(value, 4))
+STEP: Final = st.sampled_from([0.0, 4.0, -4.0])
 SHARE: Final = st.floats(0.02, 0.98)
 UPRIGHT: Final = np.array([0.0, 0.0, 1.0])
 
@@ -124,8 +125,21 @@ def tilted_drilling(draw: st.DrawFn, machine: Machine) -> str:
 
 
 def simultaneous(draw: st.DrawFn, machine: Machine) -> str:
-    """A cut on which both rotary axes turn, from one rotary position to another, there and back."""
-    first, last = np.array([(draw(SHARE), draw(SHARE)) for _ in range(2)])
+    """A cut on which both rotary axes turn, from one rotary position towards another, there and back."""
+    return _cut(draw, machine, (0.02, 0.98))
+
+
+def off_the_pole(draw: st.DrawFn, machine: Machine) -> str:
+    """As ``simultaneous``, with the second rotary axis on one side of its zero, where the pole is."""
+    axis = machine.axes[machine.rotary[1]]
+    share = -axis.low / (axis.high - axis.low)
+    above = axis.high > -axis.low
+    return _cut(draw, machine, (share + 0.1 * (1.0 - share), 0.98) if above else (0.02, 0.9 * share))
+
+
+def _cut(draw: st.DrawFn, machine: Machine, between: tuple[float, float]) -> str:
+    """A cut with the second rotary axis in some part of what it has."""
+    first, last = np.array([(draw(SHARE), draw(st.floats(*between))) for _ in range(2)])
     part = 0.5 - 0.5 * np.cos(np.linspace(0.0, 2.0 * np.pi, 13))[:, None]
     axes = reachable(machine, [(float(a), float(b)) for a, b in first + 0.3 * part * (last - first)])
     begin = np.array([draw(PLACE), draw(PLACE), draw(PLACE)])
@@ -139,12 +153,16 @@ def cycles(modes: Sequence[str]) -> Family:
     """Two holes with each of some cycles, upright."""
 
     def text_of(draw: st.DrawFn, machine: Machine) -> str:
-        text = ""
-        for mode in modes:
-            place = np.array([draw(PLACE), draw(PLACE), draw(PLACE)])
-            aside = place + [15.0, 0.0, draw(st.sampled_from([0.0, 4.0, -4.0]))]
-            text += f"RAPID\nGOTO/{words(place + 50.0 * UPRIGHT, UPRIGHT)}\nFEDRAT/MMPM,90\nCYCLE/{CYCLES[mode]}\n"
-            text += f"GOTO/{words(place)}\nGOTO/{words(aside)}\nCYCLE/OFF\nRAPID\nGOTO/{words(aside + 50.0 * UPRIGHT)}\n"
-        return operation("HOLES", text)
+        return holes(modes, [(draw(PLACE), draw(PLACE), draw(PLACE), draw(STEP)) for _ in modes])
 
     return text_of
+
+
+def holes(modes: Sequence[str], places: Sequence[tuple[float, float, float, float]]) -> str:
+    """Two upright holes with each of some cycles; ``places``: where the first is, and how much higher the second."""
+    text = ""
+    for mode, (x, y, z, step) in zip(modes, places, strict=True):
+        place, aside = np.array([x, y, z]), np.array([x + 15.0, y, z + step])
+        text += f"RAPID\nGOTO/{words(place + 50.0 * UPRIGHT, UPRIGHT)}\nFEDRAT/MMPM,90\nCYCLE/{CYCLES[mode]}\n"
+        text += f"GOTO/{words(place)}\nGOTO/{words(aside)}\nCYCLE/OFF\nRAPID\nGOTO/{words(aside + 50.0 * UPRIGHT)}\n"
+    return operation("HOLES", text)
