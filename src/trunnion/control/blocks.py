@@ -29,6 +29,12 @@ _PHASE_TEXT = {
     Phase.TRAVERSE: "traverse",
 }
 
+#: Words that each row says for itself where they are not in force.
+_OF_EACH_ROW = frozenset({"X", "Y", "Z", "primary", "secondary", "motion", "feed"})
+
+#: Bytes of the lines that stand before a row of their own, at most: a phase, an arc's centre.
+_LINES_OF_A_ROW = 256
+
 #: Manners in which X and Y of the program are across the tool.
 _LEVEL = (Manner.THREE_AXIS, Manner.TILTED)
 
@@ -40,6 +46,8 @@ class Blocks:
     spindle  what the spindle was last told, also where it has been stopped since; None before
     coolant  its kind, as it was last told
     height   of the tool along Z of the frame, at the last row written, mm
+    largest  bytes that the rows of a file may come to; None: no matter how many
+    full     is called where a file has no room for another row: it turns to the next one
     comes_level  whether the tool goes to X and Y of an operation's first point before it goes down
     """
 
@@ -58,6 +66,9 @@ class Blocks:
         self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
+        self._again: dict[str, int] = {}
+        self.largest: int | None = None
+        self.full: Callable[[], None] = lambda: None
         rapid_feed = setting_of(program, "rapid_feed")
         self.rapid_feed = self.count("feed", float(rapid_feed)) if rapid_feed else ABSENT
 
@@ -136,11 +147,38 @@ class Blocks:
 
     def rows(self, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int) -> int:
         """Write rows ``first`` to ``last``; returns the index of the phase text that was printed last."""
-        for start in range(first, last, CHUNK):
-            stop = min(start + CHUNK, last)
+        start = first
+        while start < last:
+            fitting = self._fitting()
+            if fitting < 1:
+                self._turn_over()
+                text, fitting = -1, self._fitting()
+            stop = min(start + max(1, fitting), last)
             text = self._chunk(motion, start, stop, [e for e in joining if start <= e.row < stop], text)
             self.progress(stop - start)
+            start = stop
         return text
+
+    def _fitting(self) -> int:
+        """So many rows surely fit into the file, at least one where it must not end here.
+
+        Radius compensation goes on to the end: the control looks ahead there, and not from file to file.
+        """
+        if self.largest is None:
+            return CHUNK
+        widest = self.writer.widest_row + _LINES_OF_A_ROW
+        fitting = min(CHUNK, (self.largest - self.writer.size) // widest)
+        off = self.control.codes.get("comp_off", ABSENT)
+        compensated = self.writer.in_force().get("cutter_comp", off) != off
+        return max(1, fitting) if compensated else fitting
+
+    def _turn_over(self) -> None:
+        """Go on in the next file: all that is in force is said again, in its first block."""
+        known = self.writer.in_force()
+        self._again = {word: count for word, count in known.items() if word not in _OF_EACH_ROW}
+        self.full()
+        self.writer.forget()
+        self._feed_mode = ABSENT
 
     def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[WordEvent], text: int) -> int:
         moves, arcs, control = motion.operation.moves, motion.operation.arcs, self.control
@@ -185,6 +223,10 @@ class Blocks:
             self._join(columns, 0, self.edge())
         for event in joining:
             self._join(columns, event.row - start, self.event_words(event))
+        if self._again:
+            said = {word: int(column[0]) for word, column in columns.items()}
+            self._join(columns, 0, {w: count for w, count in self._again.items() if said.get(w, ABSENT) == ABSENT})
+            self._again = {}
         ids, texts = self.phase_texts()
         wanted = ids[moves.phase[part]]
         before = np.concatenate(([text], wanted[:-1]))

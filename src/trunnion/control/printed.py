@@ -81,6 +81,7 @@ class Printed:
             **self._times(number),
             **self._plane(motion),
             **spindle_values(program, spindle),
+            "subprogram": None,
             "machine": machine.name,
             **self._home(),
             "operation": operation.name,
