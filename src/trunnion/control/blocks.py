@@ -13,6 +13,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.family import WordEvent
 from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
 from trunnion.control.slides import Slides, feed_rule, feeds, slides_of
+from trunnion.control.vectors import leads_there, vectors_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
@@ -29,8 +30,11 @@ _PHASE_TEXT = {
     Phase.TRAVERSE: "traverse",
 }
 
+#: The words of the tool's vector.
+VECTOR = ("vector_x", "vector_y", "vector_z")
+
 #: Words that each row says for itself where they are not in force.
-_OF_EACH_ROW = frozenset({"X", "Y", "Z", "primary", "secondary", "motion", "feed"})
+_OF_EACH_ROW = frozenset({"X", "Y", "Z", "primary", "secondary", *VECTOR, "motion", "feed"})
 
 #: Bytes of the lines that stand before a row of their own, at most: a phase, an arc's centre.
 _LINES_OF_A_ROW = 256
@@ -67,6 +71,7 @@ class Blocks:
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
         self._again: dict[str, int] = {}
+        self._by_vector = ABSENT  # how the control goes to an orientation: 1 by the vector, 0 by the axes
         self.largest: int | None = None
         self.full: Callable[[], None] = lambda: None
         rapid_feed = setting_of(program, "rapid_feed")
@@ -97,6 +102,7 @@ class Blocks:
         else:
             self.writer.forget("X", "Y", "Z", "feed")
         self._feed_mode = ABSENT
+        self._by_vector = 1
 
     def rotary_stand(self, motion: Motion) -> None:
         """Templates have placed the rotary axes for a motion's first row."""
@@ -104,6 +110,9 @@ class Blocks:
             self.writer.remember(
                 word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word, column)[0])
             )
+        if self._says_vectors(motion):
+            for word, counted in self._vector_counts(motion.rotary[:1]).items():
+                self.writer.remember(word, int(counted[0]))
 
     def use_feed_mode(self, mode: int) -> int:
         """What F means from here on; where that changes, F is said again. Returns ``mode``."""
@@ -179,6 +188,7 @@ class Blocks:
         self.full()
         self.writer.forget()
         self._feed_mode = ABSENT
+        self._by_vector = ABSENT
 
     def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[WordEvent], text: int) -> int:
         moves, arcs, control = motion.operation.moves, motion.operation.arcs, self.control
@@ -189,14 +199,17 @@ class Blocks:
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
+        forced: dict[str, bool | Ints] = {}
         if motion.plane is None:  # in a plane the rotary axes stand where they were put
             for word, axis in self._rotary:
                 columns[word] = self._angle_counts(motion.rotary[part, self._column[axis]], word, axis)
+        in_force: dict[str, int] = {}
+        if self._says_vectors(motion):
+            in_force = self._orient(motion, start, stop, columns, forced)
         columns["feed"] = np.where(
             rapid, self.rapid_feed, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"])
         )
         columns |= self.family.row_words(rapid, moves.per_rev[part], control.codes)
-        forced: dict[str, bool | Ints] = {}
         if self._slides is not None:
             forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
         forced["feed"] = self._feed_anew(columns, rapid)
@@ -233,7 +246,53 @@ class Blocks:
         self.writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
         if elsewhere[-1]:
             self.writer.forget("X", "Y", "Z")
+        for word, count in in_force.items():
+            self.writer.remember(word, count)
         return int(wanted[-1])
+
+    def _says_vectors(self, motion: Motion) -> bool:
+        """Whether orientations are said by the tool's vector: under TCP, where the setting says so."""
+        return motion.manner is Manner.TCP and setting_of(self.program, "orientation") == "vector"
+
+    def _vector_counts(self, rotary: Floats) -> dict[str, Ints]:
+        decimals = self.writer.word(VECTOR[0]).format.decimals
+        vectors = vectors_of(self.program.machine, rotary)
+        return {word: counts(np.ascontiguousarray(vectors[:, k]), decimals) for k, word in enumerate(VECTOR)}
+
+    def _orient(
+        self, motion: Motion, start: int, stop: int, columns: dict[str, Ints], forced: dict[str, bool | Ints]
+    ) -> dict[str, int]:
+        """Say orientations by vectors, and by rotary words where a control would take another position for the vector.
+
+        All components or both rotary words stand where the orientation changes, and none where it does not. Returns
+        what is in force after the last row, however it was said.
+        """
+        rotary = motion.rotary[start:stop]
+        vectors = self._vector_counts(rotary)
+        printed = np.column_stack(list(vectors.values())) / np.float64(
+            10 ** self.writer.word(VECTOR[0]).format.decimals
+        )
+        before = np.concatenate((motion.rotary[max(start - 1, 0) : max(start, 1)], rotary[:-1]))
+        half = 0.5 * 10.0 ** -self.writer.word("primary").format.decimals
+        by_vector = leads_there(self.program.machine, printed, rotary, before, half)
+        words = vectors | {word: columns[word] for word, _ in self._rotary}
+        changed = np.zeros(len(rotary), np.bool_)
+        for word, column in words.items():
+            changed |= column != np.concatenate(([self.writer.printed(word)], column[:-1]))
+        last = {word: int(column[-1]) for word, column in words.items()}
+        for word, column in words.items():
+            said = changed & (by_vector if word in VECTOR else ~by_vector)
+            columns[word] = np.where(said, column, ABSENT)
+            forced[word] = said.astype(np.int64)
+        rows = np.flatnonzero(changed)
+        manners = by_vector[rows].astype(np.int64)
+        if len(rows):
+            anew = rows[manners != np.concatenate(([self._by_vector], manners[:-1]))]
+            for word, which in (("by_vector", 1), ("by_axes", 0)):
+                columns[word] = np.full(len(rotary), ABSENT, np.int64)
+                columns[word][anew[by_vector[anew] == which]] = 0
+            self._by_vector = int(manners[-1])
+        return last
 
     def edge(self) -> dict[str, int]:
         """The cutting edge, on controls that have any."""
