@@ -63,7 +63,7 @@ def test_axes_stand_where_rotary_words_would_have_them(
 ) -> None:
     machine, folder = MACHINES[name], tmp_path_factory.getbasetemp()
     try:
-        words = posted(machine, toolpath_of(moves), folder, "axes")
+        words = posted(machine, toolpath_of(moves), folder, "angles")
     except (Refused, InputError):
         assume(False)
     vectors = posted(machine, toolpath_of(moves), folder, "vector")

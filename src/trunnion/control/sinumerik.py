@@ -19,15 +19,14 @@ from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = (
-    *iso.WORDS, "edge", "primary_shortest", "secondary_shortest", "vector_x", "vector_y", "vector_z", "by_vector",
-    "by_axes",
+    *iso.WORDS, "edge", "primary_shortest", "secondary_shortest", "axis_x", "axis_y", "axis_z", "by_vector", "by_axes",
 )  # fmt: skip
 CODES: tuple[str, ...] = iso.CODES
 PLANES: tuple[str, ...] = ("cycle800", "frames")
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "plane": PLANES,
     "swivel_mode": ("57", "27", "39", "45", "30", "54"),
-    "orientation": ("axes", "vector"),
+    "orientation": ("angles", "vector"),
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, "interpolation"})
