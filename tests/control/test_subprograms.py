@@ -4,15 +4,17 @@ import io
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.convert.toolpaths import SAYABLE, operations
 from tests.paths import YL569
 from trunnion.cli import main
+from trunnion.cli.settings import wishes_of
 from trunnion.control import Division, Program, check_program, load_control, write_program
 from trunnion.control.subprograms import LEAST_SIZE, ROOM_FOR_THE_END, Names, Naming
 from trunnion.errors import InputError, Severity
@@ -20,20 +22,37 @@ from trunnion.files import output
 from trunnion.machine import load_machine
 from trunnion.plan import plan
 from trunnion.reader import Run, run_program
-from trunnion.toolpath import Toolpath
+from trunnion.toolpath import Coolant, Dwell, Toolpath
 from trunnion.verify import compare
 
-#: A machine of each control that calls subprograms, a word that only the call of one has, and the end of one.
-CONTROLS = {"yl569": (r"EXTCALL\(\"(?P<name>[A-Z_0-9]+)\"\)", "M17")}
+
+class Language(NamedTuple):
+    """How a control calls a subprogram, how one ends, and what runs one alone if its file is not enough."""
+
+    call: str
+    end: str
+    alone: str = ""
+
+
+#: A machine of each control that calls subprograms.
+CONTROLS = {
+    "yl569": Language(r"EXTCALL\(\"(?P<name>[A-Z_0-9]+)\"\)", "M17"),
+    "dmu65": Language(r"CALL PGM (?P<name>[A-Z_0-9]+)\.H", "END PGM {name} MM"),
+    "xyzac_trt": Language(r"o<(?P<name>[a-z_0-9]+)> call", "o<{name}> endsub", "o<{name}> call\nM2\n"),
+}
 
 MACHINES = {name: load_machine(name) for name in CONTROLS}
 
 #: Tool axes that all these machines reach, upright ones among them, and none near a pole.
-AXES = st.one_of(
-    st.just((0.0, 0.0, 1.0)), st.tuples(st.floats(0.1, 1), st.floats(-1, 1), st.floats(0.6, 1)).map(lambda v: v)
-)
+AXES = st.one_of(st.just((0.0, 0.0, 1.0)), st.tuples(st.floats(0.1, 0.5), st.floats(-0.5, 0.5), st.floats(0.8, 1)))
 
-TOOLPATHS = st.lists(operations(SAYABLE, AXES), min_size=1, max_size=3).map(
+#: Events that all these controls can say.
+KINDS = SAYABLE | {
+    "coolant": st.sampled_from(["ON", "MIST", "OFF"]).map(lambda kind: Coolant(0, 0, kind)),
+    "dwell": st.integers(1, 99999).map(lambda n: Dwell(0, 0, n / 1000, revolutions=False)),
+}
+
+TOOLPATHS = st.lists(operations(KINDS, AXES), min_size=1, max_size=3).map(
     lambda found: Toolpath("made.cls", tuple(found), "part.prt")
 )
 
@@ -53,7 +72,7 @@ def written(machine: str, toolpath: Toolpath, folder: Path, largest: int | None 
     """The program in one file as it runs, and in several; None where there can be none."""
     model = MACHINES[machine]
     control = load_control(model.control.fresh())
-    planned = plan([toolpath], model, control.chord_tolerance)
+    planned = plan([toolpath], model, control.chord_tolerance, wishes_of({}, control))
     program = Program(model, control, planned.motions, {"tool": "7"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
@@ -76,7 +95,7 @@ def written(machine: str, toolpath: Toolpath, folder: Path, largest: int | None 
 
 
 @pytest.mark.parametrize("machine", CONTROLS)
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=20)
 @given(toolpath=TOOLPATHS, largest=st.sampled_from([None, ROOM_FOR_THE_END + 1800]))
 def test_a_program_in_several_files_does_what_it_does_in_one(
     tmp_path_factory: pytest.TempPathFactory, machine: str, toolpath: Toolpath, largest: int | None
@@ -93,16 +112,17 @@ def test_a_program_in_several_files_does_what_it_does_in_one(
         [(e.kind, e.value) for e in each.events if e.kind in ("dwell", "stop", "optional_stop")] for each in (one, run)
     ]
     assert told[0] == told[1]
-    call, end = CONTROLS[machine]
-    names = [match["name"] for line in several.main.read_text().splitlines() if (match := re.search(call, line))]
+    language = CONTROLS[machine]
+    lines = several.main.read_text(encoding="utf-8").splitlines()
+    names = [match["name"] for line in lines if (match := re.search(language.call, line))]
     assert names == [path.stem for path in several.others]
     assert len(names) >= len(toolpath.operations)
     for path in several.others:
-        assert path.read_text().split("\n")[-1].endswith(end) or path.read_text().rstrip().endswith(end)
+        assert path.read_text(encoding="utf-8").rstrip().endswith(language.end.format(name=path.stem))
 
 
 @pytest.mark.parametrize("machine", CONTROLS)
-@settings(deadline=None, max_examples=30, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=20)
 @given(toolpath=TOOLPATHS)
 def test_each_operation_can_be_entered_alone(
     tmp_path_factory: pytest.TempPathFactory, machine: str, toolpath: Toolpath
@@ -113,7 +133,9 @@ def test_each_operation_can_be_entered_alone(
     assert made is not None
     whole = made[1].run(machine)
     for k, path in enumerate(made[1].others):
-        alone = Written(path, []).run(machine)
+        calling, language = path.with_name("alone"), CONTROLS[machine]
+        calling.write_text(language.alone.format(name=path.stem), encoding="utf-8")
+        alone = (Written(calling, [path]) if language.alone else Written(path, [])).run(machine)
         assert alone.errors == ()
         rows = whole.file == whole.files.index(str(path)) if str(path) in whole.files else None
         assert rows is not None

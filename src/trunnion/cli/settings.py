@@ -21,7 +21,6 @@ _CHOICES = {
     "units": ("mm", "inch"),
     "numbers": ("on", "off"),
     "programs": ("one", "operations"),
-    "manner": tuple(_MANNERS),
     "tcp": ("on", "off"),
     "frame": ("first", "absolute"),
     "rewind": ("insert", "none"),
@@ -39,7 +38,7 @@ _NUMBERS = {
 }
 
 #: All settings of a run; the others are its control's.
-RUN_SETTINGS = (*_CHOICES, *_NUMBERS, "zero", "clearance")
+RUN_SETTINGS = (*_CHOICES, *_NUMBERS, "manner", "zero", "clearance")
 
 
 def check_settings(settings: Mapping[str, str], control: Control) -> None:
@@ -84,6 +83,23 @@ def _clearance(text: str) -> Clearance:
     raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
 
 
+def _manner(text: str, tcp: bool) -> tuple[Manner | None, dict[str, Manner | None]]:
+    """The setting ``manner``: that of all operations, and those of some by their names, such as ``auto,SIDES:tcp``."""
+    known = {word: manner for word, manner in _MANNERS.items() if tcp or manner is not Manner.TCP}
+    every, own = "auto", dict[str, Manner | None]()
+    for entry in text.split(","):
+        name, _, word = entry.rpartition(":")
+        if word not in known:
+            what = "manner is tcp, and there is no TCP" if word == "tcp" else f"manner is {text!r}"
+            cure = f"write one of {', '.join(known)}; OPERATION:WORD says it of one operation"
+            raise InputError(Problem("--set", 0, what, cure))
+        if name:
+            own[name] = known[word]
+        else:
+            every = word
+    return known[every], own
+
+
 def number(settings: Mapping[str, str], key: str) -> float | None:
     """A setting that is a number; None where nobody set it.
 
@@ -118,8 +134,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:
         raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
-    if not tcp and settings.get("manner") == "tcp":
-        raise InputError(Problem("--set", 0, "manner is tcp, and there is no TCP", "leave the setting manner out"))
+    manner, own_manner = _manner(settings.get("manner", "auto"), tcp)
     said = {key: number(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
     known: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
     if "clearance" in settings:
@@ -127,7 +142,8 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
     return Wishes(
         rewind=settings.get("rewind", "insert") == "insert",
         explain=explain,
-        manner=_MANNERS[settings.get("manner", "auto")],
+        manner=manner,
+        own_manner=own_manner,
         manners=control.manners(settings),
         arcs_about_z=control.arcs_about_z,
         machine_x=control.plane_along_machine,

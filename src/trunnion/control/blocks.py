@@ -10,10 +10,12 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.control.definition import AXIS_VECTOR, VECTOR_LINE
 from trunnion.control.family import WordEvent
 from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
 from trunnion.control.slides import Slides, feed_rule, feeds, slides_of
 from trunnion.errors import InputError, Problem
+from trunnion.machine import forward
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
 from trunnion.toolpath import Coolant, Kind, Phase, SpindleOn
@@ -66,6 +68,7 @@ class Blocks:
         self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
+        self._vectors = setting_of(program, "orientation") == "vector"
         self._again: dict[str, int] = {}
         self.largest: int | None = None
         self.full: Callable[[], None] = lambda: None
@@ -189,14 +192,21 @@ class Blocks:
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
-        if motion.plane is None:  # in a plane the rotary axes stand where they were put
+        forced: dict[str, bool | Ints] = {}
+        by_vector = self._vectors and motion.manner is Manner.TCP
+        if by_vector:
+            columns |= self._axis_words(motion, part)
+        elif motion.plane is None:  # in a plane the rotary axes stand where they were put
             for word, axis in self._rotary:
                 columns[word] = self._angle_counts(motion.rotary[part, self._column[axis]], word, axis)
         columns["feed"] = np.where(
             rapid, self.rapid_feed, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"])
         )
         columns |= self.family.row_words(rapid, moves.per_rev[part], control.codes)
-        forced: dict[str, bool | Ints] = {}
+        if by_vector and any(word.key == VECTOR_LINE for word in self._words):
+            said = columns[AXIS_VECTOR[0]] != ABSENT
+            columns |= {VECTOR_LINE: np.where(said, 1, ABSENT), "line": np.where(said, ABSENT, columns["line"])}
+            forced |= dict.fromkeys("XYZ", said.astype(np.int64))
         if self._slides is not None:
             forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
         forced["feed"] = self._feed_anew(columns, rapid)
@@ -207,6 +217,9 @@ class Blocks:
             formats = {word.key: word.format for word in self._words}
             words = self.family.arc_words(arcs, moves.tip, inside, control.codes, formats)
             at = arcs.row[inside] - start
+            for word in (*AXIS_VECTOR, VECTOR_LINE) if by_vector else ():  # the tool axis rests on a circle
+                if word in columns:
+                    columns[word][at] = ABSENT
             for word, column in words.columns.items():
                 columns.setdefault(word, np.full(stop - start, ABSENT, np.int64))[at] = column
             for word, flag in words.forced.items():
@@ -233,7 +246,25 @@ class Blocks:
         self.writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
         if elsewhere[-1]:
             self.writer.forget("X", "Y", "Z")
+        if by_vector:
+            self.writer.forget("primary", "secondary")  # they have turned since they were placed
         return int(wanted[-1])
+
+    def _axis_words(self, motion: Motion, part: slice) -> dict[str, Ints]:
+        """The tool axis of rows as a vector, by where the rotary axes stand, however they lean.
+
+        At the first row they were placed already; a rounded vector near the pole would turn them again.
+        """
+        machine = self.program.machine
+        joints = np.zeros((part.stop - part.start, 5))
+        joints[:, list(machine.rotary)] = motion.rotary[part]
+        axis = forward(machine, joints)[1]
+        decimals = self.writer.word(AXIS_VECTOR[0]).format.decimals
+        said = np.arange(part.start, part.stop) > 0
+        return {
+            word: np.where(said, counts(np.ascontiguousarray(axis[:, c]), decimals), ABSENT)
+            for c, word in enumerate(AXIS_VECTOR)
+        }
 
     def edge(self) -> dict[str, int]:
         """The cutting edge, on controls that have any."""

@@ -53,6 +53,11 @@ SUBPROGRAM = ("subprogram_call", "subprogram_start", "subprogram_part", "subprog
 #: The word, and its code, of controls on which each position of a hole calls the cycle that was defined before.
 CALL = "call"
 
+#: The words of the tool axis as a vector, from tip to holder, on controls that take it in place of rotary words; and
+#: the word that opens such blocks in place of ``line``, on those that have one: they want X, Y and Z in each of them.
+AXIS_VECTOR = ("axis_x", "axis_y", "axis_z")
+VECTOR_LINE = "vector_line"
+
 #: Words of a motion block that all families have.
 AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
 
