@@ -58,6 +58,9 @@ CALL = "call"
 AXIS_VECTOR = ("axis_x", "axis_y", "axis_z")
 VECTOR_LINE = "vector_line"
 
+#: Words that say whether an orientation is gone to by its vector or by the rotary axes, on controls that can have both.
+BY_VECTOR, BY_AXES = "by_vector", "by_axes"
+
 #: Words of a motion block that all families have.
 AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
 
