@@ -31,8 +31,8 @@ _PHASE_TEXT = {
     Phase.TRAVERSE: "traverse",
 }
 
-#: Words that each row says for itself where they are not in force.
-_OF_EACH_ROW = frozenset({"X", "Y", "Z", "primary", "secondary", *AXIS_VECTOR, "motion", "feed"})
+#: Words that are said again where an operation goes on in another file, besides those that each row says for itself.
+_SAID_AGAIN = ("plane", "feed_mode", "cutter_comp", "speed", "edge", "spindle", "coolant")
 
 #: Bytes of the lines that stand before a row of their own, at most: a phase, an arc's centre.
 _LINES_OF_A_ROW = 256
@@ -182,9 +182,10 @@ class Blocks:
         return max(1, fitting) if compensated else fitting
 
     def _turn_over(self) -> None:
-        """Go on in the next file: all that is in force is said again, in its first block."""
+        """Go on in the next file: what is in force is said again in its first block, but for the tool's length and TCP,
+        which some controls take as a motion."""
         known = self.writer.in_force()
-        self._again = {word: count for word, count in known.items() if word not in _OF_EACH_ROW}
+        self._again = {word: known[word] for word in _SAID_AGAIN if word in known}
         self.full()
         self.writer.forget()
         self._feed_mode = ABSENT
