@@ -174,13 +174,13 @@ class _Converter:
         for k, item in enumerate(said):
             last = parts[-1]
             here = item.line if item.file == 0 else 0
-            if (here in starts and here != begun) if starts else (item.kind == "tool_change"):
-                last.stop = item.row
+            begun = begun if here == begun else 0
+            if (here in starts and here != begun and item.kind != "skip") if starts else (item.kind == "tool_change"):
+                last.stop, begun = item.row, here
                 last.end = k if last.end < 0 else last.end
                 parts.append(_Part(item.line, k, item.row))
-            elif here in ends and last.end < 0:
+            elif item.kind == "comment" and here in ends and last.end < 0:
                 last.end = k
-            begun = here or begun
         parts[-1].stop = len(self._run)
         parts[-1].end = len(said) if parts[-1].end < 0 else parts[-1].end
         for part in parts:
@@ -256,8 +256,8 @@ class _Converter:
             self._known |= match(self._source.texts(part.line, first), head, part.values)
             ended = match(self._source.texts(last + 1, after), tail, part.values)
             self._known |= ended
-            tail_items = (n for n in range(part.begin, part.end) if said[n].file == 0 and said[n].line in ended)
-            part.end = min(next(tail_items, part.end), part.end)
+            there = (n for n in range(part.begin, part.end) if said[n].file == 0 and said[n].line in ended)
+            part.end = next((n for n in there if said[n].kind != "skip"), part.end)
             plane = {"plane": "frames"} if "plane_x" in part.values and "swivel_style" not in part.values else {}
             part.values = {**common, **part.values, **plane, **self._registers(part)}
 
