@@ -146,6 +146,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         own_manner=own_manner,
         manners=control.manners(settings),
         arcs_about_z=control.arcs_about_z,
+        helices_by_angle="arc_angle" in control.family.WORDS,
         machine_x=control.plane_along_machine,
         pole=Pole(settings.get("pole", "off")),
         absolute=settings.get("frame", "first") == "absolute",

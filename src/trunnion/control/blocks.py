@@ -31,8 +31,8 @@ _PHASE_TEXT = {
     Phase.TRAVERSE: "traverse",
 }
 
-#: Words that each row says for itself where they are not in force.
-_OF_EACH_ROW = frozenset({"X", "Y", "Z", "primary", "secondary", *AXIS_VECTOR, "motion", "feed"})
+#: Words that are said again where an operation goes on in another file, besides those that each row says for itself.
+_SAID_AGAIN = ("plane", "feed_mode", "cutter_comp", "speed", "edge", "spindle", "coolant")
 
 #: Bytes of the lines that stand before a row of their own, at most: a phase, an arc's centre.
 _LINES_OF_A_ROW = 256
@@ -110,7 +110,7 @@ class Blocks:
             self.writer.remember(
                 word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word, column)[0])
             )
-        if self._turns_over and self._vectors and motion.manner is Manner.TCP:
+        if self._vectors and motion.manner is Manner.TCP:
             for word, counted in self._axis_counts(motion.rotary[:1]).items():
                 self.writer.remember(word, int(counted[0]))
 
@@ -182,9 +182,10 @@ class Blocks:
         return max(1, fitting) if compensated else fitting
 
     def _turn_over(self) -> None:
-        """Go on in the next file: all that is in force is said again, in its first block."""
+        """Go on in the next file: what is in force is said again in its first block, but for the tool's length and TCP,
+        which some controls take as a motion."""
         known = self.writer.in_force()
-        self._again = {word: count for word, count in known.items() if word not in _OF_EACH_ROW}
+        self._again = {word: known[word] for word in _SAID_AGAIN if word in known}
         self.full()
         self.writer.forget()
         self._feed_mode = ABSENT
@@ -202,12 +203,10 @@ class Blocks:
         forced: dict[str, bool | Ints] = {}
         by_vector = self._vectors and motion.manner is Manner.TCP
         in_force: dict[str, int] = {}
-        if by_vector and not self._turns_over:
-            columns |= self._axis_words(motion, part)
-        elif motion.plane is None:  # in a plane the rotary axes stand where they were put
+        if motion.plane is None:  # in a plane the rotary axes stand where they were put
             for word, axis in self._rotary:
                 columns[word] = self._angle_counts(motion.rotary[part, self._column[axis]], word, axis)
-        if by_vector and self._turns_over:
+        if by_vector:
             in_force = self._orient(motion, start, stop, columns, forced)
         columns["feed"] = np.where(
             rapid, self.rapid_feed, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"])
@@ -256,8 +255,6 @@ class Blocks:
         self.writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
         if elsewhere[-1]:
             self.writer.forget("X", "Y", "Z")
-        if by_vector and not self._turns_over:
-            self.writer.forget("primary", "secondary")  # they have turned since they were placed
         for word, count in in_force.items():
             self.writer.remember(word, count)
         return int(wanted[-1])
@@ -267,14 +264,6 @@ class Blocks:
         decimals = self.writer.word(AXIS_VECTOR[0]).format.decimals
         vectors = vectors_of(self.program.machine, rotary)
         return {word: counts(np.ascontiguousarray(vectors[:, k]), decimals) for k, word in enumerate(AXIS_VECTOR)}
-
-    def _axis_words(self, motion: Motion, part: slice) -> dict[str, Ints]:
-        """The tool axis of rows as a vector.
-
-        At the first row the rotary axes were placed already; a rounded vector near the pole would turn them again.
-        """
-        said = np.arange(part.start, part.stop) > 0
-        return {word: np.where(said, axis, ABSENT) for word, axis in self._axis_counts(motion.rotary[part]).items()}
 
     def _orient(
         self, motion: Motion, start: int, stop: int, columns: dict[str, Ints], forced: dict[str, bool | Ints]
@@ -303,7 +292,7 @@ class Blocks:
             forced[word] = said.astype(np.int64)
         rows = np.flatnonzero(changed)
         manners = by_vector[rows].astype(np.int64)
-        if len(rows):
+        if len(rows) and self._turns_over:
             anew = rows[manners != np.concatenate(([self._by_vector], manners[:-1]))]
             for word, which in ((BY_VECTOR, 1), (BY_AXES, 0)):
                 columns[word] = np.full(len(rotary), ABSENT, np.int64)

@@ -353,8 +353,15 @@ def _arcs(table: Table) -> _Arcs:
 
 def _naming(table: Table) -> Naming:
     letters = table.text("letters", "capital", one_of=("capital", "small"))
-    longest = table.integer("longest_name", at_least=8)
-    naming = Naming(table.text("extension"), letters == "capital", longest, table.texts("reserved", ()))
+    first = table.integer("first_number", 0, at_least=0, at_most=9999)
+    naming = Naming(
+        extension=table.text("extension"),
+        capitals=letters == "capital",
+        longest=4 if first else table.integer("longest_name", at_least=8),
+        reserved=table.texts("reserved", ()),
+        first=first or None,
+        before=table.text("before_name", ""),
+    )
     table.finish()
     return naming
 
