@@ -10,12 +10,12 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.control.definition import AXIS_VECTOR, VECTOR_LINE
+from trunnion.control.definition import AXIS_VECTOR, BY_AXES, BY_VECTOR, VECTOR_LINE
 from trunnion.control.family import WordEvent
 from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
 from trunnion.control.slides import Slides, feed_rule, feeds, slides_of
+from trunnion.control.vectors import leads_there, vectors_of
 from trunnion.errors import InputError, Problem
-from trunnion.machine import forward
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
 from trunnion.toolpath import Coolant, Kind, Phase, SpindleOn
@@ -31,8 +31,8 @@ _PHASE_TEXT = {
     Phase.TRAVERSE: "traverse",
 }
 
-#: Words that each row says for itself where they are not in force.
-_OF_EACH_ROW = frozenset({"X", "Y", "Z", "primary", "secondary", "motion", "feed"})
+#: Words that are said again where an operation goes on in another file, besides those that each row says for itself.
+_SAID_AGAIN = ("plane", "feed_mode", "cutter_comp", "speed", "edge", "spindle", "coolant")
 
 #: Bytes of the lines that stand before a row of their own, at most: a phase, an arc's centre.
 _LINES_OF_A_ROW = 256
@@ -68,8 +68,11 @@ class Blocks:
         self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
+        self._tool = ""
         self._vectors = setting_of(program, "orientation") == "vector"
+        self._turns_over = any(word.key == BY_VECTOR for word in self._words)
         self._again: dict[str, int] = {}
+        self._by_vector = ABSENT  # how the control goes to an orientation: 1 by the vector, 0 by the axes
         self.largest: int | None = None
         self.full: Callable[[], None] = lambda: None
         rapid_feed = setting_of(program, "rapid_feed")
@@ -84,12 +87,22 @@ class Blocks:
             motion = self._slides.motion
         return motion
 
-    def begin(self, motion: Motion, goes_on: bool, *, comes_level: bool) -> None:
+    def begin(self, motion: Motion, tool: str, goes_on: bool, *, comes_level: bool) -> None:
         """An operation begins, with its own formats of words.
 
-        ``goes_on``: in another plane, and not from home; ``comes_level``: from where the tool has been drawn back, so
-        that it goes to X and Y before it goes down, on controls that want it so.
+        Parameters
+        ----------
+        motion
+            What of it is made in one plane.
+        tool
+            How the program calls the tool.
+        goes_on
+            In another plane than before, and not from home.
+        comes_level
+            From where the tool has been drawn back, so that it goes to X and Y before it goes down, on controls that
+            want it so.
         """
+        self._tool = tool
         self.comes_level = comes_level and self.control.level_approach and motion.manner in _LEVEL
         self._words = words_of(self.program, motion)
         self.writer.use(self._words)
@@ -100,6 +113,7 @@ class Blocks:
         else:
             self.writer.forget("X", "Y", "Z", "feed")
         self._feed_mode = ABSENT
+        self._by_vector = 1
 
     def rotary_stand(self, motion: Motion) -> None:
         """Templates have placed the rotary axes for a motion's first row."""
@@ -107,6 +121,9 @@ class Blocks:
             self.writer.remember(
                 word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word, column)[0])
             )
+        if self._vectors and motion.manner is Manner.TCP:
+            for word, counted in self._axis_counts(motion.rotary[:1]).items():
+                self.writer.remember(word, int(counted[0]))
 
     def use_feed_mode(self, mode: int) -> int:
         """What F means from here on; where that changes, F is said again. Returns ``mode``."""
@@ -176,12 +193,14 @@ class Blocks:
         return max(1, fitting) if compensated else fitting
 
     def _turn_over(self) -> None:
-        """Go on in the next file: all that is in force is said again, in its first block."""
+        """Go on in the next file: what is in force is said again in its first block, but for the tool's length and TCP,
+        which some controls take as a motion."""
         known = self.writer.in_force()
-        self._again = {word: count for word, count in known.items() if word not in _OF_EACH_ROW}
+        self._again = {word: known[word] for word in _SAID_AGAIN if word in known}
         self.full()
         self.writer.forget()
         self._feed_mode = ABSENT
+        self._by_vector = ABSENT
 
     def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[WordEvent], text: int) -> int:
         moves, arcs, control = motion.operation.moves, motion.operation.arcs, self.control
@@ -194,11 +213,12 @@ class Blocks:
         }
         forced: dict[str, bool | Ints] = {}
         by_vector = self._vectors and motion.manner is Manner.TCP
-        if by_vector:
-            columns |= self._axis_words(motion, part)
-        elif motion.plane is None:  # in a plane the rotary axes stand where they were put
+        in_force: dict[str, int] = {}
+        if motion.plane is None:  # in a plane the rotary axes stand where they were put
             for word, axis in self._rotary:
                 columns[word] = self._angle_counts(motion.rotary[part, self._column[axis]], word, axis)
+        if by_vector:
+            in_force = self._orient(motion, start, stop, columns, forced)
         columns["feed"] = np.where(
             rapid, self.rapid_feed, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"])
         )
@@ -233,7 +253,7 @@ class Blocks:
         if start == 0 and rapid[0] and self.comes_level:
             self.block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
         if start == 0:
-            self._join(columns, 0, self.edge())
+            self._join(columns, 0, self.first_words(motion))
         for event in joining:
             self._join(columns, event.row - start, self.event_words(event))
         if self._again:
@@ -246,29 +266,55 @@ class Blocks:
         self.writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
         if elsewhere[-1]:
             self.writer.forget("X", "Y", "Z")
-        if by_vector:
-            self.writer.forget("primary", "secondary")  # they have turned since they were placed
+        for word, count in in_force.items():
+            self.writer.remember(word, count)
         return int(wanted[-1])
 
-    def _axis_words(self, motion: Motion, part: slice) -> dict[str, Ints]:
-        """The tool axis of rows as a vector, by where the rotary axes stand, however they lean.
+    def first_words(self, motion: Motion) -> dict[str, int]:
+        """What the control is told of the tool with the first motion, as counts."""
+        words = self.family.first_words(motion, self._tool, settings_of(self.program))
+        return {word: self.count(word, value) for word, value in words.items()}
 
-        At the first row they were placed already; a rounded vector near the pole would turn them again.
-        """
-        machine = self.program.machine
-        joints = np.zeros((part.stop - part.start, 5))
-        joints[:, list(machine.rotary)] = motion.rotary[part]
-        axis = forward(machine, joints)[1]
+    def _axis_counts(self, rotary: Floats) -> dict[str, Ints]:
+        """The tool axis as a vector, by where the rotary axes stand, however they lean; as counts."""
         decimals = self.writer.word(AXIS_VECTOR[0]).format.decimals
-        said = np.arange(part.start, part.stop) > 0
-        return {
-            word: np.where(said, counts(np.ascontiguousarray(axis[:, c]), decimals), ABSENT)
-            for c, word in enumerate(AXIS_VECTOR)
-        }
+        vectors = vectors_of(self.program.machine, rotary)
+        return {word: counts(np.ascontiguousarray(vectors[:, k]), decimals) for k, word in enumerate(AXIS_VECTOR)}
 
-    def edge(self) -> dict[str, int]:
-        """The cutting edge, on controls that have any."""
-        return {"edge": int(setting_of(self.program, "edge"))} if "edge" in self.control.settings else {}
+    def _orient(
+        self, motion: Motion, start: int, stop: int, columns: dict[str, Ints], forced: dict[str, bool | Ints]
+    ) -> dict[str, int]:
+        """Say orientations by vectors, and by rotary words where a control would take another position for the vector.
+
+        All components or both rotary words stand where the orientation changes, and none where it does not. Returns
+        what is in force after the last row, however it was said.
+        """
+        rotary = motion.rotary[start:stop]
+        vectors = self._axis_counts(rotary)
+        printed = np.column_stack(list(vectors.values())) / np.float64(
+            10 ** self.writer.word(AXIS_VECTOR[0]).format.decimals
+        )
+        before = np.concatenate((motion.rotary[max(start - 1, 0) : max(start, 1)], rotary[:-1]))
+        half = 0.5 * 10.0 ** -self.writer.word("primary").format.decimals
+        by_vector = leads_there(self.program.machine, printed, rotary, before, half)
+        words = vectors | {word: columns[word] for word, _ in self._rotary}
+        changed = np.zeros(len(rotary), np.bool_)
+        for word, column in words.items():
+            changed |= column != np.concatenate(([self.writer.printed(word)], column[:-1]))
+        last = {word: int(column[-1]) for word, column in words.items()}
+        for word, column in words.items():
+            said = changed & (by_vector if word in AXIS_VECTOR else ~by_vector)
+            columns[word] = np.where(said, column, ABSENT)
+            forced[word] = said.astype(np.int64)
+        rows = np.flatnonzero(changed)
+        manners = by_vector[rows].astype(np.int64)
+        if len(rows) and self._turns_over:
+            anew = rows[manners != np.concatenate(([self._by_vector], manners[:-1]))]
+            for word, which in ((BY_VECTOR, 1), (BY_AXES, 0)):
+                columns[word] = np.full(len(rotary), ABSENT, np.int64)
+                columns[word][anew[by_vector[anew] == which]] = 0
+            self._by_vector = int(manners[-1])
+        return last
 
     def _angle_counts(self, angle: Floats, word: str, column: int) -> Ints:
         return angle_counts(self.program.machine, column, angle, self.writer.word(word).format.decimals)
