@@ -64,11 +64,12 @@ def ways(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats
 def counted(run: Run, rows: Ints) -> Floats:
     """(k,) float64: what F per minute counts in rows, in any order, where that is not the tip's way; else NaN."""
     way = np.full(len(rows), np.nan)
-    before = run.rotary[rows - 1]
-    before[rows < 1] = run.start[list(run.machine.rotary)]
-    led = ~run.state.tcp.at(rows) & (run.kind[rows] == Kind.LINEAR) & (run.state.feed_mode.at(rows) == 94)
-    led &= np.abs(run.rotary[rows] - before).max(axis=1, initial=0.0) > STILL
-    if led.any():
+    mode, kind = run.state.feed_mode.at(rows), run.kind[rows]
+    led = np.flatnonzero(~run.state.tcp.at(rows) & (kind == Kind.LINEAR) & (mode == 94))
+    before = run.rotary[rows[led] - 1]
+    before[rows[led] < 1] = run.start[list(run.machine.rotary)]
+    led = led[np.abs(run.rotary[rows[led]] - before).max(axis=1, initial=0.0) > STILL]
+    if len(led):
         there = rows[led]
         ends = run.poses(there - 1).joints, run.poses(there).joints
         way[led] = ways(run.machine, *ends, run.state.feed_path.at(there))

@@ -17,7 +17,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.files import Growing
 
 #: Bytes read at a time.
-CHUNK: Final = 1 << 18
+CHUNK: Final = 1 << 20
 
 #: Longer lines belong to no program.
 LONGEST_LINE: Final = 1 << 16
