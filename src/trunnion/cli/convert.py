@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.post import planned_program, prove, say, write_and_run
+from trunnion.cli.post import planned_program, prove, running, say, write
 from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_of
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
@@ -47,9 +47,10 @@ def run(arguments: argparse.Namespace) -> int:
             _say_some(write_cl(converted.toolpath, sink, comments=comments))
         else:
             paths = [converted.toolpath]
-            program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
-            claim, run = write_and_run(program, sink, wishes)
-            prove(claim, run, paths, sink, target, program if arguments.force else None)
+            with running(Path(sink.name), target_machine) as (growing, run):
+                program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
+                claim = write(program, sink, wishes, growing)
+            prove(claim, run.result(), paths, sink, target, program if arguments.force else None)
     if arguments.to_cl and carried:
         print(_hint(target, arguments.machine, carried), file=sys.stderr)
     if target != "-":
