@@ -1,8 +1,8 @@
 """The optimum against the nearest neighbour: ``python benchmarks/planning.py``.
 
 Four paths on five machines: how often each of the two must rewind in the cut, how far it turns the rotary axes, and how
-long it takes; how many points a second are planned; and what becomes of rotary axes that are too fast near the pole.
-Prints the tables of docs/planning.md.
+long it takes; how many points a second are planned, with TCP and without; and what becomes of rotary axes that are too
+fast near the pole. Prints the tables of docs/planning.md.
 """
 
 import argparse
@@ -182,6 +182,32 @@ def poles() -> None:
                 print(f"| {title} ({len(moves)}) | {name} | {mode} | {at_pole(machine, moves, POLES[mode])} |")
 
 
+def without_tcp(points: int) -> None:
+    """Print the table of planning without TCP, from the poses to the points between: dense and coarse paths."""
+    print("\n| machine | a point every | points | of them added | rewinds | points/s in | points/s out |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    for every in (1, 10):
+        rows = path(0, points)[::every]
+        upright = rows[:, 3:] + [0.0, 0.0, 0.6]  # within the reach of all machines
+        axis = upright / np.linalg.norm(upright, axis=1, keepdims=True)
+        moves = moves_of(axis, np.zeros(len(rows), bool))
+        moves = replace(moves, tip=np.ascontiguousarray(rows[:, :3]))
+        step = float(np.linalg.norm(np.diff(moves.tip, axis=0), axis=1).mean())
+        toolpath = Toolpath("path", (Operation("", Tool(), Frame(), moves, Arcs.none(), (), 1),))
+        for name, model in machines().items():
+            axes = tuple(a if a.is_rotary else replace(a, low=-np.inf, high=np.inf) for a in model.axes)
+            machine = replace(model, axes=axes, workpiece_zero=(37.0, -21.0, 110.0), tool_length=83.7)
+            best = float("inf")
+            for _ in range(3):
+                begin = time.process_time()
+                planned = plan([toolpath], machine, 0.001, Wishes(tcp=False))
+                best = min(best, time.process_time() - begin)
+            out = len(planned.motions[0].operation.moves)
+            rewinds = sum("to rewind" in problem.what for problem in planned.problems)
+            cells = f"{step:.2f} mm | {out} | {out - len(rows)} | {rewinds}"
+            print(f"| {name} | {cells} | {len(rows) / best:,.0f} | {out / best:,.0f} |")
+
+
 def main() -> None:
     """Print all tables."""
     parser = argparse.ArgumentParser(description="Plan with the optimum and with the nearest neighbour.")
@@ -205,6 +231,7 @@ def main() -> None:
             take(machine, moves, state, False)
             best = min(best, time.perf_counter() - begin)
         print(f"| {name} | {len(states_of(machine))} | {points / best:,.0f} |")
+    without_tcp(points)
     poles()
 
 

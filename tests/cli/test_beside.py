@@ -11,6 +11,7 @@ from trunnion.cl import read_cl
 from trunnion.cli.post import Claim, planned_program, prove, running, write
 from trunnion.control import Program, load_control
 from trunnion.errors import Refused
+from trunnion.files import Output
 from trunnion.machine import load_machine
 from trunnion.plan import Wishes
 from trunnion.reader import Run, run_program
@@ -45,10 +46,10 @@ def planned(name: str) -> tuple[Program, Wishes, Toolpath]:
     return planned_program([toolpath], machine, control, {}, True, wishes)[0], wishes, toolpath
 
 
-def write_and_run(program: Program, sink: BinaryIO, wishes: Wishes) -> tuple[Claim, Run | None]:
+def write_and_run(program: Program, made: Output, wishes: Wishes) -> tuple[Claim, Run | None]:
     """As ``trunnion post`` does it."""
-    with running(Path(sink.name), program.machine) as (growing, run):
-        claim = write(program, sink, wishes, growing)
+    with running(made, program.machine, None) as (growing, run):
+        claim = write(program, made.main, wishes, growing)
     return claim, run.result()
 
 
@@ -56,8 +57,9 @@ def write_and_run(program: Program, sink: BinaryIO, wishes: Wishes) -> tuple[Cla
 def test_beside_and_afterwards_are_one(name: str, tmp_path: Path) -> None:
     program, wishes, _ = planned(name)
     file = tmp_path / "program"
-    with file.open("wb") as sink:
-        claim, run = write_and_run(program, sink, wishes)
+    made = Output(tmp_path, file.name)
+    claim, run = write_and_run(program, made, wishes)
+    made.close()
     beside = file.read_bytes()
     with file.open("wb") as sink:
         alone = write(program, sink, wishes)
@@ -69,11 +71,12 @@ def test_beside_and_afterwards_are_one(name: str, tmp_path: Path) -> None:
 
 def test_what_is_proven_is_what_is_on_disk(tmp_path: Path) -> None:
     program, wishes, toolpath = planned("yl569")
-    with (tmp_path / "program").open("wb") as sink:
-        spoiled = cast("BinaryIO", Spoiled(sink, b" Y12.98584 ", b" Y12.98684 "))
-        claim, run = write_and_run(program, spoiled, wishes)
-        with pytest.raises(Refused, match="does not do what this file asks for: tip"):
-            prove(claim, run, [toolpath], spoiled, "program")
+    made = Output(tmp_path, "program")
+    made.main = cast("BinaryIO", Spoiled(made.main, b" Y12.98584 ", b" Y12.98684 "))
+    claim, run = write_and_run(program, made, wishes)
+    with pytest.raises(Refused, match="does not do what this file asks for: tip"):
+        prove(claim, run, [toolpath], made, "program")
+    made.close()
 
 
 def test_a_program_that_cannot_be_written_to_its_end_is_not_run_on_for_ever(tmp_path: Path) -> None:
@@ -83,5 +86,8 @@ def test_a_program_that_cannot_be_written_to_its_end_is_not_run_on_for_ever(tmp_
         def write(self, data: Any) -> int:
             raise OSError(28, "No space left on device")
 
-    with (tmp_path / "program").open("wb") as sink, pytest.raises(OSError, match="No space left"):
-        write_and_run(program, cast("BinaryIO", Full(sink, b"", b"")), wishes)
+    made = Output(tmp_path, "program")
+    made.main = cast("BinaryIO", Full(made.main, b"", b""))
+    with pytest.raises(OSError, match="No space left"):
+        write_and_run(program, made, wishes)
+    made.close()

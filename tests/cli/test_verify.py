@@ -12,7 +12,7 @@ import pytest
 
 from tests.paths import YL569
 from trunnion.cli import main
-from trunnion.control import Program, write_program
+from trunnion.control import Division, Program, write_program
 
 PROGRAM = YL569 / "3_blade_finish.expected.mpf"
 CL = YL569 / "3_blade_finish.cls"
@@ -160,7 +160,13 @@ def post(*arguments: str | Path) -> int:
 def spoil(monkeypatch: pytest.MonkeyPatch, change: Callable[[bytes], bytes]) -> None:
     """Let the writer write something else than it was told."""
 
-    def wrong(program: Program, sink: BinaryIO, advance: Callable[[int], None] | None = None) -> None:
+    def wrong(
+        program: Program,
+        sink: BinaryIO,
+        advance: Callable[[int], None] | None = None,
+        division: Division | None = None,
+    ) -> None:
+        assert division is None
         whole = BytesIO()
         write_program(program, whole, advance)
         changed = change(whole.getvalue())

@@ -130,7 +130,7 @@ def test_a_control_that_has_no_tcp_gets_programs_without(shop: Shop, tmp_path: P
     assert (code, "the machine's control has none" in err) == (2, True)
 
 
-def test_a_rewind_needs_somebody_who_holds_the_tip(shop: Shop, tmp_path: Path) -> None:
+def test_a_rewind_without_tcp_is_followed_by_the_slides(shop: Shop, tmp_path: Path) -> None:
     """The table's C with limits has to wind back in the cut."""
     own = tmp_path / "narrow.toml"
     text = 'extends = "generic_head_table_bc"\n[[axis]]\nname = "C"\nendless = false\nlimits_deg = [-190, 190]\n'
@@ -144,8 +144,12 @@ def test_a_rewind_needs_somebody_who_holds_the_tip(shop: Shop, tmp_path: Path) -
     assert code == 0, err
     assert ";Rewind" in shop.program.read_text(encoding="utf-8")
     code, err = shop.post(turning, str(own), "zero=0,0,0", "tool_length=90", "tcp=off")
+    assert code == 0, err
+    assert "1 retreat along the tool axis to turn" in err
+    assert ";Rewind" in shop.program.read_text(encoding="utf-8")
+    code, err = shop.post(turning, str(own), "zero=0,0,0", "tool_length=90", "tcp=off", "rewind=none")
     assert code == 1
-    assert "post with TCP (--set tcp=on)" in err
+    assert "--set rewind=insert" in err
 
 
 # The proof

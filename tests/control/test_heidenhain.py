@@ -112,6 +112,16 @@ def test_a_three_axis_program_whole(post: Post) -> None:
     ]
 
 
+def test_the_block_form_can_be_the_box_round_all_that_is_cut(post: Post) -> None:
+    arc = "CIRCLE/0.0,0.0,5.0,0.0,0.0,1.0,10.0,0.06,0.5,10.0,0.0\nGOTO/0.0,10.0,5.0\n"
+    hole = "RAPID\nGOTO/0,10,50\nCYCLE/DRILL,RAPTO,3.0,FEDTO,-20.5,MMPM,250\nGOTO/0.5,-3.25,5\nCYCLE/OFF\n"
+    hole += "RAPID\nGOTO/90,0,50\n"
+    blocks = post(HEAD + arc + hole + FOOT, "--set", "blank=extents")
+    assert blocks[2:4] == ["BLK FORM 0.1 Z X-10 Y-10 Z-16", "BLK FORM 0.2 X+10 Y+10 Z+50"]
+    rapids = HEAD.replace("FEDRAT/MMPM,500.0\n", "RAPID\n") + FOOT
+    assert not any(block.startswith("BLK FORM") for block in post(rapids, "--set", "blank=extents"))
+
+
 SIMULTANEOUS = HEAD + "GOTO/20,0,5,0.5,0.0,0.8660254038\nGOTO/30,0,5,0.0,-0.5,0.8660254038\n" + FOOT
 TCP = {"m128": ("M128", "M129"), "function": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "FUNCTION RESET TCPM")}
 
@@ -514,5 +524,36 @@ def test_holes_are_proven_on_every_machine_also_where_the_axis_changes_between_t
     file.write_text(start + words + "\n".join(lines) + "\nCYCLE/OFF\n" + FOOT, encoding="utf-8")
     try:
         proven(read_cl(file), machine, CONTROLS["mikron_600u"], folder, disengage="2")
+    except (Refused, InputError):
+        assume(False)
+
+
+# Retract along the tool axis
+
+
+@pytest.mark.parametrize("text", [SIMULTANEOUS, TILTED])
+def test_the_tool_can_leave_along_its_own_axis(text: str, post: Post) -> None:
+    along = post(text, "--set", "retract=m140")
+    at = along.index("L M140 MB MAX")
+    assert along[at - 1] == "M9"
+    assert along[at + 1] in ("M129", "L Z+560 R0 FMAX M91")
+    assert [block for block in along if block != "L M140 MB MAX"] == post(text)
+
+
+#: Machines whose slides are known to end.
+ENDED = sorted(name for name, each in MACHINES.items() if np.isfinite(each.limits[list(each.linear)]).all())
+
+
+@settings(max_examples=25)
+@given(name=st.sampled_from(ENDED), shares=st.lists(SHARES, min_size=1, max_size=2), manner=st.booleans())
+def test_a_retract_along_the_tool_axis_is_proven(
+    name: str, shares: list[tuple[float, float]], manner: bool, folder: Path
+) -> None:
+    machine, file = MACHINES[name], folder / "retract.cls"
+    text = text_of([reachable(machine, share) for share in shares], [(0.0, 0.0, 0.0), (30.0, -5.0, 2.0)])
+    file.write_text(text, encoding="utf-8")
+    said = {"manner": "tcp"} if manner else {}
+    try:
+        proven(read_cl(file), machine, CONTROLS["mikron_600u"], folder, retract="m140", **said)
     except (Refused, InputError):
         assume(False)

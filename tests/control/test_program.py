@@ -181,6 +181,22 @@ def test_rotary_axes_are_placed_before_traori(post: Post) -> None:
     assert "TRAFOOF" in lines[lines.index(";End of Path") :]
 
 
+def test_the_manner_may_be_said_of_one_operation(post: Post) -> None:
+    both = OFF_AXIS + FOOT + OFF_AXIS.replace("OP1", "OP2") + FOOT
+    assert "TRAORI" not in post(both)
+    assert post(both, "--set", "manner=OP2:tcp").count("TRAORI") == 1
+    assert post(both, "--set", "manner=tcp").count("TRAORI") == 2
+    assert post(both, "--set", "manner=tcp,OP1:auto").count("TRAORI") == 1
+    for said, why in (
+        ("OP3:tcp", "manner is said of operation OP3, and the program has none of that name; write one of OP1, OP2"),
+        ("OP1:five", "manner is 'OP1:five'; write one of auto, three-axis, tilted, tcp; OPERATION:WORD says it of one"),
+        ("five", "manner is 'five'; write one of auto, three-axis, tilted, tcp"),
+    ):
+        code, out, err = post.all(both, "--set", f"manner={said}")
+        assert (code, out) == (2, [])
+        assert why in err
+
+
 def test_a_cut_without_a_feed_is_an_error(post: Post) -> None:
     code, out, err = post.all(HEAD.replace("FEDRAT/MMPM,500.0\n", "") + FOOT)
     assert (code, out) == (2, [])

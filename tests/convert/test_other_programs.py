@@ -208,7 +208,7 @@ def remarks_on(programs: Programs, *lines: str) -> list[tuple[int, str]]:
             5,
             "1 points turn the tool on a great circle, which is not carried over",
         ),
-        (["G0 X0 Y0 Z0", "G1 X1 B30 F1"], 2, "1 points turn the tool without TRAORI, which is not carried over"),
+        (["G0 X0 Y0 Z0", "G1 X1 B30 F1"], 2, "1 points turn the tool without TCP, which is not carried over"),
     ],
 )
 def test_what_a_toolpath_has_no_place_for_is_remarked_upon(

@@ -18,6 +18,9 @@ needs_linuxcnc = pytest.mark.skipif(
 #: Length of every tool in the table, mm.
 LENGTH = 25.4
 
+#: Folder of a program's subroutines.
+SUBROUTINES = "subroutines"
+
 _CALL = re.compile(r"^\s*\d+\s+N\S*\s+([A-Z_0-9]+)\((.*)\)\s*$")
 _NUMBER = re.compile(r"(?<![A-Z])-?\d+(?:\.\d+)?")
 _PLANES = {"XY": (0, 1, 2), "YZ": (1, 2, 0), "XZ": (2, 0, 1)}
@@ -64,7 +67,7 @@ class RefusedByLinuxcncError(Exception):
 def interpret(text: str, folder: Path, coordinates: str = "XYZABC") -> Canon:
     """Run a program in the interpreter of a machine whose M428 and M429 switch its kinematics.
 
-    The tools 1 to 99 are in the table.
+    The tools 1 to 99 are in the table. Subroutines are looked for in ``SUBROUTINES`` of the folder.
     """
     program, table, ini = folder / "part.ngc", folder / "tool.tbl", folder / "judge.ini"
     program.write_text(text, encoding="utf-8")
@@ -74,7 +77,7 @@ def interpret(text: str, folder: Path, coordinates: str = "XYZABC") -> Canon:
         body = f"M68 E3 Q{kinematics}\nM66 E0 L0"
         (remaps / f"m{code}.ngc").write_text(f"o<m{code}> sub\n{body}\no<m{code}> endsub\n")
     ini.write_text(
-        f"[RS274NGC]\nSUBROUTINE_PATH = {remaps}\n"
+        f"[RS274NGC]\nSUBROUTINE_PATH = {remaps}:{folder / SUBROUTINES}\n"
         "REMAP = M428 modalgroup=10 ngc=m428\nREMAP = M429 modalgroup=10 ngc=m429\n"
         f"[TRAJ]\nCOORDINATES = {' '.join(coordinates)}\nLINEAR_UNITS = mm\n"
     )

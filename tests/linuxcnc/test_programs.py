@@ -10,8 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.convert.toolpaths import SAYABLE, operations
-from tests.linuxcnc.interpreter import Canon, Move, RefusedByLinuxcncError, interpret, needs_linuxcnc
-from trunnion.control import Program, check_program, load_control, write_program
+from tests.linuxcnc.interpreter import SUBROUTINES, Canon, Move, RefusedByLinuxcncError, interpret, needs_linuxcnc
+from trunnion.control import Division, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Refused, Severity
 from trunnion.machine import Machine, load_machine
 from trunnion.plan import Manner, Motion, Wishes, plan
@@ -128,8 +128,10 @@ def agree(got: Move, wanted: Move) -> None:
         np.testing.assert_allclose(got.centre, wanted.centre, atol=2.1e-4, rtol=0)
 
 
-def written(name: str, toolpath: Toolpath, tcp: bool = True) -> tuple[str, list[Motion]] | None:
-    """The program and its motions; None where there can be none."""
+def written(
+    name: str, toolpath: Toolpath, tcp: bool = True, folder: Path | None = None
+) -> tuple[str, list[Motion]] | None:
+    """The program and its motions; None where there can be none. Its subroutines, if it has any, go into a folder."""
     machine, control = MACHINES[name], CONTROLS[name]
     try:
         planned = plan([toolpath], machine, control.chord_tolerance, Wishes(manners=control.manners({}), tcp=tcp))
@@ -138,8 +140,12 @@ def written(name: str, toolpath: Toolpath, tcp: bool = True) -> tuple[str, list[
     program = Program(machine, control, planned.motions, {"tool": "7"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
-    sink = io.BytesIO()
-    write_program(program, sink)
+    sink, others = io.BytesIO(), dict[str, io.BytesIO]()
+    division = None if folder is None else Division("part", lambda file: others.setdefault(file, io.BytesIO()), 8192)
+    write_program(program, sink, division=division)
+    for file, text in others.items():
+        assert folder is not None
+        (folder / file).write_bytes(text.getvalue())
     return sink.getvalue().decode(), list(planned.motions)
 
 
@@ -151,14 +157,16 @@ def accepted(text: str, folder: Path) -> Canon:
         raise AssertionError(f"{refused}\n{text}") from None
 
 
-def judged(name: str, toolpath: Toolpath, folder: Path) -> None:
-    """LinuxCNC makes of the program what was planned."""
-    found = written(name, toolpath)
+def judged(name: str, toolpath: Toolpath, folder: Path, subroutines: Path | None = None) -> None:
+    """LinuxCNC makes of the program what was planned, and of its subroutines if there is a folder for them."""
+    found = written(name, toolpath, folder=subroutines)
     assume(found is not None)
     assert found is not None
     text, motions = found
     canon = accepted(text, folder)
-    assert [str(each) for each in run_program(folder / "part.ngc", MACHINES[name]).errors] == []
+    named = [] if subroutines is None else sorted(subroutines.glob("*.ngc"))
+    run = run_program(folder / "part.ngc", MACHINES[name], subprograms=named)
+    assert [str(each) for each in run.errors] == []
     made = control_moves(canon)
     spindle: SpindleOn | None = None
     assert len(made) == len(motions)
@@ -180,6 +188,20 @@ def test_linuxcnc_takes_every_program_and_makes_the_motions_that_were_planned(
     tmp_path_factory: pytest.TempPathFactory, name: str, found: list[Operation]
 ) -> None:
     judged(name, Toolpath("made.cls", tuple(found)), tmp_path_factory.getbasetemp())
+
+
+@needs_linuxcnc
+@settings(max_examples=25)
+@given(st.sampled_from(sorted(MACHINES)), st.lists(operations(KINDS, AXES), min_size=1, max_size=3))
+def test_subroutines_in_files_of_their_own_make_the_motions_that_were_planned(
+    tmp_path_factory: pytest.TempPathFactory, name: str, found: list[Operation]
+) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    subroutines = folder / SUBROUTINES
+    subroutines.mkdir(exist_ok=True)
+    for file in subroutines.iterdir():
+        file.unlink()
+    judged(name, Toolpath("made.cls", tuple(found)), folder, subroutines)
 
 
 def in_other_planes(operation: Operation, turned: int) -> Operation:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.plan.naive import moves_of, operation_of
 from trunnion.arrays import Floats
-from trunnion.errors import Refused
+from trunnion.errors import InputError, Refused
 from trunnion.machine import load_machine
 from trunnion.plan import Manner, Motion, Wishes, plan
 from trunnion.plan.frames import seen_from
@@ -77,6 +77,18 @@ def test_the_users_word_is_stronger() -> None:
     assert motion_of(UPRIGHT, wish=Manner.TCP).manner is Manner.TCP
     upright = motion_of(np.array([TILTED, TILTED]), wish=Manner.TILTED)
     assert upright.plane is not None
+
+
+def test_the_word_about_one_operation_is_stronger_than_that_about_all() -> None:
+    def manners(wishes: Wishes) -> list[Manner]:
+        operations = tuple(operation_of(moves_of(np.zeros((2, 3)), np.array([TILTED] * 2)), name) for name in "ABC")
+        return [motion.manner for motion in plan([Toolpath("a.cls", operations)], YL569, 0.001, wishes).motions]
+
+    assert manners(Wishes(own_manner={"B": Manner.TCP})) == [Manner.TILTED, Manner.TCP, Manner.TILTED]
+    everywhere = Wishes(manner=Manner.TCP, own_manner={"A": None, "C": Manner.TILTED})
+    assert manners(everywhere) == [Manner.TILTED, Manner.TCP, Manner.TILTED]
+    with pytest.raises(InputError, match=r"manner is said of operation D, and the program has none.*A, B, C"):
+        manners(Wishes(own_manner={"D": None}))
 
 
 @pytest.mark.parametrize(

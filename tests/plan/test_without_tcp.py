@@ -22,7 +22,7 @@ from trunnion.plan import Plan, Wishes, plan
 from trunnion.plan.arcs import turned_evenly
 from trunnion.reader import Run, run_program, subdivide
 from trunnion.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Toolpath
-from trunnion.verify import Verification, verify
+from trunnion.verify import Allowed, Settings, Verification, verify
 
 NAMES = sorted(shipped())
 SINUMERIK = load_machine("yl569").control
@@ -49,6 +49,8 @@ class Posted:
     text: str
     run: Run
     found: Verification
+    allowed: Sequence[Allowed]
+    settings: Settings
 
 
 def post(model: Machine, path: Toolpath, wishes: Wishes) -> Posted:
@@ -63,7 +65,7 @@ def post(model: Machine, path: Toolpath, wishes: Wishes) -> Posted:
             claim = write(program, sink, wishes)
         run = run_program(file, model)
         found = verify(run, [path], allowed=claim.allowed, settings=claim.settings)
-        return Posted(planned, file.read_text(encoding="utf-8"), run, found)
+        return Posted(planned, file.read_text(encoding="utf-8"), run, found, claim.allowed, claim.settings)
 
 
 def rows_of_points(run: Run, tip: Floats, axis: Floats) -> list[int]:

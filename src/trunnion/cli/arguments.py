@@ -129,6 +129,8 @@ def _convert(parser: argparse.ArgumentParser) -> None:
     into = parser.add_mutually_exclusive_group(required=True)
     into.add_argument("--to-cl", action="store_true", help="write a CL file")
     into.add_argument("--to-machine", metavar="NAME_OR_FILE", help="write a program for this machine")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the program's own machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool there, gauge point to tip")
     parser.add_argument("--output", metavar="FILE|-|FOLDER", help="result; without it a file of that name here")
     parser.add_argument(
         "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",

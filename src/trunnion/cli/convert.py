@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.cli.post import planned_program, prove, running, say, write
-from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_of
+from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.files import whole
+from trunnion.files import output
 from trunnion.machine import Machine, load_machine
 
 if TYPE_CHECKING:
@@ -32,25 +32,28 @@ def run(arguments: argparse.Namespace) -> int:
     settings = dict(arguments.settings)
     _check_settings(settings, target_control, arguments.to_cl)
     target_machine = set_up(target_machine, settings)
+    given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
+    machine = set_up(machine, {key: value for key, value in given.items() if value})
     wishes = wishes_of(settings, target_control)
-    settings = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
     target = _target(arguments, target_control)
-    with whole(target) as sink:
+    with output(target) as made:
+        division = division_of(settings, target_control, target, made)
+        settings = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
         converted = _read(arguments, machine, control)
-        carried = _carried(converted.settings, target_control, arguments.file) | settings
+        carried = _carried(converted.settings, control, target_control, arguments.file) | settings
         if "tool" in settings and "tool_call" not in settings:
             carried.pop("tool_call", None)
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
         if arguments.to_cl:
             comments = [f"--set {key}={value}" for key, value in carried.items()]
-            _say_some(write_cl(converted.toolpath, sink, comments=comments))
+            _say_some(write_cl(converted.toolpath, made.main, comments=comments))
         else:
             paths = [converted.toolpath]
-            with running(Path(sink.name), target_machine) as (growing, run):
+            with running(made, target_machine, division) as (growing, run):
                 program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
-                claim = write(program, sink, wishes, growing)
-            prove(claim, run.result(), paths, sink, target, program if arguments.force else None)
+                claim = write(program, made.main, wishes, growing, division)
+            prove(claim, run.result(), paths, made, target, program if arguments.force else None)
     if arguments.to_cl and carried:
         print(_hint(target, arguments.machine, carried), file=sys.stderr)
     if target != "-":
@@ -88,12 +91,16 @@ def _read(arguments: argparse.Namespace, machine: Machine, control: Control) -> 
     return converted
 
 
-def _carried(settings: Mapping[str, str], control: Control, file: str) -> dict[str, str]:
-    """The program's settings that a control has; the others are named."""
-    for key in sorted(settings.keys() - control.settings.keys()):
+def _carried(settings: Mapping[str, str], control: Control, target: Control, file: str) -> dict[str, str]:
+    """The program's settings that mean the same on the other control; the others are named."""
+    from trunnion.convert import carried_over
+
+    carried = carried_over(settings, control, target)
+    for key in sorted(settings.keys() - carried.keys()):
         what = f"{key} is {settings[key]!r}, which is not carried over"
-        say([Problem(file, 0, what, f"{control.name} has no such setting", Severity.WARNING)])
-    return {key: value for key, value in settings.items() if key in control.settings}
+        why = f"{target.name} has no such setting" if key not in target.settings else f"say it as {target.name} does"
+        say([Problem(file, 0, what, why, Severity.WARNING)])
+    return carried
 
 
 def _say_some(problems: Sequence[Problem]) -> None:

@@ -8,8 +8,9 @@ from trunnion.machine import load_machine
 
 def run(arguments: argparse.Namespace) -> int:
     """Compare two programs; 0 if they do the same, 1 if not."""
+    from trunnion.cli.verify import rapid_feed
     from trunnion.reader import reader_of, run_program
-    from trunnion.verify import compare
+    from trunnion.verify import compare, with_rapids
 
     first = load_machine(arguments.machine)
     second = load_machine(arguments.to_machine) if arguments.to_machine else first
@@ -17,7 +18,7 @@ def run(arguments: argparse.Namespace) -> int:
         reader_of(machine)
     named = [[Path(file) for file in files] for files in (arguments.subprograms, arguments.to_subprograms)]
     one, two = (
-        run_program(Path(file), machine, subprograms=subprograms)
+        with_rapids(run_program(Path(file), machine, subprograms=subprograms), rapid_feed(machine))
         for file, machine, subprograms in zip(arguments.files, (first, second), named, strict=True)
     )
     found = compare(one, two, arguments.tolerance)

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 
 from trunnion.cli.progress import progress
-from trunnion.cli.settings import RUN_SETTINGS, check_settings, set_up, wishes_of
+from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
 from trunnion.cli.verify import check_report
 from trunnion.cli.verify import report as write_report
-from trunnion.control import Control, Program, check_program, load_control, write_program
+from trunnion.control import Control, Division, Program, check_program, load_control, write_program
 from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.files import Growing, whole
+from trunnion.files import Growing, Output, output
 from trunnion.machine import Machine, forward, load_machine
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
 from trunnion.plan.arcs import off_circle
@@ -29,6 +29,9 @@ from trunnion.toolpath import Toolpath
 if TYPE_CHECKING:
     from trunnion.reader import Run
     from trunnion.verify import Allowed, Settings, Verification
+
+#: A turn of the rotary axes turns the tool axis by no less than this part of it, however near the pole.
+_LEAST_LEVER = 1e-3
 
 
 def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
@@ -49,22 +52,25 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
     for target, files in targets.items():
-        with whole(target) as sink:
+        with output(target) as made:
+            division = division_of(settings, control, target, made)
             paths = list(islice(toolpaths, len(files)))
             for path in paths:
                 say(path.remarks)
-            with running(Path(sink.name), machine) as (growing, run):
+            with running(made, machine, division) as (growing, run):
                 program, decisions = planned_program(
                     paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
                 )
-                claim = write(program, sink, wishes, growing)
+                claim = write(program, made.main, wishes, growing, division)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
             said = decisions if wishes.explain else ()
-            prove(claim, run.result(), paths, sink, target, again, arguments.report, said)
+            prove(claim, run.result(), paths, made, target, again, arguments.report, said)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
+        for other in made.others:
+            print(f"{Path(target).with_name(other.name)}: a subprogram of {Path(target).name}", file=sys.stderr)
     return 0
 
 
@@ -123,6 +129,7 @@ class Claim:
     rows, operations  how many points and operations it has
     allowed           half the last digit that each operation prints
     settings          what was asked for besides the CL files
+    division          how it was divided into files; None: it is one
     """
 
     machine: Machine
@@ -130,32 +137,47 @@ class Claim:
     operations: int
     allowed: "list[Allowed]"
     settings: "Settings"
+    division: Division | None = None
 
 
 @contextmanager
-def running(path: Path, machine: Machine) -> "Iterator[tuple[Growing, Future[Run | None]]]":
+def running(
+    made: Output, machine: Machine, division: Division | None
+) -> "Iterator[tuple[Growing, Future[Run | None]]]":
     """Run a program while it is being written, and get ready for that before: what runs it is imported meanwhile.
 
-    Gives who wants to know how far the file is written, and the run, complete when the block has ended; None where
-    nobody can read such programs. The run is of what can be read under ``path``, as if it had waited for the end.
+    Gives who wants to know how far the program is written, and the run, complete when the block has ended; None where
+    nobody can read such programs. The run is of what can be read under the path of what is made, as if it had waited
+    for the end. A program of several files is waited for: its calls stand before what they call.
     """
     growing = Growing()
     with ThreadPoolExecutor(1) as aside:
-        run = aside.submit(_run, path, machine, growing)
+        run = aside.submit(_run, made, machine, growing, division)
         try:
             yield growing, run
+            made.flush()
         finally:
             growing.end()
 
 
-def _run(path: Path, machine: Machine, growing: Growing) -> "Run | None":
+def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> "Run | None":
     import trunnion.verify  # noqa: F401 - wanted next, and no kernel waits for it here
     from trunnion.reader import can_read, run_program
 
-    return run_program(path, machine, growing=growing) if can_read(machine) else None
+    if not can_read(machine):
+        return None
+    if division is not None:
+        growing.wait()
+    return run_program(made.path, machine, subprograms=made.others, growing=growing)
 
 
-def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None, growing: Growing | None = None) -> Claim:
+def write(
+    program: Program,
+    sink: BinaryIO,
+    wishes: Wishes | None = None,
+    growing: Growing | None = None,
+    division: Division | None = None,
+) -> Claim:
     """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for.
 
     ``growing`` is told how much of it can be read back.
@@ -171,17 +193,17 @@ def write(program: Program, sink: BinaryIO, wishes: Wishes | None = None, growin
                 sink.flush()
                 growing.grow(sink.tell(), sink.tell() * rows // done)
 
-        write_program(program, sink, written)
+        write_program(program, sink, written, division)
     sink.flush()
     operations = sum(motion.begins for motion in program.motions)
-    return Claim(program.machine, rows, operations, _allowed(program), _asked(program, wishes or Wishes()))
+    return Claim(program.machine, rows, operations, _allowed(program), _asked(program, wishes or Wishes()), division)
 
 
 def prove(
     claim: Claim,
     run: "Run | None",
     paths: Sequence[Toolpath],
-    sink: BinaryIO,
+    made: Output,
     target: str,
     again: Program | None = None,
     report: str | None = None,
@@ -197,8 +219,8 @@ def prove(
         The program as it was read back and run; None: nobody can.
     paths
         What the program was made from.
-    sink
-        Of ``whole``: where the program is written.
+    made
+        Where the program is written.
     target
         What messages call the program.
     again
@@ -236,9 +258,8 @@ def prove(
         raise Refused(Problem(paths[0].file, 0, what, "no program is written; --force writes it"))
     if failed and again is not None:
         notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
-        sink.seek(0)
-        sink.truncate()
-        write_program(replace(again, notices=[*again.notices, *notices]), sink)
+        made.begin_again()
+        write_program(replace(again, notices=[*again.notices, *notices]), made.main, division=claim.division)
 
 
 def _too_fast(found: "Verification") -> bool:
@@ -257,7 +278,9 @@ def _allowed(program: Program) -> "list[Allowed]":
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
-        tip, angle = half["X"], max(half["primary"], half["secondary"]) + 1e-8  # near a pole angles are noisy
+        tip, angle = half["X"], max(half["primary"], half["secondary"])
+        # Near a pole angles are noisy, and the check takes the ways of the tool axis for straight.
+        angle += 1e-8 + angle * math.radians(angle) / _LEAST_LEVER
         if motion.plane is not None and control.plane_from_pose:
             # Places are worked out for the plane as it is printed; only circles stay in it that are not quite in it.
             widest = float(motion.operation.arcs.radius.max(initial=0.0))
@@ -315,7 +338,7 @@ def _lever(motion: Motion, machine: Machine) -> float:
         joints[k + 1, column] += step
     _, axis = forward(machine, joints)
     ways = (axis[1:] - axis[0]) / math.radians(step)
-    return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), 1e-3)
+    return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), _LEAST_LEVER)
 
 
 def _asked(program: Program, wishes: Wishes) -> "Settings":

@@ -3,10 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
-from trunnion.control import Control
+from trunnion.control import Control, Division
+from trunnion.control.subprograms import LEAST_SIZE
 from trunnion.errors import InputError, Problem
+from trunnion.files import Output
 from trunnion.machine import Machine
 from trunnion.plan import Clearance, Manner, Pole, Surface, Wishes
 
@@ -17,7 +20,7 @@ _MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILT
 _CHOICES = {
     "units": ("mm", "inch"),
     "numbers": ("on", "off"),
-    "manner": tuple(_MANNERS),
+    "programs": ("one", "operations"),
     "tcp": ("on", "off"),
     "frame": ("first", "absolute"),
     "rewind": ("insert", "none"),
@@ -30,11 +33,12 @@ _NUMBERS = {
     "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
     "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
     "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
+    "split": (LEAST_SIZE, 1e12, f"split=BYTES, the largest size of a subprogram, at least {LEAST_SIZE}"),
     "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
 }
 
 #: All settings of a run; the others are its control's.
-RUN_SETTINGS = (*_CHOICES, *_NUMBERS, "zero", "clearance")
+RUN_SETTINGS = (*_CHOICES, *_NUMBERS, "manner", "zero", "clearance")
 
 
 def check_settings(settings: Mapping[str, str], control: Control) -> None:
@@ -79,6 +83,23 @@ def _clearance(text: str) -> Clearance:
     raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
 
 
+def _manner(text: str, tcp: bool) -> tuple[Manner | None, dict[str, Manner | None]]:
+    """The setting ``manner``: that of all operations, and those of some by their names, such as ``auto,SIDES:tcp``."""
+    known = {word: manner for word, manner in _MANNERS.items() if tcp or manner is not Manner.TCP}
+    every, own = "auto", dict[str, Manner | None]()
+    for entry in text.split(","):
+        name, _, word = entry.rpartition(":")
+        if word not in known:
+            what = "manner is tcp, and there is no TCP" if word == "tcp" else f"manner is {text!r}"
+            cure = f"write one of {', '.join(known)}; OPERATION:WORD says it of one operation"
+            raise InputError(Problem("--set", 0, what, cure))
+        if name:
+            own[name] = known[word]
+        else:
+            every = word
+    return known[every], own
+
+
 def number(settings: Mapping[str, str], key: str) -> float | None:
     """A setting that is a number; None where nobody set it.
 
@@ -113,8 +134,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:
         raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
-    if not tcp and settings.get("manner") == "tcp":
-        raise InputError(Problem("--set", 0, "manner is tcp, and there is no TCP", "leave the setting manner out"))
+    manner, own_manner = _manner(settings.get("manner", "auto"), tcp)
     said = {key: number(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
     known: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
     if "clearance" in settings:
@@ -122,7 +142,8 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
     return Wishes(
         rewind=settings.get("rewind", "insert") == "insert",
         explain=explain,
-        manner=_MANNERS[settings.get("manner", "auto")],
+        manner=manner,
+        own_manner=own_manner,
         manners=control.manners(settings),
         arcs_about_z=control.arcs_about_z,
         machine_x=control.plane_along_machine,
@@ -134,6 +155,28 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         tcp=tcp,
         **known,
     )
+
+
+def division_of(settings: Mapping[str, str], control: Control, target: str, made: Output) -> Division | None:
+    """How the program of ``target`` is divided into files, which are made as ``made``; None: it is one file.
+
+    Raises
+    ------
+    InputError
+        If the control or the target cannot have several, or if the settings make no sense together.
+    """
+    size = number(settings, "split")
+    if settings.get("programs", "one") == "one":
+        if size is not None:
+            cure = "write programs=operations too"
+            raise InputError(Problem("--set", 0, "split divides subprograms, and there are none", cure))
+        return None
+    if control.subprograms is None:
+        what = f"programs is operations, and {control.name} has no words for subprograms here"
+        raise InputError(Problem("--set", 0, what, "leave it out"))
+    if target == "-":
+        raise InputError(Problem("--output", 0, "stdout takes one file", "name a file or a folder, or programs=one"))
+    return Division(Path(target).stem, made.begin, None if size is None else int(size))
 
 
 def point(text: str) -> tuple[float, float, float]:

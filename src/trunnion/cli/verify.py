@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     reader_of(machine)
     given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
     machine = set_up(machine, {key: value for key, value in given.items() if value})
-    usual = _usual(machine)
+    usual = usual_settings(machine)
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
     done = run_program(Path(arguments.file), machine, subprograms=[Path(file) for file in arguments.subprograms])
     found = verify(
@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
             span=arguments.span,
             span_tip=arguments.span_tip,
             absolute=arguments.frame == "absolute",
-            rapid_feed=float(usual["rapid_feed"]) if usual.get("rapid_feed") else None,
+            rapid_feed=rapid_feed(machine),
         ),
         columns=bool(arguments.report),
     )
@@ -67,12 +67,18 @@ def report(found: "Verification", file: str, decisions: Sequence[Decision] = ())
     write_report(found, Path(file), decisions=[Decided(d.operation, d.file, d.line, d.why, d.text) for d in decisions])
 
 
-def _usual(machine: Machine) -> Mapping[str, str]:
+def usual_settings(machine: Machine) -> Mapping[str, str]:
     """The settings of a control's definition; those of most where its programs can be read but not written."""
     try:
         return load_control(machine.control.fresh()).settings
     except InputError:
         return {"edge": "1"}
+
+
+def rapid_feed(machine: Machine) -> float | None:
+    """The feed that stands for rapid motion on a machine, mm/min; None where rapids are rapids."""
+    usual = usual_settings(machine).get("rapid_feed")
+    return float(usual) if usual else None
 
 
 def _offset(text: str | None, usual: str, with_cl: bool) -> int | None:

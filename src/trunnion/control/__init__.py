@@ -8,5 +8,6 @@ from trunnion.control.author import write_program
 from trunnion.control.check import check_program
 from trunnion.control.definition import Control, load_control
 from trunnion.control.program import Program
+from trunnion.control.subprograms import Division
 
-__all__ = ["Control", "Program", "check_program", "load_control", "write_program"]
+__all__ = ["Control", "Division", "Program", "check_program", "load_control", "write_program"]

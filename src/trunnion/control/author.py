@@ -19,6 +19,7 @@ from trunnion.control.hole_blocks import write_holes
 from trunnion.control.printed import Held, Printed, spindle_values
 from trunnion.control.program import Program, kind_of
 from trunnion.control.standing import carried_along, on_its_pose
+from trunnion.control.subprograms import Division, Files
 from trunnion.control.template import Value
 from trunnion.nc import counts
 from trunnion.plan import Motion
@@ -43,7 +44,12 @@ from trunnion.toolpath import (
 _SWITCH: Final = re.compile(r"M\d+|\{\w+\}")
 
 
-def write_program(program: Program, sink: BinaryIO, progress: Callable[[int], None] | None = None) -> None:
+def write_program(
+    program: Program,
+    sink: BinaryIO,
+    progress: Callable[[int], None] | None = None,
+    division: Division | None = None,
+) -> None:
     """Write the whole program.
 
     Parameters
@@ -54,13 +60,15 @@ def write_program(program: Program, sink: BinaryIO, progress: Callable[[int], No
         Takes UTF-8 bytes in order.
     progress
         Is told how many rows were written since it was last told.
+    division
+        The program is a main program, in ``sink``, which calls a subprogram for each operation; None: it is one file.
 
     Raises
     ------
     InputError
         When a value that the program cannot do without is missing.
     """
-    _Author(program, sink, progress or (lambda _: None)).write()
+    _Author(program, sink, progress or (lambda _: None), division).write()
 
 
 def _on_poses(program: Program) -> Program:
@@ -75,29 +83,93 @@ def _on_poses(program: Program) -> Program:
 class _Author:
     """Writes one program; holds what is in force from one operation to the next."""
 
-    def __init__(self, program: Program, sink: BinaryIO, progress: Callable[[int], None]) -> None:
+    def __init__(
+        self, program: Program, sink: BinaryIO, progress: Callable[[int], None], division: Division | None
+    ) -> None:
         self._program = program = _on_poses(program)
         self._control = program.control
         self._family = program.control.family
         self._blocks = Blocks(program, sink, progress)
         self._printed = Printed(program)
         self._held = Held()
+        self._said_tool = ""  # that this file has called
         self._speed: Value = None  # of the spindle, as a text said it last
         self._before: Motion | None = None
+        self._files: Files | None = None
+        if division is not None:
+            naming, operations = program.control.subprograms, [m.operation.name for m in program.motions if m.begins]
+            assert naming is not None, "a program is divided only where its control can call subprograms"
+            self._files = Files(division, naming, sink, operations)
 
     def write(self) -> None:
         """The program, operation by operation."""
         motions = self._program.motions
-        self._blocks.lines([line for text in self._program.notices for line in self._family.comment(text)])
+        self._notices()
         self._expand("program_start", self._values(motions[0], 0), motions[0])
         for k, motion in enumerate(motions):
-            self._operation(motion, k, k + 1 == len(motions) or motions[k + 1].begins)
+            ends = k + 1 == len(motions) or motions[k + 1].begins
+            if motion.begins:
+                self._enter(motion, k)
+            self._operation(motion, k, ends)
             off = f"M{self._control.coolant['OFF']}"
-            if self._blocks.coolant != "OFF" and k + 1 < len(motions) and motions[k + 1].begins:
+            if self._blocks.coolant != "OFF" and ends and (k + 1 < len(motions) or self._files is not None):
                 end = self._control.templates[f"operation_end_{kind_of(self._program, motion)}"]
                 self._blocks.writer.lines([] if off in end.lines else [off])
                 self._blocks.coolant = "OFF"
+            if ends:
+                self._leave(motion, k)
         self._expand("program_end", self._values(motions[-1], -1), motions[-1])
+
+    def _notices(self) -> None:
+        self._blocks.lines([line for text in self._program.notices for line in self._family.comment(text)])
+
+    # Subprograms
+
+    def _enter(self, motion: Motion, number: int) -> None:
+        """An operation begins: where each has a file of its own, that says all that it needs."""
+        if self._files is None:
+            return
+        values = self._values(motion, number)
+        self._call(self._files.next_operation(), "subprogram_start", values, motion)
+        self._blocks.full = lambda: self._go_on(values, motion)
+        self._speed = None
+        self._said_tool = ""
+
+    def _go_on(self, values: Mapping[str, Value], motion: Motion) -> None:
+        """The file is full: the operation goes on in another one."""
+        assert self._files is not None
+        self._end(values, motion)
+        self._call(self._files.next_part(), "subprogram_part", values, motion)
+
+    def _leave(self, motion: Motion, number: int) -> None:
+        """The operation has ended, and so does its file."""
+        if self._files is not None:
+            self._end(self._values(motion, number), motion)
+
+    def _call(self, sink: BinaryIO, start: str, values: Mapping[str, Value], motion: Motion) -> None:
+        """The main program calls a subprogram, and that begins."""
+        assert self._files is not None
+        named = {**values, "subprogram": self._files.open}
+        self._frame("subprogram_call", named, motion)
+        self._blocks.writer.turn_to(sink)
+        self._blocks.largest = self._files.largest
+        self._notices()
+        self._frame(start, named, motion)
+
+    def _end(self, values: Mapping[str, Value], motion: Motion) -> None:
+        """A subprogram ends; what comes next stands in the main program."""
+        assert self._files is not None
+        self._frame("subprogram_end", {**values, "subprogram": self._files.open}, motion)
+        self._blocks.writer.turn_to(self._files.main)
+
+    def _frame(self, name: str, values: Mapping[str, Value], motion: Motion) -> None:
+        """A template whose blocks must be read whichever blocks are skipped."""
+        skips = self._blocks.writer.skips
+        self._blocks.writer.skip_blocks(False)
+        self._expand(name, values, motion)
+        self._blocks.writer.skip_blocks(skips)
+
+    # Operations
 
     def _expand(self, name: str, values: Mapping[str, Value], motion: Motion) -> None:
         formats = self._control.number_formats(motion.three_axis)
@@ -118,8 +190,9 @@ class _Author:
         if motion.begins:
             self._expand("operation_start", values, motion)
             tool = str(values["tool"])
-            if tool != self._held.call:
-                self._expand("tool_change" if self._held.call else "first_tool", values, motion)
+            if tool != self._said_tool:
+                self._expand("tool_change" if self._said_tool else "first_tool", values, motion)
+            self._said_tool = tool
             self._held = Held(tool, motion.operation.tool.name)
         below = self._goes_on(motion) and not self._drawn_back()
         self._blocks.begin(motion, self._goes_on(motion), comes_level=motion.begins or below)

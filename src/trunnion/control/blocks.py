@@ -10,9 +10,11 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.control.definition import AXIS_VECTOR, BY_AXES, BY_VECTOR, VECTOR_LINE
 from trunnion.control.family import WordEvent
 from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
 from trunnion.control.slides import Slides, feed_rule, feeds, slides_of
+from trunnion.control.vectors import leads_there, vectors_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
@@ -29,6 +31,12 @@ _PHASE_TEXT = {
     Phase.TRAVERSE: "traverse",
 }
 
+#: Words that each row says for itself where they are not in force.
+_OF_EACH_ROW = frozenset({"X", "Y", "Z", "primary", "secondary", *AXIS_VECTOR, "motion", "feed"})
+
+#: Bytes of the lines that stand before a row of their own, at most: a phase, an arc's centre.
+_LINES_OF_A_ROW = 256
+
 #: Manners in which X and Y of the program are across the tool.
 _LEVEL = (Manner.THREE_AXIS, Manner.TILTED)
 
@@ -40,6 +48,8 @@ class Blocks:
     spindle  what the spindle was last told, also where it has been stopped since; None before
     coolant  its kind, as it was last told
     height   of the tool along Z of the frame, at the last row written, mm
+    largest  bytes that the rows of a file may come to; None: no matter how many
+    full     is called where a file has no room for another row: it turns to the next one
     comes_level  whether the tool goes to X and Y of an operation's first point before it goes down
     """
 
@@ -58,6 +68,12 @@ class Blocks:
         self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
+        self._vectors = setting_of(program, "orientation") == "vector"
+        self._turns_over = any(word.key == BY_VECTOR for word in self._words)
+        self._again: dict[str, int] = {}
+        self._by_vector = ABSENT  # how the control goes to an orientation: 1 by the vector, 0 by the axes
+        self.largest: int | None = None
+        self.full: Callable[[], None] = lambda: None
         rapid_feed = setting_of(program, "rapid_feed")
         self.rapid_feed = self.count("feed", float(rapid_feed)) if rapid_feed else ABSENT
 
@@ -86,6 +102,7 @@ class Blocks:
         else:
             self.writer.forget("X", "Y", "Z", "feed")
         self._feed_mode = ABSENT
+        self._by_vector = 1
 
     def rotary_stand(self, motion: Motion) -> None:
         """Templates have placed the rotary axes for a motion's first row."""
@@ -93,6 +110,9 @@ class Blocks:
             self.writer.remember(
                 word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word, column)[0])
             )
+        if self._turns_over and self._vectors and motion.manner is Manner.TCP:
+            for word, counted in self._axis_counts(motion.rotary[:1]).items():
+                self.writer.remember(word, int(counted[0]))
 
     def use_feed_mode(self, mode: int) -> int:
         """What F means from here on; where that changes, F is said again. Returns ``mode``."""
@@ -136,11 +156,39 @@ class Blocks:
 
     def rows(self, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int) -> int:
         """Write rows ``first`` to ``last``; returns the index of the phase text that was printed last."""
-        for start in range(first, last, CHUNK):
-            stop = min(start + CHUNK, last)
+        start = first
+        while start < last:
+            fitting = self._fitting()
+            if fitting < 1:
+                self._turn_over()
+                text, fitting = -1, self._fitting()
+            stop = min(start + max(1, fitting), last)
             text = self._chunk(motion, start, stop, [e for e in joining if start <= e.row < stop], text)
             self.progress(stop - start)
+            start = stop
         return text
+
+    def _fitting(self) -> int:
+        """So many rows surely fit into the file, at least one where it must not end here.
+
+        Radius compensation goes on to the end: the control looks ahead there, and not from file to file.
+        """
+        if self.largest is None:
+            return CHUNK
+        widest = self.writer.widest_row + _LINES_OF_A_ROW
+        fitting = min(CHUNK, (self.largest - self.writer.size) // widest)
+        off = self.control.codes.get("comp_off", ABSENT)
+        compensated = self.writer.in_force().get("cutter_comp", off) != off
+        return max(1, fitting) if compensated else fitting
+
+    def _turn_over(self) -> None:
+        """Go on in the next file: all that is in force is said again, in its first block."""
+        known = self.writer.in_force()
+        self._again = {word: count for word, count in known.items() if word not in _OF_EACH_ROW}
+        self.full()
+        self.writer.forget()
+        self._feed_mode = ABSENT
+        self._by_vector = ABSENT
 
     def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[WordEvent], text: int) -> int:
         moves, arcs, control = motion.operation.moves, motion.operation.arcs, self.control
@@ -151,14 +199,24 @@ class Blocks:
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
-        if motion.plane is None:  # in a plane the rotary axes stand where they were put
+        forced: dict[str, bool | Ints] = {}
+        by_vector = self._vectors and motion.manner is Manner.TCP
+        in_force: dict[str, int] = {}
+        if by_vector and not self._turns_over:
+            columns |= self._axis_words(motion, part)
+        elif motion.plane is None:  # in a plane the rotary axes stand where they were put
             for word, axis in self._rotary:
                 columns[word] = self._angle_counts(motion.rotary[part, self._column[axis]], word, axis)
+        if by_vector and self._turns_over:
+            in_force = self._orient(motion, start, stop, columns, forced)
         columns["feed"] = np.where(
             rapid, self.rapid_feed, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"])
         )
         columns |= self.family.row_words(rapid, moves.per_rev[part], control.codes)
-        forced: dict[str, bool | Ints] = {}
+        if by_vector and any(word.key == VECTOR_LINE for word in self._words):
+            said = columns[AXIS_VECTOR[0]] != ABSENT
+            columns |= {VECTOR_LINE: np.where(said, 1, ABSENT), "line": np.where(said, ABSENT, columns["line"])}
+            forced |= dict.fromkeys("XYZ", said.astype(np.int64))
         if self._slides is not None:
             forced |= self._words_of_slides(self._slides, moves.feed[part], part, rapid, columns)
         forced["feed"] = self._feed_anew(columns, rapid)
@@ -169,6 +227,9 @@ class Blocks:
             formats = {word.key: word.format for word in self._words}
             words = self.family.arc_words(arcs, moves.tip, inside, control.codes, formats)
             at = arcs.row[inside] - start
+            for word in (*AXIS_VECTOR, VECTOR_LINE) if by_vector else ():  # the tool axis rests on a circle
+                if word in columns:
+                    columns[word][at] = ABSENT
             for word, column in words.columns.items():
                 columns.setdefault(word, np.full(stop - start, ABSENT, np.int64))[at] = column
             for word, flag in words.forced.items():
@@ -185,13 +246,70 @@ class Blocks:
             self._join(columns, 0, self.edge())
         for event in joining:
             self._join(columns, event.row - start, self.event_words(event))
+        if self._again:
+            said = {word: int(column[0]) for word, column in columns.items()}
+            self._join(columns, 0, {w: count for w, count in self._again.items() if said.get(w, ABSENT) == ABSENT})
+            self._again = {}
         ids, texts = self.phase_texts()
         wanted = ids[moves.phase[part]]
         before = np.concatenate(([text], wanted[:-1]))
         self.writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
         if elsewhere[-1]:
             self.writer.forget("X", "Y", "Z")
+        if by_vector and not self._turns_over:
+            self.writer.forget("primary", "secondary")  # they have turned since they were placed
+        for word, count in in_force.items():
+            self.writer.remember(word, count)
         return int(wanted[-1])
+
+    def _axis_counts(self, rotary: Floats) -> dict[str, Ints]:
+        """The tool axis as a vector, by where the rotary axes stand, however they lean; as counts."""
+        decimals = self.writer.word(AXIS_VECTOR[0]).format.decimals
+        vectors = vectors_of(self.program.machine, rotary)
+        return {word: counts(np.ascontiguousarray(vectors[:, k]), decimals) for k, word in enumerate(AXIS_VECTOR)}
+
+    def _axis_words(self, motion: Motion, part: slice) -> dict[str, Ints]:
+        """The tool axis of rows as a vector.
+
+        At the first row the rotary axes were placed already; a rounded vector near the pole would turn them again.
+        """
+        said = np.arange(part.start, part.stop) > 0
+        return {word: np.where(said, axis, ABSENT) for word, axis in self._axis_counts(motion.rotary[part]).items()}
+
+    def _orient(
+        self, motion: Motion, start: int, stop: int, columns: dict[str, Ints], forced: dict[str, bool | Ints]
+    ) -> dict[str, int]:
+        """Say orientations by vectors, and by rotary words where a control would take another position for the vector.
+
+        All components or both rotary words stand where the orientation changes, and none where it does not. Returns
+        what is in force after the last row, however it was said.
+        """
+        rotary = motion.rotary[start:stop]
+        vectors = self._axis_counts(rotary)
+        printed = np.column_stack(list(vectors.values())) / np.float64(
+            10 ** self.writer.word(AXIS_VECTOR[0]).format.decimals
+        )
+        before = np.concatenate((motion.rotary[max(start - 1, 0) : max(start, 1)], rotary[:-1]))
+        half = 0.5 * 10.0 ** -self.writer.word("primary").format.decimals
+        by_vector = leads_there(self.program.machine, printed, rotary, before, half)
+        words = vectors | {word: columns[word] for word, _ in self._rotary}
+        changed = np.zeros(len(rotary), np.bool_)
+        for word, column in words.items():
+            changed |= column != np.concatenate(([self.writer.printed(word)], column[:-1]))
+        last = {word: int(column[-1]) for word, column in words.items()}
+        for word, column in words.items():
+            said = changed & (by_vector if word in AXIS_VECTOR else ~by_vector)
+            columns[word] = np.where(said, column, ABSENT)
+            forced[word] = said.astype(np.int64)
+        rows = np.flatnonzero(changed)
+        manners = by_vector[rows].astype(np.int64)
+        if len(rows):
+            anew = rows[manners != np.concatenate(([self._by_vector], manners[:-1]))]
+            for word, which in ((BY_VECTOR, 1), (BY_AXES, 0)):
+                columns[word] = np.full(len(rotary), ABSENT, np.int64)
+                columns[word][anew[by_vector[anew] == which]] = 0
+            self._by_vector = int(manners[-1])
+        return last
 
     def edge(self) -> dict[str, int]:
         """The cutting edge, on controls that have any."""

@@ -13,6 +13,7 @@ from typing import TypedDict
 
 from trunnion.control.families import FAMILIES
 from trunnion.control.family import Family
+from trunnion.control.subprograms import Naming
 from trunnion.control.template import Template
 from trunnion.definition import Table, extended
 from trunnion.nc import BlockNumbers, NumberFormat, Word
@@ -26,7 +27,7 @@ FIELDS = frozenset(
         "zero_x", "zero_y", "zero_z", "time", "total_time",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
         "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",
-        "spindle_speed", "new_speed", "spindle_code",
+        "spindle_speed", "new_speed", "spindle_code", "subprogram",
     }
 )  # fmt: skip
 
@@ -45,8 +46,20 @@ WITHOUT_TCP = "without_tcp"
 #: The template of a control on which the spindle is started by blocks of its own; others have words for it.
 SPINDLE_ON = "spindle_on"
 
+#: The templates of controls on which a main program can call one subprogram an operation: the call; a subprogram's
+#: beginning, where it goes on with what another has begun, and its end.
+SUBPROGRAM = ("subprogram_call", "subprogram_start", "subprogram_part", "subprogram_end")
+
 #: The word, and its code, of controls on which each position of a hole calls the cycle that was defined before.
 CALL = "call"
+
+#: The words of the tool axis as a vector, from tip to holder, on controls that take it in place of rotary words; and
+#: the word that opens such blocks in place of ``line``, on those that have one: they want X, Y and Z in each of them.
+AXIS_VECTOR = ("axis_x", "axis_y", "axis_z")
+VECTOR_LINE = "vector_line"
+
+#: Words that say whether an orientation is gone to by its vector or by the rotary axes, on controls that can have both.
+BY_VECTOR, BY_AXES = "by_vector", "by_axes"
 
 #: Words of a motion block that all families have.
 AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
@@ -109,6 +122,7 @@ class Control:
     level_approach    where the tool has been drawn back, it goes to its place in X and Y first, then in Z
     plane_from_pose   a tilted plane is the one on which the tool stands: its zero is the work offset's, its axes are
                       those of the tool, and no words say its angles
+    subprograms       how the programs are called that a main program calls; None: it can call none
     holes_from        height at which the control goes from hole to hole: one of ``HOLES_FROM``
     """
 
@@ -138,6 +152,7 @@ class Control:
     level_approach: bool
     plane_from_pose: bool
     holes_from: str
+    subprograms: Naming | None
     templates: Mapping[str, Template] = field(repr=False)
 
     def usual(self, setting: str, method: str) -> str | None:
@@ -233,7 +248,10 @@ def load_control(own: Table) -> Control:
         level_approach=table.flag("level_approach", False),
         plane_from_pose=table.flag("plane_from_pose", False),
         holes_from=table.text("holes_from", "above", one_of=HOLES_FROM),
-        templates=_templates(table.table("templates"), family, table.flag("plane_from_pose", False)),
+        subprograms=_naming(table.table("subprograms")) if "subprograms" in table else None,
+        templates=_templates(
+            table.table("templates"), family, table.flag("plane_from_pose", False), "subprograms" in table
+        ),
     )
     for lacking in dict.fromkeys(name for name in words if name not in {word.name for word in control.words}):
         table.problem("word", f"has no entry {lacking!r}, which programs of this family need", "write it")
@@ -333,8 +351,16 @@ def _arcs(table: Table) -> _Arcs:
     return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices}
 
 
-def _templates(table: Table, family: Family, plane_from_pose: bool) -> dict[str, Template]:
-    """Those that every definition has, and those of the kinds of operations that this one has any for.
+def _naming(table: Table) -> Naming:
+    letters = table.text("letters", "capital", one_of=("capital", "small"))
+    longest = table.integer("longest_name", at_least=8)
+    naming = Naming(table.text("extension"), letters == "capital", longest, table.texts("reserved", ()))
+    table.finish()
+    return naming
+
+
+def _templates(table: Table, family: Family, plane_from_pose: bool, subprograms: bool) -> dict[str, Template]:
+    """Those that every definition has, those of subprograms, and those of the kinds of operations that it has any for.
 
     Where a plane is taken from the rotary position, the tool may have to be drawn back before the next one.
     """
@@ -343,7 +369,7 @@ def _templates(table: Table, family: Family, plane_from_pose: bool) -> dict[str,
     kinds = [_of_kind(kind, ("approach", "operation_end")) for kind in (FIVE_AXIS, WITHOUT_TCP)]
     kinds += [_of_kind(plane, of_planes) for plane in family.PLANES]
     wanted = [name for names in ((SPINDLE_ON,), *kinds) if any(name in table for name in names) for name in names]
-    for name in (*TEMPLATES, *wanted):
+    for name in (*TEMPLATES, *(SUBPROGRAM if subprograms else ()), *wanted):
         text = table.text(name)
         file, line = table.origin(name)
         found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
@@ -359,6 +385,9 @@ def _of_kind(kind: str, parts: Sequence[str]) -> tuple[str, ...]:
 def _check_templates(templates: Table, control: Control) -> None:
     """A template that asks for what does not exist is a mistake of the definition, not of the run."""
     known = FIELDS | control.family.FIELDS | control.settings.keys()
+    call = control.templates.get(SUBPROGRAM[0])
+    if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
+        templates.problem(call.name, "does not say which subprogram it calls", "write {subprogram} in it")
     for template in control.templates.values():
         for name, form in sorted(template.fields()):
             if name not in known:

@@ -20,8 +20,9 @@ from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = (
-    "line", "arc", "helix", "arc_angle", "arc_rise", "counterclockwise", "clockwise",
-    "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant", "feed_mode", "call",
+    "line", "vector_line", "axis_x", "axis_y", "axis_z", "arc", "helix", "arc_angle", "arc_rise",
+    "counterclockwise", "clockwise", "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant",
+    "feed_mode", "call",
 )  # fmt: skip
 
 CODES: tuple[str, ...] = (
@@ -37,14 +38,16 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "plane_solution": ("SEQ", "SYM"),
     "tcpm": ("m128", "function"),
     "rotary_feed": ("degrees", "tip"),
+    "retract": ("home", "m140"),
+    "orientation": ("angles", "vector"),
 }
 
 _VECTOR: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
 
 FIELDS: frozenset[str] = frozenset(
     {
-        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "positioning", "spatial_a", "spatial_b", "spatial_c",
-        *_VECTOR, "blank_low", "blank_high",
+        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "spatial_a", "spatial_b",
+        "spatial_c", *_VECTOR, "blank_low", "blank_high",
     }
 )  # fmt: skip
 
@@ -135,8 +138,11 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
         wrong.append(("work_offset", "write the number of the preset, such as 1"))
     if settings.get("disengage", "") not in ("", "1", "2", "3", "4"):
         wrong.append(("disengage", "write 1 for -X, 2 for -Y, 3 for +X or 4 for +Y"))
-    if blank and _corners(blank) is None:
-        wrong.append(("blank", "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first"))
+    if blank not in ("", "extents") and _corners(blank) is None:
+        cure = (
+            "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first; or extents, for all that is cut"
+        )
+        wrong.append(("blank", cure))
     return wrong
 
 
@@ -212,10 +218,13 @@ def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Val
     SPA, SPB and SPC turn about fixed axes X, then Y, then Z: the same as about Z, the new Y and the newest X.
     """
     on, off = _TCPM[str(settings["tcpm"])]
+    if settings["orientation"] == "vector":
+        on = on.replace("PATHCTRL AXIS", "PATHCTRL VECTOR")
     low, high = _corners(str(settings.get("blank") or "")) or (None, None)
     found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
     at_tip = settings["rotary_feed"] == "tip"
     found |= {"feed_at_tip": "M116" if at_tip else None, "feed_in_degrees": "M117" if at_tip else None}
+    found["retract_along"] = "L M140 MB MAX" if settings["retract"] == "m140" else None
     found["positioning"] = _POSITIONING[str(settings["plane_move"])]
     spatial = "spatial_c", "spatial_b", "spatial_a"
     if plane is None:

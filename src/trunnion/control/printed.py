@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.control.extents import extents
 from trunnion.control.family import Family
 from trunnion.control.program import Program, angle_counts, setting_of, words_of
 from trunnion.control.template import Value
@@ -18,6 +19,9 @@ from trunnion.plan import Motion, seconds
 from trunnion.toolpath import LoadTool, Sense, SpindleOn
 
 _UNKNOWN = (None, None, None)
+
+#: The setting ``blank`` of controls with a block form: the box round all that is cut.
+EXTENTS = "extents"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +62,8 @@ class Printed:
         program, operation = self._program, motion.operation
         machine, control, tool = program.machine, program.control, operation.tool
         values: dict[str, Value] = {**control.settings, **program.settings}
+        if values.get("blank") == EXTENTS:
+            values["blank"] = self._box()
         values |= self._family.values(values, None if motion.plane is None else motion.plane.matrix())
         if not values.get("tolerance"):
             given = operation.intol is not None and operation.outtol is not None
@@ -81,6 +87,7 @@ class Printed:
             **self._times(number),
             **self._plane(motion),
             **spindle_values(program, spindle),
+            "subprogram": None,
             "machine": machine.name,
             **self._home(),
             "operation": operation.name,
@@ -96,6 +103,11 @@ class Printed:
             "outtol": operation.outtol,
         }
         return {name: self._family.inside(value) if isinstance(value, str) else value for name, value in found.items()}
+
+    def _box(self) -> str:
+        """The corners of the block form round all that is cut; empty where nothing is."""
+        found = extents(self._program.motions)
+        return "" if found is None else ",".join(f"{value:g}" for value in np.concatenate(found).tolist())
 
     def _times(self, number: int) -> dict[str, Value]:
         """What the operation and all of them take, as people read it; worked out only where a template prints it."""

@@ -18,11 +18,18 @@ from trunnion.control.turns import about_three
 from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Dwell, Message, Operation, Stop
 
-WORDS: tuple[str, ...] = (*iso.WORDS, "edge", "primary_shortest", "secondary_shortest")
+WORDS: tuple[str, ...] = (
+    *iso.WORDS, "edge", "primary_shortest", "secondary_shortest", "axis_x", "axis_y", "axis_z", "by_vector", "by_axes",
+)  # fmt: skip
 CODES: tuple[str, ...] = iso.CODES
 PLANES: tuple[str, ...] = ("cycle800", "frames")
-CHOICES: Mapping[str, tuple[str, ...]] = {"plane": PLANES, "swivel_mode": ("57", "27", "39", "45", "30", "54")}
-FIELDS: frozenset[str] = frozenset({"plane_first", "plane_second", "plane_third", "plane_mode"})
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "plane": PLANES,
+    "swivel_mode": ("57", "27", "39", "45", "30", "54"),
+    "orientation": ("angles", "vector"),
+}
+_PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
+FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, "interpolation"})
 
 
 def comment(text: str) -> list[str]:
@@ -49,12 +56,15 @@ def sequence(mode: int) -> tuple[int, int, int]:
 
 
 def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """The three turns of a plane in the order of ``plane_mode``; the frame words turn about X, Y, Z, which is 57."""
+    """How orientations are interpolated, and the three turns of a plane in the order of ``plane_mode``; the frame words
+    turn about X, Y, Z, which is 57."""
+    interpolation: dict[str, Value] = {"interpolation": "ORIVECT" if settings["orientation"] == "vector" else "ORIAXES"}
     if plane is None:
-        return dict.fromkeys(FIELDS)
+        return interpolation | dict.fromkeys(_PLANE_FIELDS)
     mode = str(settings["swivel_mode"]) if settings["plane"] == "cycle800" else "57"
     first, second, third = about_three(plane, sequence(int(mode)))
-    return {"plane_first": first, "plane_second": second, "plane_third": third, "plane_mode": mode}
+    turns: dict[str, Value] = {"plane_first": first, "plane_second": second, "plane_third": third, "plane_mode": mode}
+    return interpolation | turns
 
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:

@@ -38,6 +38,7 @@ class Events:
     coolants   M number -> CL word
     known      lines of templates: their comments and messages are said by every program
     marked     the program names phases; without, rapids are one phase and all else is cutting
+    unspoken   of the phases that it names rapids are none
     """
 
     def __init__(
@@ -46,6 +47,7 @@ class Events:
         coolants: Mapping[int, str],
         known: Collection[int],
         marked: bool,
+        unspoken: bool,
         remark: Remarks,
     ) -> None:
         self.tool = ""
@@ -53,6 +55,7 @@ class Events:
         self._coolants = coolants
         self._known = known
         self._marked = marked
+        self._unspoken = unspoken
         self._remark = remark
         self._rpm = 0.0
         self._sense: Sense | None = None
@@ -111,6 +114,8 @@ class Events:
                 unheard += [spoken[here]] if here in spoken else []
                 spoken[here] = item
                 phase[here:] = self._phases[item.text]
+        if self._unspoken:
+            phase[(phase == Phase.CUT) & (run.kind[rows] == Kind.RAPID)] = Phase.RAPID
         unheard += [spoken[len(rows)]] if len(rows) in spoken else []
         for item in unheard:
             self._remark(item.line, f"no motion follows {item.text!r}, which is not carried over")

@@ -1,10 +1,13 @@
 """The lines of templates backwards: which line of a program is which line of a template, and what it says."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from trunnion.control.template import Template
+
+#: A setting that is words of a program, such as G54 or G55 O1: what stands in its place has the same letters.
+_WORDS = re.compile(r"[A-Z]+\d+(?: [A-Z]+\d+)*")
 
 _FIELD = re.compile(r"\{([A-Za-z_]\w*)(?::(\w+))?\}")
 
@@ -16,32 +19,29 @@ class Pattern(NamedTuple):
     bare: bool
 
 
-def patterns(templates: Iterable[Template], primary: str, secondary: str) -> list[Pattern]:
-    """The lines of templates as patterns; the letters of the rotary axes are known."""
-    return [_pattern(line, primary, secondary) for template in templates for line in template.lines]
+def patterns(templates: Iterable[Template], known: Mapping[str, str], settings: Mapping[str, str]) -> list[Pattern]:
+    """The lines of templates as patterns; some values are ``known``, and the usual form of ``settings``."""
+    return [_pattern(line, known, settings) for template in templates for line in template.lines]
 
 
-def _pattern(line: str, primary: str, secondary: str) -> Pattern:
-    line = line.replace("{primary}", primary).replace("{secondary}", secondary)
+def _pattern(line: str, known: Mapping[str, str], settings: Mapping[str, str]) -> Pattern:
+    for name, value in known.items():
+        line = line.replace(f"{{{name}}}", value)
     parts: list[str] = []
     at = 0
     named: set[str] = set()
     for match in _FIELD.finditer(line):
         parts.append(re.escape(line[at : match.start()]))
         name, form = match[1], match[2]
-        value = r"[-+.\d]+" if form else r"G5(?:[4-7]|\d\d)" if name == "work_offset" else ".*?"
+        usual = settings.get(name, "")
+        shape = re.sub(r"\d+", r"\\d+", usual) if _WORDS.fullmatch(usual) else ".*?"
+        value = r"[-+.\d]+" if form else shape
         parts.append(f"(?P={name})" if name in named else f"(?P<{name}>{value})")
         named.add(name)
         at = match.end()
     parts.append(re.escape(line[at:]))
-    bare = bool(named) and not re.sub(r"[\s;]", "", _FIELD.sub("", line))
+    bare = bool(named) and not re.sub(r"[\s;()]", "", _FIELD.sub("", line))
     return Pattern(re.compile("".join(parts)), bare)
-
-
-def marker(template: Template) -> str:
-    """The first line of a template if it is a comment without values, bare of its semicolon; else nothing."""
-    line = template.lines[0] if template.lines else ""
-    return line[1:].strip() if line.startswith(";") and not _FIELD.search(line) else ""
 
 
 def match(lines: Sequence[tuple[int, str]], patterns: Sequence[Pattern], values: dict[str, str]) -> set[int]:

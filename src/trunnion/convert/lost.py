@@ -1,6 +1,7 @@
 """What a program says about the machine and a toolpath has no place for: each becomes a remark."""
 
-from collections.abc import Collection, Iterable, Sequence
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -9,22 +10,46 @@ from trunnion.convert.source import Source
 from trunnion.errors import Problem, Severity
 from trunnion.plan.poses import follow
 from trunnion.reader import Orientation, Run, Written
-from trunnion.reader.sinumerik.words import G_SILENT, SILENT, SILENT_CALLS, SILENT_VALUES
+from trunnion.reader.fanuc import words as fanuc
+from trunnion.reader.fidia import words as fidia
+from trunnion.reader.heidenhain import words as heidenhain
+from trunnion.reader.linuxcnc import words as linuxcnc
+from trunnion.reader.sinumerik import words as sinumerik
 from trunnion.toolpath import Kind, Moves
 
 #: Remarks of one kind that are made one by one.
 _NAMED = 5
 
 #: Words that every operation's head says, or that are said by other means.
-_SAID_ANYHOW = frozenset({"G40", "G60", "G601", "FNORM", "COMPOF", "EXTERN"})
+_SAID_ANYHOW = frozenset({"G40", "G60", "G601", "FNORM", "COMPOF", "EXTERN", "G49", "G80", "G90", "G94", "G8", "G97"})
 _SURFACE_SPEED = frozenset({"G96", "G961", "G962"})
-_LOST = (
-    frozenset({*SILENT, *SILENT_VALUES, *SILENT_CALLS, *(f"G{code}" for code in G_SILENT)}) | _SURFACE_SPEED
-) - _SAID_ANYHOW
+_TOOL_LENGTHS = frozenset({"G43", "G43.1", "G43.2", "G44"})
+_CANCELS = frozenset({"G15", "G50", "G50.1", "G13.1", "G22", "G23", "G91.1", "G90.1"})
+
+
+def _codes(tenths: Iterable[int]) -> frozenset[str]:
+    return frozenset(f"G{code / 10:g}" for code in tenths)
+
+
+#: Words of each family that drive the machine and have no effect on the path.
+_DRIVES: Mapping[str, frozenset[str]] = {
+    "sinumerik_840d": frozenset(
+        {*sinumerik.SILENT, *sinumerik.SILENT_VALUES, *sinumerik.SILENT_CALLS}
+        | {f"G{code}" for code in sinumerik.G_SILENT}
+    ),
+    "linuxcnc": _codes(linuxcnc.SILENT) | {f"M{code}" for code in linuxcnc.SILENT_M},
+    "fanuc_30i": _codes(fanuc.SILENT),
+    "fidia_nc15": _codes(fidia.SILENT),
+    "heidenhain_itnc530": frozenset(f"M{code}" for code in heidenhain.M_SILENT),
+    "heidenhain_tnc640": frozenset(f"M{code}" for code in heidenhain.M_SILENT),
+}
 
 #: Rotary axes stand where they stood within this, degrees; programs have at most five decimals.
 _SAME_ANGLE = 1e-4
 _SAME_POSITION = 1e-3
+
+#: G05.1 is G5.1.
+_ZEROS = re.compile(r"^([GM])0+(?=\d)")
 
 
 class Remarks:
@@ -44,20 +69,23 @@ class Remarks:
         return tuple(self._found)
 
 
-def remark_words(files: Sequence[str], known: Collection[int], remark: Remarks) -> None:
+def remark_words(sources: Sequence[Source], family: str, known: Collection[int], remark: Remarks) -> None:
     """Say which words only drive the machine.
 
     Parameters
     ----------
-    files
-        Of the run: the program, and its subprograms.
+    sources
+        The program, and its subprograms.
+    family
+        Of the control, whose words they are.
     known
         Lines of the program that are lines of templates.
     """
     told = 0
-    said = ((file, *line) for file, name in enumerate(files) for line in Source(name).words())
+    lost_words = (_DRIVES[family] | _SURFACE_SPEED) - _SAID_ANYHOW - _TOOL_LENGTHS - _CANCELS
+    said = ((file, *line) for file, source in enumerate(sources) for line in source.words())
     for file, line, words in said:
-        lost = [word for word in words if word in _LOST]
+        lost = [word for word in words if _ZEROS.sub(r"\1", word) in lost_words]
         if not lost or (file == 0 and line in known):
             continue
         told += 1
@@ -98,20 +126,21 @@ def remark_ways(run: Run, operations: Iterable[Ints], remark: Remarks) -> None:
         turned &= run.kind[rows] != Kind.RAPID
         circle = turned & run.tcp[rows] & (run.orientation[rows] == Orientation.GREAT_CIRCLE)
         free = turned & ~run.tcp[rows]
-        for there, what in ((circle, "turn the tool on a great circle"), (free, "turn the tool without TRAORI")):
+        for there, what in ((circle, "turn the tool on a great circle"), (free, "turn the tool without TCP")):
             places = np.flatnonzero(there)
             if len(places):
                 cure = "between points it goes as the control's templates say"
                 _at(run, rows[places], f"{len(places)} points {what}, which is not carried over", cure, remark)
 
 
-def remark_registers(run: Run, operations: Iterable[Ints], remark: Remarks) -> None:
+def remark_registers(run: Run, operations: Iterable[Ints], offset: str, remark: Remarks) -> None:
     """Say where work offset or edge change on the way.
 
     operations   the rows (n,) of each operation
+    offset       what stands before the number of a work offset
     """
     for rows in operations:
-        for column, letter in ((run.offset, "G"), (run.edge, "D")):
+        for column, letter in ((run.offset, offset), (run.edge, "D")):
             others = rows[column[rows] != column[rows[0]]]
             if len(others):
                 what = f"{letter}{column[others[0]]} within an operation is not carried over"
@@ -119,11 +148,12 @@ def remark_registers(run: Run, operations: Iterable[Ints], remark: Remarks) -> N
 
 
 def remark_homes(run: Run, remark: Remarks) -> None:
-    """Say which slides park elsewhere than at their home."""
+    """Say which slides park elsewhere than at their home; one that is drawn back to its end is not parked."""
     names = run.machine.names
+    drawn_back = [event.before_row for event in run.events if event.kind == "retract"]
     for word in (word for word in (Written.X, Written.Y, Written.Z) if word.name in names):
         axis = run.machine.axes[names.index(str(word.name))]
-        placed = np.flatnonzero(run.machine_frame & ((run.programmed & word) != 0))
+        placed = np.setdiff1d(np.flatnonzero(run.machine_frame & ((run.programmed & word) != 0)), drawn_back)
         places = run.joints[placed, names.index(axis.name)]
         away = np.flatnonzero(np.abs(places - axis.home) > _SAME_POSITION)
         if len(away):

@@ -8,25 +8,28 @@ What belongs to the machine and not to the part is left out: moves to machine po
 axes before an operation's first position.
 """
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Flags, Ints
 from trunnion.control.definition import Control
 from trunnion.control.template import Template
 from trunnion.convert.events import Events
-from trunnion.convert.heads import marker, match, patterns
+from trunnion.convert.heads import match, patterns
 from trunnion.convert.lost import Remarks, remark_homes, remark_poses, remark_registers, remark_ways, remark_words
 from trunnion.convert.moves import arcs_of, moves_of
 from trunnion.convert.said import Item, items
 from trunnion.convert.settings import number, settings_of
-from trunnion.convert.source import Source
+from trunnion.convert.source import LANGUAGES, Source
 from trunnion.errors import Problem
 from trunnion.reader import Run, Written
+from trunnion.reader.settings import family_of
 from trunnion.toolpath import Frame, Kind, Operation, Phase, Tool, Toolpath
+from trunnion.verify import with_rapids
 
 _PHASES = {
     "rapid": Phase.RAPID,
@@ -64,9 +67,13 @@ def convert(run: Run, control: Control) -> Converted:
     run
         Of the reader. Its files are looked into once more for what the columns do not hold.
     control
-        Of the machine that the program was written for.
+        Of the machine that the program was written for. Where its rapids are lines at a feed (``rapid_feed``), lines at
+        that feed are rapids.
     """
-    return _Converter(run, control).convert()
+    usual = control.settings.get("rapid_feed", "")
+    converted = _Converter(with_rapids(run, number(usual)), control).convert()
+    said = converted.settings.get("rapid_feed", usual)
+    return converted if said == usual else _Converter(with_rapids(run, number(said)), control).convert()
 
 
 @dataclass(slots=True)
@@ -97,10 +104,14 @@ class _Converter:
     def __init__(self, run: Run, control: Control) -> None:
         self._run = run
         self._control = control
-        self._source = Source(run.files[0])
+        self._family = family_of(run.machine)
+        language = LANGUAGES.get(self._family, "rs274")
+        self._sources = [Source(file, control.numbers.letter, language) for file in run.files]
+        self._source = self._sources[0]
         self._remark = Remarks(run.files)
         axes = run.machine.axes
-        self._letters = axes[run.machine.primary].name, axes[run.machine.secondary].name
+        primary, secondary = axes[run.machine.primary].name, axes[run.machine.secondary].name
+        self._values = {"primary": primary, "secondary": secondary, "machine": run.machine.name}
         self._known: set[int] = set()
         # M number -> CL word; of words with one number OFF, ON and then the first
         self._coolants: dict[int, str] = {}
@@ -112,27 +123,30 @@ class _Converter:
         """The whole program."""
         run, control = self._run, self._control
         said = items(run, self._source, self._remark)
-        start = marker(control.templates["operation_start"])
-        marked = bool(start) and any(item.text == start for item in said)
-        parts = self._parts(said, start if marked else "")
-        self._match_heads(parts)
-        events = Events(self._phases(), self._coolants, self._known, marked, self._remark)
+        starts = self._first_lines(said, [control.templates["operation_start"]])
+        parts = self._parts(said, starts)
+        self._match_heads(parts, said)
+        phases = self._phases()
+        marked = bool(starts) and bool(phases)
+        unspoken = marked and not control.phases.get("rapid")
+        events = Events(phases, self._coolants, self._known, marked, unspoken, self._remark)
         owned = self._share(said, parts)
         operations = tuple(self._operation(part, own, events) for part, own in zip(parts, owned, strict=True))
         settings = settings_of(control, [(part.line, part.values) for part in parts], self._remark)
         rows = [part.rows for part in parts]
         remark_homes(run, self._remark)
-        remark_registers(run, rows, self._remark)
+        offset = "G" if self._offset_is_word else "work offset "
+        remark_registers(run, rows, offset, self._remark)
         remark_ways(run, rows, self._remark)
         remark_poses(run, zip(rows, (operation.moves for operation in operations), strict=True), self._remark)
-        remark_words(run.files, self._known, self._remark)
+        remark_words(self._sources, self._family, self._known, self._remark)
         return Converted(Toolpath(run.files[0], operations, settings.get("part", "")), settings, self._remark.problems)
 
     def _phases(self) -> dict[str, Phase]:
         """Comment -> phase; of phases with one comment the first."""
         found: dict[str, Phase] = {}
         for name, phase in _PHASES.items():
-            if spoken := self._control.phases.get(name, "").removeprefix(";").strip():
+            if spoken := self._control.phases.get(name, "").strip("; *()"):
                 found.setdefault(spoken, phase)
         return found
 
@@ -143,18 +157,30 @@ class _Converter:
         templates = self._control.templates
         return [templates[key] for name in names for key in templates if key.startswith(name)]
 
-    def _parts(self, said: Sequence[Item], start: str) -> list[_Part]:
-        """Cut the program where operations begin: at the comment ``start``, or without one at tool changes."""
-        ends = {marker(template) for template in self._called(_ENDS)} - {""}
+    def _first_lines(self, said: Iterable[Item], templates: Iterable[Template]) -> set[int]:
+        """The lines of ``said`` that are the first line of one of the templates, if that is more than a value."""
+        settings = self._control.settings
+        firsts = [patterns([template], self._values, settings)[:1] for template in templates]
+        first = [line.expression for lines in firsts for line in lines if not line.bare]
+        lines = sorted({item.line for item in said if item.file == 0})
+        return {line for line in lines if any(each.fullmatch(self._source.text(line)) for each in first)}
+
+    def _parts(self, said: Sequence[Item], starts: set[int]) -> list[_Part]:
+        """Cut the program where operations begin: at the lines ``starts``, or without any at tool changes."""
+        spoken = [item for item in said if item.kind == "comment"]
+        ends = self._first_lines(spoken, self._called(_ENDS)) if starts else set[int]()
         parts = [_Part(1, 0, 0)]
+        begun = 0
         for k, item in enumerate(said):
             last = parts[-1]
-            if (item.text == start) if start else (item.kind == "tool_change"):
+            here = item.line if item.file == 0 else 0
+            if (here in starts and here != begun) if starts else (item.kind == "tool_change"):
                 last.stop = item.row
                 last.end = k if last.end < 0 else last.end
                 parts.append(_Part(item.line, k, item.row))
-            elif start and item.text in ends and last.end < 0:
+            elif here in ends and last.end < 0:
                 last.end = k
+            begun = here or begun
         parts[-1].stop = len(self._run)
         parts[-1].end = len(said) if parts[-1].end < 0 else parts[-1].end
         for part in parts:
@@ -170,6 +196,7 @@ class _Converter:
         if not placed.any():
             return rows[:0]
         begin = int(np.argmax(placed))
+        moved &= ~self._placed_away(rows)
         last = int(np.flatnonzero(moved)[-1])
         gone = begin + np.flatnonzero(~moved[begin:last])
         if len(gone):
@@ -181,12 +208,25 @@ class _Converter:
             return np.concatenate(([rows[begin] - 1], rows[kept]))  # an arc needs the place where it begins
         return rows[kept]
 
-    def _match_heads(self, parts: Sequence[_Part]) -> None:
-        """Find the lines of templates, and what they say."""
-        templates, run = self._control.templates, self._run
-        start = patterns([templates["program_start"]], *self._letters)
-        head = patterns(self._called(_HEADS), *self._letters)
-        tail = patterns([*self._called(_ENDS), templates["program_end"]], *self._letters)
+    def _placed_away(self, rows: Ints) -> Flags:
+        """(n,) bool: the rotary axes alone are placed, without TCP: away from the part, or after its last position."""
+        run = self._run
+        programmed = run.programmed[rows]
+        places = (programmed & (Written.X | Written.Y | Written.Z | Written.VECTOR)) != 0
+        alone = ~places & (programmed != 0) & ~run.tcp[rows] & (run.kind[rows] == Kind.RAPID)
+        order = np.arange(len(rows))
+        machine = np.maximum.accumulate(np.where(run.machine_frame[rows], order, -1))
+        works = ~alone & ~run.machine_frame[rows]
+        worked = np.maximum.accumulate(np.where(works, order, -1))
+        after = order > (int(np.flatnonzero(works)[-1]) if works.any() else -1)
+        return np.asarray(alone & ((machine > worked) | after))
+
+    def _match_heads(self, parts: Sequence[_Part], said: Sequence[Item]) -> None:
+        """Find the lines of templates, and what they say. Where an operation's end begins, its path has ended."""
+        templates, run, settings = self._control.templates, self._run, self._control.settings
+        start = patterns([templates["program_start"]], self._values, settings)
+        head = patterns(self._called(_HEADS), self._values, settings)
+        tail = patterns([*self._called(_ENDS), templates["program_end"]], self._values, settings)
         common: dict[str, str] = {}
         for k, part in enumerate(parts):
             after = parts[k + 1].line if k + 1 < len(parts) else self._source.count + 1
@@ -196,14 +236,23 @@ class _Converter:
             if k == 0:
                 self._known |= match(self._source.texts(1, part.line if part.line > 1 else first), start, common)
             self._known |= match(self._source.texts(part.line, first), head, part.values)
-            self._known |= match(self._source.texts(last + 1, after), tail, part.values)
+            ended = match(self._source.texts(last + 1, after), tail, part.values)
+            self._known |= ended
+            tail_items = (n for n in range(part.begin, part.end) if said[n].file == 0 and said[n].line in ended)
+            part.end = min(next(tail_items, part.end), part.end)
             plane = {"plane": "frames"} if "plane_x" in part.values and "swivel_style" not in part.values else {}
             part.values = {**common, **part.values, **plane, **self._registers(part)}
 
     def _registers(self, part: _Part) -> dict[str, str]:
-        """Work offset and edge in force at the first row."""
+        """Work offset and edge in force at the first row; an offset that is no G word was found in the head."""
         offset, edge = int(self._run.offset[part.rows[0]]), int(self._run.edge[part.rows[0]])
-        return ({"work_offset": f"G{offset}"} if offset else {}) | ({"edge": str(edge)} if edge >= 0 else {})
+        named = {"work_offset": f"G{offset}"} if offset and self._offset_is_word else {}
+        return named | ({"edge": str(edge)} if edge >= 0 else {})
+
+    @property
+    def _offset_is_word(self) -> bool:
+        """Whether a work offset is called by its G word alone."""
+        return bool(re.fullmatch(r"G\d+", self._control.settings.get("work_offset", "")))
 
     def _share(self, said: Sequence[Item], parts: Sequence[_Part]) -> list[list[Item]]:
         """What is said in each operation; what stands outside of all belongs to the next, or else to the last."""

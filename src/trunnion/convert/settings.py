@@ -5,6 +5,12 @@ from collections.abc import Iterable, Mapping
 from trunnion.control.definition import Control
 from trunnion.convert.lost import Remarks
 
+#: Settings that say the same to every control; the others are words and habits of a family.
+_COMMON = frozenset({"title", "part", "date", "program", "tool", "tool_call", "tolerance", "fallback_tolerance"})
+
+#: Work offsets that have these names wherever they are G words.
+_OFFSETS = frozenset({"G54", "G55", "G56", "G57"})
+
 #: Tolerances are printed with five decimals.
 _SAME_TOLERANCE = 5e-6
 
@@ -28,6 +34,16 @@ def settings_of(control: Control, heads: Iterable[tuple[int, Mapping[str, str]]]
                 what = f"{name} is {value!r} here and {merged[name]!r} before; one program has one"
                 remark(line, what, f"the first is taken; see --set {name}=…")
     return {name: value for name, value in merged.items() if value and not _same(value, control.settings[name])}
+
+
+def carried_over(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
+    """The settings of a program for one control that mean the same on another, as far as it has them."""
+    known = {name: value for name, value in settings.items() if name in target.settings}
+    if control.family is target.family:
+        return known
+    offsets = {control.settings.get("work_offset"), target.settings.get("work_offset"), settings.get("work_offset")}
+    same = _COMMON | ({"work_offset"} if offsets <= _OFFSETS else frozenset())
+    return {name: value for name, value in known.items() if name in same}
 
 
 def number(text: str | None) -> float | None:

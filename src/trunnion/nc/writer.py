@@ -20,6 +20,7 @@ CHUNK = 16384
 
 _DIGITS = 20  # of an int64, with sign and point
 _LETTERS = 12
+_WIDEST_WORD = _DIGITS + _LETTERS + 2
 
 #: Bytes that a block number takes at most, with its blank and the sign of skipped blocks.
 ROOM_OF_NUMBER = 12
@@ -242,18 +243,45 @@ class BlockWriter:
 
     ``words`` stand in the order in which a block holds them. The writer is the only place that knows the modal state
     of the words; text lines do not touch it unless the caller says so with ``remember`` or ``forget``.
+
+    size   bytes written since the file was turned to
     """
 
     def __init__(self, sink: BinaryIO, words: Sequence[Word], numbers: BlockNumbers) -> None:
-        self._sink = sink
         self._numbers = numbers
-        self._number = np.array([numbers.start, numbers.step, numbers.start, numbers.highest], np.int64)
+        self._next_numbers: dict[BinaryIO, Ints] = {}
+        self.turn_to(sink)
         self._letter = np.frombuffer(numbers.letter.encode(), np.uint8)
         self._skip = np.zeros(0, np.uint8)
         self._words: dict[str, Word] = {}
         self._keys: list[str] = []
         self._last = np.zeros(0, np.int64)
         self.use(words)
+
+    def turn_to(self, sink: BinaryIO) -> None:
+        """Write into another file from here on, whose block numbers go on where they were left, or begin.
+
+        What was last printed stays known, whatever the file says.
+        """
+        numbers = self._numbers
+        first = [numbers.start, numbers.step, numbers.start, numbers.highest]
+        self._sink = sink
+        self._number = self._next_numbers.setdefault(sink, np.array(first, np.int64))
+        self.size = 0
+
+    @property
+    def widest_row(self) -> int:
+        """Bytes that the block of a row takes at most, without lines before it."""
+        return ROOM_OF_NUMBER + len(self._letter) + 2 + len(self._keys) * _WIDEST_WORD
+
+    def in_force(self) -> dict[str, int]:
+        """Modal words that are known to be in force, with the counts that were last printed."""
+        last = self._last.tolist()
+        return {
+            key: count
+            for k, (key, count) in enumerate(zip(self._keys, last, strict=True))
+            if count != ABSENT and self._rule[k, _MODAL]
+        }
 
     def use(self, words: Sequence[Word]) -> None:
         """Take up another set of words. What was last printed stays known for the words that print as before."""
@@ -292,6 +320,11 @@ class BlockWriter:
         _check_range(word, np.array([count], np.int64))
         self.remember(key, count)
         return word.letter + word.format.of_count(count) + word.closing
+
+    @property
+    def skips(self) -> bool:
+        """Whether blocks begin with the block-skip sign."""
+        return len(self._skip) > 0
 
     def skip_blocks(self, on: bool) -> None:
         """Begin the blocks that follow with the block-skip sign, or no longer."""
@@ -360,7 +393,7 @@ class BlockWriter:
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
         heads = ROOM_OF_NUMBER + len(self._letter) + 1
-        width = heads + len(rule) * (_DIGITS + _LETTERS + 2) + 1
+        width = heads + len(rule) * _WIDEST_WORD + 1
         text_room = sum(len(encoded[k]) + heads + 1 for k in line_of)
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
         start = self._numbers.unnumbered
@@ -382,6 +415,7 @@ class BlockWriter:
             out,
         )
         self._sink.write(out[:written].data)
+        self.size += written
 
 
 def _lines_before(

@@ -9,11 +9,13 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machine import Machine, inverse, slide_positions
+from trunnion.plan.optimum import IDLE
+from trunnion.plan.poses import cutting
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.toolpath import Moves
 
-#: Rows looked at together.
-_CHUNK = 4096
+#: Rows looked at together, at first; then twice as many each time.
+_CHUNK = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,14 +39,16 @@ def beyond_words(machine: Machine, column: int, value: float) -> str:
     return f"axis {axis.name} would go to {value:.5f}, {word} its limit {limit:g} {unit}"
 
 
-def dead_end(
-    machine: Machine, moves: Moves, row: int, end: int, branch: int, pose: Floats, keep_slides: bool
-) -> DeadEnd | None:
-    """Follow one branch from ``pose`` (2,), degrees, into rows ``row`` to ``end``, until a limit is left."""
+def dead_end(machine: Machine, moves: Moves, row: int, branch: int, pose: Floats, keep_slides: bool) -> DeadEnd | None:
+    """Follow one branch from ``pose`` (2,), degrees, into ``row`` and on, until a limit is left or the cut ends."""
     low, high = limits_of(machine, keep_slides)
-    last = pose
-    for first in range(row, end, _CHUNK):
-        part = slice(first, min(first + _CHUNK, end))
+    last, first, count = pose, row, _CHUNK
+    while first < len(moves):
+        touches = cutting(moves, slice(first, first + count)) != IDLE
+        touches[0] |= first == row
+        part = slice(first, first + (len(touches) if touches.all() else int(np.argmin(touches))))
+        if part.stop == first:
+            return None
         values = continued(machine, moves, part, branch, last)
         joints = slide_positions(machine, moves.tip[part], values)
         joints[:, list(machine.rotary)] = values
@@ -53,7 +57,9 @@ def dead_end(
             k = int(np.argmax(outside.any(axis=1)))
             column = int(np.argmax(outside[k]))
             return DeadEnd(first + k, column, float(joints[k, column]))
-        last = values[-1]
+        if not touches.all():
+            return None
+        last, first, count = values[-1], part.stop, 2 * count
     return None
 
 

@@ -8,7 +8,8 @@ cuts. Without TCP slides and rotary axes are led, each evenly from point to poin
 way that turns an axis, rapids too. There circles stay circles only where the slides by themselves make them.
 
 Where the way leads to the other side of the machine, through its pole in a cut or anyhow in a rapid, the rotary axes
-turn evenly and points only hold the tip on its line. In a cut the tool axis must stay within its tolerance there.
+turn evenly and points only hold the tip on its line. In a cut the tool axis must stay within its tolerance there. So it
+is with the turn of a rewind: the slides follow it, and the tip rests at the clearance.
 """
 
 import math
@@ -28,7 +29,7 @@ from trunnion.plan.rows import with_copies
 from trunnion.plan.spans import branches, divide
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.plan.wishes import Wishes
-from trunnion.toolpath import Kind, LoadTool, Operation
+from trunnion.toolpath import Kind, LoadTool, Moves, Operation
 
 #: Directions are taken as along a slide within this sine.
 _ALONG: Final = 1e-6
@@ -124,8 +125,9 @@ def with_points(file: str, motion: Motion, machine: Machine, wishes: Wishes, cho
         operation, rotary = _circles_of_slides(machine, operation, rotary, chord_tolerance)
     moves = operation.moves
     wound = _wound_up(machine, rotary)
-    side = branches(machine, moves.axis, wound)
+    side = branches(machine, wound)
     wound, stray = _as_the_great_circle_winds(machine, moves.axis, wound, side)
+    stray |= _turns_at_rest(moves, wound)
     bend = _bend_to_other_side(machine, moves.axis, wound, side, stray)
     crosses, bent = bend >= 0.0, bend > wishes.axis_between
     ways = (moves.kind != Kind.ARC) & ~crosses
@@ -138,14 +140,20 @@ def with_points(file: str, motion: Motion, machine: Machine, wishes: Wishes, cho
     )  # fmt: skip
     source, tip, axis, wound = spans.source, spans.tip, spans.axis, spans.rotary
     over = np.flatnonzero(crosses & ~(bent & (moves.kind != Kind.RAPID))) if without else np.zeros(0, np.int64)
-    for row in over[::-1].tolist():
-        at = int(np.searchsorted(source, row))
-        part = slice(at - 1, at + 1)
-        held = _held(machine, tip[part], wound[part], wishes)
-        source = np.insert(source, at, np.full(len(held[0]), row))
-        tip, axis, wound = (np.insert(old, at, new, axis=0) for old, new in zip((tip, axis, wound), held, strict=True))
-    copies = np.bincount(source, minlength=len(moves))
+    at = np.searchsorted(source, over)
+    held = [_held(machine, tip[k - 1 : k + 1], wound[k - 1 : k + 1], wishes) for k in at.tolist()]
+    if held:
+        more = np.array([len(one[0]) for one in held])
+        before = np.repeat(at, more)
+        source = np.insert(source, before, np.repeat(over, more))
+        new = (np.concatenate(part) for part in zip(*held, strict=True))
+        tip, axis, wound = (
+            np.insert(old, before, one, axis=0) for old, one in zip((tip, axis, wound), new, strict=True)
+        )
     problems = [*_bent(file, operation, np.flatnonzero(bent & (moves.kind == Kind.LINEAR)), wishes)]
+    if len(source) == len(moves):
+        return Led(replace(motion, operation=operation, rotary=rotary), tuple(problems))
+    copies = np.bincount(source, minlength=len(moves))
     problems += _beyond(file, operation, machine, source, tip, wound)
     led = replace(
         motion,
@@ -242,11 +250,15 @@ def _as_the_great_circle_winds(machine: Machine, axis: Floats, wound: Floats, si
     stray = np.zeros(len(wound), np.bool_)
     if not len(rows):
         return wound, stray
-    joints = np.zeros((len(wound), 5))
-    joints[:, second] = wound[:, 1]
-    asked, tilted = _azimuths(axis, line), _azimuths(forward(machine, joints)[1], line)
-    by_path = _wrapped(asked[rows] - asked[rows - 1])
-    turn = sense * (by_path - _wrapped(tilted[rows] - tilted[rows - 1]))
+    ends = np.concatenate((rows - 1, rows))
+    joints = np.zeros((len(ends), 5))
+    joints[:, second] = wound[ends, 1]
+    asked, tilted = (
+        np.diff(_azimuths(vectors, line).reshape(2, -1), axis=0)[0]
+        for vectors in (axis[ends], forward(machine, joints)[1])
+    )
+    by_path = _wrapped(asked)
+    turn = sense * (by_path - _wrapped(tilted))
     turns = np.rint((turn - steps[rows - 1]) / 360.0) * (np.abs(by_path) < 180.0 - 1e-6)
     if not machine.axes[first].endless:
         stray[rows[turns != 0.0]] = True
@@ -267,11 +279,22 @@ def _wrapped(angle: Floats) -> Floats:
     return np.asarray(angle - 360.0 * np.rint(angle / 360.0))
 
 
+def _turns_at_rest(moves: Moves, wound: Floats) -> Flags:
+    """(n,) bool: rapids in which nothing but the rotary axes turns, as on the retreat of a rewind."""
+    rows = np.flatnonzero(moves.kind[1:] == Kind.RAPID) + 1
+    rests = (moves.tip[rows] == moves.tip[rows - 1]).all(axis=1) & (moves.axis[rows] == moves.axis[rows - 1]).all(
+        axis=1
+    )
+    found = np.zeros(len(moves), np.bool_)
+    found[rows] = rests & (np.abs(wound[rows] - wound[rows - 1]) > _STILL).any(axis=1)
+    return found
+
+
 def _bend_to_other_side(machine: Machine, axis: Floats, wound: Floats, side: Ints, stray: Flags) -> Floats:
     """How far the tool axis leaves its great circle where the rotary axes turn evenly to their other side.
 
     Returns (n,) degrees, -1 for rows on the way to which they keep their side. They turn so on a way through the pole,
-    and when they go round by another turn; no points make that another way.
+    when they go round by another turn, and in the rows ``stray``; no points make that another way.
     """
     bend = np.full(len(axis), -1.0)
     other = (side[1:] != side[:-1]) & (side[1:] >= 0) & (side[:-1] >= 0)
@@ -329,14 +352,17 @@ def _beyond(
     """Points put in at which an axis is beyond its limits although it is not at the CL points."""
     added = np.flatnonzero(np.append(source[1:] == source[:-1], False))
     low, high = limits_of(machine, machine.workpiece_zero is not None)
+
+    def beyond(joints: Floats) -> Flags:
+        return np.asarray((joints < low - LIMIT_TOLERANCE) | (joints > high + LIMIT_TOLERANCE))
+
     joints = slide_positions(machine, tip[added], wound[added])
-    outside = (joints < low - LIMIT_TOLERANCE) | (joints > high + LIMIT_TOLERANCE)
-    ends = np.flatnonzero(np.append(source[1:] != source[:-1], True))
-    at_ends = slide_positions(machine, tip[ends], wound[ends])
-    beyond = (at_ends < low - LIMIT_TOLERANCE) | (at_ends > high + LIMIT_TOLERANCE)
-    clean: Flags = np.logical_not(beyond.any(axis=1))
+    outside = beyond(joints)
+    found = np.flatnonzero(outside.any(axis=1))
     rows = source[added]
-    found = np.flatnonzero(outside.any(axis=1) & clean[rows] & clean[np.maximum(rows - 1, 0)])
+    for away in (0, 1):  # both ends of the way
+        ends = np.searchsorted(source, rows[found] - away, "right") - 1
+        found = found[~beyond(slide_positions(machine, tip[ends], wound[ends])).any(axis=1)]
     for row in np.unique(rows[found])[:_NAMED].tolist():
         k = int(found[np.argmax(rows[found] == row)])
         column = int(np.argmax(outside[k]))

@@ -38,9 +38,7 @@ class Planned:
     def ahead(self, row: int, branch: int, pose: Floats) -> DeadEnd | None:
         """Where ``pose`` (2,), degrees, leads to from ``row`` on, if nothing is changed before the next idle row."""
         moves = self.operation.moves
-        idle = np.flatnonzero(cutting(moves)[row + 1 :] == IDLE)
-        end = row + 1 + int(idle[0]) if len(idle) else len(moves)
-        return dead_end(self.machine, moves, row, end, branch, pose, self.keep_slides)
+        return dead_end(self.machine, moves, row, branch, pose, self.keep_slides)
 
     def words(self, pose: Floats) -> str:
         """A pose, such as ``C 10.000 B 40.000``."""
@@ -149,7 +147,7 @@ def _change(planned: Planned, row: int, rewound: dict[int, str]) -> Decision:
     if row in rewound:
         return _decision(planned, row, Why.REWIND, f"rewinds in the cut: {rewound[row]}")
     rotary, was, now = planned.rotary, int(planned.branch(row - 1)), int(planned.branch(row))
-    idle = cutting(planned.operation.moves)[row] == IDLE
+    idle = cutting(planned.operation.moves, slice(row, row + 1))[0] == IDLE
     ways = f"{planned.words(rotary[row - 1])} to {planned.words(rotary[row])}"
     swing = np.abs(steps(planned.machine, rotary[row - 1 : row + 1])[1]).max()
     if not idle or (swing <= POLE_JUMP and was != now):

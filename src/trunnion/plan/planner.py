@@ -47,7 +47,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     Raises
     ------
     InputError
-        When there is nothing to plan, or without TCP something is not known that slide positions depend on.
+        When there is nothing to plan, a wish is about an operation that there is not, or without TCP something is not
+        known that slide positions depend on.
     Refused
         When no position of the machine gives a tool axis, or an operation cannot be made in the manner that is wished
         for; of that no program can be made at all.
@@ -56,9 +57,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
+    _check_names(wishes, [operation.name for _, operation in pairs])
     program_frame = Frame() if wishes.absolute else pairs[0][1].frame
-    if not wishes.tcp:
-        wishes = replace(wishes, rewind=False)  # nobody would hold the tip while the axes turn
     keep_slides = machine.workpiece_zero is not None
     stretches: list[_Stretch] = []
     against: list[Problem] = []
@@ -69,8 +69,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         except CycleError as error:
             against.append(Problem(path.file, error.line, error.what, error.cure))
             continue
-        asked, own = manner_of(operation, wishes.manner), seen_from(original.frame, program_frame)
-        manner, reworded = in_other_words(path.file, operation, asked, wishes)
+        wished, own = wishes.of(original.name), seen_from(original.frame, program_frame)
+        manner, reworded = in_other_words(path.file, operation, manner_of(operation, wished.manner), wished)
         said += reworded
         against += contradictions(path.file, operation, manner, wishes.manners)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
@@ -81,7 +81,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
             kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         stretch = _stretch(Asked(machine, path.file, operation, original, wishes, keep_slides))
-        planes = Manner.TILTED in wishes.manners and wishes.manner is None
+        planes = Manner.TILTED in wishes.manners and wished.manner is None
         if plane is not None and wishes.machine_x:
             plane = plane_of(operation.moves.axis[0], own, machine_x(machine, stretch.poses.rotary[0]))
         parts = by_axis(operation) if manner in (Manner.TCP, Manner.WITHOUT_TCP) and planes else None
@@ -101,9 +101,20 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         check_without_tcp(pairs[0][0].file, lacking, machine)
     log = [decision for stretch in stretches for decision in stretch.log]
     led = [with_points(stretch.file, motion, machine, wishes, chord_tolerance) for stretch, motion in motions]
-    problems += [problem for one in led for problem in one.problems]
+    # What is wrong between points follows from what is wrong at them, where anything is.
+    sound = (one for one, (stretch, _) in zip(led, motions, strict=True) if not stretch.refused)
+    problems += [problem for one in sound for problem in one.problems]
     log += [decision for one in led for decision in one.log]
     return Plan(tuple(one.motion for one in led), tuple(problems), tuple(log))
+
+
+def _check_names(wishes: Wishes, names: Sequence[str]) -> None:
+    """Raise ``InputError`` for wishes about operations that there are not."""
+    unknown = [name for name in wishes.own_manner if name not in names]
+    cure = f"write one of {', '.join(dict.fromkeys(names))}"
+    if unknown:
+        what = "manner is said of operation {}, and the program has none of that name"
+        raise InputError([Problem("--set", 0, what.format(name), cure) for name in unknown])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,6 +134,10 @@ class _Stretch:
     manner: Manner = Manner.TCP
     plane: Frame | None = None
     parts: Sequence[tuple[int, int]] = ()
+
+    @property
+    def refused(self) -> bool:
+        return any(problem.severity is Severity.ERROR for problem in self.problems)
 
     def motions(self, machine: Machine, wishes: Wishes) -> list[Motion]:
         """What is to be written."""
@@ -200,8 +215,7 @@ def _rewind_problems(planned: Planned, rewinds: Sequence[Rewind], wishes: Wishes
             what = "the rotary axes would have to rewind in the cut"
             if rewind.end is not None:
                 what = f"{beyond_words(machine, rewind.end.column, rewind.end.value)} in the cut"
-            allowed = "allow rewinds (--set rewind=insert)" if wishes.tcp else "post with TCP (--set tcp=on)"
-            cure = f"{allowed}, split the operation, or turn the workpiece"
+            cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
             yield Problem(planned.file, at, what, cure)
             continue
         if not math.isfinite(rewind.way):

@@ -46,12 +46,12 @@ _NAMED = 50
 _SQUARE = 1e-12
 
 
-def cutting(moves: Moves) -> Codes:
+def cutting(moves: Moves, rows: slice = slice(None)) -> Codes:
     """(n,) uint8: IDLE where the move into a row does not touch the part, TOUCHES where it may, CUTS where it cuts."""
     code = np.full(len(Phase), TOUCHES, np.uint8)
     code[[Phase.RAPID, Phase.APPROACH, Phase.DEPARTURE, Phase.TRAVERSE]] = IDLE
     code[Phase.CUT] = CUTS
-    return np.where(moves.kind == Kind.RAPID, np.uint8(IDLE), code[moves.phase])
+    return np.where(moves.kind[rows] == Kind.RAPID, np.uint8(IDLE), code[moves.phase[rows]])
 
 
 def choice_of(machine: Machine, packed: Packed, states: States, keep_slides: bool) -> Choice:

@@ -19,20 +19,37 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.kernels import njit
 from trunnion.machine import Machine, Packed, pack
 from trunnion.machine.chain import Chain, chain_row, pack_chain
-from trunnion.machine.inverse import POLE, UNREACHABLE, branch_angles, solve_slides, solve_tilt
+from trunnion.machine.inverse import POLE, branch_angles, solve_slides, solve_tilt
 
 #: Share of a tolerance that is used: the samples within a span miss the worst place by less than the rest.
 _USED: Final = 0.97
 
-#: At how many places a span is looked at: closer together towards its ends, where a pole nearby bends it most.
-_LOOKS: Final = 5
-_CLOSE_LOOKS: Final = 31
+#: Where a span that turns but little is looked at: what it is off by is nearly a curve of the third degree. Three
+#: places miss its worst by a fifteenth at most, and all seven by less than the rest of the tolerance.
+_THREE: Final = np.array([0.25, 0.5, 0.75])
+_FOUR_MORE: Final = np.array([0.125, 0.375, 0.625, 0.875])
+_SURE: Final = 0.9
+
+#: Where one that turns more is looked at; and, if nothing is wrong there, again: closer together towards its ends,
+#: where a pole nearby bends it most.
+_FIVE: Final = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 6) / 6.0)
+_CLOSE: Final = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 32) / 32.0)
+
+#: As far as this a rotary axis turns but little within a span, degrees.
+_LITTLE: Final = 5.0
+
+#: Sine of the angle between the two solutions of the second axis below which they are one.
+_ONE: Final = 1e-9
 
 #: A span shorter than this fraction of the way between two CL points turns in its place.
 _SHORT: Final = 1e-7
 
-#: Halvings by which the end of a span is found: its length to a thousandth.
-_HALVINGS: Final = 10
+#: A step is long enough from this share of what is allowed on, and it is looked for so many times.
+_ENOUGH: Final = 0.96
+_TRIES: Final = 24
+
+#: Added rows for which there is room at first.
+_ROOM: Final = 1024
 
 #: Pieces into which a turn in its place is cut at most.
 _PIECES: Final = 100_000
@@ -85,36 +102,57 @@ def divide(
     tip_tolerance, axis_tolerance
         mm and degrees.
     """
-    chain, packed = pack_chain(machine), pack(machine)
-    columns = np.array(machine.rotary, np.int64)
     allowed = np.array([math.inf if tcp else _USED * tip_tolerance, _USED * math.radians(axis_tolerance)])
-    counts = np.ones(len(tip), np.int64)
-    empty = np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 2))
-    _divide(chain, packed, columns, tip, axis, rotary, among, allowed, counts, False, *empty)
-    total = int(counts.sum())
-    spans = Spans(
-        np.repeat(np.arange(len(tip)), counts), np.empty((total, 3)), np.empty((total, 3)), np.empty((total, 2))
-    )
-    _divide(
-        chain, packed, columns, tip, axis, rotary, among, allowed, counts, True, spans.tip, spans.axis, spans.rotary
-    )
-    return spans
+    kit = pack_chain(machine), pack(machine), np.array(machine.rotary, np.int64)
+    copies = np.ones(len(tip), np.int64)
+    rows = tip, axis, rotary
+    added = np.empty((_ROOM, 3)), np.empty((_ROOM, 3)), np.empty((_ROOM, 2))
+    row, count = _divide(*kit, *rows, among, allowed, 0, 0, copies, *added)
+    while row < len(tip):
+        added = _roomier(added[0]), _roomier(added[1]), _roomier(added[2])
+        row, count = _divide(*kit, *rows, among, allowed, row, count, copies, *added)
+    if not count:
+        return Spans(np.arange(len(tip)), *rows)
+    own = np.zeros(int(copies.sum()), np.bool_)
+    own[np.cumsum(copies) - 1] = True
+    merged = (_merged(own, old, new[:count]) for old, new in zip(rows, added, strict=True))
+    return Spans(np.repeat(np.arange(len(tip)), copies), *merged)
 
 
-def branches(machine: Machine, axis: Floats, rotary: Floats) -> Ints:
-    """(n,) int64: which of the two solutions each row stands in; -1 in the pole, where they are one.
+def _roomier(rows: Floats) -> Floats:
+    """Rows with as many empty ones behind them."""
+    return np.concatenate((rows, np.empty_like(rows)))
 
-    ``axis`` (n, 3) in the workpiece frame, ``rotary`` (n, 2) in degrees.
+
+def _merged(own: Flags, rows: Floats, added: Floats) -> Floats:
+    """Rows where ``own``, the added ones elsewhere."""
+    merged = np.empty((len(own), rows.shape[1]))
+    merged[own], merged[~own] = rows, added
+    return merged
+
+
+def branches(machine: Machine, rotary: Floats) -> Ints:
+    """(n,) int64: which of the two solutions rows stand in; -1 where they are one: in the pole, at the edge of reach.
+
+    ``rotary`` (n, 2) in degrees. The second angle says it: ``trunnion.machine.inverse`` has phi and -phi there.
     """
-    found = np.empty(len(axis), np.int64)
-    _branches(pack(machine), axis, rotary, found)
+    found = np.empty(len(rotary), np.int64)
+    _branches(pack(machine), rotary, found)
     return found
 
 
 @njit(cache=True)
-def _branches(packed: Packed, axis: Floats, rotary: Floats, found: Ints) -> None:
-    for row in range(axis.shape[0]):
-        found[row] = _branch_of(packed, axis[row], rotary[row])
+def _branches(packed: Packed, rotary: Floats, found: Ints) -> None:
+    for row in range(rotary.shape[0]):
+        found[row] = _branch_of(packed, rotary[row, 1])
+
+
+@njit(cache=True)
+def _branch_of(packed: Packed, second: float) -> int:
+    """Which of the two solutions has this second angle, degrees; -1 where they are one."""
+    angle = math.radians(second)
+    sine = math.sin(angle) * packed.phase[0] + math.cos(angle) * packed.phase[1]
+    return -1 if abs(sine) < _ONE else 0 if sine > 0.0 else 1
 
 
 @njit(cache=True)
@@ -127,58 +165,66 @@ def _divide(
     rotary: Floats,
     among: Flags,
     allowed: Floats,
-    counts: Ints,
-    fill: bool,
+    first: int,
+    count: int,
+    copies: Ints,
     new_tip: Floats,
     new_axis: Floats,
     new_rotary: Floats,
-) -> None:
-    """Count the rows that every row becomes or, with ``fill``, write them."""
-    begin, end, here = np.empty(5), np.empty(5), np.empty(5)
+) -> tuple[int, int]:
+    """Write the rows that are added from row ``first`` on behind the ``count`` that there are, and into how many rows
+    each row becomes; returns the row before which there was no more room, and how many have been added."""
+    begin, end, here, work = np.empty(5), np.empty(5), np.empty(5), np.empty((4, 5))
     look, at = np.empty((3, 3)), np.empty((3, 3))
-    at_row = 0
-    for row in range(tip.shape[0]):
-        made = 0
-        if among[row] and row > 0 and (not fill or counts[row] > 1):
-            branch = _branch_of(packed, axis[row - 1], rotary[row - 1])
-            other = _branch_of(packed, axis[row], rotary[row])
-            if branch < 0:
-                branch = other  # from a pole on, the solution is that of the end
-            elif other >= 0 and branch != other:
-                branch = -1
-            _place(packed, columns, tip[row - 1], rotary[row - 1], begin)
-            _place(packed, columns, tip[row], rotary[row], end)
-            look[0, :], look[1, :], look[2, 0] = axis[row - 1], axis[row], _angle_between(axis[row - 1], axis[row])
-            at[0, :], at[1, :] = tip[row - 1], tip[row]
-            done = 0.0
-            if _surely_within(chain, columns, begin, end, allowed):
-                done = 1.0
-            while done < 1.0 and _error(chain, begin, end, done, 1.0, at, look, allowed, _CLOSE_LOOKS) > 1.0:
-                step = _farthest(chain, packed, columns, at, look, done, branch, begin, end, allowed, here)
-                pieces = 1
-                if step == 0.0:  # nothing but a turn in its place is left: over it, and on
-                    step = min(_SHORT, 1.0 - done)
-                    here[:] = end
-                    if done + step < 1.0:
-                        _between(packed, columns, at, look, done + step, branch, begin, end, here)
-                    pieces = _turn_pieces(chain, packed, columns, begin, here, done + step, at, look, allowed)
-                done += step
-                for piece in range(1, pieces + 1 if done < 1.0 else pieces):
-                    if fill:
-                        k = at_row + made
-                        _write(
-                            columns, at, look, done, begin, here, piece / pieces, new_tip[k], new_axis[k], new_rotary[k]
-                        )
-                    made += 1
-                begin[:] = here
-                if done >= 1.0:
-                    break
-        if fill:
-            last = at_row + made
-            new_tip[last, :], new_axis[last, :], new_rotary[last, :] = tip[row], axis[row], rotary[row]
+    placed = -1
+    for row in range(max(first, 1), tip.shape[0]):
+        if not among[row]:
+            continue
+        if placed == row - 1:
+            begin[:] = end
         else:
-            counts[row] = made + 1
-        at_row += made + 1
+            _place(packed, columns, tip[row - 1], rotary[row - 1], begin)
+        _place(packed, columns, tip[row], rotary[row], end)
+        placed = row
+        if _surely_within(chain, columns, begin, end, allowed):
+            continue
+        look[0, :], look[1, :], look[2, 0] = axis[row - 1], axis[row], _angle_between(axis[row - 1], axis[row])
+        at[0, :], at[1, :] = tip[row - 1], tip[row]
+        branch, other = _branch_of(packed, rotary[row - 1, 1]), _branch_of(packed, rotary[row, 1])
+        if branch < 0:
+            branch = other  # from a pole on, the solution is that of the end
+        elif other >= 0 and branch != other:
+            branch = -1
+        done, step, made = 0.0, 0.0, count
+        while done < 1.0:
+            error = _error(chain, columns, begin, end, done, 1.0, at, look, allowed, work)
+            if error <= 1.0:
+                break
+            if step == 0.0 or step >= 1.0 - done:
+                step = (1.0 - done) * math.sqrt(_ENOUGH / error)
+            step = _farthest(chain, packed, columns, at, look, done, step, branch, begin, end, allowed, here, work)
+            pieces = 1
+            if step == 0.0:  # nothing but a turn in its place is left: over it, and on
+                over = min(_SHORT, 1.0 - done)
+                here[:] = end
+                if done + over < 1.0:
+                    _between(packed, columns, at, look, done + over, branch, begin, end, here, work[0])
+                pieces = _turn_pieces(chain, packed, columns, begin, here, done + over, at, look, allowed, work)
+                done += over
+            done += step
+            pieces -= 0 if done < 1.0 else 1
+            if made + pieces > new_tip.shape[0]:
+                return row, count
+            of = pieces + (0 if done < 1.0 else 1)
+            for piece in range(1, pieces + 1):
+                _write(
+                    columns, at, look, done, begin, here, piece / of, new_tip[made], new_axis[made], new_rotary[made]
+                )
+                made += 1
+            begin[:] = here
+        copies[row] = 1 + made - count
+        count = made
+    return tip.shape[0], count
 
 
 @njit(cache=True)
@@ -267,24 +313,6 @@ def _slerp(look: Floats, part: float, out: Floats) -> None:
 
 
 @njit(cache=True)
-def _branch_of(packed: Packed, axis: Floats, rotary: Floats) -> int:
-    """Which of the two solutions a row has; -1 where they are one."""
-    status, u0, u1, cos, sin = solve_tilt(packed, axis[0], axis[1], axis[2])
-    if status & (POLE | UNREACHABLE):
-        return -1
-    best, chosen = math.inf, -1
-    for branch in range(2):
-        found = branch_angles(packed, u0, u1, cos, sin if branch == 0 else -sin, status)
-        away = 0.0
-        for k in range(2):
-            off = found[k] - rotary[k]
-            away += abs(off - 360.0 * math.floor(off / 360.0 + 0.5))
-        if away < best:
-            best, chosen = away, branch
-    return chosen
-
-
-@njit(cache=True)
 def _between(
     packed: Packed,
     columns: Ints,
@@ -295,12 +323,12 @@ def _between(
     before: Floats,
     goal: Floats,
     out: Floats,
+    axis: Floats,
 ) -> None:
     """Write all five axis values at a part of the way: of one solution, or of the one nearest to the values before.
 
     Where the first axis turns half-way round, as it does across the pole, it goes the way round that leads to ``goal``.
     """
-    axis = np.empty(3)
     _slerp(look, part, axis)
     status, u0, u1, cos, sin = solve_tilt(packed, axis[0], axis[1], axis[2])
     best = math.inf
@@ -333,6 +361,7 @@ def _wound(angle: float, near: float) -> float:
 @njit(cache=True)
 def _error(
     chain: Chain,
+    columns: Ints,
     begin: Floats,
     end: Floats,
     first: float,
@@ -340,20 +369,42 @@ def _error(
     at: Floats,
     look: Floats,
     allowed: Floats,
-    looks: int,
+    work: Floats,
 ) -> float:
-    """How far the tool is off between two axis positions, as a share of what is allowed.
+    """How far the tool is off between two axis positions, as a share of what is allowed: as often as it is needed."""
+    few = abs(end[columns[0]] - begin[columns[0]]) < _LITTLE and abs(end[columns[1]] - begin[columns[1]]) < _LITTLE
+    worst = _seen_error(chain, begin, end, first, last, at, look, allowed, _THREE if few else _FIVE, work)
+    if worst > 1.0 or (few and worst < _SURE):
+        return worst
+    return max(
+        worst, _seen_error(chain, begin, end, first, last, at, look, allowed, _FOUR_MORE if few else _CLOSE, work)
+    )
+
+
+@njit(cache=True)
+def _seen_error(
+    chain: Chain,
+    begin: Floats,
+    end: Floats,
+    first: float,
+    last: float,
+    at: Floats,
+    look: Floats,
+    allowed: Floats,
+    shares: Floats,
+    work: Floats,
+) -> float:
+    """How far the tool is off in some places between two axis positions, as a share of what is allowed.
 
     The positions stand at the parts ``first`` and ``last`` of the way. The tip is held against its line, the tool axis
     against the one that the great circle has at the same share of the span.
     """
-    joints, tip, axis, wanted = np.empty(5), np.empty(3), np.empty(3), np.empty(3)
+    joints, tip, axis, wanted = work[0], work[1], work[2], work[3]
     ways = 0.0
     for k in range(3):
         ways += (at[1, k] - at[0, k]) ** 2
     worst = 0.0
-    for look_at in range(1, looks + 1):
-        share = 0.5 - 0.5 * math.cos(math.pi * look_at / (looks + 1.0))
+    for share in shares:
         for k in range(5):
             joints[k] = begin[k] + share * (end[k] - begin[k])
         chain_row(chain, joints, tip, axis)
@@ -379,35 +430,40 @@ def _farthest(
     at: Floats,
     look: Floats,
     done: float,
+    guess: float,
     branch: int,
     begin: Floats,
     end: Floats,
     allowed: Floats,
     here: Floats,
+    work: Floats,
 ) -> float:
-    """The longest step from ``done`` on that keeps the tolerances, as a part of the way; 0.0 if none does."""
-    low, high = 0.0, 1.0 - done
-    while low == 0.0:
-        step = 0.25 * high
-        if step < _SHORT:
+    """The longest step from ``done`` on that keeps the tolerances, as a part of the way; 0.0 if none does.
+
+    ``here`` is where it ends. What a span is off by grows with the square of its length, or nearly so: the next try
+    follows from the last one, between the longest step that does and the shortest one that does not.
+    """
+    low, high, step = 0.0, 1.0 - done, guess
+    for tries in range(_TRIES):
+        if low == 0.0 and high < _SHORT:
             return 0.0
-        _between(packed, columns, at, look, done + step, branch, begin, end, here)
-        if _error(chain, begin, here, done, done + step, at, look, allowed, _LOOKS) > 1.0:
+        _between(packed, columns, at, look, done + step, branch, begin, end, here, work[0])
+        error = _error(chain, columns, begin, here, done, done + step, at, look, allowed, work)
+        if error > 1.0:
             high = step
         else:
             low = step
-    for _ in range(_HALVINGS):
-        step = 0.5 * (low + high)
-        _between(packed, columns, at, look, done + step, branch, begin, end, here)
-        if _error(chain, begin, here, done, done + step, at, look, allowed, _LOOKS) > 1.0:
-            high = step
+            if error >= _ENOUGH or high - low < 1e-3 * low:
+                return low
+        by_square = step * math.sqrt(0.5 * (1.0 + _ENOUGH) / max(error, 1e-9))
+        if low == 0.0:
+            step = max(by_square, 0.1 * high) if tries < _TRIES // 4 else 0.1 * high
+        elif low < by_square < high:
+            step = by_square
         else:
-            low = step
-    for _ in range(_HALVINGS):  # what those looks missed near a pole, closer ones see
-        _between(packed, columns, at, look, done + low, branch, begin, end, here)
-        if _error(chain, begin, here, done, done + low, at, look, allowed, _CLOSE_LOOKS) <= 1.0:
-            break
-        low *= 0.9
+            step = 0.5 * (low + high)
+    if low > 0.0:
+        _between(packed, columns, at, look, done + low, branch, begin, end, here, work[0])
     return low
 
 
@@ -422,6 +478,7 @@ def _turn_pieces(
     at: Floats,
     look: Floats,
     allowed: Floats,
+    work: Floats,
 ) -> int:
     """Pieces into which a turn at rest is cut."""
     joints, tip, rotary = np.empty(5), np.empty(3), np.empty(2)
@@ -432,7 +489,7 @@ def _turn_pieces(
         for k in range(2):
             rotary[k] = begin[columns[k]] + (end[columns[k]] - begin[columns[k]]) / pieces
         _place(packed, columns, tip, rotary, joints)
-        error = _error(chain, begin, joints, part, part, at, look, allowed, _LOOKS)
+        error = _seen_error(chain, begin, joints, part, part, at, look, allowed, _FIVE, work)
         if not error > 1.0:
             break
         # what a piece is off by shrinks with the square of its length

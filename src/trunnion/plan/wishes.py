@@ -1,7 +1,8 @@
 """What whoever asks for a program may wish of its planning."""
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
 
@@ -22,6 +23,7 @@ class Wishes:
     explain         write the log: what was decided and why, what the nearest neighbour would have done, where a rotary
                     axis is too fast
     manner          how every operation is to be made, whatever the rule says; None: by the rule
+    own_manner      the same for operations by their names; this is stronger
     manners         those that the control has words for
     arcs_about_z    the control knows arcs about Z only
     machine_x       X of a tilted plane is that of the machine once it has turned, unless the CL file has an own one
@@ -43,6 +45,7 @@ class Wishes:
     engage: float = 0.5
     explain: bool = False
     manner: Manner | None = None
+    own_manner: Mapping[str, Manner | None] = field(default_factory=dict)
     manners: frozenset[Manner] = frozenset(Manner)
     arcs_about_z: bool = False
     machine_x: bool = False
@@ -55,6 +58,10 @@ class Wishes:
     tcp: bool = True
     tip_tolerance: float = 0.005
     axis_tolerance: float | None = None
+
+    def of(self, operation: str) -> "Wishes":
+        """The wishes for the operation of this name."""
+        return replace(self, manner=self.own_manner.get(operation, self.manner))
 
     @property
     def axis_between(self) -> float:

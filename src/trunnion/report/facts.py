@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -193,7 +194,7 @@ def _control(verification: Verification) -> str:
 
 def _spot(run: Run, row: int) -> Spot:
     file = int(run.file[row])
-    return Spot(int(run.block[row]), int(run.number[row]), clean(run.files[file]) if file else "")
+    return Spot(int(run.block[row]), int(run.number[row]), clean(Path(run.files[file]).name) if file else "")
 
 
 def _span(run: Run, values: Floats, rows: Ints | None = None) -> Span | None:

@@ -11,6 +11,7 @@ where each column is lowest and highest. They are real rows, so whatever is seen
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,7 +126,7 @@ def series(verification: Verification) -> Series:
         values=values,
         lines=lines,
         plots=tuple(plots),
-        files=tuple(map(clean, run.files)),
+        files=tuple(clean(Path(file).name) for file in run.files),
         changes=changes,
         timed=timed,
     )

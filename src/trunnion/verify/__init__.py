@@ -3,6 +3,7 @@
 from trunnion.verify.case import Settings
 from trunnion.verify.compare import Comparison, Difference, compare
 from trunnion.verify.model import Check, Place, Share, Verification
+from trunnion.verify.rapids import with_rapids
 from trunnion.verify.text import check_lines, failures, place_line, place_lines, time_lines
 from trunnion.verify.verify import verify
 from trunnion.verify.wanted import Agreed, Allowed
@@ -24,4 +25,5 @@ __all__ = [
     "place_lines",
     "time_lines",
     "verify",
+    "with_rapids",
 ]

@@ -24,6 +24,7 @@ from trunnion.verify.cycles import hole_rows, leads, made_in
 from trunnion.verify.points import Tilt
 from trunnion.verify.rapids import PLACES as PLACES
 from trunnion.verify.rapids import levels
+from trunnion.verify.retreats import comes_back
 from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Wanted
 
@@ -224,6 +225,11 @@ class _Matcher:
             pieces = self._take_arc(i, j)
             if pieces:
                 i += pieces
+                continue
+            back = comes_back(self._run, self._rows[i], self._wanted.part_of(j).allowed.tip)
+            if back:
+                self._extra += self._rows.part(i, i + back).tolist()
+                i += back
                 continue
             motions, points = self._take_way(i, j)
             if motions:

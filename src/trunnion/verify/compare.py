@@ -365,7 +365,7 @@ def _doubts(one: Run, two: Run) -> tuple[str, ...]:
     if sorted(error.text for error in one.errors) == sorted(error.text for error in two.errors):
         return ()
     return tuple(
-        f"{run.files[0]}:{error.line}: not understood: {error.text}" for run in (one, two) for error in run.errors
+        f"{error.file}:{error.line}: not understood: {error.text}" for run in (one, two) for error in run.errors
     )
 
 

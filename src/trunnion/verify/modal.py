@@ -83,7 +83,8 @@ def _tcp_left_on(case: Case) -> list[Place]:
     run = case.run
     places = []
     frame = run.state.machine_frame.where(True)
-    wrong = frame[run.state.tcp.at(frame)]
+    along = [event.before_row for event in run.events if event.kind == "retract"]  # the tool's own axis, at its tip
+    wrong = frame[run.state.tcp.at(frame) & ~np.isin(frame, along)]
     if len(wrong):
         places.append(case.place(int(wrong[0]), 0.0, "moves in the machine's frame with TCP on"))
     for event in run.events:

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Codes, Floats, Ints
 from trunnion.kernels import njit
 from trunnion.machine import Machine
-from trunnion.reader import Poses
+from trunnion.reader import Poses, Written
 from trunnion.verify.wanted import Part, Wanted
 
 if TYPE_CHECKING:
@@ -54,8 +54,8 @@ class Off:
 class Deviations:
     """Tip and tool axis of all pairs, gathered as a run goes by; of what is off, ``named`` pairs are named."""
 
-    def __init__(self, machine: Machine, wanted: Wanted, pairs: "Pairs", named: int) -> None:
-        self._wanted, self._pairs = wanted, pairs
+    def __init__(self, machine: Machine, wanted: Wanted, pairs: "Pairs", named: int, programmed: Codes) -> None:
+        self._wanted, self._pairs, self._programmed = wanted, pairs, programmed
         self._tip, self._axis = _Gatherer(named), _Gatherer(named)
         self._frame = Tilt.of(machine)
         self._ends = [pairs.cl.before(part.end) for part in wanted.parts]
@@ -79,6 +79,10 @@ class Deviations:
             poses.tip, poses.axis, poses.joints, moves.tip, moves.axis, nc, cl, frame.column, frame.sense, frame.first,
             frame.second, off_tip, off_axis,
         )  # fmt: skip
+        said = (self._programmed[nc + (first - 1)] & int(Written.VECTOR)) != 0
+        if said.any():  # a tool axis that is said as a vector is off by an angle of its own
+            apart = np.linalg.norm(poses.axis[nc[said]] - moves.axis[cl[said]], axis=1)
+            off_axis[said] = np.degrees(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)))
         self._tip.take(start, off_tip, squares[0], part.allowed.tip)
         self._axis.take(start, off_axis, squares[1], part.allowed.angle)
 

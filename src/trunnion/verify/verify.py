@@ -129,11 +129,11 @@ def _paired(run: Run, wanted: Wanted, walker: Walker, settings: Settings) -> tup
     counted = in_order(run, wanted)
     bend = settings.span if settings.span is not None or settings.span_tip is None else 180.0
     pairs = counted or matched(run, wanted, bend=bend)
-    off, spans = Deviations(run.machine, wanted, pairs, NAMED), _spans(run, settings, wanted, pairs)
+    off, spans = Deviations(run.machine, wanted, pairs, NAMED, run.programmed), _spans(run, settings, wanted, pairs)
     _go_by(run, walker, off, *spans)
     if counted and any(one.count for one in off.found()):
         pairs = matched(run, wanted, bend=bend)
-        off, spans = Deviations(run.machine, wanted, pairs, NAMED), _spans(run, settings, wanted, pairs)
+        off, spans = Deviations(run.machine, wanted, pairs, NAMED, run.programmed), _spans(run, settings, wanted, pairs)
         _go_by(run, off, *spans)
     return pairs, *off.found(), spans[0] if spans else None
 

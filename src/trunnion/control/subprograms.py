@@ -1,0 +1,120 @@
+"""Programs in several files: a main program, and what the subprograms that it calls are named.
+
+In:     the definition's ``[subprograms]``, and the operations that become subprograms.
+Out:    names that the control takes, each once, and the files as they are begun.
+"""
+
+import re
+import unicodedata
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import BinaryIO
+
+#: What no control minds in a name is all but these.
+_STRANGE = re.compile(r"[^A-Za-z0-9]+")
+_TWO_LETTERS = re.compile(r"[A-Za-z]{2}")
+
+#: Names that Windows gives to devices: no file can have one.
+_DEVICE = re.compile(r"CON|PRN|AUX|NUL|COM[0-9]|LPT[0-9]", re.IGNORECASE)
+
+#: Stands before names that cannot stand alone.
+_BEFORE = "OP"
+
+#: Bytes of a file that are kept for what ends an operation.
+ROOM_FOR_THE_END = 4096
+
+#: The least that a file may hold at most: beside the room for the end, some blocks.
+LEAST_SIZE = 5 * ROOM_FOR_THE_END
+
+
+@dataclass(frozen=True, slots=True)
+class Naming:
+    """How subprograms are called on a control.
+
+    extension  of their files
+    capitals   letters of names are capitals, else small ones
+    longest    characters of a name, at most
+    reserved   names do not begin so: the control has such programs of its own
+    """
+
+    extension: str
+    capitals: bool
+    longest: int
+    reserved: tuple[str, ...] = ()
+
+
+class Names:
+    """Gives names that the control takes, each once; ``taken`` is one that nobody may have."""
+
+    def __init__(self, naming: Naming, taken: str) -> None:
+        self._naming = naming
+        self._taken = {taken.upper()}
+
+    def of(self, text: str) -> str:
+        """A name for what people call ``text``: letters, digits and single low lines, and two letters first.
+
+        >>> Names(Naming(".SPF", True, 24), "PART").of("Gehäuse-Schlichten (2)")
+        'GEHAUSE_SCHLICHTEN_2'
+        """
+        naming = self._naming
+        letters = unicodedata.normalize("NFKD", text)
+        plain = _STRANGE.sub("_", "".join(one for one in letters if not unicodedata.combining(one))).strip("_")
+        alone = (
+            _TWO_LETTERS.match(plain) and not _DEVICE.fullmatch(plain) and not plain.upper().startswith(naming.reserved)
+        )
+        if not alone:
+            plain = f"{_BEFORE}_{plain}".rstrip("_")
+        plain = plain.upper() if naming.capitals else plain.lower()
+        name, count = plain[: naming.longest].rstrip("_"), 1
+        while name.upper() in self._taken:
+            count += 1
+            end = f"_{count}"
+            name = plain[: naming.longest - len(end)].rstrip("_") + end
+        self._taken.add(name.upper())
+        return name
+
+
+@dataclass(frozen=True, slots=True)
+class Division:
+    """That a program is a main program with a subprogram for each operation.
+
+    main     name of the main program's file, without its extension
+    begin    begins the file of a subprogram, by its name
+    largest  bytes of a subprogram at most, as far as rows can divide it; None: no matter how many
+    """
+
+    main: str
+    begin: Callable[[str], BinaryIO]
+    largest: int | None = None
+
+
+class Files:
+    """The files of a program that has several.
+
+    main     sink of the main program
+    open     name of the subprogram that was begun last
+    largest  bytes that the rows of a subprogram may come to; None: no matter how many
+    """
+
+    def __init__(self, division: Division, naming: Naming, main: BinaryIO, operations: Sequence[str]) -> None:
+        self.main = main
+        self.open = ""
+        self.largest = None if division.largest is None else division.largest - ROOM_FOR_THE_END
+        self._division, self._extension = division, naming.extension
+        self._names = Names(naming, division.main)
+        # All operations have their names before a part of one can take a name.
+        self._operations = iter([self._names.of(name) for name in operations])
+        self._operation = ""
+
+    def next_operation(self) -> BinaryIO:
+        """Begin the file of the next operation."""
+        self._operation = next(self._operations)
+        return self._begin(self._operation)
+
+    def next_part(self) -> BinaryIO:
+        """Begin another file for the same operation."""
+        return self._begin(self._names.of(self._operation))
+
+    def _begin(self, name: str) -> BinaryIO:
+        self.open = name
+        return self._division.begin(name + self._extension)

@@ -1,0 +1,164 @@
+"""From every control to every other, and back: the tool goes the same way within what the programs print."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from trunnion.cli.post import planned_program, write
+from trunnion.cli.settings import wishes_of
+from trunnion.control import Control, load_control
+from trunnion.convert import carried_over, convert
+from trunnion.errors import InputError
+from trunnion.machine import Machine, load_machine, shipped
+from trunnion.reader import Run, run_program
+from trunnion.reader.settings import family_of
+from trunnion.toolpath import (
+    Arcs,
+    Coolant,
+    Dwell,
+    Frame,
+    Kind,
+    LoadTool,
+    Message,
+    Moves,
+    Operation,
+    Phase,
+    Sense,
+    SpindleOn,
+    Tool,
+    Toolpath,
+)
+from trunnion.verify import compare, failures, verify, with_rapids
+
+
+@dataclass(frozen=True)
+class Site:
+    """A machine with its control, and half of the last digits that it prints, mm and degrees."""
+
+    machine: Machine
+    control: Control
+    tip: float
+    angle: float
+
+    @property
+    def rapid_feed(self) -> float | None:
+        """The feed of lines that stand for rapids."""
+        text = self.control.settings.get("rapid_feed")
+        return float(text) if text else None
+
+
+def roomy(machine: Machine) -> Machine:
+    """The machine with slides that have room for everything."""
+    axes = tuple(axis if axis.is_rotary else replace(axis, low=-5e3, high=5e3) for axis in machine.axes)
+    return replace(machine, axes=axes)
+
+
+def sites() -> Iterator[tuple[str, Site]]:
+    """The first shipped machine of each family of controls that can be written and holds the tip."""
+    for name in shipped():
+        machine = roomy(load_machine(name))
+        try:
+            control = load_control(machine.control.fresh())
+        except InputError:
+            continue
+        if control.tcp and "approach_five_axis" in control.templates:
+            formats = control.number_formats(three_axis=False)
+            digits = (0.5 * 10.0 ** -formats[key].decimals for key in ("coordinate", "angle"))
+            yield family_of(machine), Site(machine, control, *digits)
+
+
+SITES: dict[str, Site] = {}
+for _family, _site in sites():
+    SITES.setdefault(_family, _site)
+
+
+@st.composite
+def paths(draw: st.DrawFn) -> Toolpath:
+    """One or two operations of cuts and rapids, with the tool axis turning slowly, as every machine can follow it."""
+    return Toolpath("made.cls", tuple(draw(operations(k)) for k in range(draw(st.integers(1, 2)))))
+
+
+@st.composite
+def operations(draw: st.DrawFn, number: int) -> Operation:
+    """Numbers come from a seed: many of them are wanted, and none is special."""
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    n = draw(st.integers(4, 30))
+    tip = np.round(random.uniform(-60.0, 60.0, (n, 3)), draw(st.integers(2, 6)))
+    lean = np.radians(np.clip(20.0 + np.cumsum(random.uniform(-3.0, 3.0, n)), 6.0, 40.0))
+    turn = np.radians(30.0 + np.cumsum(random.uniform(-5.0, 5.0, n)))
+    axis = np.column_stack((np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)))
+    rapid = random.uniform(size=n) < 0.2
+    rapid[0] = True
+    feed = np.where(np.arange(n) < n // 2, 500.0, float(draw(st.integers(20, 2900))))
+    feed[: int(np.argmin(rapid)) if not rapid.all() else n] = np.nan
+    moves = Moves(
+        tip=tip,
+        axis=axis,
+        kind=np.where(rapid, np.uint8(Kind.RAPID), np.uint8(Kind.LINEAR)),
+        phase=np.where(rapid, np.uint8(Phase.RAPID), np.uint8(Phase.CUT)),
+        feed=feed,
+        per_rev=np.zeros(n, bool),
+        line=np.arange(1, n + 1, dtype=np.int32),
+    )
+    events = [
+        LoadTool(0, 1, 3 + number * draw(st.integers(0, 1))),
+        SpindleOn(0, 1, float(draw(st.integers(100, 9999))), draw(st.sampled_from(Sense))),
+    ]
+    middle = draw(st.integers(1, n - 1))
+    events += draw(
+        st.sampled_from([[], [Coolant(middle, 1, "ON")], [Dwell(middle, 1, 1.5)], [Message(middle, 1, "X")]])
+    )
+    tool = Tool("MILL", "D10", 10.0, 5.0, 80.0)
+    return Operation(f"OP{number}", tool, Frame(), moves, Arcs.none(), tuple(events), 1, 0.01, 0.01)
+
+
+def posted(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> Run:
+    """The proven program as its control runs it, with rapids as rapids."""
+    wishes = wishes_of({}, site.control)
+    program, _ = planned_program([path], site.machine, site.control, given, force=False, wishes=wishes)
+    with target.open("wb") as sink:
+        claim = write(program, sink)
+    run = run_program(target, site.machine)
+    found = verify(run, [path], allowed=claim.allowed, settings=claim.settings)
+    assert not failures(found), [(check.key, check.summary) for check in failures(found)]
+    return run
+
+
+def converted(run: Run, one: Site, two: Site, target: Path) -> Run:
+    """A program of one control, posted for another; nothing of it is lost."""
+    found = convert(run, one.control)
+    assert [str(remark) for remark in found.remarks] == []
+    return posted(found.toolpath, two, carried_over(found.settings, one.control, two.control), target)
+
+
+def same(one: Run, first: Site, two: Run, second: Site) -> None:
+    """The same way: tips within half of both last digits, tool axes within what both rotary axes are rounded by."""
+    found = compare(with_rapids(one, first.rapid_feed), with_rapids(two, second.rapid_feed), 0.01)
+    assert found.same, "\n".join(found.lines())
+    assert found.tip <= first.tip + second.tip + 1e-8
+    assert found.axis <= 2.0 * (first.angle + second.angle) + 1e-8
+
+
+@pytest.mark.parametrize("source", sorted(SITES))
+@settings(max_examples=6)
+@given(path=paths())
+def test_every_other_control_makes_the_tool_go_the_same_way_and_back_again(
+    tmp_path_factory: pytest.TempPathFactory, source: str, path: Toolpath
+) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    one = SITES[source]
+    run = posted(path, one, {}, folder / f"one{one.control.extension}")
+    for two in SITES.values():
+        there = converted(run, one, two, folder / f"two{two.control.extension}")
+        same(run, one, there, two)
+        back = converted(there, two, one, folder / f"back{one.control.extension}")
+        same(there, two, back, one)
+
+
+def test_every_family_that_can_be_written_is_among_them() -> None:
+    assert {"sinumerik_840d", "heidenhain_itnc530", "heidenhain_tnc640", "fidia_nc15", "linuxcnc"} <= SITES.keys()
