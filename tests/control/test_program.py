@@ -29,22 +29,22 @@ def post(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> "Post":
 
 
 class Post:
-    """Posts CL text on the YL569."""
+    """Posts CL text on the YL569, or on another machine."""
 
     def __init__(self, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
         self._folder, self._capfd = folder, capfd
 
-    def __call__(self, text: str, *arguments: str) -> list[str]:
+    def __call__(self, text: str, *arguments: str, machine: str = "yl569") -> list[str]:
         """The lines of the program without block numbers; stderr must hold nothing but checks that were passed."""
-        code, out, err = self.all(text, *arguments)
+        code, out, err = self.all(text, *arguments, machine=machine)
         assert (code, unproven(err)) == (0, "")
         return out
 
-    def all(self, text: str, *arguments: str) -> tuple[int, list[str], str]:
+    def all(self, text: str, *arguments: str, machine: str = "yl569") -> tuple[int, list[str], str]:
         """Exit code, lines of the program without block numbers, and stderr."""
         file = self._folder / "part.cls"
         file.write_text(text, encoding="utf-8")
-        code = main(["post", str(file), "--machine", "yl569", "--output", "-", *arguments])
+        code = main(["post", str(file), "--machine", machine, "--output", "-", *arguments])
         out, err = self._capfd.readouterr()
         lines = [line.split(" ", 1)[1] if line.startswith("N") else line for line in out.splitlines()]
         return code, lines, err.replace(str(file), "part.cls")
@@ -127,8 +127,6 @@ ARC = "CIRCLE/{centre},{normal},10.0,0.06,0.5,10.0,0.0\nGOTO/{end}\n"
     [
         ("20,0,5", "0,0,1", "30,0,5", "G3 X30. Y0.0 I10. J0.0"),
         ("20,0,5", "0,0,-1", "30,0,5", "G2 X30. Y0.0 I10. J0.0"),
-        ("20,0,5", "0,1,0", "30,0,5", "G18 G3 X30. Z5. I10. K0.0"),
-        ("10,10,5", "1,0,0", "10,20,5", "G19 G3 Y20. Z5. J10. K0.0"),
         ("20,0,5", "0,0,1", "10,0,5", "G3 X10. Y0.0 I10. J0.0"),
         ("20,0,5", "0,0,1", "30,0,2", "G3 X30. Y0.0 Z2. I10. J0.0"),
     ],
@@ -138,7 +136,24 @@ def test_arcs_are_written_in_their_plane_with_a_relative_centre(
 ) -> None:
     lines = motion(post(HEAD + ARC.format(centre=centre, normal=normal, end=end) + FOOT))
     assert lines[2] == block
-    assert ("G17" in lines) == ("G1" in block.split()[0] and block[:3] != "G17")
+
+
+@pytest.mark.parametrize(
+    ("centre", "normal", "end", "block"),
+    [
+        ("20,0,5", "0,1,0", "30,0,5", "G18 G3 X30. Z5. I10. K0.0"),
+        ("10,10,5", "1,0,0", "10,20,5", "G19 G3 Y20. Z5. J10. K0.0"),
+    ],
+)
+def test_other_planes_are_used_only_where_the_tools_length_stays_in_z(
+    centre: str, normal: str, end: str, block: str, post: Post, tmp_path: Path
+) -> None:
+    text = HEAD + ARC.format(centre=centre, normal=normal, end=end) + FOOT
+    assert not any(line.startswith(("G18", "G19")) for line in post(text))
+    assert post(text, "--set", "zero=0,0,0", "--set", "tool_length=80"), "proven with a tool"
+    own = tmp_path / "own.toml"
+    own.write_text('extends = "yl569"\n[control.arcs]\nabout = "XYZ"\n', encoding="utf-8")
+    assert motion(post(text, machine=str(own)))[2] == block
 
 
 def test_a_helix_of_several_turns_says_how_many_more(post: Post) -> None:

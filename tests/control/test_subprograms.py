@@ -190,6 +190,20 @@ def test_names_are_such_as_controls_take_and_each_is_given_once(
     assert not any(name.upper().startswith(naming.reserved) for name in found)
 
 
+@given(first=st.integers(1, 9990), program=st.integers(1, 9999), texts=st.lists(st.text(), max_size=8))
+def test_numbers_are_given_once_and_never_that_of_the_main_program(first: int, program: int, texts: list[str]) -> None:
+    names = Names(Naming(".nc", True, 4, first=first), "part", f"{program:04d}")
+    found = [int(names.of(text)) for text in texts]
+    assert found == [n for n in range(first, first + 9) if n != program][: len(texts)]
+
+
+def test_numbers_come_to_an_end() -> None:
+    names = Names(Naming(".nc", True, 4, first=9998), "9999")
+    assert names.of("a") == "9998"
+    with pytest.raises(InputError, match="no program numbers are left from 9998 on"):
+        names.of("b")
+
+
 def test_files_appear_together_or_as_they_were(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("part.mpf", "A.spf", "C.spf"):
         (tmp_path / name).write_text(f"old {name}")

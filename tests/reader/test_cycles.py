@@ -113,3 +113,37 @@ def test_cycles_that_make_no_sense_are_named(run: Runner, cycle: str) -> None:
     result = run(HEAD + cycle)
     assert len(result) == 1
     assert "not executed" in result.errors[0].text
+
+
+#: Call -> motions at a hole as (R or F, height), and dwells; the tool stands at Z50 and the spindle turns with 1000.
+CALLS = {
+    "CYCLE81(10,0,3,-6)": ("R3 F-6 R10", []),
+    "CYCLE81(10,0,3,,6)": ("R3 F-6 R10", []),
+    "CYCLE82(10,0,3,-6,,0.5)": ("R3 F-6 R10", [0.5]),
+    "CYCLE83(10,0,3,-15,,,5,0,0,0,1,0,3,0,0.5,2)": ("R3 F-5 F-4.5 F-10 F-9.5 F-15 R10", [2.0]),
+    "CYCLE83(10,0,3,-15,,,5,0,0,0,1,1,3,0,0,2,1)": ("R3 F-5 R3 R-4 F-10 R3 R-9 F-15 R10", [2.0]),
+    "CYCLE84(10,0,3,-6,,0.5,3,,1.25,0,600,600)": ("R3 F-6 F3 R10", [0.5]),
+    "CYCLE840(10,0,3,-6,,0.5,0,3,0,,1.25)": ("R3 F-6 F3 R10", [0.5]),
+    "CYCLE85(10,0,3,-6,,0.5,100,200)": ("R3 F-6 F3 R10", [0.5]),
+    "CYCLE86(10,0,3,-6,,0.5,3,1,0,0.5,90)": ("R3 F-6 R-5.5 R3 R10", [0.5]),
+    "CYCLE87(10,0,3,-6,,3)": ("R3 F-6 R10", []),
+    "CYCLE88(10,0,3,-6,,0.5,3)": ("R3 F-6 R10", [0.5]),
+    "CYCLE89(10,0,3,-6,,0.5)": ("R3 F-6 F3 R10", [0.5]),
+}
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_each_cycle_makes_the_motions_of_the_manual(call: str, run: Runner) -> None:
+    """Worked out by hand from the cycles manual: RTP 10, RFP 0, SDIS 3, so it feeds from Z3 and is drawn back to Z10.
+
+    81, 82, 87 and 88 leave at rapid (87 and 88 once the operator goes on), 85 and 89 at feed up to Z3, and so do taps;
+    86 lifts off aside first. 83 breaks chips by VRT (VARI 0), or goes out to Z3 and back to DIS1 above the last depth.
+    """
+    got = run(HEAD + call)
+    motions, dwells = CALLS[call]
+    told = [
+        f"{'R' if kind == Kind.RAPID else 'F'}{height:g}"
+        for kind, height in zip(got.kind[1:], heights(got)[1:], strict=True)
+    ]
+    assert " ".join(told) == motions
+    assert [event.value for event in got.events if event.kind == "dwell" and event.value] == dwells

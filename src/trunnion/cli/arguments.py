@@ -119,6 +119,9 @@ def _diff(parser: argparse.ArgumentParser) -> None:
         "--tolerance", type=_tolerance, default=0.001, metavar="MM",
         help="how far tips may be apart, and in degrees tool axes; 0.001",
     )  # fmt: skip
+    parser.add_argument(
+        "--path", action="store_true", help="compare where the tool goes, but not feed, spindle, tool and coolant"
+    )
     parser.set_defaults(run=_command("diff", "run"))
 
 

@@ -21,6 +21,6 @@ def run(arguments: argparse.Namespace) -> int:
         with_rapids(run_program(Path(file), machine, subprograms=subprograms), rapid_feed(machine))
         for file, machine, subprograms in zip(arguments.files, (first, second), named, strict=True)
     )
-    found = compare(one, two, arguments.tolerance)
+    found = compare(one, two, arguments.tolerance, path=arguments.path)
     print(*found.lines(), sep="\n")
     return 0 if found.same else 1

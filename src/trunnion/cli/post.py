@@ -349,6 +349,7 @@ def _asked(program: Program, wishes: Wishes) -> "Settings":
     axis = wishes.axis_between if led or math.isfinite(wishes.axis_between) else None
 
     values = {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
+    rate = program.control.formats.get("inverse_time")
     offset = values["work_offset"].strip().upper().removeprefix("G")
     return Settings(
         tool=values["tool"].strip('"'),
@@ -357,6 +358,7 @@ def _asked(program: Program, wishes: Wishes) -> "Settings":
         span=axis,
         span_tip=wishes.tip_tolerance if led else None,
         absolute=wishes.absolute,
+        top_rate=rate.five_axis.greatest if rate else None,
         top_feed=program.control.formats["feed"].five_axis.greatest,
         rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
     )

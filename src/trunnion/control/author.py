@@ -17,7 +17,7 @@ from trunnion.control.definition import SPINDLE_ON
 from trunnion.control.family import WordEvent
 from trunnion.control.hole_blocks import write_holes
 from trunnion.control.printed import Held, Printed, spindle_values
-from trunnion.control.program import Program, kind_of
+from trunnion.control.program import Program, kind_of, setting_of
 from trunnion.control.standing import carried_along, on_its_pose
 from trunnion.control.subprograms import Division, Files
 from trunnion.control.template import Value
@@ -99,7 +99,7 @@ class _Author:
         if division is not None:
             naming, operations = program.control.subprograms, [m.operation.name for m in program.motions if m.begins]
             assert naming is not None, "a program is divided only where its control can call subprograms"
-            self._files = Files(division, naming, sink, operations)
+            self._files = Files(division, naming, sink, setting_of(program, "program"), operations)
 
     def write(self) -> None:
         """The program, operation by operation."""
@@ -195,7 +195,8 @@ class _Author:
             self._said_tool = tool
             self._held = Held(tool, motion.operation.tool.name)
         below = self._goes_on(motion) and not self._drawn_back()
-        self._blocks.begin(motion, self._goes_on(motion), comes_level=motion.begins or below)
+        level = below or not self._goes_on(motion)
+        self._blocks.begin(motion, str(values["tool"]), self._goes_on(motion), comes_level=level)
         if below:
             self._expand(f"draw_back_{kind}", values, motion)
         self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)

@@ -31,8 +31,8 @@ _PHASE_TEXT = {
     Phase.TRAVERSE: "traverse",
 }
 
-#: Words that each row says for itself where they are not in force.
-_OF_EACH_ROW = frozenset({"X", "Y", "Z", "primary", "secondary", *AXIS_VECTOR, "motion", "feed"})
+#: Words that are said again where an operation goes on in another file, besides those that each row says for itself.
+_SAID_AGAIN = ("plane", "feed_mode", "cutter_comp", "speed", "edge", "spindle", "coolant")
 
 #: Bytes of the lines that stand before a row of their own, at most: a phase, an arc's centre.
 _LINES_OF_A_ROW = 256
@@ -68,6 +68,7 @@ class Blocks:
         self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
+        self._tool = ""
         self._vectors = setting_of(program, "orientation") == "vector"
         self._turns_over = any(word.key == BY_VECTOR for word in self._words)
         self._again: dict[str, int] = {}
@@ -86,12 +87,22 @@ class Blocks:
             motion = self._slides.motion
         return motion
 
-    def begin(self, motion: Motion, goes_on: bool, *, comes_level: bool) -> None:
+    def begin(self, motion: Motion, tool: str, goes_on: bool, *, comes_level: bool) -> None:
         """An operation begins, with its own formats of words.
 
-        ``goes_on``: in another plane, and not from home; ``comes_level``: from where the tool has been drawn back, so
-        that it goes to X and Y before it goes down, on controls that want it so.
+        Parameters
+        ----------
+        motion
+            What of it is made in one plane.
+        tool
+            How the program calls the tool.
+        goes_on
+            In another plane than before, and not from home.
+        comes_level
+            From where the tool has been drawn back, so that it goes to X and Y before it goes down, on controls that
+            want it so.
         """
+        self._tool = tool
         self.comes_level = comes_level and self.control.level_approach and motion.manner in _LEVEL
         self._words = words_of(self.program, motion)
         self.writer.use(self._words)
@@ -110,7 +121,7 @@ class Blocks:
             self.writer.remember(
                 word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word, column)[0])
             )
-        if self._turns_over and self._vectors and motion.manner is Manner.TCP:
+        if self._vectors and motion.manner is Manner.TCP:
             for word, counted in self._axis_counts(motion.rotary[:1]).items():
                 self.writer.remember(word, int(counted[0]))
 
@@ -182,9 +193,10 @@ class Blocks:
         return max(1, fitting) if compensated else fitting
 
     def _turn_over(self) -> None:
-        """Go on in the next file: all that is in force is said again, in its first block."""
+        """Go on in the next file: what is in force is said again in its first block, but for the tool's length and TCP,
+        which some controls take as a motion."""
         known = self.writer.in_force()
-        self._again = {word: count for word, count in known.items() if word not in _OF_EACH_ROW}
+        self._again = {word: known[word] for word in _SAID_AGAIN if word in known}
         self.full()
         self.writer.forget()
         self._feed_mode = ABSENT
@@ -202,12 +214,10 @@ class Blocks:
         forced: dict[str, bool | Ints] = {}
         by_vector = self._vectors and motion.manner is Manner.TCP
         in_force: dict[str, int] = {}
-        if by_vector and not self._turns_over:
-            columns |= self._axis_words(motion, part)
-        elif motion.plane is None:  # in a plane the rotary axes stand where they were put
+        if motion.plane is None:  # in a plane the rotary axes stand where they were put
             for word, axis in self._rotary:
                 columns[word] = self._angle_counts(motion.rotary[part, self._column[axis]], word, axis)
-        if by_vector and self._turns_over:
+        if by_vector:
             in_force = self._orient(motion, start, stop, columns, forced)
         columns["feed"] = np.where(
             rapid, self.rapid_feed, counts(np.where(rapid, np.nan, moves.feed[part]), decimals["feed"])
@@ -243,7 +253,7 @@ class Blocks:
         if start == 0 and rapid[0] and self.comes_level:
             self.block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
         if start == 0:
-            self._join(columns, 0, self.edge())
+            self._join(columns, 0, self.first_words(motion))
         for event in joining:
             self._join(columns, event.row - start, self.event_words(event))
         if self._again:
@@ -256,25 +266,20 @@ class Blocks:
         self.writer.table(columns, forced, np.where(wanted != before, wanted, -1), texts, lines)
         if elsewhere[-1]:
             self.writer.forget("X", "Y", "Z")
-        if by_vector and not self._turns_over:
-            self.writer.forget("primary", "secondary")  # they have turned since they were placed
         for word, count in in_force.items():
             self.writer.remember(word, count)
         return int(wanted[-1])
+
+    def first_words(self, motion: Motion) -> dict[str, int]:
+        """What the control is told of the tool with the first motion, as counts."""
+        words = self.family.first_words(motion, self._tool, settings_of(self.program))
+        return {word: self.count(word, value) for word, value in words.items()}
 
     def _axis_counts(self, rotary: Floats) -> dict[str, Ints]:
         """The tool axis as a vector, by where the rotary axes stand, however they lean; as counts."""
         decimals = self.writer.word(AXIS_VECTOR[0]).format.decimals
         vectors = vectors_of(self.program.machine, rotary)
         return {word: counts(np.ascontiguousarray(vectors[:, k]), decimals) for k, word in enumerate(AXIS_VECTOR)}
-
-    def _axis_words(self, motion: Motion, part: slice) -> dict[str, Ints]:
-        """The tool axis of rows as a vector.
-
-        At the first row the rotary axes were placed already; a rounded vector near the pole would turn them again.
-        """
-        said = np.arange(part.start, part.stop) > 0
-        return {word: np.where(said, axis, ABSENT) for word, axis in self._axis_counts(motion.rotary[part]).items()}
 
     def _orient(
         self, motion: Motion, start: int, stop: int, columns: dict[str, Ints], forced: dict[str, bool | Ints]
@@ -303,17 +308,13 @@ class Blocks:
             forced[word] = said.astype(np.int64)
         rows = np.flatnonzero(changed)
         manners = by_vector[rows].astype(np.int64)
-        if len(rows):
+        if len(rows) and self._turns_over:
             anew = rows[manners != np.concatenate(([self._by_vector], manners[:-1]))]
             for word, which in ((BY_VECTOR, 1), (BY_AXES, 0)):
                 columns[word] = np.full(len(rotary), ABSENT, np.int64)
                 columns[word][anew[by_vector[anew] == which]] = 0
             self._by_vector = int(manners[-1])
         return last
-
-    def edge(self) -> dict[str, int]:
-        """The cutting edge, on controls that have any."""
-        return {"edge": int(setting_of(self.program, "edge"))} if "edge" in self.control.settings else {}
 
     def _angle_counts(self, angle: Floats, word: str, column: int) -> Ints:
         return angle_counts(self.program.machine, column, angle, self.writer.word(word).format.decimals)

@@ -67,8 +67,6 @@ def check_program(program: Program) -> list[Problem]:
             problems += _event_problems(program, motion, event, rpm)
         if motion.manner is Manner.WITHOUT_TCP and kind_of(program, motion):
             problems += _problems_without_tcp(program, motion)
-        if motion.manner is Manner.TCP and setting_of(program, "orientation") == "vector":
-            problems += _turns_in_place(program, motion)
         if not kind_of(program, motion):
             what = f"operation {operation.name}: {program.control.name} has no words for {motion.manner}"
             problems.append(Problem(program.file, operation.line, what, "--set manner=… says another manner"))
@@ -118,23 +116,6 @@ def _event_problems(program: Program, motion: Motion, event: Event, rpm: float |
         known = ", ".join(program.control.coolant)
         return [Problem(*place, f"{program.control.name} has no coolant {event.kind}", f"use one of {known}")]
     return []
-
-
-def _turns_in_place(program: Program, motion: Motion) -> list[Problem]:
-    """Where the rotary axes turn and the tool axis does not: as a rewind does, which no vector can say."""
-    turned = np.abs(np.diff(motion.rotary, axis=0, prepend=motion.rotary[:1])).max(axis=1)
-    for r, column in enumerate(program.machine.rotary):
-        if not np.isnan(program.machine.axes[column].display_low):
-            steps = np.diff(motion.rotary[:, r], prepend=motion.rotary[:1, r])
-            turned = np.where(np.abs(steps) > 180.0, 0.0, turned)
-    axis = motion.operation.moves.axis
-    still = np.abs(np.diff(axis, axis=0, prepend=axis[:1])).max(axis=1) < 1e-9
-    rows = np.flatnonzero(still & (turned > 1.0))
-    if not len(rows):
-        return []
-    what = "the rotary axes turn here while the tool axis stands, and a vector cannot say it"
-    line = int(motion.operation.moves.line[rows[0]])
-    return [Problem(program.file, line, what, "--set orientation=angles")]
 
 
 def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:

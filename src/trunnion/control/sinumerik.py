@@ -15,6 +15,7 @@ from trunnion.control.iso import event_words as event_words
 from trunnion.control.iso import row_words as row_words
 from trunnion.control.template import Value
 from trunnion.control.turns import about_three
+from trunnion.plan import Motion
 from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Dwell, Message, Operation, Stop
 
@@ -76,6 +77,11 @@ def stop(event: Stop, codes: Codes) -> list[str]:
     """M0 or M1, after the text that the operator is to see."""
     code = codes["optional_stop" if event.optional else "stop"]
     return [*(comment(event.text) if event.text else ()), f"M{code}"]
+
+
+def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+    """The cutting edge, whose length counts from here on."""
+    return {"edge": int(settings["edge"])} if "edge" in settings else {}
 
 
 def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:

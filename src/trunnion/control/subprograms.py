@@ -10,6 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import BinaryIO
 
+from trunnion.errors import InputError, Problem
+
 #: What no control minds in a name is all but these.
 _STRANGE = re.compile(r"[^A-Za-z0-9]+")
 _TWO_LETTERS = re.compile(r"[A-Za-z]{2}")
@@ -35,20 +37,28 @@ class Naming:
     capitals   letters of names are capitals, else small ones
     longest    characters of a name, at most
     reserved   names do not begin so: the control has such programs of its own
+    first      names are numbers of four digits from here on, whatever operations are called; None: they are not
+    before     stands before a name in that of its file
     """
 
     extension: str
     capitals: bool
     longest: int
     reserved: tuple[str, ...] = ()
+    first: int | None = None
+    before: str = ""
+
+
+#: The highest number of a program with four digits.
+_HIGHEST = 9999
 
 
 class Names:
-    """Gives names that the control takes, each once; ``taken`` is one that nobody may have."""
+    """Gives names that the control takes, each once; ``taken`` are those that nobody may have."""
 
-    def __init__(self, naming: Naming, taken: str) -> None:
+    def __init__(self, naming: Naming, *taken: str) -> None:
         self._naming = naming
-        self._taken = {taken.upper()}
+        self._taken = {name.upper() for name in taken}
 
     def of(self, text: str) -> str:
         """A name for what people call ``text``: letters, digits and single low lines, and two letters first.
@@ -57,6 +67,8 @@ class Names:
         'GEHAUSE_SCHLICHTEN_2'
         """
         naming = self._naming
+        if naming.first is not None:
+            return self._number(naming.first)
         letters = unicodedata.normalize("NFKD", text)
         plain = _STRANGE.sub("_", "".join(one for one in letters if not unicodedata.combining(one))).strip("_")
         alone = (
@@ -71,6 +83,15 @@ class Names:
             end = f"_{count}"
             name = plain[: naming.longest - len(end)].rstrip("_") + end
         self._taken.add(name.upper())
+        return name
+
+    def _number(self, first: int) -> str:
+        name = next((name for n in range(first, _HIGHEST + 1) if (name := f"{n:04d}") not in self._taken), "")
+        if not name:
+            raise InputError(
+                Problem("--set", 0, f"no program numbers are left from {first:04d} on", "write programs=one")
+            )
+        self._taken.add(name)
         return name
 
 
@@ -96,12 +117,15 @@ class Files:
     largest  bytes that the rows of a subprogram may come to; None: no matter how many
     """
 
-    def __init__(self, division: Division, naming: Naming, main: BinaryIO, operations: Sequence[str]) -> None:
+    def __init__(
+        self, division: Division, naming: Naming, main: BinaryIO, program: str, operations: Sequence[str]
+    ) -> None:
         self.main = main
         self.open = ""
         self.largest = None if division.largest is None else division.largest - ROOM_FOR_THE_END
-        self._division, self._extension = division, naming.extension
-        self._names = Names(naming, division.main)
+        self._division, self._naming = division, naming
+        number = f"{int(program):04d}" if program.isascii() and program.isdecimal() else program
+        self._names = Names(naming, division.main, number)
         # All operations have their names before a part of one can take a name.
         self._operations = iter([self._names.of(name) for name in operations])
         self._operation = ""
@@ -117,4 +141,4 @@ class Files:
 
     def _begin(self, name: str) -> BinaryIO:
         self.open = name
-        return self._division.begin(name + self._extension)
+        return self._division.begin(self._naming.before + name + self._naming.extension)

@@ -9,6 +9,9 @@ from trunnion.control.template import Template
 #: A setting that is words of a program, such as G54 or G55 O1: what stands in its place has the same letters.
 _WORDS = re.compile(r"[A-Z]+\d+(?: [A-Z]+\d+)*")
 
+#: Work offsets by G words of their own.
+_OFFSET = r"G5(?:[4-9](?:\.\d)?|\d\d)"
+
 _FIELD = re.compile(r"\{([A-Za-z_]\w*)(?::(\w+))?\}")
 
 
@@ -35,6 +38,7 @@ def _pattern(line: str, known: Mapping[str, str], settings: Mapping[str, str]) -
         name, form = match[1], match[2]
         usual = settings.get(name, "")
         shape = re.sub(r"\d+", r"\\d+", usual) if _WORDS.fullmatch(usual) else ".*?"
+        shape = _OFFSET if re.fullmatch(r"G5\d", usual) else shape
         value = r"[-+.\d]+" if form else shape
         parts.append(f"(?P={name})" if name in named else f"(?P<{name}>{value})")
         named.add(name)

@@ -174,13 +174,13 @@ class _Converter:
         for k, item in enumerate(said):
             last = parts[-1]
             here = item.line if item.file == 0 else 0
-            if (here in starts and here != begun) if starts else (item.kind == "tool_change"):
-                last.stop = item.row
+            begun = begun if here == begun else 0
+            if (here in starts and here != begun and item.kind != "skip") if starts else (item.kind == "tool_change"):
+                last.stop, begun = item.row, here
                 last.end = k if last.end < 0 else last.end
                 parts.append(_Part(item.line, k, item.row))
-            elif here in ends and last.end < 0:
+            elif item.kind == "comment" and here in ends and last.end < 0:
                 last.end = k
-            begun = here or begun
         parts[-1].stop = len(self._run)
         parts[-1].end = len(said) if parts[-1].end < 0 else parts[-1].end
         for part in parts:
@@ -192,13 +192,14 @@ class _Converter:
         run = self._run
         rows = np.arange(part.first, part.stop)
         moved = ~run.machine_frame[rows]
-        placed = moved & ((run.programmed[rows] & (Written.X | Written.Y | Written.Z)) != 0)
+        across = self._across(rows)
+        placed = moved & ~across & ((run.programmed[rows] & (Written.X | Written.Y | Written.Z)) != 0)
         if not placed.any():
             return rows[:0]
         begin = int(np.argmax(placed))
-        moved &= ~self._placed_away(rows)
+        moved &= ~self._placed_away(rows) & ~across
         last = int(np.flatnonzero(moved)[-1])
-        gone = begin + np.flatnonzero(~moved[begin:last])
+        gone = begin + np.flatnonzero(~(moved | across)[begin:last])
         if len(gone):
             row = int(rows[gone[0]])
             what = "moves to machine positions within an operation are left out"
@@ -221,6 +222,23 @@ class _Converter:
         after = order > (int(np.flatnonzero(works)[-1]) if works.any() else -1)
         return np.asarray(alone & ((machine > worked) | after))
 
+    def _across(self, rows: Ints) -> Flags:
+        """(n,) bool: the first leg of an approach, on controls that go from home to X and Y first, then down in Z."""
+        found = np.zeros(len(rows), np.bool_)
+        if not self._control.level_approach:
+            return found
+        run = self._run
+        said = run.programmed[rows] & (Written.X | Written.Y | Written.Z | Written.VECTOR)
+        works = ~run.machine_frame[rows] & (said != 0)
+        order = np.arange(len(rows))
+        home = np.maximum.accumulate(np.where(run.machine_frame[rows], order, -1))
+        worked = np.maximum.accumulate(np.where(works, order, -1))
+        before = np.concatenate(([-1], worked[:-1]))
+        rapid = (run.kind[rows] == Kind.RAPID) & ~run.tcp[rows]
+        first = works & rapid & ((said & ~np.uint8(Written.X | Written.Y)) == 0) & (home >= before) & (before < order)
+        found[:-1] = first[:-1] & rapid[1:] & (said[1:] == Written.Z)
+        return found
+
     def _match_heads(self, parts: Sequence[_Part], said: Sequence[Item]) -> None:
         """Find the lines of templates, and what they say. Where an operation's end begins, its path has ended."""
         templates, run, settings = self._control.templates, self._run, self._control.settings
@@ -238,8 +256,8 @@ class _Converter:
             self._known |= match(self._source.texts(part.line, first), head, part.values)
             ended = match(self._source.texts(last + 1, after), tail, part.values)
             self._known |= ended
-            tail_items = (n for n in range(part.begin, part.end) if said[n].file == 0 and said[n].line in ended)
-            part.end = min(next(tail_items, part.end), part.end)
+            there = (n for n in range(part.begin, part.end) if said[n].file == 0 and said[n].line in ended)
+            part.end = next((n for n in there if said[n].kind != "skip"), part.end)
             plane = {"plane": "frames"} if "plane_x" in part.values and "swivel_style" not in part.values else {}
             part.values = {**common, **part.values, **plane, **self._registers(part)}
 

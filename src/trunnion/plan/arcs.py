@@ -52,19 +52,19 @@ def off_circle(operation: Operation) -> Floats:
     return np.asarray(away[1] - away[0])
 
 
-def plain_arcs(operation: Operation, only_about_z: bool = False) -> Flags:
+def plain_arcs(operation: Operation, only_about_z: bool = False, by_angle: bool = False) -> Flags:
     """(m,) bool: the arc may be left to a control.
 
     It turns about X, Y or Z, and the tool axis is the same at its start and its end. It also ends clear of its start,
     or right at it: a control takes an arc whose end prints as its start for a full circle, be it a tiny one in truth.
-    Where a control knows arcs about Z only, and is told a helix by its angle, that leads to the end only if start and
-    end are as far from the centre.
+    Where a control is told a helix by its angle (``by_angle``), that leads to the end only if start and end are as far
+    from the centre. ``only_about_z``: it knows no others.
     """
     arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
     aside = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
     about_axis = (aside if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _ALONG
     steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _ALONG
-    if only_about_z:
+    if by_angle:
         rises = (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.0) | (arcs.turns > 0)
         steady &= ~rises | (np.abs(off_circle(operation)) < _ROUNDED)
     apart = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)

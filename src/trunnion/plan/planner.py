@@ -74,9 +74,12 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         said += reworded
         against += contradictions(path.file, operation, manner, wishes.manners)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
-        kept = plain_arcs(operation if plane is None else into_plane(operation, plane), wishes.arcs_about_z)
+        there = operation if plane is None else into_plane(operation, plane)
+        kept = plain_arcs(there, wishes.arcs_about_z, wishes.helices_by_angle)
         if not wishes.helices:
             kept &= flat_arcs(operation)
+        if not wishes.turns:
+            kept &= operation.arcs.turns == 0
         if plane is not None and wishes.pose_planes:
             kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)

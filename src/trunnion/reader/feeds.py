@@ -64,11 +64,14 @@ def ways(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats
 def counted(run: Run, rows: Ints) -> Floats:
     """(k,) float64: what F per minute counts in rows, in any order, where that is not the tip's way; else NaN."""
     way = np.full(len(rows), np.nan)
-    mode, kind = run.state.feed_mode.at(rows), run.kind[rows]
-    led = np.flatnonzero(~run.state.tcp.at(rows) & (kind == Kind.LINEAR) & (mode == 94))
-    before = run.rotary[rows[led] - 1]
-    before[rows[led] < 1] = run.start[list(run.machine.rotary)]
-    led = led[np.abs(run.rotary[rows[led]] - before).max(axis=1, initial=0.0) > STILL]
+    free = np.flatnonzero(
+        ~run.state.tcp.at(rows) & (run.kind[rows] == Kind.LINEAR) & (run.state.feed_mode.at(rows) == 94)
+    )
+    if not len(free):
+        return way
+    before = run.rotary[rows[free] - 1]
+    before[rows[free] < 1] = run.start[list(run.machine.rotary)]
+    led = free[np.abs(run.rotary[rows[free]] - before).max(axis=1) > STILL]
     if len(led):
         there = rows[led]
         ends = run.poses(there - 1).joints, run.poses(there).joints

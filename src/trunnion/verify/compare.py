@@ -76,15 +76,17 @@ class Comparison:
                 yield f"{name}: {self.programs[0]}:{what.one} against {self.programs[1]}:{what.two}: {what.text}"
 
 
-def compare(one: Run, two: Run, tolerance: float = 0.001) -> Comparison:
+def compare(one: Run, two: Run, tolerance: float = 0.001, *, path: bool = False) -> Comparison:
     """Compare two runs.
 
     Parameters
     ----------
     tolerance
         How far tips may be apart, mm, and tool axes, degrees.
+    path
+        Compare where the tool goes, and whether at rapid, but not feed, spindle, tool and coolant.
     """
-    return _Comparer(one, two, tolerance).compare()
+    return _Comparer(one, two, tolerance, path).compare()
 
 
 class _Side:
@@ -174,12 +176,13 @@ def _coolant(run: Run, codes: dict[str, int]) -> Ints:
 class _Comparer:
     """Walks along both programs together."""
 
-    def __init__(self, one: Run, two: Run, tolerance: float) -> None:
+    def __init__(self, one: Run, two: Run, tolerance: float, path: bool) -> None:
         coolants: dict[str, int] = {}
         tools: dict[str, int] = {}
         same_machine = one.machine is two.machine or one.machine.key == two.machine.key
         self._one = _Side(one, same_machine, coolants, tools)
         self._two = _Side(two, same_machine, coolants, tools)
+        self._path = path
         self._tip = tolerance
         self._axis = float(np.radians(tolerance))
         self._largest = [0.0, 0.0]
@@ -244,6 +247,8 @@ class _Comparer:
         return np.asarray(same)
 
     def _same_state(self, a: Ints, b: Ints) -> Flags:
+        if self._path:
+            return np.ones(len(a), np.bool_)
         one, two = self._one, self._two
         same = np.abs(one.rate(a) - two.rate(b)) <= np.maximum(_RATE, 1e-4 * one.rate(a))
         same &= one.run.spindle[a] == two.run.spindle[b]

@@ -226,6 +226,9 @@ def axes_apart(
     if volume < 1e-5 * pp * rr or pp < 1e-12 or rr < 1e-12:
         # At a pole, or at the edge of what the axes reach: what each of them is off by cannot be told apart.
         return angle, math.degrees(max(angle - _OPEN, 0.0) / (math.sqrt(pp) + math.sqrt(rr)))
-    one = abs((rr * pe - pr * re) / volume) - _NOISE / math.sqrt(pp)
-    two = abs((pp * re - pr * pe) / volume) - _NOISE / math.sqrt(rr)
-    return angle, math.degrees(max(one, two, 0.0))
+    one, two = abs((rr * pe - pr * re) / volume), abs((pp * re - pr * pe) / volume)
+    # The split is one of small turns: products of both, which grow towards the pole, are left open.
+    height = abs(w0 * a0 + w1 * a1 + w2 * a2)
+    first_off = one * (1.0 - two * height / math.sqrt(pp)) - _NOISE / math.sqrt(pp)
+    second_off = two - 0.5 * one * one - _NOISE / math.sqrt(rr)
+    return angle, math.degrees(max(first_off, second_off, 0.0))

@@ -22,6 +22,7 @@ from trunnion.machine import Machine, forward
 from trunnion.reader import FeedPath, Orientation, Run, Stretch, ways
 from trunnion.reader.feeds import STILL
 from trunnion.toolpath import Kind
+from trunnion.verify.rapids import levels
 from trunnion.verify.times import Pace
 
 
@@ -90,6 +91,7 @@ class Walker:
         self._rapid = np.array([math.inf if axis.rapid is None else axis.rapid for axis in axes])
         self._acceleration = np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in axes])
         self._arc_length = _arc_lengths(run)
+        self._levels = levels(run)
         self._state = np.zeros(7)
         self._pace = Pace(run) if times else None
         self._walk = Walk(
@@ -108,6 +110,9 @@ class Walker:
         run, walk, count = self._run, self._walk, end - first
         state, kind, programmed = run.state, run.kind[first:end], run.programmed[first:end]
         tcp, machine_frame = state.tcp.part(first, end), state.machine_frame.part(first, end)
+        # On the first leg of an approach the tool is still as high as the machine's position before it.
+        here = self._levels[(self._levels >= first) & (self._levels < end)]
+        machine_frame[here - first] = True
         angles = run.oriented(first, end) == Orientation.ANGLES
         times, shares, bend = np.empty((4, count)), np.empty((2, 5, count)), np.empty(count)
         ways = self._ways(first, end, poses, tcp)

@@ -224,6 +224,11 @@ def _bore_out(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
     return [Step(False, heights.depth, dwell=_or(arguments, 6)), Step(False, heights.start)]
 
 
+def _stop_and_out(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    """CYCLE87: spindle and program stop at depth; what stands in the dwell's place is the spindle's sense."""
+    return [Step(False, heights.depth)]
+
+
 #: Cycles by name.
 CYCLES: Final[dict[str, Callable[[Arguments, Heights, float], list[Step]]]] = {
     "CYCLE81": _drill,
@@ -233,7 +238,7 @@ CYCLES: Final[dict[str, Callable[[Arguments, Heights, float], list[Step]]]] = {
     "CYCLE840": _tap_chuck,
     "CYCLE85": _ream,
     "CYCLE86": _bore,
-    "CYCLE87": _drill,
+    "CYCLE87": _stop_and_out,
     "CYCLE88": _drill,
     "CYCLE89": _bore_out,
 }

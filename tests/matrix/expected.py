@@ -1,0 +1,97 @@
+"""What each family of controls refuses, and why; all else is written and proven. The page in the docs says so."""
+
+from pathlib import Path
+from typing import Final
+
+from tests.matrix.paths import CYCLES, Family, off_the_pole, simultaneous, three_axis, tilted_drilling, tilted_milling
+
+PAGE: Final = Path(__file__).parents[2] / "docs" / "controls" / "matrix.md"
+
+#: What a run without TCP has to know.
+WITHOUT_TCP: Final = ("tcp=off", "zero=10,-20,30", "tool_length=83.5")
+
+#: Family of paths -> how it is drawn, and the settings of the run.
+FAMILIES: Final[dict[str, tuple[Family, tuple[str, ...]]]] = {
+    "three-axis milling": (three_axis, ()),
+    "three-axis milling without TCP": (three_axis, WITHOUT_TCP),
+    "milling in tilted planes": (tilted_milling, ()),
+    "drilling in five planes": (tilted_drilling, ()),
+    "simultaneous milling with TCP": (simultaneous, ("tcp=on",)),
+    "simultaneous milling without TCP": (off_the_pole, WITHOUT_TCP),
+}
+
+_NO_CYCLE: Final = "has no cycle on this control whose words are known"
+_LEAVES: Final = "leaves the hole as it asks for"
+
+#: What people call families of controls, by the first of their names in definitions.
+NAMES: Final = {
+    "fidia_nc15": "Fidia",
+    "heidenhain_itnc530": "Heidenhain",
+    "linuxcnc": "LinuxCNC",
+    "sinumerik_840d": "Sinumerik",
+}
+
+#: Family of controls -> family of paths, or cycle -> words of the reason for which all of them are refused.
+REFUSED: Final[dict[str, dict[str, str]]] = {
+    "fidia_nc15": {
+        "simultaneous milling without TCP": "has no words for without TCP",
+        "DRILL,DEEP, strokes shorter": "strokes that become shorter",
+        "DRILL,BRKCHP": _NO_CYCLE,
+        "BORE,NODRAG": _NO_CYCLE,
+        "BORE,MANUAL": _NO_CYCLE,
+    },
+    "heidenhain_itnc530": {
+        "BORE,NODRAG": "does not say to which side the tool moves off the wall",
+        "BORE,MANUAL": _LEAVES,
+    },
+    "linuxcnc": {
+        "drilling in five planes": "hole-making cycles while the tool axis changes, or with TCP",
+        "DRILL,DEEP, strokes shorter": "strokes that become shorter",
+        "BORE,NODRAG": _LEAVES,
+        "BORE,MANUAL": _LEAVES,
+    },
+    "sinumerik_840d": {
+        "BORE,NODRAG": "does not say how far and to which side the tool lifts off",
+    },
+}
+
+#: Reasons for which some paths of a family are refused, on controls and machines that are as they say.
+SOMETIMES: Final = {
+    "simultaneous milling without TCP": "a rotary axis goes past the end of the turn that it displays",
+}
+
+
+_HEAD: Final = """# The matrix
+
+Every control in `control/library` moves every machine in `machine/library`: a definition that `extends` the machine and
+names the control is enough. `tests/matrix` posts families of random paths for all of these pairs, reads each program
+back, runs it, and holds it against what was asked: all checks pass, and every point is met within half the last digit.
+What a control cannot be told is refused with a reason; this page is held to the tests, and says all of it.
+
+| family of paths | refused |
+| --- | --- |
+"""
+
+_FOOT: Final = """
+The slides have room enough in these definitions; their limits have tests of their own. Without TCP the workpiece zero
+and the tool's length are set. On machines whose head turns the tool, a program without TCP is for one length, and
+`verify` with another finds the tip off; on machines whose tables do all the turning the length makes no difference.
+"""
+
+
+def page() -> str:
+    """The page of the docs."""
+    rows = []
+    for path in (*FAMILIES, *CYCLES):
+        name = f"cycle {path}" if path in CYCLES else path
+        told = [f"{NAMES[family]}: {reasons[path]}" for family, reasons in REFUSED.items() if path in reasons]
+        if path in SOMETIMES:
+            told.append(
+                f"where a machine folds its axes and the control has no word for the shorter way: {SOMETIMES[path]}"
+            )
+        rows.append(f"| {name} | {'; '.join(told) or '–'} |\n")
+    return _HEAD + "".join(rows) + _FOOT
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8", newline="\n")
