@@ -59,7 +59,7 @@ def sequence(mode: int) -> tuple[int, int, int]:
 def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
     """How orientations are interpolated, and the three turns of a plane in the order of ``plane_mode``; the frame words
     turn about X, Y, Z, which is 57."""
-    interpolation: dict[str, Value] = {"interpolation": "ORIVECT" if settings["orientation"] == "vector" else "ORIAXES"}
+    interpolation: dict[str, Value] = {"interpolation": "VECT" if settings["orientation"] == "vector" else "AXES"}
     if plane is None:
         return interpolation | dict.fromkeys(_PLANE_FIELDS)
     mode = str(settings["swivel_mode"]) if settings["plane"] == "cycle800" else "57"
