@@ -152,6 +152,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         absolute=settings.get("frame", "first") == "absolute",
         lower_feed=settings.get("lower_feed", "no") == "yes",
         helices=control.helices,
+        turns=control.turns,
         pose_planes=control.plane_from_pose,
         tcp=tcp,
         **known,

@@ -195,7 +195,8 @@ class _Author:
             self._said_tool = tool
             self._held = Held(tool, motion.operation.tool.name)
         below = self._goes_on(motion) and not self._drawn_back()
-        self._blocks.begin(motion, self._goes_on(motion), comes_level=motion.begins or below)
+        level = below or not self._goes_on(motion)
+        self._blocks.begin(motion, str(values["tool"]), self._goes_on(motion), comes_level=level)
         if below:
             self._expand(f"draw_back_{kind}", values, motion)
         self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)

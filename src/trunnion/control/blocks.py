@@ -68,6 +68,7 @@ class Blocks:
         self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
+        self._tool = ""
         self._vectors = setting_of(program, "orientation") == "vector"
         self._turns_over = any(word.key == BY_VECTOR for word in self._words)
         self._again: dict[str, int] = {}
@@ -86,12 +87,22 @@ class Blocks:
             motion = self._slides.motion
         return motion
 
-    def begin(self, motion: Motion, goes_on: bool, *, comes_level: bool) -> None:
+    def begin(self, motion: Motion, tool: str, goes_on: bool, *, comes_level: bool) -> None:
         """An operation begins, with its own formats of words.
 
-        ``goes_on``: in another plane, and not from home; ``comes_level``: from where the tool has been drawn back, so
-        that it goes to X and Y before it goes down, on controls that want it so.
+        Parameters
+        ----------
+        motion
+            What of it is made in one plane.
+        tool
+            How the program calls the tool.
+        goes_on
+            In another plane than before, and not from home.
+        comes_level
+            From where the tool has been drawn back, so that it goes to X and Y before it goes down, on controls that
+            want it so.
         """
+        self._tool = tool
         self.comes_level = comes_level and self.control.level_approach and motion.manner in _LEVEL
         self._words = words_of(self.program, motion)
         self.writer.use(self._words)
@@ -242,7 +253,7 @@ class Blocks:
         if start == 0 and rapid[0] and self.comes_level:
             self.block({word: int(column[0]) for word, column in columns.items() if word != "Z"})
         if start == 0:
-            self._join(columns, 0, self.edge())
+            self._join(columns, 0, self.first_words(motion))
         for event in joining:
             self._join(columns, event.row - start, self.event_words(event))
         if self._again:
@@ -258,6 +269,11 @@ class Blocks:
         for word, count in in_force.items():
             self.writer.remember(word, count)
         return int(wanted[-1])
+
+    def first_words(self, motion: Motion) -> dict[str, int]:
+        """What the control is told of the tool with the first motion, as counts."""
+        words = self.family.first_words(motion, self._tool, settings_of(self.program))
+        return {word: self.count(word, value) for word, value in words.items()}
 
     def _axis_counts(self, rotary: Floats) -> dict[str, Ints]:
         """The tool axis as a vector, by where the rotary axes stand, however they lean; as counts."""
@@ -299,10 +315,6 @@ class Blocks:
                 columns[word][anew[by_vector[anew] == which]] = 0
             self._by_vector = int(manners[-1])
         return last
-
-    def edge(self) -> dict[str, int]:
-        """The cutting edge, on controls that have any."""
-        return {"edge": int(setting_of(self.program, "edge"))} if "edge" in self.control.settings else {}
 
     def _angle_counts(self, angle: Floats, word: str, column: int) -> Ints:
         return angle_counts(self.program.machine, column, angle, self.writer.word(word).format.decimals)

@@ -115,6 +115,7 @@ class Control:
     arcs_about_z      only arcs about Z can be said; others become lines
     plane_along_machine  X of a tilted plane is that of the machine once it has turned, unless the CL file has its own
     helices           it can be told circles that rise, and more than one turn
+    turns             it can be told circles and helices of more than one turn
     tcp               it can hold the tip of the tool while rotary axes turn
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
     shorter_way       endless axes go the shorter way, so that none goes past the end of the turn that it displays
@@ -145,6 +146,7 @@ class Control:
     arcs_about_z: bool
     plane_along_machine: bool
     helices: bool
+    turns: bool
     tcp: bool
     feed_without_tcp: str
     shorter_way: bool
@@ -190,6 +192,7 @@ class _Arcs(TypedDict):
     chord_tolerance: float
     arcs_about_z: bool
     helices: bool
+    turns: bool
 
 
 def library() -> Traversable:
@@ -347,8 +350,9 @@ def _by_method(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tup
 def _arcs(table: Table) -> _Arcs:
     tolerance = table.number("chord_tolerance", 0.001, above=0.0)
     about, helices = table.text("about", "XYZ", one_of=("XYZ", "Z")), table.flag("helices", True)
+    turns = table.flag("turns", True)
     table.finish()
-    return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices}
+    return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices, "turns": turns}
 
 
 def _naming(table: Table) -> Naming:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from trunnion.control import fidia, heidenhain, linuxcnc, sinumerik
+from trunnion.control import fanuc, fidia, heidenhain, linuxcnc, sinumerik
 from trunnion.control.family import Family
 
 FAMILIES: Final[Mapping[str, Family]] = {
@@ -12,4 +12,5 @@ FAMILIES: Final[Mapping[str, Family]] = {
     "heidenhain_itnc530": heidenhain,
     "heidenhain_tnc640": heidenhain,
     "fidia_nc15": fidia,
+    "fanuc_30i": fanuc,
 }

@@ -14,6 +14,7 @@ from typing import Protocol
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.control.template import Value
 from trunnion.nc import NumberFormat
+from trunnion.plan import Motion
 from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, SpindleOff, SpindleOn, Stop
 
@@ -101,6 +102,21 @@ class Family(Protocol):
 
     def event_words(self, event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
         """The words of an event that joins a motion block, with their values."""
+
+    def first_words(self, motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+        """The words that join the first block of a motion's rows, such as those of the tool's length.
+
+        Where X and Y are gone to before Z, they stand in the block with Z.
+
+        Parameters
+        ----------
+        motion
+            All rows of one manner, in one plane.
+        tool
+            What ``tool_call`` returned for the tool in the spindle, or the setting of the run.
+        settings
+            Those of the run over those of the definition.
+        """
 
     def refused(self, operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
         """What the control would refuse in an operation though it has words for it, with lines of the CL file.

@@ -15,6 +15,7 @@ from trunnion.control.family import FIRST_HOLE, ArcWords, Codes, Formats, Unsaya
 from trunnion.control.iso import event_words as event_words
 from trunnion.control.template import Value
 from trunnion.nc import ABSENT, counts
+from trunnion.plan import Motion
 from trunnion.plan.holes import Cycle, CycleError, Making, Turning
 from trunnion.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense, Stop
 
@@ -88,6 +89,11 @@ def stop(event: Stop, codes: Codes) -> list[str]:
 def message(event: Message) -> list[str]:
     """A comment: nobody says how this control shows a text."""
     return comment(event.text)
+
+
+def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+    """None."""
+    return {}
 
 
 def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:

@@ -16,6 +16,7 @@ from trunnion.control.klartext_holes import cycle_lines
 from trunnion.control.template import Value
 from trunnion.control.turns import about_three
 from trunnion.nc import ABSENT, counts
+from trunnion.plan import Motion
 from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 
@@ -117,6 +118,11 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
     if isinstance(event, CutterComp):
         return {_COMP[event.side]: 1} if event.side in _COMP else {}
     return {"spindle": codes["spindle_off"]}
+
+
+def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+    """None."""
+    return {}
 
 
 def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:

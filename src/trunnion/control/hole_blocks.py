@@ -54,7 +54,7 @@ def _of_one_height(
         if first > 0:
             blocks.event_block(event)
     if first == 0:
-        _approach(blocks, over_first, rapid, retract, joining)
+        _approach(blocks, motion, over_first, rapid, retract, joining)
     turning = None if blocks.spindle is None else Turning(blocks.spindle.rpm, blocks.spindle.sense)
     feed, per_rev = feed_of(cycle, turning, float(moves.feed[first]), bool(moves.per_rev[first]))
     ids, texts = blocks.phase_texts()
@@ -98,13 +98,18 @@ def _of_one_height(
 
 
 def _approach(
-    blocks: Blocks, place: Mapping[str, int], rapid: Mapping[str, int], retract: float, joining: Sequence[WordEvent]
+    blocks: Blocks,
+    motion: Motion,
+    place: Mapping[str, int],
+    rapid: Mapping[str, int],
+    retract: float,
+    joining: Sequence[WordEvent],
 ) -> None:
     """To the retract height over the first hole, in one block or across the tool first."""
-    block = {**rapid, **blocks.edge(), **place}
+    block = {**rapid, **place}
     if blocks.comes_level:
         blocks.block(block)
-    block["Z"] = blocks.count("X", retract)
+    block |= {"Z": blocks.count("X", retract), **blocks.first_words(motion)}
     for event in joining:
         block |= blocks.event_words(event)
     blocks.block(block)

@@ -3,9 +3,9 @@
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.control.family import ArcWords, Codes, Formats, WordEvent
+from trunnion.control.family import ArcWords, Codes, Formats, UnsayableError, WordEvent
 from trunnion.nc import ABSENT, counts
-from trunnion.toolpath import Arcs, Coolant, Sense, SpindleOff, SpindleOn
+from trunnion.toolpath import Arcs, Coolant, Kind, Operation, Sense, SpindleOff, SpindleOn
 
 WORDS: tuple[str, ...] = (
     "cutter_comp", "feed_mode", "plane", "motion", "I", "J", "K", "turns", "speed", "spindle", "coolant", "feed",
@@ -38,6 +38,18 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
     if event.plane in _COMP_PLANE:
         words["plane"] = codes[_COMP_PLANE[event.plane]]
     return words
+
+
+def too_early_per_turn(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
+    """A feed per revolution before the spindle has a speed; as ``Family.refused``."""
+    rows = [event.row for event in operation.events if isinstance(event, SpindleOn)]
+    moves = operation.moves
+    first = 0 if spindle_known else min(rows, default=len(moves))
+    early = np.flatnonzero(moves.per_rev[:first] & (moves.kind[:first] != Kind.RAPID))
+    if not len(early):
+        return []
+    why = UnsayableError("a feed per revolution before the spindle has a speed", "put SPINDL before it")
+    return [(int(moves.line[early[0]]), why)]
 
 
 def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:

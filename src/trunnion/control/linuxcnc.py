@@ -16,8 +16,9 @@ from trunnion.control.iso import row_words as row_words
 from trunnion.control.linuxcnc_holes import cycle_lines
 from trunnion.control.template import Value
 from trunnion.nc import ABSENT
+from trunnion.plan import Motion
 from trunnion.plan.holes import Cycle, Turning
-from trunnion.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Operation, SpindleOn, Stop
+from trunnion.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = iso.WORDS
 CODES: tuple[str, ...] = iso.CODES
@@ -66,6 +67,11 @@ def stop(event: Stop, codes: Codes) -> list[str]:
     return [*(_shown(event.text) if event.text else ()), f"M{code}"]
 
 
+def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+    """None."""
+    return {}
+
+
 def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
     """G95 without a spindle speed, and G41 or G42 in the plane YZ."""
     compensated = [
@@ -73,14 +79,7 @@ def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, Unsaya
         for event in operation.events
         if isinstance(event, CutterComp) and event.plane == "YZPLAN" and event.side != "OFF"
     ]
-    rows = [event.row for event in operation.events if isinstance(event, SpindleOn)]
-    first = 0 if spindle_known else min(rows, default=len(operation.moves))
-    moves = operation.moves
-    early = np.flatnonzero(moves.per_rev[:first] & (moves.kind[:first] != Kind.RAPID))
-    if not len(early):
-        return compensated
-    why = UnsayableError("a feed per revolution before the spindle has a speed", "put SPINDL before it")
-    return [*compensated, (int(moves.line[early[0]]), why)]
+    return [*compensated, *iso.too_early_per_turn(operation, spindle_known)]
 
 
 def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:

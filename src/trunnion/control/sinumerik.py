@@ -15,6 +15,7 @@ from trunnion.control.iso import event_words as event_words
 from trunnion.control.iso import row_words as row_words
 from trunnion.control.template import Value
 from trunnion.control.turns import about_three
+from trunnion.plan import Motion
 from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Dwell, Message, Operation, Stop
 
@@ -58,7 +59,7 @@ def sequence(mode: int) -> tuple[int, int, int]:
 def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
     """How orientations are interpolated, and the three turns of a plane in the order of ``plane_mode``; the frame words
     turn about X, Y, Z, which is 57."""
-    interpolation: dict[str, Value] = {"interpolation": "ORIVECT" if settings["orientation"] == "vector" else "ORIAXES"}
+    interpolation: dict[str, Value] = {"interpolation": "VECT" if settings["orientation"] == "vector" else "AXES"}
     if plane is None:
         return interpolation | dict.fromkeys(_PLANE_FIELDS)
     mode = str(settings["swivel_mode"]) if settings["plane"] == "cycle800" else "57"
@@ -76,6 +77,11 @@ def stop(event: Stop, codes: Codes) -> list[str]:
     """M0 or M1, after the text that the operator is to see."""
     code = codes["optional_stop" if event.optional else "stop"]
     return [*(comment(event.text) if event.text else ()), f"M{code}"]
+
+
+def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+    """The cutting edge, whose length counts from here on."""
+    return {"edge": int(settings["edge"])} if "edge" in settings else {}
 
 
 def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:

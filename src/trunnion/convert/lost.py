@@ -134,17 +134,18 @@ def remark_ways(run: Run, operations: Iterable[Ints], remark: Remarks) -> None:
 
 
 def remark_registers(run: Run, operations: Iterable[Ints], offset: str, remark: Remarks) -> None:
-    """Say where work offset or edge change on the way.
+    """Say where work offset or edge change on the way; an edge that comes on after the first motions does not.
 
     operations   the rows (n,) of each operation
     offset       what stands before the number of a work offset
     """
     for rows in operations:
-        for column, letter in ((run.offset, offset), (run.edge, "D")):
-            others = rows[column[rows] != column[rows[0]]]
+        said = rows[np.argmax(run.edge[rows] >= 0) :]
+        for column, letter, there in ((run.offset, offset, rows), (run.edge, "D", said)):
+            others = there[column[there] != column[there[0]]]
             if len(others):
                 what = f"{letter}{column[others[0]]} within an operation is not carried over"
-                _at(run, others, what, f"{letter}{column[rows[0]]} holds for all of it", remark)
+                _at(run, others, what, f"{letter}{column[there[0]]} holds for all of it", remark)
 
 
 def remark_homes(run: Run, remark: Remarks) -> None:

@@ -192,13 +192,14 @@ class _Converter:
         run = self._run
         rows = np.arange(part.first, part.stop)
         moved = ~run.machine_frame[rows]
-        placed = moved & ((run.programmed[rows] & (Written.X | Written.Y | Written.Z)) != 0)
+        across = self._across(rows)
+        placed = moved & ~across & ((run.programmed[rows] & (Written.X | Written.Y | Written.Z)) != 0)
         if not placed.any():
             return rows[:0]
         begin = int(np.argmax(placed))
-        moved &= ~self._placed_away(rows)
+        moved &= ~self._placed_away(rows) & ~across
         last = int(np.flatnonzero(moved)[-1])
-        gone = begin + np.flatnonzero(~moved[begin:last])
+        gone = begin + np.flatnonzero(~(moved | across)[begin:last])
         if len(gone):
             row = int(rows[gone[0]])
             what = "moves to machine positions within an operation are left out"
@@ -220,6 +221,23 @@ class _Converter:
         worked = np.maximum.accumulate(np.where(works, order, -1))
         after = order > (int(np.flatnonzero(works)[-1]) if works.any() else -1)
         return np.asarray(alone & ((machine > worked) | after))
+
+    def _across(self, rows: Ints) -> Flags:
+        """(n,) bool: the first leg of an approach, on controls that go from home to X and Y first, then down in Z."""
+        found = np.zeros(len(rows), np.bool_)
+        if not self._control.level_approach:
+            return found
+        run = self._run
+        said = run.programmed[rows] & (Written.X | Written.Y | Written.Z | Written.VECTOR)
+        works = ~run.machine_frame[rows] & (said != 0)
+        order = np.arange(len(rows))
+        home = np.maximum.accumulate(np.where(run.machine_frame[rows], order, -1))
+        worked = np.maximum.accumulate(np.where(works, order, -1))
+        before = np.concatenate(([-1], worked[:-1]))
+        rapid = (run.kind[rows] == Kind.RAPID) & ~run.tcp[rows]
+        first = works & rapid & ((said & ~np.uint8(Written.X | Written.Y)) == 0) & (home >= before) & (before < order)
+        found[:-1] = first[:-1] & rapid[1:] & (said[1:] == Written.Z)
+        return found
 
     def _match_heads(self, parts: Sequence[_Part], said: Sequence[Item]) -> None:
         """Find the lines of templates, and what they say. Where an operation's end begins, its path has ended."""

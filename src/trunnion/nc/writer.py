@@ -33,7 +33,7 @@ _MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _
 class BlockNumbers:
     """Block numbers: letter (may be empty), first number, step, the highest before they start again; or none.
 
-    Lines of text that begin with ``unnumbered``, if that is not empty, have neither a number nor a skip sign.
+    Lines of text that begin with one of the characters ``unnumbered`` have neither a number nor a skip sign.
     """
 
     letter: str = "N"
@@ -396,7 +396,7 @@ class BlockWriter:
         width = heads + len(rule) * _WIDEST_WORD + 1
         text_room = sum(len(encoded[k]) + heads + 1 for k in line_of)
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
-        start = self._numbers.unnumbered
+        bare = tuple(self._numbers.unnumbered)
         written = _write_blocks(
             table,
             forced,
@@ -404,7 +404,7 @@ class BlockWriter:
             line_of,
             text_bytes,
             ends,
-            np.array([bool(start) and text.startswith(start) for text in texts] or [False], np.bool_),
+            np.array([text.startswith(bare) for text in texts] or [False], np.bool_),
             rule,
             spelling,
             last,

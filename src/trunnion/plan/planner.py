@@ -78,6 +78,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         kept = plain_arcs(there, wishes.arcs_about_z, wishes.helices_by_angle)
         if not wishes.helices:
             kept &= flat_arcs(operation)
+        if not wishes.turns:
+            kept &= operation.arcs.turns == 0
         if plane is not None and wishes.pose_planes:
             kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)

@@ -245,10 +245,12 @@ class Spans:
         named: int,
         tip_limit: float,
         axis_limit: float,
+        rounded: float = 0.0,
         wanted: Wanted | None = None,
         pairs: "Pairs | None" = None,
     ) -> None:
         self._run = run
+        self._unsure = 2.0 * math.sqrt(3.0) * rounded
         self._chain = pack_chain(run.machine)
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._wanted = wanted
@@ -286,7 +288,10 @@ class Spans:
             axes[led[cuts]] = np.stack((self._wanted.axis(cl[cuts] - 1), self._wanted.axis(cl[cuts])), axis=1)
         off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
         free = kind[rows] == Kind.RAPID
-        _leave(self._chain, poses.joints, poses.tip, poses.axis, rows, tips, axes, free, tcp, off_tip, off_axis)
+        _leave(
+            self._chain, poses.joints, poses.tip, poses.axis, rows, tips, axes, free, tcp, self._unsure,
+            off_tip, off_axis,
+        )  # fmt: skip
         self.tip.take(first, off_tip)
         self.axis.take(first, off_axis)
 
@@ -302,13 +307,15 @@ def _leave(
     axes: Floats,
     free: Flags,
     tcp: Flags,
+    unsure: float,
     off_tip: Floats,
     off_axis: Floats,
 ) -> None:
     """Write how far the tool is off within ``rows``, mm and degrees.
 
     ``joints``, ``tip_at`` and ``axis_at`` have the place before the rows in front. ``tips`` and ``axes`` (k, 2, 3) are
-    the ends of the ways that the k rows are on; ``free`` ones have their own ends for the tool axis.
+    the ends of the ways that the k rows are on; ``free`` ones have their own ends for the tool axis. By
+    ``unsure`` mm of its way a tip may be off.
     """
     here, tip, axis = np.empty(5), np.empty(3), np.empty(3)
     for k in range(rows.shape[0]):
@@ -339,6 +346,8 @@ def _leave(
             for c in range(3):
                 off += (axis[c] - first * axes[k, 0, c] - second * axes[k, 1, c]) ** 2
             worst_axis = max(worst_axis, 2.0 * math.asin(min(0.5 * math.sqrt(off), 1.0)))
+        if not free[k] and way > _SHORT * _SHORT:
+            worst_axis = max(worst_axis - unsure / math.sqrt(way) * turn, 0.0)
         off_tip[row], off_axis[row] = worst_tip, math.degrees(worst_axis)
 
 

@@ -25,6 +25,7 @@ class Settings:
     span         degrees that the tool axis may be off between points; None: it is told, not judged
     span_tip     mm that the tip may be off its line between points without TCP; None: it is told, not judged
     absolute     the program's coordinate system is the CAM's absolute one, not that of the first operation
+    top_rate     greatest F of inverse time that the control takes: no block is asked to be quicker; None: there is none
     top_feed     greatest F per minute that the control takes: no block is asked to be faster; None: there is none
     rapid_feed   mm/min at which lines stand for rapid motion; None: none do
     """
@@ -36,6 +37,7 @@ class Settings:
     span_tip: float | None = None
     absolute: bool = False
     rapid_feed: float | None = None
+    top_rate: float | None = None
     top_feed: float | None = None
 
 

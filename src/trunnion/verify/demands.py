@@ -28,11 +28,14 @@ _COOLANT = {"OFF": "off", "ON": "flood", "FLOOD": "flood", "TAP": "flood", "MIST
 #: A spindle speed is printed without decimals.
 _RPM = 0.5 + 1e-6
 
-#: A tip that moves by less than this, mm, may be said to rest.
+#: A tip that moves by less than this, mm, or by less than rounding comes to, may be said to rest.
 _RESTS = 1e-3
 
 #: No control makes a block in less than this, minutes.
 _QUICKEST = 1e-6
+
+#: A number is the greatest if it is less by no more than this.
+_LAST = 1e-6
 
 #: Home is met within this, mm or degrees.
 _HOME = 1e-6
@@ -219,7 +222,10 @@ def _judge_times(case: Case, nc: Ints, rate: Floats, asked: Floats, near: Flags,
     if len(timed):
         with np.errstate(divide="ignore"):
             minutes = 1.0 / rate[timed]
-        near[timed], rate[timed] = _in_time(run, nc[timed], minutes, asked[timed], 2.0 * math.sqrt(3.0) * allowed.tip)
+        top = np.inf if case.settings.top_rate is None else case.settings.top_rate - _LAST
+        fastest = np.where(rate[timed] >= top, minutes, _QUICKEST)
+        slack = 2.0 * math.sqrt(3.0) * allowed.tip
+        near[timed], rate[timed] = _in_time(run, nc[timed], minutes, asked[timed], slack, quickest=fastest)
     way = counted(run, nc)
     led = np.flatnonzero(~np.isnan(way) & (run.state.feed_path.at(nc) != FeedPath.TIP))
     if not len(led):
@@ -251,7 +257,7 @@ def _in_time(
     before, after = run.poses(nc - 1), run.poses(nc)
     way = np.sqrt(((after.tip - before.tip) ** 2).sum(axis=1))
     turned = np.abs(after.joints - before.joints)[:, list(run.machine.rotary)].max(axis=1)
-    longest = np.where(way < _RESTS, np.maximum(way, turned), way) + slack
+    longest = np.where(way < max(_RESTS, slack), np.maximum(way, turned), way) + slack
     soon = minutes < (1.0 - 1e-3 - rounded) * np.maximum(way - slack, 0.0) / asked
     late = minutes > (1.0 + 1e-3 + rounded) * longest / asked + quickest
     with np.errstate(divide="ignore", invalid="ignore"):

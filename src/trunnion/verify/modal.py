@@ -12,6 +12,7 @@ from trunnion.verify.align import CHUNK, PLACES
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.cycles import hole_rows, leads, made_in
 from trunnion.verify.model import Check, Place
+from trunnion.verify.rapids import levels
 
 _FEEDLESS = {
     "no feed": "moves at feed, but no feed was said",
@@ -144,6 +145,7 @@ def _low_rapids(case: Case) -> list[Place]:
     suspect[hole_rows(made)] = False  # they have a check of their own
     if case.pairs is not None:
         suspect[list(leads(run, case.pairs.extra, made))] = False
+    suspect[levels(run)] = False  # as high as home is, which nobody chose
     if not suspect.any():
         return []
     every = rapids[(run.programmed[rapids] & int(PLACES)) != 0]

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 #: What the two maps, there and back, may differ by, rad.
 _NOISE: Final = 1e-11
 
+#: Square degrees in a square radian.
+_SQUARE_DEGREES: Final = (180.0 / math.pi) ** 2
+
 #: What the seven decimals of CL files leave open at a pole and at the edge of what the rotary axes reach, rad.
 _OPEN: Final = 1.1e-7
 
@@ -183,7 +186,7 @@ def compare_rows(
         off_tip[k] = largest if largest == largest else np.inf
         angle, off_axis[k] = axes_apart(nc_axis, i, cl_axis, j, joints[i, column], sense, first, second)
         squares_axis += angle * angle
-    return squares_tip, squares_axis * (180.0 / math.pi) ** 2
+    return squares_tip, squares_axis * _SQUARE_DEGREES
 
 
 @njit(cache=True, nogil=True)
@@ -223,6 +226,9 @@ def axes_apart(
     if volume < 1e-5 * pp * rr or pp < 1e-12 or rr < 1e-12:
         # At a pole, or at the edge of what the axes reach: what each of them is off by cannot be told apart.
         return angle, math.degrees(max(angle - _OPEN, 0.0) / (math.sqrt(pp) + math.sqrt(rr)))
-    one = abs((rr * pe - pr * re) / volume) - _NOISE / math.sqrt(pp)
-    two = abs((pp * re - pr * pe) / volume) - _NOISE / math.sqrt(rr)
-    return angle, math.degrees(max(one, two, 0.0))
+    one, two = abs((rr * pe - pr * re) / volume), abs((pp * re - pr * pe) / volume)
+    # The split is one of small turns: products of both, which grow towards the pole, are left open.
+    height = abs(w0 * a0 + w1 * a1 + w2 * a2)
+    first_off = one * (1.0 - two * height / math.sqrt(pp)) - _NOISE / math.sqrt(pp)
+    second_off = two - 0.5 * one * one - _NOISE / math.sqrt(rr)
+    return angle, math.degrees(max(first_off, second_off, 0.0))

@@ -33,15 +33,15 @@ def with_rapids(run: Run, feed: float | None) -> Run:
 def levels(run: Run) -> Ints:
     """Rows that are the first leg of an approach, growing; no CL point asks for them.
 
-    The tool has been drawn back (``retract``) and goes to its X and Y at rapid; the block after it says Z alone. Where
-    the machine's travel is not known, nobody knows from how high it comes; where it is, drawing back is a motion of
-    its own.
+    The tool has been drawn back (``retract``), or comes from a position of the machine, and goes to its X and Y at
+    rapid; the block after it says Z alone. Where the machine's travel is not known, nobody knows from how high it
+    comes.
     """
     found = []
-    for event in run.events:
-        if event.kind != "retract":
-            continue
-        row = event.before_row
+    starts = {event.before_row for event in run.events if event.kind == "retract"}
+    starts.update(row for row in run.state.machine_frame.begins(False) if row > 0)
+    for start in sorted(starts):
+        row = start
         while row + 1 < len(run) and (run.state.machine_frame[row] or not int(run.programmed[row]) & int(PLACES)):
             row += 1
         if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any() or run.state.tcp[row]:

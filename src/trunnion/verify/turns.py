@@ -47,7 +47,7 @@ class _Plane:
 
 
 def _planes(run: Run) -> list[_Plane]:
-    """What CYCLE800 and the frame words of a program switch on and off."""
+    """What CYCLE800, G68.2 and the frame words of a program switch on and off."""
     found: list[_Plane] = []
     swivelled = turned = shifted = False
     for event in run.events:
@@ -55,6 +55,8 @@ def _planes(run: Run) -> list[_Plane]:
             values = str(event.value).split(",")
             swivelled = bool(event.value) and values[1:2] != ['"0"']
             turned = shifted = False
+        elif event.kind == "tilt":
+            swivelled, turned, shifted = bool(event.value), False, False
         elif event.kind == "frame":
             word = str(event.value)
             adds = word.startswith("A")

@@ -101,9 +101,10 @@ def _spans(run: Run, settings: Settings, wanted: Wanted | None = None, pairs: Pa
     if settings.span is None and settings.span_tip is None:
         return ()
     limits = [part.allowed for part in wanted.parts] if wanted is not None else [Allowed()]
-    tip = math.inf if settings.span_tip is None else settings.span_tip + max(limit.tip for limit in limits)
+    rounded = max(limit.tip for limit in limits)
+    tip = math.inf if settings.span_tip is None else settings.span_tip + rounded
     axis = math.inf if settings.span is None else settings.span + 2.0 * max(limit.angle for limit in limits)
-    return (Spans(run, NAMED, tip, axis, wanted, pairs),)
+    return (Spans(run, NAMED, tip, axis, rounded, wanted, pairs),)
 
 
 def _cl_lines(case: Case) -> Lines:

@@ -22,6 +22,7 @@ from trunnion.machine import Machine, forward
 from trunnion.reader import FeedPath, Orientation, Run, Stretch, ways
 from trunnion.reader.feeds import STILL
 from trunnion.toolpath import Kind
+from trunnion.verify.rapids import levels
 from trunnion.verify.times import Pace
 
 
@@ -90,6 +91,7 @@ class Walker:
         self._rapid = np.array([math.inf if axis.rapid is None else axis.rapid for axis in axes])
         self._acceleration = np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in axes])
         self._arc_length = _arc_lengths(run)
+        self._levels = levels(run)
         self._state = np.zeros(7)
         self._pace = Pace(run) if times else None
         self._walk = Walk(
@@ -108,6 +110,9 @@ class Walker:
         run, walk, count = self._run, self._walk, end - first
         state, kind, programmed = run.state, run.kind[first:end], run.programmed[first:end]
         tcp, machine_frame = state.tcp.part(first, end), state.machine_frame.part(first, end)
+        # On the first leg of an approach the tool is still as high as the machine's position before it.
+        here = self._levels[(self._levels >= first) & (self._levels < end)]
+        machine_frame[here - first] = True
         angles = run.oriented(first, end) == Orientation.ANGLES
         times, shares, bend = np.empty((4, count)), np.empty((2, 5, count)), np.empty(count)
         ways = self._ways(first, end, poses, tcp)
@@ -230,7 +235,7 @@ def walk_rows(
     state         (7,) float64   minutes of the row before if it was at feed (else 0), next arc, speeds of that row (5)
     times         (4, k) float64 written: length that the feed means, mm or degrees, the feed along it, infinite for
                                  rapids, the tip's way, mm, and 0, 1 or 2 where the tip, the slides or degrees are meant
-    shares        (2, 5, k) float64  written: shares of ``rapid`` and ``most``, 0 for rapids
+    shares        (2, 5, k) float64  written: shares of ``rapid`` and, where it is stated, of ``most``; 0 for rapids
     angles        (k,) bool      rotary axes go linearly, not the tool axis on a great circle
     bend          (k,) float64   written: how far the tool axis is off half-way in rows that cut, degrees
     """
@@ -289,13 +294,15 @@ def walk_rows(
         if turned > STILL and kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
             bend[at] = beside(axis, half_way, at)
         for k in range(5):
+            stated = most[k] < math.inf
             shares[0, k, at] = 0.0
-            shares[1, k, at] = 0.0
+            if stated:
+                shares[1, k, at] = 0.0
             if minutes <= 0.0:
                 continue
             now = (joints[at + 1, k] - joints[at, k]) / minutes
             shares[0, k, at] = abs(now) / rapid[k]
-            if minutes_before > 0.0:
+            if stated and minutes_before > 0.0:
                 change = 2.0 * abs(now - velocity[k]) / (minutes + minutes_before)
                 shares[1, k, at] = change / 3600.0 / most[k]
             velocity[k] = now

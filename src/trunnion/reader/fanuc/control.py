@@ -98,12 +98,14 @@ class FanucControl(Rs274Control):
         shift = self.offset_of(self.system) - self.zero + self.preset + self.local
         self.rotation = Frame()
         self.set_plane(Frame(linear, shift + origin))
+        self.event("tilt", "G68.2")
 
     def upright(self) -> None:
         """G69: no rotation and no plane."""
         self.rotation = Frame()
         if self.tilted:
             self.set_plane(None)
+            self.event("tilt", "")
         self.refresh()
 
     def stand_on_plane(self) -> None:
@@ -123,6 +125,7 @@ class FanucControl(Rs274Control):
         # The axis that carries the other counts first.
         _, best = min(reached, key=lambda item: (round(item[0][first], 6), round(item[0][1 - first], 6)))
         bits = int(Written.FIRST | Written.SECOND)
+        self.event("tilt", "G53.1")
         self.move_axes(Kind.RAPID, self.held[self._slides].copy(), list(best), self.default_way, bits)
 
     def _way_to(self, pair: tuple[float, float], columns: list[int]) -> tuple[float, float]:

@@ -1,0 +1,394 @@
+"""Fanuc programs: the whole text of a few, and random operations of all manners written, read back and proven."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, assume, given, settings
+from hypothesis import strategies as st
+
+from tests.control.test_fidia import CYCLES, END, HEIGHTS, START, circles, holes_in
+from tests.control.test_planes import ANGLES, SHARES, reachable
+from tests.control.test_planes import turned as about
+from tests.control.test_program import HEAD
+from tests.machines import at_zero
+from tests.plan.test_optimum import short_paths, smooth_paths
+from tests.plan.test_read_back import toolpath_of
+from trunnion.cl import read_cl
+from trunnion.cli.post import planned_program, write
+from trunnion.cli.settings import wishes_of
+from trunnion.control import load_control
+from trunnion.control.fanuc import comment, inside, wrong_settings
+from trunnion.control.turns import about_first_and_third
+from trunnion.errors import InputError, Refused
+from trunnion.machine import Machine, load_machine
+from trunnion.reader import run_program
+from trunnion.toolpath import Moves, Toolpath
+from trunnion.verify import Verification, failures, verify
+
+FANUC = load_machine("matsuura_mx330").control
+CONTROL = load_control(FANUC)
+MACHINES = [
+    "matsuura_mx330",
+    "hs664rt",
+    "yl569",
+    "generic_head_head_ca",
+    "generic_head_table_bc",
+    "generic_nutated_b45_c",
+]
+SLOW = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture, HealthCheck.filter_too_much]
+
+#: A word of a block that a whole number would make a thousand times smaller.
+POINTLESS = re.compile(r"(?<![A-Z])[XYZABCIJKRF]-?\d+(?![\d.])")
+
+
+def machine(name: str) -> Machine:
+    """A machine with a Fanuc and room for its slides."""
+    model = at_zero(name)
+    axes = tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in model.axes)
+    return replace(model, axes=axes, control=FANUC)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("fanuc")
+
+
+def posted(toolpath: Toolpath, folder: Path, model: Machine, **asked: str) -> tuple[Verification, str]:
+    """The proof of the program of a toolpath, and its text."""
+    wishes = wishes_of(asked, CONTROL)
+    printed = {key: value for key, value in asked.items() if key in CONTROL.settings}
+    program, _ = planned_program([toolpath], model, CONTROL, printed, False, wishes)
+    target = folder / "part.nc"
+    with target.open("wb") as sink:
+        claim = write(program, sink, wishes)
+    found = verify(run_program(target, model), [toolpath], allowed=claim.allowed, settings=claim.settings)
+    return found, target.read_text(encoding="ascii")
+
+
+def proven(toolpath: Toolpath, folder: Path, model: Machine, **asked: str) -> str:
+    """The text of a program that is proven, and has the form that a Fanuc takes."""
+    found, text = posted(toolpath, folder, model, **asked)
+    assert not failures(found), [(check.key, check.summary) for check in failures(found)]
+    lines = text.splitlines()
+    assert (lines[0], lines[1][:5], lines[-1]) == ("%", "O0001", "%")
+    blocks = [line for line in lines[2:-1] if not line.startswith("(")]
+    assert all(re.match(r"N[1-9]\d{1,4} ", line) for line in blocks)
+    assert not [line for line in blocks if POINTLESS.search(line)]
+    assert not [line for line in blocks if len(re.findall(r"M\d", line)) > 1], "one M word a block"
+    # The length goes on and off with a motion to a place of its own, before any plane goes off.
+    assert all(" Z" in line for line in blocks if re.search(r"G43|G49", line))
+    state = ""
+    for line in blocks:
+        state = {"G43": "on", "G49": "off"}.get(re.search(r"G4[39]|$", line)[0], state)  # type: ignore[index]
+        assert not (state == "on" and re.search(r"G69|G68|M6|G53(?!\.)|M30", line)), line
+    return text
+
+
+def read(text: str, folder: Path) -> Toolpath:
+    file = folder / "part.cls"
+    file.write_text(text, encoding="utf-8")
+    return read_cl(file)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@settings(max_examples=8, suppress_health_check=SLOW, phases=[Phase.generate])
+@given(moves=smooth_paths(60.0) | short_paths(12))
+def test_simultaneous_motion_is_proven(name: str, moves: Moves, folder: Path) -> None:
+    try:
+        text = proven(toolpath_of(moves), folder, machine(name))
+    except (Refused, InputError):
+        assume(False)
+        return
+    assert "G43.5" not in text
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@settings(max_examples=6, suppress_health_check=SLOW, phases=[Phase.generate])
+@given(moves=smooth_paths(40.0) | short_paths(6))
+def test_motion_without_tcp_is_proven(name: str, moves: Moves, folder: Path) -> None:
+    model = machine(name)
+    model = replace(model, workpiece_zero=(37.0, -21.0, 110.0), tool_length=83.7 if model.turns_tool else None)
+    try:
+        text = proven(toolpath_of(moves), folder, model, tcp="off", manner="auto")
+    except (Refused, InputError):
+        assume(False)
+        return
+    assert "G43.4" not in text
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@settings(max_examples=6, suppress_health_check=SLOW, phases=[Phase.generate])
+@given(data=st.data(), shares=st.lists(SHARES, min_size=1, max_size=2))
+def test_milling_in_planes_with_circles_is_proven(
+    name: str, data: st.DataObject, shares: list[tuple[float, float]], folder: Path
+) -> None:
+    model = machine(name)
+    parts = [data.draw(circles(reachable(model, share))) for share in shares]
+    text = "".join(START.replace("OP1", f"OP{k}") + part + END for k, part in enumerate(parts))
+    proven(read(text, folder), folder, model)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@settings(max_examples=6, suppress_health_check=SLOW, phases=[Phase.generate])
+@given(data=st.data(), shares=st.lists(SHARES, min_size=1, max_size=3))
+def test_holes_of_all_cycles_are_proven(
+    name: str, data: st.DataObject, shares: list[tuple[float, float]], folder: Path
+) -> None:
+    model = machine(name)
+    axes = [reachable(model, share) for share in shares]
+    text = START + data.draw(holes_in([np.array([0.0, 0.0, 1.0]), *axes])) + END
+    proven(read(text, folder), folder, model)
+
+
+LEANING = HEAD.replace("50.0,0.0,0.0,1.0", "50.0,0.0,0.5,0.8660254").replace("10.0,0.0,5.0", "10.0,0.0,5.0,0.0,0.6,0.8")
+UPRIGHT = START + "RAPID\nGOTO/10,5,50,0,0,1\n"
+
+
+def body(text: str) -> list[str]:
+    """Blocks without numbers and comments, from the first tool to the end of the last operation."""
+    lines = [line.partition(" ")[2] for line in text.splitlines() if line.startswith("N")]
+    return lines[lines.index("T1 M6") + 1 : -2]
+
+
+def test_a_whole_program_with_tcp(folder: Path) -> None:
+    text = proven(read(LEANING + END, folder), folder, load_machine("matsuura_mx330"), title="Läufer (Größe 5): 50%")
+    assert (
+        text
+        == """\
+%
+O0001 (LAUFER [GROSSE 5]- 50?)
+(MACHINE MATSUURA MX-330)
+N10 G21 G17 G40 G80 G90 G94
+N20 G69
+(OPERATION OP1)
+(T1 D10, MILLING TOOL, DIAMETER 10, CORNER 0)
+N30 G49 G53 G0 Z0.
+N40 G53 G0 X0. Y0. A0. C0.
+N50 T1 M6
+N60 G0 A-30. C0.
+N70 G05.1 Q1
+N80 G54
+N90 S4000 M3
+N100 G0 G43.4 H1 X0. Y0. Z50.
+(CUT)
+N110 G1 X10. Z5. A-36.87 F500.
+N120 G49 G53 G0 Z0.
+N130 G53 G0 X0. Y0. A0. C0.
+N140 G05.1 Q0
+N150 M5
+N160 M9
+N170 M30
+%
+"""
+    )
+
+
+def test_three_axes_with_circles_compensation_and_stops(folder: Path) -> None:
+    statements = """COOLNT/ON
+CUTCOM/LEFT
+GOTO/20,0,5
+CIRCLE/20.0,10.0,5.0,0.0,0.0,1.0,10.0,0.06,0.5,10.0,0.0
+GOTO/30,10,5
+CIRCLE/20.0,10.0,5.0,0.0,0.0,-1.0,10.0,0.06,0.5,10.0,0.0
+GOTO/30,10,5
+CUTCOM/OFF
+DELAY/1.5
+OPSTOP/Späne
+FEDRAT/MMPR,0.125
+GOTO/30,10,9
+RAPID
+GOTO/30,10,50
+"""
+    text = proven(read(HEAD + statements + END, folder), folder, load_machine("matsuura_mx330"), contour="G05")
+    assert "(SPANE)" in text.splitlines()
+    assert body(text) == [
+        "G0 A0. C0.",
+        "G05 P10000",
+        "G54",
+        "S4000 M3",
+        "G0 X0. Y0.",
+        "G43 H1 D1 Z50.",
+        "G1 X10. Z5. F500.",
+        "M8",
+        "G41",
+        "X20.",
+        "G3 X30. Y10. I0. J10.",
+        "G2 X30. Y10. I-10. J0.",
+        "G40",
+        "G4 P1500",
+        "M1",
+        "G95 G1 Z9. F0.125",
+        "G0 Z50.",
+        "G94",
+        "G49 G53 G0 Z0.",
+        "G53 G0 X0. Y0. A0. C0.",
+        "G05 P0",
+        "M5",
+    ]
+
+
+def test_holes_in_two_planes_with_the_plane_off_before_the_axes_turn(folder: Path) -> None:
+    holes = (
+        "RAPID\nGOTO/10,36,53,0.0,0.6,0.8\nCYCLE/DRILL,RAPTO,3,FEDTO,-20,RTRCTO,5,MMPM,250\nGOTO/10,0,0\nGOTO/20,0,0\n"
+    )
+    more = "GOTO/0,0,0,0.6,0.0,0.8\nCYCLE/OFF\n"
+    text = proven(read(START + holes + more + END, folder), folder, load_machine("matsuura_mx330"), contour="none")
+    assert body(text) == [
+        "G0 A-36.87 C0.",
+        "G54",
+        "G68.2 X0. Y0. Z0. I180. J36.87 K180.",
+        "G53.1",
+        "S4000 M3",
+        "G0 X10. Y-3.",
+        "G43 H1 Z64.",
+        "Y0.",
+        "Z5.",
+        "G98 G81 X10. Y0. Z-20. R3. F250.",
+        "X20. Y0.",
+        "G80",
+        "G49 G53 G0 Z0.",
+        "G69",
+        "G0 A-36.87 C270.",
+        "G68.2 X0. Y0. Z0. I90. J36.87 K-90.",
+        "G53.1",
+        "S4000 M3",
+        "G0 X0. Y0.",
+        "G43 H1 Z5.",
+        "G98 G81 X0. Y0. Z-20. R3. F250.",
+        "G80",
+        "G49 G53 G0 Z0.",
+        "G69",
+        "G53 G0 X0. Y0. A0. C0.",
+        "M5",
+    ]
+
+
+def test_without_options_the_slides_are_led_with_inverse_time(folder: Path) -> None:
+    model = replace(load_machine("matsuura_mx330"), workpiece_zero=(0.0, 0.0, 40.0), tool_length=100.0)
+    text = proven(
+        read(LEANING + END, folder), folder, model, tcp="off", contour="none", tip_tolerance="10", axis_tolerance="5"
+    )
+    assert body(text) == [
+        "G0 A-30. C0.",
+        "G54",
+        "S4000 M3",
+        "G0 G43 H1 X0. Y-45. Z37.942",
+        "G93 G1 X10. Y-27. Z-4. A-36.87 F10.847",
+        "G94",
+        "G49 G53 G0 Z0.",
+        "G53 G0 X0. Y0. A0. C0.",
+        "M5",
+    ]
+
+
+ALL_CYCLES = {
+    **{mode: (code, "", words) for mode, (code, words) in CYCLES.items() if mode != "BORE,DWELL"},
+    "DRILL,BRKCHP": ("G73", " Q2.5", HEIGHTS + "STEP,2.5,RTRCTO,9,MMPM,90"),
+    "DRILL,DEEP": ("G83", " Q2.5", HEIGHTS + "STEP,2.5,RTRCTO,9,MMPM,90"),
+    "DRILL,DWELL": ("G82", " P500", HEIGHTS + "MMPM,90,DWELL,0.5"),
+    "BORE,DWELL": ("G89", " P300", HEIGHTS + "MMPM,90,DWELL,REV,20"),
+    "TAP,DWELL": ("G84", " P250", HEIGHTS + "MMPR,1.25,DWELL,0.25"),
+    "TAP,OPTION": ("G84", "", HEIGHTS + "MMPR,1.25,OPTION"),
+    "BORE,NODRAG": ("G76", " Q0.5", HEIGHTS + "MMPM,90"),
+    "BORE,MANUAL": ("G88", "", HEIGHTS + "MMPM,90"),
+}
+
+
+@pytest.mark.parametrize("mode", ALL_CYCLES)
+@pytest.mark.parametrize("sense", ["CLW", "CCLW"])
+def test_each_cycle_has_its_words(mode: str, sense: str, folder: Path) -> None:
+    code, more, words = ALL_CYCLES[mode]
+    major = mode.removesuffix(",DWELL").removesuffix(",OPTION")
+    text = UPRIGHT.replace("CLW", sense) + f"CYCLE/{major},{words}\nGOTO/10,5,2\nGOTO/20,5,2\nCYCLE/OFF\n" + END
+    lines = body(proven(read(text, folder), folder, load_machine("matsuura_mx330"), bore_lift="0.5"))
+    at = next(k for k, line in enumerate(lines) if re.match(r"G9[89] ", line))
+    tap = "TAP" in mode
+    back = "G98" if "RTRCTO" in words else "G99"
+    feed = "5000." if tap else "90."
+    left = "G74" if tap and sense == "CCLW" else code
+    assert lines[at] == f"{back} {left} X10. Y5. Z-10. R5.{more} F{feed}"
+    assert lines[at + 1 : at + 3] == ["X20. Y5.", "G80"]
+    assert (lines[at - 1] == "M29 S4000") == (tap and "OPTION" not in mode)
+
+
+def test_a_control_that_taps_rigidly_by_itself_needs_no_m29(folder: Path) -> None:
+    control = load_control(FANUC)
+    bare = replace(control, settings={**control.settings, "rigid_tap": ""})
+    path = read(UPRIGHT + f"CYCLE/TAP,{HEIGHTS}MMPR,1\nGOTO/10,5,2\nCYCLE/OFF\n" + END, folder)
+    program, _ = planned_program([path], load_machine("matsuura_mx330"), bare, {}, False, wishes_of({}, bare))
+    target = folder / "tap.nc"
+    with target.open("wb") as sink:
+        write(program, sink)
+    assert "M29" not in target.read_text(encoding="ascii")
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        (f"CYCLE/DRILL,DEEP,{HEIGHTS}STEP,3,1,1,MMPM,90\nGOTO/10,5,2\n", "strokes that become shorter"),
+        (f"CYCLE/DRILL,DEEP,{HEIGHTS}STEP,3,DWELL,1,MMPM,90\nGOTO/10,5,2\n", "for which G83 has no word"),
+        (f"CYCLE/BORE,NODRAG,{HEIGHTS}MMPM,90\nGOTO/10,5,2\n", "how far the tool lifts off"),
+        (f"CYCLE/BORE,NODRAG,90,{HEIGHTS}MMPM,90\nGOTO/10,5,2\n", "a parameter of the control"),
+        (f"SPINDL/OFF\nCYCLE/TAP,{HEIGHTS}MMPR,1\nGOTO/10,5,2\n", "spindle stands still"),
+        ("FEDRAT/MMPM,100\nCUTCOM/LEFT\nGOTO/10,5,2\nGOTO/10,5,3,0,0.6,0.8\n", "while the tool axis changes"),
+    ],
+)
+def test_what_cannot_be_said_is_refused(text: str, what: str, folder: Path) -> None:
+    with pytest.raises((Refused, InputError), match=what):
+        posted(read(UPRIGHT + text + END, folder), folder, load_machine("matsuura_mx330"))
+
+
+def test_a_helix_of_more_than_one_turn_becomes_lines_and_one_of_less_stays_a_circle(folder: Path) -> None:
+    helix = "CIRCLE/20.0,10.0,5.0,0.0,0.0,1.0,10.0,0.06,0.5,10.0,0.0{}\nGOTO/30,10,2\n"
+    start = HEAD + "GOTO/20,0,5\n"
+    for turns, lines in (("", 1), (",TIMES,2", 0)):
+        text = proven(read(start + helix.format(turns) + END, folder), folder, load_machine("matsuura_mx330"))
+        assert sum(line.startswith("G3 ") for line in body(text)) == lines
+        assert (len(body(text)) > 100) == (lines == 0)
+
+
+@settings(max_examples=60)
+@given(st.text())
+def test_comments_are_what_the_control_has_characters_for(text: str) -> None:
+    for line in comment(text):
+        assert re.fullmatch(r"\([A-Z0-9 .,=+\-*/_#\[\]'!?&<>@]{0,76}\)", line), line
+    assert inside(inside(text)) == inside(text)
+
+
+@given(ANGLES, ANGLES, ANGLES)
+def test_euler_angles_make_the_plane_again(first: float, second: float, third: float) -> None:
+    matrix = about(2, first) @ about(0, second) @ about(2, third)
+    one, two, three = about_first_and_third(matrix)
+    again = about(2, one) @ about(0, two) @ about(2, three)
+    np.testing.assert_allclose(again, matrix, atol=3e-8)  # beside the pole, where two turns become one
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "good"),
+    [
+        ("program", "1234", True),
+        ("program", "00000012", True),
+        ("program", "123456789", False),
+        ("program", "0", False),
+        ("program", "A", False),
+        ("program", "\u0661", False),
+        ("tool", "T5", False),
+        ("tool", "", True),
+        ("bore_lift", "-0.5", False),
+        ("bore_lift", "nan", False),
+        ("bore_lift", "0.5", True),
+    ],
+)
+def test_settings_that_are_no_numbers_are_named(name: str, value: str, good: bool) -> None:
+    assert (wrong_settings({name: value}) == []) == good
+
+
+def test_block_numbers_begin_anew_and_nothing_else_has_any(folder: Path) -> None:
+    moves = "".join(f"GOTO/{k % 90},{k % 7},5\n" for k in range(10100))
+    text = proven(read(HEAD + moves + END, folder), folder, load_machine("matsuura_mx330"))
+    numbers = [int(line[1:].split(" ")[0]) for line in text.splitlines() if line.startswith("N")]
+    assert (max(numbers), min(numbers)) == (99990, 10)
+    assert numbers.count(10) == 2
