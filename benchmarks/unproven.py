@@ -6,26 +6,30 @@ Reads, plans and writes as the command does, and does not read its program back.
 import gc
 import os
 import sys
-from pathlib import Path
+from concurrent.futures import ThreadPoolExecutor
 
-from trunnion.cl import read_cl
-from trunnion.cli.post import planned_program
-from trunnion.control import load_control, write_program
-from trunnion.files import whole
-from trunnion.machine import load_machine
-from trunnion.plan import Wishes
+from trunnion.cli.reading import toolpaths
 
 
 def main() -> None:
     """Run from the command line."""
     gc.disable()
     source, name, target = sys.argv[1:]
-    machine = load_machine(name)
-    control = load_control(machine.control)
-    toolpath = read_cl(Path(source))
-    program, _ = planned_program([toolpath], machine, control, {}, False, Wishes(manners=control.manners({})))
-    with whole(target) as sink:
-        write_program(program, sink)
+    with ThreadPoolExecutor(1) as aside:
+        coming = toolpaths([source], None, False, aside)
+        # As the command does, all else is imported while the file is read.
+        from trunnion.cli.post import planned_program
+        from trunnion.control import load_control, write_program
+        from trunnion.files import whole
+        from trunnion.machine import load_machine
+        from trunnion.plan import Wishes
+
+        machine = load_machine(name)
+        control = load_control(machine.control)
+        wishes = Wishes(manners=control.manners({}))
+        program, _ = planned_program([next(coming)], machine, control, {}, False, wishes)
+        with whole(target) as sink:
+            write_program(program, sink)
     os._exit(0)  # as the command ends
 
 

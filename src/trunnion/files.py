@@ -39,6 +39,11 @@ class Growing:
             self._news.wait_for(lambda: self._ended or self._size >= size)
             return not self._ended
 
+    def wait(self) -> None:
+        """Wait until nothing more will be written."""
+        with self._news:
+            self._news.wait_for(lambda: self._ended)
+
     @property
     def foreseen(self) -> int:
         """About how many bytes there will be, and no fewer than there are."""

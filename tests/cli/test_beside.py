@@ -8,13 +8,13 @@ import pytest
 from tests.paths import GOLDEN, YL569
 from tests.reader.test_growing import facts
 from trunnion.cl import read_cl
-from trunnion.cli.post import planned_program, prove, write, write_and_run
+from trunnion.cli.post import Claim, planned_program, prove, running, write
 from trunnion.control import Program, load_control
 from trunnion.errors import Refused
 from trunnion.files import Output
 from trunnion.machine import load_machine
 from trunnion.plan import Wishes
-from trunnion.reader import run_program
+from trunnion.reader import Run, run_program
 from trunnion.toolpath import Toolpath
 
 CASES = {
@@ -44,6 +44,13 @@ def planned(name: str) -> tuple[Program, Wishes, Toolpath]:
     control = load_control(machine.control)
     wishes = Wishes(manners=control.manners({}))
     return planned_program([toolpath], machine, control, {}, True, wishes)[0], wishes, toolpath
+
+
+def write_and_run(program: Program, made: Output, wishes: Wishes) -> tuple[Claim, Run | None]:
+    """As ``trunnion post`` does it."""
+    with running(made, program.machine, None) as (growing, run):
+        claim = write(program, made.main, wishes, growing)
+    return claim, run.result()
 
 
 @pytest.mark.parametrize("name", sorted(CASES))

@@ -105,8 +105,8 @@ def scan(
             if _makes_row(data, begin, end):
                 mark |= ROW
                 line[row] = line_no
-                tip[row, :] = np.nan
-                axis[row, :] = np.nan
+                for k in range(3):
+                    tip[row, k] = axis[row, k] = np.nan
                 row += 1
             spans[count, 4] = mark
             count += 1

@@ -13,9 +13,6 @@ from typing import NoReturn
 
 from trunnion.errors import InputError, Refused
 
-#: Seconds after which a thread that goes on from a kernel gets the interpreter; five thousandths would be usual.
-_TURN = 2e-4
-
 
 def run() -> NoReturn:
     """The command of the shell: do it, and be gone.
@@ -24,7 +21,6 @@ def run() -> NoReturn:
     posting a small file does: the collector stays off, and the process ends as soon as everything is written.
     """
     gc.disable()
-    sys.setswitchinterval(_TURN)
     if sys.stderr.isatty() and not Path(os.environ["NUMBA_CACHE_DIR"]).exists():
         print("first run: compiling the kernels, once; this takes some seconds", file=sys.stderr)
     code = main()

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.post import planned_program, prove, say, write_and_run
+from trunnion.cli.post import planned_program, prove, running, say, write
 from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
 from trunnion.control import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
@@ -50,9 +50,10 @@ def run(arguments: argparse.Namespace) -> int:
             _say_some(write_cl(converted.toolpath, made.main, comments=comments))
         else:
             paths = [converted.toolpath]
-            program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
-            claim, run = write_and_run(program, made, wishes, division)
-            prove(claim, run, paths, made, target, program if arguments.force else None)
+            with running(made, target_machine, division) as (growing, run):
+                program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
+                claim = write(program, made.main, wishes, growing, division)
+            prove(claim, run.result(), paths, made, target, program if arguments.force else None)
     if arguments.to_cl and carried:
         print(_hint(target, arguments.machine, carried), file=sys.stderr)
     if target != "-":

@@ -5,11 +5,12 @@ import math
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
@@ -23,19 +24,11 @@ from trunnion.files import Growing, Output, output
 from trunnion.machine import Machine, forward, load_machine
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
 from trunnion.plan.arcs import off_circle
-from trunnion.reader import Run, can_read, run_program
 from trunnion.toolpath import Toolpath
-from trunnion.verify import (
-    Agreed,
-    Allowed,
-    Settings,
-    Verification,
-    check_lines,
-    failures,
-    place_lines,
-    time_lines,
-    verify,
-)
+
+if TYPE_CHECKING:
+    from trunnion.reader import Run
+    from trunnion.verify import Allowed, Settings, Verification
 
 #: A turn of the rotary axes turns the tool axis by no less than this part of it, however near the pole.
 _LEAST_LEVER = 1e-3
@@ -64,15 +57,16 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
             paths = list(islice(toolpaths, len(files)))
             for path in paths:
                 say(path.remarks)
-            program, decisions = planned_program(
-                paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
-            )
-            claim, done = write_and_run(program, made, wishes, division)
+            with running(made, machine, division) as (growing, run):
+                program, decisions = planned_program(
+                    paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
+                )
+                claim = write(program, made.main, wishes, growing, division)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
             again = program if arguments.force else None
             del program
             said = decisions if wishes.explain else ()
-            prove(claim, done, paths, made, target, again, arguments.report, said)
+            prove(claim, run.result(), paths, made, target, again, arguments.report, said)
         if target != "-":
             print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
         for other in made.others:
@@ -120,6 +114,8 @@ def planned_program(
 
 def _unprovable(machine: Machine, control: Control) -> list[Problem]:
     """Why a program of this machine can be written but not read back; empty where it can."""
+    from trunnion.reader import can_read
+
     if can_read(machine):
         return []
     what = f"programs for {control.name} cannot be read back yet: nothing proves this one"
@@ -139,36 +135,39 @@ class Claim:
     machine: Machine
     rows: int
     operations: int
-    allowed: list[Allowed]
-    settings: Settings
+    allowed: "list[Allowed]"
+    settings: "Settings"
     division: Division | None = None
 
 
-def write_and_run(
-    program: Program, made: Output, wishes: Wishes, division: Division | None = None
-) -> tuple[Claim, Run | None]:
-    """Write a program, and run it as its control does, as far as it is written; no run where nobody can read it.
+@contextmanager
+def running(
+    made: Output, machine: Machine, division: Division | None
+) -> "Iterator[tuple[Growing, Future[Run | None]]]":
+    """Run a program while it is being written, and get ready for that before: what runs it is imported meanwhile.
 
-    The run is of what can be read under the path of what is made, as if it had waited for the end. A program of several
-    files is waited for: its calls stand before what they call.
+    Gives who wants to know how far the program is written, and the run, complete when the block has ended; None where
+    nobody can read such programs. The run is of what can be read under the path of what is made, as if it had waited
+    for the end. A program of several files is waited for: its calls stand before what they call.
     """
-    if division is not None:
-        claim = write(program, made.main, wishes, division=division)
-        made.flush()
-        return claim, _run(made, program.machine)
     growing = Growing()
     with ThreadPoolExecutor(1) as aside:
-        run = aside.submit(_run, made, program.machine, growing)
+        run = aside.submit(_run, made, machine, growing, division)
         try:
-            claim = write(program, made.main, wishes, growing)
+            yield growing, run
+            made.flush()
         finally:
             growing.end()
-    return claim, run.result()
 
 
-def _run(made: Output, machine: Machine, growing: Growing | None = None) -> Run | None:
+def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> "Run | None":
+    import trunnion.verify  # noqa: F401 - wanted next, and no kernel waits for it here
+    from trunnion.reader import can_read, run_program
+
     if not can_read(machine):
         return None
+    if division is not None:
+        growing.wait()
     return run_program(made.path, machine, subprograms=made.others, growing=growing)
 
 
@@ -202,7 +201,7 @@ def write(
 
 def prove(
     claim: Claim,
-    run: Run | None,
+    run: "Run | None",
     paths: Sequence[Toolpath],
     made: Output,
     target: str,
@@ -236,6 +235,8 @@ def prove(
     Refused
         When a check fails and there is no program to write again.
     """
+    from trunnion.verify import check_lines, failures, place_lines, time_lines, verify
+
     if run is None:
         what = "it is written by --force, and nothing has been checked" + (": there is no report" if report else "")
         say([Problem(target, 0, what, severity=Severity.WARNING)])
@@ -261,14 +262,16 @@ def prove(
         write_program(replace(again, notices=[*again.notices, *notices]), made.main, division=claim.division)
 
 
-def _too_fast(found: Verification) -> bool:
+def _too_fast(found: "Verification") -> bool:
     """Whether a rotary axis would have to be faster than it can."""
     names = tuple(f"{axis.name} " for axis in found.machine.axes if axis.is_rotary)
     return any(c.key == "speed" and any(place.text.startswith(names) for place in c.places) for c in found.checks)
 
 
-def _allowed(program: Program) -> list[Allowed]:
+def _allowed(program: Program) -> "list[Allowed]":
     """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
+    from trunnion.verify import Agreed, Allowed
+
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
     allowed: list[Allowed] = []
@@ -338,8 +341,10 @@ def _lever(motion: Motion, machine: Machine) -> float:
     return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), _LEAST_LEVER)
 
 
-def _asked(program: Program, wishes: Wishes) -> Settings:
+def _asked(program: Program, wishes: Wishes) -> "Settings":
     """What the settings of the run say that the CL files do not."""
+    from trunnion.verify import Settings
+
     led = any(motion.manner is Manner.WITHOUT_TCP for motion in program.motions)
     axis = wishes.axis_between if led or math.isfinite(wishes.axis_between) else None
 

@@ -380,23 +380,32 @@ def place_slides(
 
     The rotary axes stand at the angles with these cosines and sines, about the lines of ``frame_1`` and ``frame_2``.
     """
-    one, two = packed.frame_1, packed.frame_2
-    # Where the tip would be with the slides at zero.
-    px, py, pz = turned(two, cos_2, sin_2, packed.reach[0], packed.reach[1], packed.reach[2])
-    px, py, pz = turned(one, cos_1, sin_1, px + packed.link[0], py + packed.link[1], pz + packed.link[2])
-    px, py, pz = x - px - packed.base[0], y - py - packed.base[1], z - pz - packed.base[2]
+    one, two, link, reach = packed.frame_1, packed.frame_2, packed.link, packed.reach
+    x, y, z = x - packed.base[0], y - packed.base[1], z - packed.base[2]
     inside = packed.inside
     if inside[0] == inside[1] and inside[1] == inside[2] and not math.isnan(packed.across[0]):
-        # All slides stand on one side of each rotary axis, and always as at zero to each other.
+        # All slides stand on one side of each rotary axis, and always as at zero to each other: seen from there, what
+        # is on the workpiece's side turns back, and what is on the tool's side turns.
         if inside[0] >= 1:
-            px, py, pz = turned(one, cos_1, -sin_1, px, py, pz)
+            x, y, z = turned(one, cos_1, -sin_1, x, y, z)
+            x, y, z = x - link[0], y - link[1], z - link[2]
+        rx, ry, rz = reach[0], reach[1], reach[2]
         if inside[0] == 2:
-            px, py, pz = turned(two, cos_2, -sin_2, px, py, pz)
+            x, y, z = turned(two, cos_2, -sin_2, x, y, z)
+        else:
+            rx, ry, rz = turned(two, cos_2, sin_2, rx, ry, rz)
+        if inside[0] == 0:
+            rx, ry, rz = turned(one, cos_1, sin_1, rx + link[0], ry + link[1], rz + link[2])
+        px, py, pz = x - rx, y - ry, z - rz
         across = packed.across
         out[packed.columns[2]] = across[0] * px + across[1] * py + across[2] * pz + 0.0
         out[packed.columns[3]] = across[3] * px + across[4] * py + across[5] * pz + 0.0
         out[packed.columns[4]] = across[6] * px + across[7] * py + across[8] * pz + 0.0
         return 0
+    # Where the tip would be with the slides at zero.
+    px, py, pz = turned(two, cos_2, sin_2, reach[0], reach[1], reach[2])
+    px, py, pz = turned(one, cos_1, sin_1, px + link[0], py + link[1], pz + link[2])
+    px, py, pz = x - px, y - py, z - pz
     ax, ay, az = slide_direction(packed, 0, cos_1, sin_1, cos_2, sin_2)
     bx, by, bz = slide_direction(packed, 1, cos_1, sin_1, cos_2, sin_2)
     cx, cy, cz = slide_direction(packed, 2, cos_1, sin_1, cos_2, sin_2)

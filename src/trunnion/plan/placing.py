@@ -167,16 +167,18 @@ def straight_on(
     extremes: Floats,
     where: Ints,
     changes: Ints,
+    joints: Floats,
 ) -> bool:
     """As ``place``, and fill ``state``, by the nearest pose from row to row as long as it stays on one side.
 
     Only for machines as ``trunnion.plan.poses.sides_travel_alike`` describes them. Returns False, with the columns half
     filled, at the first row that leaves something to choose: a limit is left, an axis would have to wind back, or the
     other side is not clearly farther away.
+
+    joints  (5,) float64   what it works with; a kernel that makes arrays takes longer to load
     """
     columns, low, high, span = packed.columns, choice.low, choice.high, choice.span
     low_1, high_1, low_2, high_2 = low[columns[0]], high[columns[0]], low[columns[1]], high[columns[1]]
-    joints = np.empty(5)
     last_1, last_2 = choice.start
     held, side, undecided, was_pole = folded(last_1), 0, True, False
     status, u0, u1, cos, sin = 0, 0.0, 0.0, 0.0, 0.0
@@ -204,7 +206,9 @@ def straight_on(
                 if undecided and not (_fits(first, low_1, high_1) and _fits(second, low_2, high_2)):
                     here = np.inf
                 if undecided and there < here - _CLEAR:
-                    side, state[:row] = 1, state[:row] + max(span[1], 1) * max(span[3], 1)
+                    side = 1
+                    for earlier in range(row):
+                        state[earlier] += max(span[1], 1) * max(span[3], 1)
                     first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(packed, u0, u1, cos, -sin, status)
                     one, two = folded(first - last_1), folded(second - last_2)
                 elif not here < there - _CLEAR:

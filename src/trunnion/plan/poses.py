@@ -136,6 +136,7 @@ def settled(machine: Machine, moves: Moves, keep_slides: bool) -> Poses | None:
     done = straight_on(
         packed, choice, _display_low(machine), moves.tip, moves.axis,
         poses.state, poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where, poses.changes,
+        np.empty(5),
     )  # fmt: skip
     return poses if done else None
 

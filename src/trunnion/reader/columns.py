@@ -102,15 +102,20 @@ class Steps:
         return self.values[np.searchsorted(self.rows, row, "right") - 1].item()
 
     def at(self, rows: Ints) -> NDArray[Any]:
-        """Values of rows, (k,)."""
-        if len(self.values) == 1:
-            return np.full(len(rows), self.values[0])
+        """Values of rows, (k,), in any order."""
+        if not len(rows):
+            return self.values[:0].copy()
+        low, high = np.searchsorted(self.rows, (rows.min(), rows.max()), "right").tolist()
+        if low == high:  # no change lies between them
+            return np.full(len(rows), self.values[low - 1])
         return np.asarray(self.values[np.searchsorted(self.rows, rows, "right") - 1])
 
     def part(self, first: int, end: int) -> NDArray[Any]:
         """Values of consecutive rows, (end - first,)."""
-        low = int(np.searchsorted(self.rows, first, "right")) - 1
-        high = max(int(np.searchsorted(self.rows, end)), low + 1)
+        low = int(self.rows.searchsorted(first, "right")) - 1
+        high = max(int(self.rows.searchsorted(end)), low + 1)
+        if high == low + 1:
+            return np.full(end - first, self.values[low])
         bounds = np.append(self.rows[low:high], end)
         bounds[0] = first
         return np.repeat(self.values[low:high], np.diff(bounds))

@@ -37,8 +37,10 @@ class Notes(NamedTuple):
     comments    (k, 4) int64   line, row, first byte and end of each comment
     feed_rows   (k,) int64     rows from which another feed holds
     feeds       (k,) float64   that feed
+    numbers     (12,) float64  the numbers of one block, while it is being read
     """
 
     comments: Ints
     feed_rows: Ints
     feeds: Floats
+    numbers: Floats

@@ -70,7 +70,7 @@ class Rows:
 
         self.counts = np.zeros(FIELDS, np.int64)
         self.counts[KIND] = 1
-        self.notes = Notes(np.empty((ROOM, 4), np.int64), np.empty(ROOM, np.int64), np.empty(ROOM))
+        self.notes = Notes(np.empty((ROOM, 4), np.int64), np.empty(ROOM, np.int64), np.empty(ROOM), np.zeros(12))
         self.place = np.zeros(5)
         self.place[3] = math.nan
         self.map = affine(np.eye(3), np.zeros(3))

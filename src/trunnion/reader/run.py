@@ -26,11 +26,11 @@ from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.poses import joints_of
 from trunnion.toolpath import Arcs
 
-#: Rows that are worked out at a time: what is needed for them stays in the processor's cache.
-CHUNK = 8192
+#: Rows that are worked out at a time: some megabytes, and milliseconds enough that two threads seldom meet.
+CHUNK = 32768
 
 #: Stretches from which on a second thread is worth its start.
-_WORTH_A_THREAD = 4
+_WORTH_A_THREAD = 2
 
 
 class Written(IntFlag):

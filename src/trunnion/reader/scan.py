@@ -119,7 +119,7 @@ def scan(
     line = counts[LINE]
     comments = notes.comments
     room = min(target.kind.shape[0], target.base + target.way.shape[0])
-    values = np.zeros(12)
+    values = notes.numbers
     gaps = table[_SPACE] == GAP
     while position < end and row < room and noted < comments.shape[0] and feeds_noted < notes.feeds.shape[0]:
         at = position

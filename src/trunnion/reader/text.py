@@ -17,7 +17,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.files import Growing
 
 #: Bytes read at a time.
-CHUNK: Final = 1 << 18
+CHUNK: Final = 1 << 20
 
 #: Longer lines belong to no program.
 LONGEST_LINE: Final = 1 << 16
@@ -154,8 +154,9 @@ class Text:
         """Hold the whole program, at the same line: from now on it may jump."""
         if self.whole:
             return
-        while self._growing is not None:
-            self._wait(self.size + 1)
+        if self._growing is not None:
+            self._growing.wait()
+            self._wait(0)
         size = self.size
         if size > LARGEST_WHOLE:
             what = f"has {size} bytes, more than the {LARGEST_WHOLE} that a program with jumps may have"

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 #: What the two maps, there and back, may differ by, rad.
 _NOISE: Final = 1e-11
 
+#: Square degrees in a square radian.
+_SQUARE_DEGREES: Final = (180.0 / math.pi) ** 2
+
 #: What the seven decimals of CL files leave open at a pole and at the edge of what the rotary axes reach, rad.
 _OPEN: Final = 1.1e-7
 
@@ -183,7 +186,7 @@ def compare_rows(
         off_tip[k] = largest if largest == largest else np.inf
         angle, off_axis[k] = axes_apart(nc_axis, i, cl_axis, j, joints[i, column], sense, first, second)
         squares_axis += angle * angle
-    return squares_tip, squares_axis * (180.0 / math.pi) ** 2
+    return squares_tip, squares_axis * _SQUARE_DEGREES
 
 
 @njit(cache=True, nogil=True)

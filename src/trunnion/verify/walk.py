@@ -235,7 +235,7 @@ def walk_rows(
     state         (7,) float64   minutes of the row before if it was at feed (else 0), next arc, speeds of that row (5)
     times         (4, k) float64 written: length that the feed means, mm or degrees, the feed along it, infinite for
                                  rapids, the tip's way, mm, and 0, 1 or 2 where the tip, the slides or degrees are meant
-    shares        (2, 5, k) float64  written: shares of ``rapid`` and ``most``, 0 for rapids
+    shares        (2, 5, k) float64  written: shares of ``rapid`` and, where it is stated, of ``most``; 0 for rapids
     angles        (k,) bool      rotary axes go linearly, not the tool axis on a great circle
     bend          (k,) float64   written: how far the tool axis is off half-way in rows that cut, degrees
     """
@@ -294,13 +294,15 @@ def walk_rows(
         if turned > STILL and kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
             bend[at] = beside(axis, half_way, at)
         for k in range(5):
+            stated = most[k] < math.inf
             shares[0, k, at] = 0.0
-            shares[1, k, at] = 0.0
+            if stated:
+                shares[1, k, at] = 0.0
             if minutes <= 0.0:
                 continue
             now = (joints[at + 1, k] - joints[at, k]) / minutes
             shares[0, k, at] = abs(now) / rapid[k]
-            if minutes_before > 0.0:
+            if stated and minutes_before > 0.0:
                 change = 2.0 * abs(now - velocity[k]) / (minutes + minutes_before)
                 shares[1, k, at] = change / 3600.0 / most[k]
             velocity[k] = now
