@@ -127,6 +127,31 @@ def test_force_writes_it_and_its_head_says_so(tmp_path: Path, capfd: pytest.Capt
     )
 
 
+@pytest.mark.parametrize(
+    ("machine", "first"),
+    [
+        ("yl569", []),
+        ("xyzac_trt", []),
+        ("dmu65", ["BEGIN PGM"]),
+        ("matsuura_mx330", ["%", "O"]),
+    ],
+)
+def test_the_head_says_so_where_the_control_reads_it(tmp_path: Path, machine: str, first: list[str]) -> None:
+    source, target = tmp_path / "part.cls", tmp_path / "part.nc"
+    far = "GOTO/9000.0,0.0,10.0\n"
+    source.write_text(
+        "TOOL PATH/FAR,TOOL,T1\nTLDATA/MILL,10.,0.,75.,0.,0.\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\nRAPID\n"
+        f"GOTO/0.0,0.0,10.0,0.,0.,1.\nFEDRAT/MMPM,500\n{far}END-OF-PATH\n"
+    )
+    assert main(["post", str(source), "--machine", machine, "--output", str(target), "--force"]) == 0
+    lines = target.read_text(encoding="utf-8").splitlines()
+    assert len(lines) > len(first)
+    for line, word in zip(lines, first, strict=False):
+        assert word in line
+        assert "MUST NOT RUN" not in line
+    assert "MUST NOT RUN AS IT IS" in lines[len(first)]
+
+
 def test_an_unknown_statement_is_a_warning_and_an_error_under_strict(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -92,6 +92,7 @@ class _Author:
         self._family = program.control.family
         self._blocks = Blocks(program, sink, progress)
         self._printed = Printed(program)
+        self._notices = [line for text in program.notices for line in self._family.comment(text)]
         self._held = Held()
         self._said_tool = ""  # that this file has called
         self._speed: Value = None  # of the spindle, as a text said it last
@@ -105,8 +106,7 @@ class _Author:
     def write(self) -> None:
         """The program, operation by operation."""
         motions = self._program.motions
-        self._notices()
-        self._expand("program_start", self._values(motions[0], 0), motions[0])
+        self._expand("program_start", self._values(motions[0], 0), motions[0], self._notices)
         for k, motion in enumerate(motions):
             ends = k + 1 == len(motions) or motions[k + 1].begins
             if motion.begins:
@@ -120,9 +120,6 @@ class _Author:
             if ends:
                 self._leave(motion, k)
         self._expand("program_end", self._values(motions[-1], -1), motions[-1])
-
-    def _notices(self) -> None:
-        self._blocks.lines([line for text in self._program.notices for line in self._family.comment(text)])
 
     # Subprograms
 
@@ -154,8 +151,7 @@ class _Author:
         self._frame("subprogram_call", named, motion)
         self._blocks.writer.turn_to(sink)
         self._blocks.largest = self._files.largest
-        self._notices()
-        self._frame(start, named, motion)
+        self._frame(start, named, motion, self._notices)
 
     def _end(self, values: Mapping[str, Value], motion: Motion) -> None:
         """A subprogram ends; what comes next stands in the main program."""
@@ -163,20 +159,23 @@ class _Author:
         self._frame("subprogram_end", {**values, "subprogram": self._files.open}, motion)
         self._blocks.writer.turn_to(self._files.main)
 
-    def _frame(self, name: str, values: Mapping[str, Value], motion: Motion) -> None:
+    def _frame(self, name: str, values: Mapping[str, Value], motion: Motion, notices: Sequence[str] = ()) -> None:
         """A template whose blocks must be read whichever blocks are skipped."""
         skips = self._blocks.writer.skips
         self._blocks.writer.skip_blocks(False)
-        self._expand(name, values, motion)
+        self._expand(name, values, motion, notices)
         self._blocks.writer.skip_blocks(skips)
 
     # Operations
 
-    def _expand(self, name: str, values: Mapping[str, Value], motion: Motion) -> None:
+    def _expand(self, name: str, values: Mapping[str, Value], motion: Motion, notices: Sequence[str] = ()) -> None:
         formats = self._control.number_formats(motion.three_axis)
         template = self._control.templates[name]
         speed = values["spindle_speed"]
-        self._blocks.lines(template.expand({**values, "new_speed": None if speed == self._speed else speed}, formats))
+        # Notices stand as near to the first line as the control allows.
+        lines = template.expand({**values, "new_speed": None if speed == self._speed else speed}, formats)
+        first = self._control.first_lines if notices else 0
+        self._blocks.lines([*lines[:first], *notices, *lines[first:]])
         if any(field in ("spindle_speed", "new_speed") for field, _ in template.fields()):
             self._speed = speed
 

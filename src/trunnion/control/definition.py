@@ -120,6 +120,7 @@ class Control:
     feed_without_tcp  one of ``FEEDS_WITHOUT_TCP``
     shorter_way       endless axes go the shorter way, so that none goes past the end of the turn that it displays
     own_blocks        spindle, coolant and radius compensation stand in blocks of their own
+    first_lines       of a program before which nothing may stand, be it a comment
     level_approach    where the tool has been drawn back, it goes to its place in X and Y first, then in Z
     plane_from_pose   a tilted plane is the one on which the tool stands: its zero is the work offset's, its axes are
                       those of the tool, and no words say its angles
@@ -151,6 +152,7 @@ class Control:
     feed_without_tcp: str
     shorter_way: bool
     own_blocks: bool
+    first_lines: int
     level_approach: bool
     plane_from_pose: bool
     holes_from: str
@@ -248,6 +250,7 @@ def load_control(own: Table) -> Control:
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
         shorter_way=table.flag("shorter_way", False),
         own_blocks=table.flag("own_blocks", False),
+        first_lines=table.integer("first_lines", 0, at_least=0, at_most=9),
         level_approach=table.flag("level_approach", False),
         plane_from_pose=table.flag("plane_from_pose", False),
         holes_from=table.text("holes_from", "above", one_of=HOLES_FROM),
