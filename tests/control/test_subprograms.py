@@ -27,17 +27,23 @@ from trunnion.verify import compare
 
 
 class Language(NamedTuple):
-    """How a control calls a subprogram, how one ends, and what runs one alone if its file is not enough."""
+    """How a control calls a subprogram, and how one ends.
+
+    alone   a program that runs one alone, if its file is not enough
+    before  what stands before its name in that of its file
+    """
 
     call: str
     end: str
     alone: str = ""
+    before: str = ""
 
 
 #: A machine of each control that calls subprograms.
 CONTROLS = {
     "yl569": Language(r"EXTCALL\(\"(?P<name>[A-Z_0-9]+)\"\)", "M17"),
     "dmu65": Language(r"CALL PGM (?P<name>[A-Z_0-9]+)\.H", "END PGM {name} MM"),
+    "matsuura_mx330": Language(r"M98 P(?P<name>\d{4})", "M99\n%", "O9999\nM98 P{name}\nM30\n", "O"),
     "xyzac_trt": Language(r"o<(?P<name>[a-z_0-9]+)> call", "o<{name}> endsub", "o<{name}> call\nM2\n"),
 }
 
@@ -115,7 +121,7 @@ def test_a_program_in_several_files_does_what_it_does_in_one(
     language = CONTROLS[machine]
     lines = several.main.read_text(encoding="utf-8").splitlines()
     names = [match["name"] for line in lines if (match := re.search(language.call, line))]
-    assert names == [path.stem for path in several.others]
+    assert [language.before + name for name in names] == [path.stem for path in several.others]
     assert len(names) >= len(toolpath.operations)
     for path in several.others:
         assert path.read_text(encoding="utf-8").rstrip().endswith(language.end.format(name=path.stem))
@@ -134,7 +140,7 @@ def test_each_operation_can_be_entered_alone(
     whole = made[1].run(machine)
     for k, path in enumerate(made[1].others):
         calling, language = path.with_name("alone"), CONTROLS[machine]
-        calling.write_text(language.alone.format(name=path.stem), encoding="utf-8")
+        calling.write_text(language.alone.format(name=path.stem.removeprefix(language.before)), encoding="utf-8")
         alone = (Written(calling, [path]) if language.alone else Written(path, [])).run(machine)
         assert alone.errors == ()
         rows = whole.file == whole.files.index(str(path)) if str(path) in whole.files else None
@@ -195,6 +201,12 @@ def test_numbers_are_given_once_and_never_that_of_the_main_program(first: int, p
     names = Names(Naming(".nc", True, 4, first=first), "part", f"{program:04d}")
     found = [int(names.of(text)) for text in texts]
     assert found == [n for n in range(first, first + 9) if n != program][: len(texts)]
+
+
+@pytest.mark.parametrize("main_program", ["O1001", "o1001", "1001"])
+def test_no_number_is_that_of_the_main_programs_file(main_program: str) -> None:
+    names = Names(Naming(".nc", True, 4, first=1001, before="O"), main_program, "0001")
+    assert [names.of("a"), names.of("b")] == ["1002", "1003"]
 
 
 def test_numbers_come_to_an_end() -> None:

@@ -86,7 +86,10 @@ class Names:
         return name
 
     def _number(self, first: int) -> str:
-        name = next((name for n in range(first, _HIGHEST + 1) if (name := f"{n:04d}") not in self._taken), "")
+        names = (f"{n:04d}" for n in range(first, _HIGHEST + 1))
+        # The main program's file may be called as that of a number would be.
+        free = (name for name in names if not self._taken & {name, (self._naming.before + name).upper()})
+        name = next(free, "")
         if not name:
             raise InputError(
                 Problem("--set", 0, f"no program numbers are left from {first:04d} on", "write programs=one")

@@ -171,7 +171,7 @@ class Run:
     rpm            (n,)   float64  programmed spindle speed, 0 before the first S
     spindle        (n,)   int8     +1 M3, -1 M4, 0 off
     tool           (n,)   int32    index into ``tools``; 0 is the empty name, no tool yet
-    edge           (n,)   int32    D number, -1 before the first D
+    edge           (n,)   int32    D number, -1 before the first D; Fanuc: H of the length in force, else -1
     offset         (n,)   uint16   work offset as the program numbers it (G54, preset 2), 0 before the first
     tcp            (n,)   bool     tool centre point control was on
     machine_frame  (n,)   bool     a block with positions of machine axes: SUPA, G53, M91

@@ -51,6 +51,7 @@ class FanucInterpreter(CallInterpreter):
         self._to_initial = True
         self._initial: float | None = None
         self._sticky: dict[str, float] = {}
+        self._length_number = -1
 
     @property
     def control(self) -> FanucControl:
@@ -129,10 +130,11 @@ class FanucInterpreter(CallInterpreter):
             if code not in words.LATE:
                 self._m_word(code)
         special, machine_frame = self._codes(block)
-        for letter, column in (("H", control.edge),):
-            number = block.take(letter)
-            if number is not None and 0 <= number < 1e6:
-                column.set(control.row, int(number))
+        number = block.take("H")
+        if number is not None and 0 <= number < 1e6:
+            self._length_number = int(number)
+        # The control keeps H after G49, but no length is in force.
+        control.edge.set(control.row, self._length_number if control.lengthened else -1)
         block.take("D")
         if special in words.TAKES_AXES:
             self._special(special, block)

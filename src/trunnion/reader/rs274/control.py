@@ -33,6 +33,11 @@ class Rs274Control(Control):
     def _length(self) -> Floats:
         return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self._lengthened else np.zeros(3)
 
+    @property
+    def lengthened(self) -> bool:
+        """Whether the length of the tool counts."""
+        return self._lengthened
+
     def set_length(self, on: bool) -> None:
         """The length of the tool, if it is known, counts along Z, or no longer."""
         if on == self._lengthened:
