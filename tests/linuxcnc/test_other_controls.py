@@ -33,6 +33,7 @@ FAMILIES = (
     "sinumerik_840d",
     "heidenhain_itnc530",
     "heidenhain_tnc640",
+    "fanuc_31i",
     "fidia_nc15",
 )
 
@@ -76,6 +77,15 @@ def judged(text: str, machine: Machine, kinematics: dict[str, Kinematics], folde
     return theirs(kinematics, machine, places[:, :3], rotary, 0.0)
 
 
+def still(path: Toolpath) -> Toolpath:
+    """The path with the tool axis of its operations' first points throughout, so that it is made in planes."""
+    axes = [np.repeat(each.moves.axis[:1], len(each.moves), axis=0) for each in path.operations]
+    operations = zip(path.operations, axes, strict=True)
+    return replace(
+        path, operations=tuple(replace(each, moves=replace(each.moves, axis=axis)) for each, axis in operations)
+    )
+
+
 def both(
     path: Toolpath,
     name: str,
@@ -103,7 +113,7 @@ def both(
 
 @pytest.mark.parametrize("family", FAMILIES)
 @settings(max_examples=8)
-@given(name=st.sampled_from(sorted(MODULES)), path=paths())
+@given(name=st.sampled_from(sorted(MODULES)), path=st.one_of(paths(), paths().map(still)))
 def test_programs_of_other_controls_bring_linuxcncs_joints_to_the_cl_points(
     kinematics: dict[str, Kinematics],
     tmp_path_factory: pytest.TempPathFactory,
