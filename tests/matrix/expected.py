@@ -25,14 +25,28 @@ _LEAVES: Final = "leaves the hole as it asks for"
 
 #: What people call families of controls, by the first of their names in definitions.
 NAMES: Final = {
+    "fanuc_30i": "Fanuc",
+    "fanuc_31i_basic": "Fanuc without options",
     "fidia_nc15": "Fidia",
     "heidenhain_itnc530": "Heidenhain",
     "linuxcnc": "LinuxCNC",
     "sinumerik_840d": "Sinumerik",
 }
 
-#: Family of controls -> family of paths, or cycle -> words of the reason for which all of them are refused.
+_FANUC: Final = {
+    "DRILL,DEEP, strokes shorter": "strokes that become shorter",
+    "BORE,NODRAG": "the angle at which the spindle stops is a parameter of the control",
+}
+
+#: Family of controls, or a control that refuses more than its family -> family of paths, or cycle -> words of the
+#: reason for which all of them are refused.
 REFUSED: Final[dict[str, dict[str, str]]] = {
+    "fanuc_30i": _FANUC,
+    "fanuc_31i_basic": {
+        **_FANUC,
+        "drilling in five planes": "hole-making cycles while the tool axis changes, or with TCP",
+        "simultaneous milling with TCP": "tcp is on, and the machine's control has none",
+    },
     "fidia_nc15": {
         "simultaneous milling without TCP": "has no words for without TCP",
         "DRILL,DEEP, strokes shorter": "strokes that become shorter",
@@ -84,7 +98,11 @@ def page() -> str:
     rows = []
     for path in (*FAMILIES, *CYCLES):
         name = f"cycle {path}" if path in CYCLES else path
-        told = [f"{NAMES[family]}: {reasons[path]}" for family, reasons in REFUSED.items() if path in reasons]
+        who: dict[str, list[str]] = {}
+        for family, reasons in REFUSED.items():
+            if path in reasons:
+                who.setdefault(reasons[path], []).append(NAMES[family])
+        told = [f"{', '.join(names)}: {reason}" for reason, names in who.items()]
         if path in SOMETIMES:
             told.append(
                 f"where a machine folds its axes and the control has no word for the shorter way: {SOMETIMES[path]}"

@@ -16,7 +16,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from tests.matrix.expected import FAMILIES, PAGE, REFUSED, SOMETIMES, page
+from tests.matrix.expected import FAMILIES, PAGE, REFUSED, SOMETIMES, WITHOUT_TCP, page
 from tests.matrix.paths import CYCLES, cycles, holes, off_the_pole
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
@@ -43,18 +43,22 @@ FEW = settings(
 class Pair:
     """A shipped machine with a control of the library, in a file of its own."""
 
+    name: str
     file: Path
     machine: Machine
     control: Control
 
     @property
     def family(self) -> str:
-        """Of controls, by the first of its names in definitions."""
-        return next(key for key, module in CONTROL_FAMILIES.items() if module is self.control.family)
+        """Of controls, by the first of its names in definitions; one that refuses more than its family is its own."""
+        first = next(key for key, module in CONTROL_FAMILIES.items() if module is self.control.family)
+        return self.name if self.name in REFUSED else first
 
     @property
     def settings(self) -> tuple[str, ...]:
-        """What the control has to be told of the machine: a Fidia has other words for the TCP of a head."""
+        """What the control has to be told: without TCP where things are; a Fidia other words for the TCP of a head."""
+        if not self.control.tcp:
+            return WITHOUT_TCP[1:]
         heads = [axis for axis in self.machine.axes if axis.is_rotary and axis.carries.value == "tool"]
         return ("tcp_on=G96", "tcp_off=G97") if heads and self.family == "fidia_nc15" else ()
 
@@ -92,7 +96,7 @@ def pair_of(control: str, name: str, folder: Path) -> Pair:
         room = "".join(f'[[axis]]\nname = "{slide}"\nlimits_mm = [-3000, 3000]\n' for slide in slides)
         file.write_text(f'extends = "{name}"\n[control]\nextends = "{control}"\n{room}', encoding="utf-8")
     machine = load_machine(file)
-    return Pair(file, machine, load_control(machine.control))
+    return Pair(control, file, machine, load_control(machine.control))
 
 
 def posted(text: str, pair: Pair, folder: Path, settings: Sequence[str]) -> Posted:
@@ -110,7 +114,7 @@ def check_proven(done: Posted, pair: Pair, settings: Sequence[str]) -> None:
     """Every check has passed, and every point of the CL file that is no hole is met, by a search of the test's own."""
     assert (done.code, done.failed) == (0, []), done.err
     assert sum(line.split()[1:2] == ["ok"] for line in done.err.splitlines()) >= 15
-    machine = set_up(pair.machine, dict(setting.split("=") for setting in settings))
+    machine = set_up(pair.machine, dict(setting.split("=") for setting in (*pair.settings, *settings)))
     check_met(run_program(done.program, machine), done.cl, *half_digits(pair))
 
 

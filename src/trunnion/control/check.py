@@ -170,7 +170,12 @@ def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Prob
         try:
             cycle = cycle_of(event)
             if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP):
-                cure = "leave the setting manner out, or end the cut before the tool axis changes"
+                planes = Manner.TILTED in program.control.manners(settings_of(program))
+                cure = (
+                    "leave the setting manner out, or end the cut before the tool axis changes"
+                    if planes
+                    else "this control has no tilted planes: output these holes as motions, without CYCLE"
+                )
                 raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
             spindle = turning(operation.events, event.row, held)
             formats = program.control.number_formats(motion.three_axis)
