@@ -5,6 +5,7 @@ motion that holds the tip. They are those that our reader of Fanuc programs brin
 as with G43.4.
 """
 
+import ctypes
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 
 from tests.convert.test_pairs import Site, converted, paths, posted, roomy
 from tests.linuxcnc.interpreter import LENGTH, interpret, needs_linuxcnc
-from tests.linuxcnc.kinematics import Kinematics, hal, needs_compiler, needs_modules
+from tests.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
 from tests.linuxcnc.test_kinematics import MODULES, TOOL_PINS
 from trunnion.arrays import Floats
 from trunnion.control import load_control
@@ -32,8 +33,7 @@ NEAR = 5e-3
 
 
 @pytest.fixture(scope="module")
-def kinematics(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Kinematics]:
-    stub = hal(tmp_path_factory.mktemp("hal"))
+def kinematics(stub: ctypes.CDLL) -> dict[str, Kinematics]:
     return {name: Kinematics(stub, module, pins) for name, (module, pins, _) in MODULES.items() if "trt" in name}
 
 
