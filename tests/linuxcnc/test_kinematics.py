@@ -1,5 +1,6 @@
 """Our chains, and the joints that our plans come to, against LinuxCNC's own kinematics."""
 
+import ctypes
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.convert.toolpaths import SAYABLE, operations
-from tests.linuxcnc.kinematics import Kinematics, hal, needs_compiler, needs_modules
+from tests.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
 from trunnion.arrays import Floats
 from trunnion.errors import Refused
 from trunnion.machine import Machine, forward, load_machine, slide_positions
@@ -29,8 +30,7 @@ TOOL_PINS = {"xyzac_trt": "tool-offset", "xyzbc_trt": "tool-offset", "linuxcnc_5
 
 
 @pytest.fixture(scope="module")
-def kinematics(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Kinematics]:
-    stub = hal(tmp_path_factory.mktemp("hal"))
+def kinematics(stub: ctypes.CDLL) -> dict[str, Kinematics]:
     return {name: Kinematics(stub, module, pins) for name, (module, pins, _) in MODULES.items()}
 
 

@@ -232,9 +232,10 @@ class Writer:
         depth, top = self.draw(st.sampled_from([(-5, 2), (-12.5, -1), (3, 60)]))
         if not self.absolute:
             depth, top = -4, -1
+        again = self.draw(st.sampled_from(["", " L3"])) if code != 74 else ""  # LinuxCNC 2.9 takes no L there
         self.lines.append(
             f"{'G90' if self.absolute else 'G91'} {self.draw(st.sampled_from(['G98', 'G99']))} G{code} "
-            f"{self.goal([0, 1])} Z{depth} R{top}{extra} F80{self.draw(st.sampled_from(['', ' L3']))}"
+            f"{self.goal([0, 1])} Z{depth} R{top}{extra} F80{again}"
         )
         self.lines.append(self.goal([0]))
         if self.absolute:

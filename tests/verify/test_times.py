@@ -106,6 +106,19 @@ def test_a_run_takes_what_its_axes_need(proven: Verification) -> None:
     assert lazy.seconds.sum() < proven.seconds.sum()
 
 
+@pytest.mark.parametrize(("dwell", "wait"), [("G4 F2.5", 2.5), ("G4 S100", 100 * 60.0 / 2500.0)])
+def test_a_run_waits_where_its_program_does(tmp_path: Path, dwell: str, wait: float) -> None:
+    machine, path = load_machine("yl569"), YL569 / "3_blade_finish.expected.mpf"
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    place = next(k for k, line in enumerate(lines) if " G1 " in line) + 20
+    waiting, passing = tmp_path / "waiting.mpf", tmp_path / "passing.mpf"
+    waiting.write_text("".join([*lines[:place], f"{dwell}\n", *lines[place:]]), encoding="utf-8")
+    passing.write_text("".join([*lines[:place], "G4 F0\n", *lines[place:]]), encoding="utf-8")
+    waits, passes = (verify(run_program(each, machine), columns=True) for each in (waiting, passing))
+    assert waits.seconds.sum() - passes.seconds.sum() == pytest.approx(wait)
+    assert np.array_equal(waits.tip_feed, passes.tip_feed)
+
+
 def test_operations_share_all_rows_among_them(proven: Verification) -> None:
     assert [share.name for share in proven.operations] == [
         operation.name for operation in read_cl(YL569 / "3_blade_finish.cls").operations if len(operation.moves)

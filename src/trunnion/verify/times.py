@@ -1,8 +1,12 @@
 """How long a run takes: what each row asks for, within what the axes can do (``trunnion.machine.pace``).
 
 A row at feed takes its length at its feed, a rapid what its slowest axis needs, and both the ramps that accelerations
-ask for, with a look ahead over the corners. Dwells and tool changes take no time here, but the axes stop for them.
+ask for, with a look ahead over the corners. A dwell takes what it says, before the next row; what a change of the tool
+or a stop takes nobody knows here, but the axes stop for them.
 """
+
+import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -41,4 +45,16 @@ class Pace:
         stop[[row for row in rows if row >= 0]] = True
         seconds = row_seconds(run.machine, self._steps, length, rate, stop)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return seconds, np.where(seconds > 0.0, 60.0 * way / seconds, 0.0)
+            tip_feed = np.where(seconds > 0.0, 60.0 * way / seconds, 0.0)
+        for row, dwell in self._dwells():
+            seconds[row] += dwell
+        return seconds, tip_feed
+
+    def _dwells(self) -> Iterator[tuple[int, float]]:
+        """The row that each dwell makes longer, and seconds; turns of a spindle whose speed is not known take none."""
+        last = len(self._run) - 1
+        for event in self._run.events:
+            if event.kind == "dwell" and isinstance(event.value, float) and math.isfinite(event.value) and last >= 0:
+                row = min(event.before_row, last)
+                rpm = float(self._run.state.rpm[row]) if event.value < 0.0 else 60.0
+                yield row, abs(event.value) * 60.0 / rpm if rpm > 0.0 else 0.0
