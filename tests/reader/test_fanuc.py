@@ -325,3 +325,8 @@ def test_the_length_of_the_tool_counts_from_g43_to_g49(run: Runner) -> None:
     close(slides(got)[:2], [[1, 2, 3], [1, 2, 53]])
     close(got.tip[2], [4.0, 5.0, 6.0], atol=1e-9)
     close(slides(got)[3:], [[0, 0, 0], [0, 0, 5]], atol=1e-9)
+
+
+def test_a_length_is_in_force_from_g43_to_g49_and_its_number_is_kept(run: Runner) -> None:
+    heights = "G0 X1.\nG43 H7 Z9.\nX2.\nG49 G53 G0 Z0.\nX3.\nG43 Z8.\nH8\nX4.\nG43.4 H9 X5.\nG49 X6.\n"
+    assert fanuc(run, heights).edge.tolist() == [-1, 7, 7, -1, -1, 7, 8, 9, -1]
