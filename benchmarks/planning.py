@@ -1,8 +1,9 @@
 """The optimum against the nearest neighbour: ``python benchmarks/planning.py``.
 
-Four paths on five machines: how often each of the two must rewind in the cut, how far it turns the rotary axes, and how
-long it takes; how many points a second are planned, with TCP and without; and what becomes of rotary axes that are too
-fast near the pole. Prints the tables of docs/planning.md.
+Four paths on five machines: how often each of the two must rewind in the cut, how far it turns the rotary axes, how
+many points are added so that the tool axis keeps to its way, how far it is off it, and how long it takes; how many
+points a second are planned, with TCP and without; and what becomes of rotary axes that are too fast near the pole.
+Prints the tables of docs/planning.md.
 """
 
 import argparse
@@ -16,10 +17,11 @@ from numpy.typing import NDArray
 from make_cls import path
 from trunnion.arrays import Codes
 from trunnion.machine import Machine, forward, load_machine
-from trunnion.plan import Pole, Wishes, plan, seconds
+from trunnion.plan import Manner, Motion, Pole, Wishes, plan, seconds
+from trunnion.plan.between import with_points
 from trunnion.plan.decisions import Planned, travel, turned_over
 from trunnion.plan.poses import choose, choose_nearest, take
-from trunnion.plan.speed import shares
+from trunnion.plan.speed import shares, wound
 from trunnion.plan.states import states_of
 from trunnion.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool, Toolpath
 
@@ -110,20 +112,50 @@ PATHS = {
 }
 
 
+#: What the control's own way between two points may be off the great circle, degrees; and where it is looked at.
+BETWEEN = 0.01
+EIGHTHS = np.arange(1, 8) / 8.0
+
+
+def off_between(machine: Machine, motion: Motion) -> float:
+    """How far the tool axis is off the great circle in cuts, degrees, where the rotary axes turn evenly."""
+    moves, rotary = motion.operation.moves, wound(machine, motion.rotary)
+    cuts = np.flatnonzero(moves.kind[1:] != Kind.RAPID)
+    begin, end = moves.axis[cuts], moves.axis[cuts + 1]
+    angle = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(end - begin, axis=1), 1.0))[:, None]
+    worst, joints = 0.0, np.zeros((len(cuts), len(machine.axes)))
+    for part in EIGHTHS:
+        joints[:, list(machine.rotary)] = (1.0 - part) * rotary[cuts] + part * rotary[cuts + 1]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            wanted = (np.sin((1.0 - part) * angle) * begin + np.sin(part * angle) * end) / np.sin(angle)
+        wanted = np.where(angle > 1e-9, wanted, begin)
+        off = np.linalg.norm(forward(machine, joints)[1] - wanted, axis=1)
+        worst = max(worst, float(np.degrees(2.0 * np.arcsin(0.5 * off)).max(initial=0.0)))
+    return worst
+
+
 def measured(machine: Machine, moves: Moves, choice: Choose) -> str:
-    """Cells of the table: rewinds, degrees, milliseconds."""
-    seconds = []
+    """Cells of the table: rewinds, degrees, points added, worst error without and with them, time, milliseconds."""
+    took = []
     for _ in range(3):
-        begin = time.perf_counter()
+        begin = time.process_time()
         state = choice(machine, moves, False)
         poses = take(machine, moves, state, False)
-        seconds.append(time.perf_counter() - begin)
+        took.append(time.process_time() - begin)
     operation = Operation("", Tool(), Frame(), moves, Arcs.none(), (), 1)
     planned = Planned(machine, "", operation, poses.rotary, state, False)
     beyond = int(((poses.outcome > 0) & (poses.outcome <= 5)).sum())
     note = f" and {beyond} over-travels" if beyond else ""
-    turned = travel(machine, poses.rotary)
-    return f"{len(turned_over(planned))}{note} | {turned:.0f} | {1e3 * min(seconds):.1f}"
+    over = turned_over(planned)
+    kind = moves.kind.copy()
+    kind[over] = Kind.RAPID  # a rewind leads there
+    motion = Motion(replace(operation, moves=replace(moves, kind=kind)), poses.rotary, Manner.TCP)
+    led = with_points("", motion, machine, Wishes(axis_tolerance=BETWEEN), 0.001)
+    added = len(led.motion.operation.moves) - len(moves)
+    held = "refused" if led.problems else f"{off_between(machine, led.motion):.4f}"
+    errors = f"{off_between(machine, motion):.4f} / {held}"
+    cells = f"{len(over)}{note} | {travel(machine, poses.rotary):.0f} | {added} | {errors}"
+    return f"{cells} | {seconds(machine, motion):.0f} | {1e3 * min(took):.1f}"
 
 
 def straight_past() -> Moves:
@@ -213,13 +245,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Plan with the optimum and with the nearest neighbour.")
     parser.add_argument("--points", type=int, default=1_000_000, help="points of the second table")
     points = parser.parse_args().points
-    print("| path | machine | nearest: rewinds | degrees | ms | optimum: rewinds | degrees | ms |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    head = "rewinds | degrees | points added | worst error, without them / with | machine s | planned in ms"
+    print(f"| path | machine | poses | {head} |")
+    print(f"|{' --- |' * 9}")
     for title, make in PATHS.items():
         moves = make()
         for name, machine in machines().items():
-            cells = [measured(machine, moves, choice) for choice in (choose_nearest, choose)]
-            print(f"| {title} ({len(moves)}) | {name} | {' | '.join(cells)} |")
+            for which, choice in (("nearest", choose_nearest), ("optimum", choose)):
+                print(f"| {title} ({len(moves)}) | {name} | {which} | {measured(machine, moves, choice)} |")
     print("\n| machine | states | points/s |\n| --- | --- | --- |")
     rows = path(0, points)
     moves = moves_of(np.ascontiguousarray(rows[:, 3:]), np.zeros(points, bool))
