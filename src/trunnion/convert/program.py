@@ -262,10 +262,13 @@ class _Converter:
             part.values = {**common, **part.values, **plane, **self._registers(part)}
 
     def _registers(self, part: _Part) -> dict[str, str]:
-        """Work offset and edge in force at the first row; an offset that is no G word was found in the head."""
+        """Work offset and edge in force at the first row; an offset that is no G word was found in the head.
+
+        Where the source calls no edges, the number is that of a length (H), which goes with the tool.
+        """
         offset, edge = int(self._run.offset[part.rows[0]]), int(self._run.edge[part.rows[0]])
         named = {"work_offset": f"G{offset}"} if offset and self._offset_is_word else {}
-        return named | ({"edge": str(edge)} if edge >= 0 else {})
+        return named | ({"edge": str(edge)} if edge >= 0 and "edge" in self._control.settings else {})
 
     @property
     def _offset_is_word(self) -> bool:
