@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.arrays import Lines
 from trunnion.reader import Run
 from trunnion.toolpath import Toolpath
-from trunnion.verify import demands, modal
+from trunnion.verify import demands, in_force, modal
 from trunnion.verify.agreed import Believed, believe, broken_poses
 from trunnion.verify.align import Pairs, in_order, matched
 from trunnion.verify.arcs import Arc, turned
@@ -67,14 +67,14 @@ def verify(
         pairs, off_tip, off_axis, spans = _paired(run, wanted, walker, settings)
         case = Case(run, wanted, pairs, settings)
         checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis, believed)]
-        checks += [demands.kind(case), demands.feed(case, believed), demands.spindle(case), demands.tool(case)]
-        checks += [demands.coolant(case), demands.offset(case), demands.home(case), holes(case)]
+        checks += [demands.kind(case), demands.feed(case, believed), in_force.spindle(case), in_force.tool(case)]
+        checks += [in_force.coolant(case), in_force.offset(case), in_force.home(case), holes(case)]
     else:
         alone = _spans(run, settings)
         _go_by(run, walker, *alone)
         spans = alone[0] if alone else None
         case = Case(run, None, None, settings)
-        checks.append(demands.offset(case))
+        checks.append(in_force.offset(case))
     way = walker.walked()
     checks += [_span(case, way, spans), _travel(case, way), _speed(case, way), _acceleration(case, way)]
     checks += [turns(case), modal.modal(case), modal.words(case)]
