@@ -8,7 +8,8 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from tests.control.test_heidenhain import CONTROLS, MODES, OWN, proven
+from tests.control.klartext import CONTROLS, OWN, proven
+from tests.control.test_klartext_holes import MODES
 from tests.control.test_planes import reachable
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Refused

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from tests.control.test_heidenhain import (
+from tests.control.klartext import (
     CONTROLS,
     MACHINES,
     PATHS,

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
-from tests.control.test_heidenhain import CONTROLS, MACHINES, SIMULTANEOUS, Post, proven, toolpath_of
+from tests.control.klartext import CONTROLS, MACHINES, SIMULTANEOUS, Post, proven, toolpath_of
 from tests.plan.naive import moves_of
 from tests.plan.test_without_tcp import steps
 from trunnion.control.slides import TIP

@@ -19,6 +19,7 @@ from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set
 from trunnion.cli.verify import check_report
 from trunnion.cli.verify import report as write_report
 from trunnion.control import Control, Division, Program, check_program, load_control, write_program
+from trunnion.control.family import CENTRE_DIGITS
 from trunnion.control.standing import inside_limits
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import Growing, Output, output
@@ -301,7 +302,8 @@ def _allowed(program: Program) -> "list[Allowed]":
             tip, angle = max(tip, before.tip), max(angle, before.angle)
         apart = motion.departures
         agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
-        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed))
+        found = 2.0 * CENTRE_DIGITS * half["X"] if control.arcs_by_radius else 0.0
+        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed, found))
     return allowed
 
 
@@ -309,7 +311,8 @@ def _by_angles(motion: Motion, half: float, angle: float) -> float:
     """How much farther the ends of helices may be off that are said by a centre and an angle, mm.
 
     Start and centre are rounded by ``half`` mm, of which the end has that of the centre twice, once turned; the angle
-    by ``angle`` degrees. What the CL file's own end is off the circle comes on top.
+    by ``angle`` degrees. What the CL file's own end is off the circle comes on top. A helix right behind another begins
+    where that one has really ended.
     """
     operation = motion.as_written()
     arcs, tip = operation.arcs, operation.moves.tip
@@ -317,7 +320,10 @@ def _by_angles(motion: Motion, half: float, angle: float) -> float:
     if not rises.any():
         return 0.0
     rounded = half * (1.0 + math.sqrt(2.0)) + float(np.abs(off_circle(operation)[rises]).max())
-    return rounded + math.radians(angle) * float(arcs.radius[rises].max())
+    each = rounded + math.radians(angle) * float(arcs.radius[rises].max())
+    row = arcs.row[rises]
+    ends = np.flatnonzero(np.append(np.diff(row) != 1, True))
+    return each * int(np.diff(ends, prepend=-1).max())
 
 
 def _in_plane(motion: Motion, half: float, tilt: float) -> float:

@@ -235,7 +235,7 @@ class Blocks:
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
         if len(inside):
             formats = {word.key: word.format for word in self._words}
-            words = self.family.arc_words(arcs, moves.tip, inside, control.codes, formats)
+            words = self.family.arc_words(arcs, moves.tip, inside, control.codes, formats, control.arcs_by_radius)
             at = arcs.row[inside] - start
             for word in (*AXIS_VECTOR, VECTOR_LINE) if by_vector else ():  # the tool axis rests on a circle
                 if word in columns:
@@ -246,7 +246,7 @@ class Blocks:
                 every = np.zeros(stop - start, np.int64)
                 every[at] = flag
                 forced[word] = every | forced.get(word, 0)
-            lines = dict(zip(at.tolist(), words.lines or (), strict=False))
+            lines = {row: line for row, line in zip(at.tolist(), words.lines or (), strict=False) if line}
             elsewhere = columns["X"] == ABSENT
             for word in "XYZ":  # where an arc's end was said by other words, the next block says its own whole
                 forced[word] = np.concatenate(([0], elsewhere[:-1])).astype(np.int64) | forced.get(word, 0)

@@ -12,7 +12,7 @@ from importlib.resources.abc import Traversable
 from typing import TypedDict
 
 from trunnion.control.families import FAMILIES
-from trunnion.control.family import Family
+from trunnion.control.family import BY_RADIUS, Family
 from trunnion.control.subprograms import Naming
 from trunnion.control.template import Template
 from trunnion.definition import Table, extended
@@ -113,6 +113,7 @@ class Control:
     by_method         settings that follow from the method's name where nobody gave them: setting -> (part of the name,
                       value), the first that is found in it
     arcs_about_z      only arcs about Z can be said; others become lines
+    arcs_by_radius    circles are told by their radius where that is safe, and not by their centre
     plane_along_machine  X of a tilted plane is that of the machine once it has turned, unless the CL file has its own
     helices           it can be told circles that rise, and more than one turn
     turns             it can be told circles and helices of more than one turn
@@ -145,6 +146,7 @@ class Control:
     phases: Mapping[str, str]
     chord_tolerance: float
     arcs_about_z: bool
+    arcs_by_radius: bool
     plane_along_machine: bool
     helices: bool
     turns: bool
@@ -193,6 +195,7 @@ class Control:
 class _Arcs(TypedDict):
     chord_tolerance: float
     arcs_about_z: bool
+    arcs_by_radius: bool
     helices: bool
     turns: bool
 
@@ -244,7 +247,7 @@ def load_control(own: Table) -> Control:
         by_method=_by_method(table.tables("by_method"), table.table("settings")),
         tool_types=_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_texts(table.table("phases"), PHASES),
-        **_arcs(table.table("arcs")),
+        **_arcs(table.table("arcs"), words),
         plane_along_machine=table.text("plane_x", "program", one_of=("program", "machine")) == "machine",
         tcp=table.flag("tcp", True),
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
@@ -350,12 +353,20 @@ def _by_method(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tup
     return found
 
 
-def _arcs(table: Table) -> _Arcs:
+def _arcs(table: Table, words: Sequence[str]) -> _Arcs:
     tolerance = table.number("chord_tolerance", 0.001, above=0.0)
     about, helices = table.text("about", "XYZ", one_of=("XYZ", "Z")), table.flag("helices", True)
-    turns = table.flag("turns", True)
+    turns, by_radius = table.flag("turns", True), table.text("by", "centre", one_of=("centre", "radius")) == "radius"
+    if by_radius and not set(BY_RADIUS) <= set(words):
+        table.problem("by", "is 'radius', and the control's family has no words for that", "leave it out")
     table.finish()
-    return {"chord_tolerance": tolerance, "arcs_about_z": about == "Z", "helices": helices, "turns": turns}
+    return {
+        "chord_tolerance": tolerance,
+        "arcs_about_z": about == "Z",
+        "arcs_by_radius": by_radius,
+        "helices": helices,
+        "turns": turns,
+    }
 
 
 def _naming(table: Table) -> Naming:

@@ -28,6 +28,13 @@ FIRST_HOLE = "{at}"
 EACH_HOLE = "{each}"
 
 
+#: The words of circles that are told by their radius, in families that can say them so.
+BY_RADIUS = ("arc_by_radius", "arc_radius")
+
+#: So many of its last digits may the centre be off that a control finds by a radius; beyond that it is told the centre.
+CENTRE_DIGITS = 2.0
+
+
 class UnsayableError(Exception):
     """A family has no way to say something; ``what`` it is, and the ``cure``."""
 
@@ -46,7 +53,7 @@ class ArcWords:
 
     columns  word -> (a,) int64 counts, one for each arc
     forced   word -> (a,) int64 1 where the word is written though it prints as before
-    lines    (a,) a line of its own before each arc's block, or None where the family needs none
+    lines    (a,) a line of its own before each arc's block, empty where it needs none; None: no block does
     """
 
     columns: Mapping[str, Ints]
@@ -160,7 +167,9 @@ class Family(Protocol):
     def row_words(self, rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
         """The words that say how rows are gone to: word -> (n,) int64 counts, for every row as if none were an arc."""
 
-    def arc_words(self, arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats) -> ArcWords:
+    def arc_words(
+        self, arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool
+    ) -> ArcWords:
         """The words that make rows into arcs.
 
         Parameters
@@ -173,6 +182,8 @@ class Family(Protocol):
             Indices into ``arcs`` of those that are wanted.
         codes, formats
             Of the definition.
+        by_radius
+            Say circles by their radius where that is safe; only families with the words ``BY_RADIUS`` are asked to.
         """
 
     def values(self, settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:

@@ -161,7 +161,7 @@ def hole_end() -> list[str]:
     return ["G80"]
 
 
-def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats) -> ArcWords:
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
     """As ISO has them; circles of more than one turn do not come here."""
     words = iso.arc_words(arcs, tip, rows, codes, formats)
     return ArcWords({word: column for word, column in words.columns.items() if word != "turns"}, words.forced)

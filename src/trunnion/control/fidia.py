@@ -168,7 +168,7 @@ def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
     return {"motion": np.where(rapid, codes["rapid"], codes["linear"]).astype(np.int64)}
 
 
-def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats) -> ArcWords:
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
     """As ISO has them, but with the centre itself instead of the way to it.
 
     Only flat circles come here. Theirs is no word for the axis across the plane: rounding it would make them rise.

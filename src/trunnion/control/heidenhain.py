@@ -11,17 +11,18 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.control.family import ArcWords, Codes, Formats, UnsayableError, WordEvent
+from trunnion.control import klartext_arcs
+from trunnion.control.family import BY_RADIUS, ArcWords, Codes, Formats, UnsayableError, WordEvent
 from trunnion.control.klartext_holes import cycle_lines
 from trunnion.control.template import Value
 from trunnion.control.turns import about_three
-from trunnion.nc import ABSENT, counts
+from trunnion.nc import ABSENT
 from trunnion.plan import Motion
 from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = (
-    "line", "vector_line", "axis_x", "axis_y", "axis_z", "arc", "helix", "arc_angle", "arc_rise",
+    "line", "vector_line", "axis_x", "axis_y", "axis_z", "arc", *BY_RADIUS, "helix", "arc_angle", "arc_rise",
     "counterclockwise", "clockwise", "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant",
     "feed_mode", "call",
 )  # fmt: skip
@@ -174,48 +175,9 @@ def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
     }
 
 
-def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats) -> ArcWords:
-    """``CC X Y`` in a line before, and ``C X Y DR``, or for a helix and for more than a turn ``CP IPA IZ DR``.
-
-    All arcs are about Z, which is the tool axis. DR+ is counter-clockwise as seen against Z. IPA has the sign of DR.
-    """
-    start, end, centre = tip[arcs.row[rows] - 1], tip[arcs.row[rows]], arcs.centre[rows]
-    sense = np.sign(arcs.normal[rows, 2])
-    place, decimals = formats["Z"].decimals, formats["arc_angle"].decimals
-    rise = counts(np.ascontiguousarray(end[:, 2]), place) - counts(np.ascontiguousarray(start[:, 2]), place)
-    helix = (rise != 0) | (arcs.turns[rows] > 0)
-    columns = {
-        "line": np.full(len(rows), ABSENT),
-        "arc": np.where(helix, ABSENT, 1),
-        "helix": np.where(helix, 1, ABSENT),
-        "arc_angle": np.where(helix, counts(_sweep(start, end, centre, sense, arcs.turns[rows]), decimals), ABSENT),
-        "arc_rise": np.where(helix & (rise != 0), rise, ABSENT),
-        "counterclockwise": np.where(sense > 0, 1, ABSENT),
-        "clockwise": np.where(sense < 0, 1, ABSENT),
-        "Z": np.full(len(rows), ABSENT),
-    }
-    for c, word in enumerate("XY"):
-        columns[word] = np.where(helix, ABSENT, counts(np.ascontiguousarray(end[:, c]), place))
-    said = np.ones(len(rows), np.int64)
-    number = formats["X"].of_count
-    lines = [f"CC X{number(x)} Y{number(y)}" for x, y in _centres(start, centre, place).tolist()]
-    return ArcWords(columns, {"X": said, "Y": said}, lines)
-
-
-def _centres(start: Floats, centre: Floats, decimals: int) -> Ints:
-    """(a, 2) counts: the centres as seen from where the circles start in print, so that nothing is rounded twice."""
-    ways = [counts(np.ascontiguousarray((centre - start)[:, c]), decimals) for c in range(2)]
-    starts = [counts(np.ascontiguousarray(start[:, c]), decimals) for c in range(2)]
-    return np.column_stack([a + b for a, b in zip(ways, starts, strict=True)])
-
-
-def _sweep(start: Floats, end: Floats, centre: Floats, sense: Floats, turns: Ints) -> Floats:
-    """(a,) degrees, with the sign of DR; an arc that ends where it starts is a full turn."""
-    a, b = start[:, :2] - centre[:, :2], end[:, :2] - centre[:, :2]
-    angle = np.degrees(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.einsum("ij,ij->i", a, b)))
-    part = np.mod(sense * angle, 360.0)
-    closed = np.linalg.norm(a - b, axis=1) < 1e-4
-    return np.asarray(sense * (np.where(closed, 360.0, part) + 360.0 * turns))
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
+    """``CC`` and ``C``, ``CP`` for what rises, ``CR`` where a circle is said by its radius."""
+    return klartext_arcs.arc_words(arcs, tip, rows, formats, by_radius)
 
 
 def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:

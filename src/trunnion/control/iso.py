@@ -61,7 +61,7 @@ def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
     }
 
 
-def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats) -> ArcWords:
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
     """G2 or G3 in G17, G18 or G19 with the centre relative to the start; arguments as ``Family`` has them.
 
     G2 is clockwise seen against the plane's normal. In the plane ZX the normal is +Y, in YZ +X: I K and J K are the

@@ -104,7 +104,7 @@ def message(event: Message) -> list[str]:
     return _shown(event.text) if event.display else comment(event.text)
 
 
-def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats) -> ArcWords:
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
     """As ISO has them; ``P`` counts the arc itself too: P2 is one whole turn besides."""
     words = iso.arc_words(arcs, tip, rows, codes, formats)
     turns = words.columns["turns"]

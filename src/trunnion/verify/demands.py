@@ -139,7 +139,8 @@ def _circles(case: Case) -> list[Place]:
         place = run.arcs.centre[m] - wanted.arcs.centre[k]
         # Some controls are told the centre from the start, others as a place: what is rounded is within the limit.
         off = min(float(np.abs(each - (each @ normal) * normal).max()) for each in (arm, place))
-        allowed = wanted.part_of(row).allowed.tip
+        limits = wanted.part_of(row).allowed
+        allowed = limits.tip + limits.centre
         if off > allowed + 1e-9:
             text = f"the circle's centre is off by {off:.6f} mm, {allowed:.6f} is allowed"
             places.append(case.place(motion, off, text, row))

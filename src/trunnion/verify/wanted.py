@@ -58,6 +58,7 @@ class Allowed:
     chord   distance of lines from the arc that they stand for, mm
     feed    of a feed from the CL file's, in its own unit
     agreed  where it may be otherwise
+    centre  mm more for the centre of a circle, which a control may have to find by a radius
     """
 
     tip: float = 0.001
@@ -65,6 +66,7 @@ class Allowed:
     chord: float = 0.001
     feed: float = 0.005
     agreed: Agreed | None = None
+    centre: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,101 @@
+"""Klartext as its tests want it: posts, and proofs of what toolpaths become."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import strategies as st
+
+from tests.control.test_program import FOOT, HEAD
+from tests.paths import GOLDEN
+from tests.plan.naive import operation_of
+from tests.plan.test_optimum import short_paths, smooth_paths
+from tests.verify.proven import unproven
+from trunnion.cli import main
+from trunnion.cli.post import planned_program, write
+from trunnion.cli.settings import wishes_of
+from trunnion.control import Control, load_control
+from trunnion.machine import Machine, load_machine, shipped
+from trunnion.reader import run_program
+from trunnion.toolpath import Arcs, LoadTool, Moves, SpindleOn, Toolpath
+from trunnion.verify import Verification, failures, verify
+
+DMU65 = GOLDEN / "dmu65"
+OWN = {name: load_machine(name) for name in ("dmu65", "mikron_600u", "ucp800")}
+CONTROLS = {name: load_control(machine.control.fresh()) for name, machine in OWN.items()}
+
+#: Every shipped machine, with the control of one of these.
+MACHINES = {name: replace(load_machine(name), control=OWN["mikron_600u"].control.fresh()) for name in shipped()}
+
+
+class Post:
+    """Posts CL text on the DMU 65."""
+
+    def __init__(self, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+        self.folder, self._capfd = folder, capfd
+
+    def __call__(self, text: str, *arguments: str, machine: str = "dmu65") -> list[str]:
+        """The blocks of the program without their numbers, which must go on by one from 0."""
+        code, out, err = self.all(text, *arguments, machine=machine)
+        assert (code, unproven(err)) == (0, "")
+        blocks = re.split(r"\n(?! )", out.rstrip("\n"))
+        assert [int(block.split(" ", 1)[0]) for block in blocks] == list(range(len(blocks)))
+        return [block.split(" ", 1)[1] for block in blocks]
+
+    def all(self, text: str, *arguments: str, machine: str = "dmu65") -> tuple[int, str, str]:
+        file = self.folder / "part.cls"
+        file.write_text(text, encoding="utf-8")
+        code = main(["post", str(file), "--machine", machine, "--output", "-", *arguments])
+        out, err = self._capfd.readouterr()
+        return code, out, err
+
+
+def between(blocks: list[str], first: str, last: str) -> list[str]:
+    begin = blocks.index(first)
+    return blocks[begin + 1 : blocks.index(last, begin)]
+
+
+def motion(blocks: list[str]) -> list[str]:
+    """What stands between the spindle's start and its stop, without names of phases."""
+    return [block for block in between(blocks, "M3", "M5") if not block.startswith(";")]
+
+
+SIMULTANEOUS = HEAD + "GOTO/20,0,5,0.5,0.0,0.8660254038\nGOTO/30,0,5,0.0,-0.5,0.8660254038\n" + FOOT
+TCP = {"m128": ("M128", "M129"), "function": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "FUNCTION RESET TCPM")}
+
+
+TILTED = HEAD.replace("0.0,0.0,50.0,0.0,0.0,1.0", "0.0,0.0,50.0,0.5,0.0,0.866025403784") + FOOT
+
+
+def toolpath_of(moves: Moves, arcs: Arcs | None = None) -> Toolpath:
+    """A CL file of one operation, with all that a program needs besides."""
+    operation = replace(operation_of(moves), arcs=arcs or Arcs.none())
+    events = (LoadTool(0, 1, 1), SpindleOn(0, 2, 1000.0))
+    return Toolpath("part.cls", (replace(operation, events=events, intol=0.01, outtol=0.01),))
+
+
+def proven(toolpath: Toolpath, machine: Machine, control: Control, folder: Path, **given: str) -> Verification:
+    """The proof of the program that a toolpath becomes; fails when the program does not do what was asked for.
+
+    Raises
+    ------
+    Refused, InputError
+        When there is no program, as over-travel and tool axes out of reach leave none.
+    """
+    wishes = wishes_of(given, control)
+    program, _ = planned_program([toolpath], machine, control, given, False, wishes)
+    target = folder / "part.h"
+    with target.open("wb") as sink:
+        claim = write(program, sink, wishes)
+    found = verify(run_program(target, machine), [toolpath], allowed=claim.allowed, settings=claim.settings)
+    assert not failures(found), [(check.key, check.summary) for check in failures(found)]
+    assert not found.run.findings, [finding.text for finding in found.run.findings]
+    return found
+
+
+PATHS = smooth_paths(25.0) | smooth_paths(100.0) | smooth_paths(3.0) | short_paths(12)
+
+
+#: Of the travel of the rotary axes; right at a limit the last digit of a plane's angles may lie beyond it.
+SHARES = st.tuples(st.floats(0.001, 0.999), st.floats(0.001, 0.999))
