@@ -3,7 +3,7 @@
 A CL file is posted for another control on the chain of a machine that LinuxCNC has: a definition extends that machine
 and names the control. Our reader reads the program, which becomes a toolpath and is posted for LinuxCNC; LinuxCNC's own
 interpreter runs that one, and its own kinematics make joints of its motions. They are those that our chain has for the
-points of the CL file. A family of controls is a line in ``FAMILIES``.
+points of the CL file. A control, and a way to write its programs, is a line in ``WRITTEN``.
 """
 
 from dataclasses import replace
@@ -28,13 +28,14 @@ from trunnion.toolpath import Arcs, Frame, Kind, LoadTool, Moves, Operation, Pha
 
 pytestmark = [needs_linuxcnc, needs_modules, needs_compiler]
 
-#: The controls that are judged.
-FAMILIES = (
-    "sinumerik_840d",
-    "heidenhain_itnc530",
-    "heidenhain_tnc640",
-    "fanuc_31i",
-    "fidia_nc15",
+#: The controls that are judged, and the settings of their programs.
+WRITTEN: tuple[tuple[str, dict[str, str]], ...] = (
+    ("sinumerik_840d", {}),
+    ("heidenhain_itnc530", {}),
+    ("heidenhain_tnc640", {}),
+    ("fanuc_31i", {}),
+    ("fanuc_31i", {"orientation": "vector"}),
+    ("fidia_nc15", {}),
 )
 
 #: No joint is farther than this from the centres of its rotary axes, mm.
@@ -93,6 +94,7 @@ def both(
     kinematics: dict[str, Kinematics],
     folder: Path,
     fault: tuple[str, str] = ("", ""),
+    asked: dict[str, str] | None = None,
 ) -> tuple[Floats, Floats, float]:
     """LinuxCNC's joints, those of the CL points, and how far they may be apart; ``fault``: to put into the program."""
     definition = folder / "other.toml"
@@ -100,7 +102,7 @@ def both(
     # Where the workpiece sits is not in the program; both sides are told zero.
     other, own = site_of(load_machine(definition)), site_of(load_machine(name))
     source, program = folder / f"other{other.control.extension}", folder / "judged.ngc"
-    run = posted(path, other, {}, source)
+    run = posted(path, other, asked or {}, source)
     if fault[0]:
         source.write_text(source.read_text(encoding="utf-8").replace(*fault), encoding="utf-8")
         run = run_program(source, other.machine)
@@ -111,17 +113,18 @@ def both(
     return got, joints_of(path, roomy(at)), 2.0 * (other.tip + _PRINTED) + turned
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize(("family", "asked"), WRITTEN, ids=[" ".join((name, *words)) for name, words in WRITTEN])
 @settings(max_examples=8)
 @given(name=st.sampled_from(sorted(MODULES)), path=st.one_of(paths(), paths().map(still)))
 def test_programs_of_other_controls_bring_linuxcncs_joints_to_the_cl_points(
     kinematics: dict[str, Kinematics],
     tmp_path_factory: pytest.TempPathFactory,
     family: str,
+    asked: dict[str, str],
     name: str,
     path: Toolpath,
 ) -> None:
-    got, wanted, allowed = both(path, name, family, kinematics, tmp_path_factory.getbasetemp())
+    got, wanted, allowed = both(path, name, family, kinematics, tmp_path_factory.getbasetemp(), asked=asked)
     assert len(got) == len(wanted)
     np.testing.assert_allclose(got, wanted, atol=allowed, rtol=0)
     assert allowed < 0.02

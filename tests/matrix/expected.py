@@ -17,9 +17,11 @@ FAMILIES: Final[dict[str, tuple[Family, tuple[str, ...]]]] = {
     "milling in tilted planes": (tilted_milling, ()),
     "drilling in five planes": (tilted_drilling, ()),
     "simultaneous milling with TCP": (simultaneous, ("tcp=on",)),
+    "the same, the tool axis as a vector": (simultaneous, ("tcp=on", "orientation=vector")),
     "simultaneous milling without TCP": (off_the_pole, WITHOUT_TCP),
 }
 
+_NO_VECTORS: Final = "orientation is no setting"
 _NO_CYCLE: Final = "has no cycle on this control whose words are known"
 _LEAVES: Final = "leaves the hole as it asks for"
 
@@ -46,8 +48,10 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
         **_FANUC,
         "drilling in five planes": "hole-making cycles while the tool axis changes, or with TCP",
         "simultaneous milling with TCP": "tcp is on, and the machine's control has none",
+        "the same, the tool axis as a vector": "tcp is on, and the machine's control has none",
     },
     "fidia_nc15": {
+        "the same, the tool axis as a vector": _NO_VECTORS,
         "simultaneous milling without TCP": "has no words for without TCP",
         "DRILL,DEEP, strokes shorter": "strokes that become shorter",
         "DRILL,BRKCHP": _NO_CYCLE,
@@ -59,6 +63,7 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
         "BORE,MANUAL": _LEAVES,
     },
     "linuxcnc": {
+        "the same, the tool axis as a vector": _NO_VECTORS,
         "drilling in five planes": "hole-making cycles while the tool axis changes, or with TCP",
         "DRILL,DEEP, strokes shorter": "strokes that become shorter",
         "BORE,NODRAG": _LEAVES,

@@ -153,6 +153,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         lower_feed=settings.get("lower_feed", "no") == "yes",
         helices=control.helices,
         turns=control.turns,
+        arcs_with_tcp=not (control.only_vectors and control.by_vectors(settings)),
         pose_planes=control.plane_from_pose,
         tcp=tcp,
         **known,

@@ -14,7 +14,7 @@ from trunnion.control.definition import AXIS_VECTOR, BY_AXES, BY_VECTOR, VECTOR_
 from trunnion.control.family import WordEvent
 from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
 from trunnion.control.slides import Slides, feed_rule, feeds, slides_of
-from trunnion.control.vectors import leads_there, vectors_of
+from trunnion.control.vectors import first_elsewhere, leads_there, vectors_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
@@ -69,7 +69,7 @@ class Blocks:
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
         self._tool = ""
-        self._vectors = setting_of(program, "orientation") == "vector"
+        self._vectors = False  # of this motion
         self._turns_over = any(word.key == BY_VECTOR for word in self._words)
         self._again: dict[str, int] = {}
         self._by_vector = ABSENT  # how the control goes to an orientation: 1 by the vector, 0 by the axes
@@ -114,6 +114,9 @@ class Blocks:
             self.writer.forget("X", "Y", "Z", "feed")
         self._feed_mode = ABSENT
         self._by_vector = 1
+        self._vectors = motion.manner is Manner.TCP and self.control.by_vectors(self.program.settings)
+        if self._vectors and self.control.only_vectors:
+            self._vectors = first_elsewhere(self.program.machine, motion, self._words) < 0
 
     def rotary_stand(self, motion: Motion) -> None:
         """Templates have placed the rotary axes for a motion's first row."""
@@ -121,7 +124,7 @@ class Blocks:
             self.writer.remember(
                 word, int(self._angle_counts(motion.rotary[:1, self._column[column]], word, column)[0])
             )
-        if self._vectors and motion.manner is Manner.TCP:
+        if self._vectors:
             for word, counted in self._axis_counts(motion.rotary[:1]).items():
                 self.writer.remember(word, int(counted[0]))
 
@@ -212,7 +215,7 @@ class Blocks:
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
         forced: dict[str, bool | Ints] = {}
-        by_vector = self._vectors and motion.manner is Manner.TCP
+        by_vector = self._vectors
         in_force: dict[str, int] = {}
         if motion.plane is None:  # in a plane the rotary axes stand where they were put
             for word, axis in self._rotary:
@@ -272,7 +275,8 @@ class Blocks:
 
     def first_words(self, motion: Motion) -> dict[str, int]:
         """What the control is told of the tool with the first motion, as counts."""
-        words = self.family.first_words(motion, self._tool, settings_of(self.program))
+        said = {"orientation": "vector" if self._vectors else "angles"}
+        words = self.family.first_words(motion, self._tool, settings_of(self.program) | said)
         return {word: self.count(word, value) for word, value in words.items()}
 
     def _axis_counts(self, rotary: Floats) -> dict[str, Ints]:
@@ -296,7 +300,10 @@ class Blocks:
         )
         before = np.concatenate((motion.rotary[max(start - 1, 0) : max(start, 1)], rotary[:-1]))
         half = 0.5 * 10.0 ** -self.writer.word("primary").format.decimals
-        by_vector = leads_there(self.program.machine, printed, rotary, before, half)
+        if self.control.only_vectors:
+            by_vector = np.ones(len(rotary), np.bool_)
+        else:
+            by_vector = leads_there(self.program.machine, printed, rotary, before, half)
         words = vectors | {word: columns[word] for word, _ in self._rotary}
         changed = np.zeros(len(rotary), np.bool_)
         for word, column in words.items():

@@ -6,8 +6,9 @@ import numpy as np
 
 from trunnion.control.definition import Control
 from trunnion.control.family import UnsayableError
-from trunnion.control.program import Program, kind_of, setting_of, settings_of
+from trunnion.control.program import Program, kind_of, setting_of, settings_of, words_of
 from trunnion.control.slides import TIP, feed_format, feed_rule, feeds, slides_of
+from trunnion.control.vectors import first_elsewhere
 from trunnion.errors import Problem, Severity
 from trunnion.machine import Carries
 from trunnion.plan import Manner, Motion
@@ -65,6 +66,8 @@ def check_program(program: Program) -> list[Problem]:
         for event in operation.events:
             rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
             problems += _event_problems(program, motion, event, rpm)
+        if motion.manner is Manner.TCP and program.control.only_vectors:
+            problems += _not_by_vectors(program, motion)
         if motion.manner is Manner.WITHOUT_TCP and kind_of(program, motion):
             problems += _problems_without_tcp(program, motion)
         if not kind_of(program, motion):
@@ -116,6 +119,19 @@ def _event_problems(program: Program, motion: Motion, event: Event, rpm: float |
         known = ", ".join(program.control.coolant)
         return [Problem(*place, f"{program.control.name} has no coolant {event.kind}", f"use one of {known}")]
     return []
+
+
+def _not_by_vectors(program: Program, motion: Motion) -> list[Problem]:
+    """That an operation is said by rotary positions, though vectors are wanted: why, and where."""
+    if not program.control.by_vectors(program.settings):
+        return []
+    row = first_elsewhere(program.machine, motion, words_of(program, motion))
+    if row < 0:
+        return []
+    what = "for the tool's vector here the control could choose another rotary position than the planned one: operation"
+    what = f"{what} {motion.operation.name} is written with rotary positions"
+    cure = "nothing, or orientation=angles, which says so of all operations"
+    return [Problem(program.file, int(motion.operation.moves.line[row]), what, cure, Severity.WARNING)]
 
 
 def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:

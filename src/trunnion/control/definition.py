@@ -173,6 +173,16 @@ class Control:
         name = names.get(manner, FIVE_AXIS if self.tcp else "")
         return name if f"approach_{name}" in self.templates else ""
 
+    @property
+    def only_vectors(self) -> bool:
+        """Whether an operation that is told by vectors has no rotary words at all, nor words for centres of circles."""
+        mixes = {BY_VECTOR, VECTOR_LINE}
+        return AXIS_VECTOR[0] in self.family.WORDS and not mixes & set(self.family.WORDS)
+
+    def by_vectors(self, settings: Mapping[str, str]) -> bool:
+        """Whether orientations are said by vectors under TCP."""
+        return (settings.get("orientation") or self.settings.get("orientation")) == "vector"
+
     def manners(self, settings: Mapping[str, str]) -> frozenset[Manner]:
         """In which manners operations can be said."""
         return frozenset(manner for manner in Manner if self.kind(manner, settings))

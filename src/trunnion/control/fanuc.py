@@ -23,18 +23,25 @@ from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 
 #: Circles have no word for whole turns; the tool's length and radius are data of the control, called by number.
-WORDS: tuple[str, ...] = (*(word for word in iso.WORDS if word != "turns"), "length", "length_number", "radius_number")
+WORDS: tuple[str, ...] = (
+    *(word for word in iso.WORDS if word != "turns"),
+    *("length", "length_number", "radius_number", "axis_x", "axis_y", "axis_z"),
+)
 CODES: tuple[str, ...] = iso.CODES
 PLANES: tuple[str, ...] = ("g68_2",)
-CHOICES: Mapping[str, tuple[str, ...]] = {"contour": ("none", "G05.1", "G05")}
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "contour": ("none", "G05.1", "G05"),
+    "orientation": ("angles", "vector"),
+}
 FIELDS: frozenset[str] = frozenset({"plane_first", "plane_second", "plane_third", "contour_on", "contour_off"})
 
 #: AI contour control on and off: in the control's own form, and in that of older controls.
 _CONTOUR: Final = {"none": (None, None), "G05.1": ("G05.1 Q1", "G05.1 Q0"), "G05": ("G05 P10000", "G05 P0")}
 
-#: The tool's length counts along Z, or along the tool axis while the control holds the tip.
+#: The tool's length counts along Z, or along the tool axis while the control holds the tip, which is told rotary
+#: positions or vectors.
 _LENGTH: Final = 43.0
-_TIP: Final = 43.4
+_TIP: Final = {"angles": 43.4, "vector": 43.5}
 
 #: Characters of a comment besides letters and digits; all others become a question mark. ``%`` would end the program.
 _SIGNS: Final = frozenset(" .,=+-*/_#[]'!?&<>@")
@@ -82,12 +89,13 @@ def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Val
 
 
 def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
-    """G43 or G43.4 with H, and D where there is a radius compensation: both have the tool's own number.
+    """G43, or G43.4 or G43.5, with H, and D where there is a radius compensation: both have the tool's own number.
 
     They stand with the motion to the first point, and so mean the same whether or not the control moves by itself
     where they stand alone (parameter TOS).
     """
-    words = {"length": _TIP if motion.manner is Manner.TCP else _LENGTH, "length_number": float(tool)}
+    length = _TIP[settings["orientation"]] if motion.manner is Manner.TCP else _LENGTH
+    words = {"length": length, "length_number": float(tool)}
     compensated = any(isinstance(event, CutterComp) for event in motion.operation.events)
     return {**words, "radius_number": float(tool)} if compensated else words
 

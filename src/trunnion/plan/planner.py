@@ -80,6 +80,8 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
             kept &= flat_arcs(operation)
         if not wishes.turns:
             kept &= operation.arcs.turns == 0
+        if manner is Manner.TCP and not wishes.arcs_with_tcp:
+            kept[:] = False
         if plane is not None and wishes.pose_planes:
             kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)

@@ -34,6 +34,7 @@ class Wishes:
     helices_by_angle  the control is told a helix by its centre and its angle, and not by its end
     helices         the control takes circles that rise, or of more than one turn; False: they become lines
     turns           the control takes circles and helices of more than one turn; False: they become lines
+    arcs_with_tcp   the control takes circles while it holds the tip; False: they become lines
     pose_planes     the control takes a tilted plane from the rotary position: only circles about the tool axis stay
                     circles there
     tcp             the control holds the tip (TCP); False: the slides and rotary axes themselves are led
@@ -58,6 +59,7 @@ class Wishes:
     lower_feed: bool = False
     helices: bool = True
     turns: bool = True
+    arcs_with_tcp: bool = True
     pose_planes: bool = False
     tcp: bool = True
     tip_tolerance: float = 0.005

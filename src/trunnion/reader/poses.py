@@ -36,6 +36,12 @@ STUCK: Final = 4
 #: How far past its travel a rotary axis may stand before a branch is refused, degrees.
 SLACK: Final = 1e-6
 
+#: Which rotary axis decides between the two positions for a vector: neither, but the sum of both ways.
+BOTH: Final = -1
+
+#: Ways that differ by no more than this are the same, degrees.
+_SAME_WAY: Final = 1e-6
+
 
 def settle(
     machine: Machine,
@@ -46,6 +52,7 @@ def settle(
     vector: Floats,
     held: Floats,
     tips: bool,
+    deciding: int = BOTH,
 ) -> Codes:
     """Work out where the rotary axes stand after consecutive rows.
 
@@ -61,6 +68,9 @@ def settle(
         Programmed vectors of any length, workpiece frame; NaN where the block has none.
     held : (2,) float64
         Rotary axes before the first row.
+    deciding
+        The rotary axis, 0 or 1, by whose way a control chooses between two positions for a vector; where that is the
+        same for both, the other's way decides, then which position is nearer to 0. ``BOTH``: the sum of both ways.
 
     Returns
     -------
@@ -68,7 +78,7 @@ def settle(
         Bits OUT_OF_TRAVEL, UNREACHABLE (the angles stayed) and STUCK.
     """
     status = np.zeros(len(place), np.uint8)
-    angles(machine, rotary, way, vector, held, status)
+    angles(machine, rotary, way, vector, held, status, deciding)
     # Slides get stuck only where a rotary axis turns one of them against another.
     if tips and len(set(packed.inside)) > 1:
         joints = joints_of(machine, packed, np.ones(len(place), np.bool_), place, rotary)
@@ -76,7 +86,15 @@ def settle(
     return status
 
 
-def angles(machine: Machine, rotary: Floats, way: Codes, axis: Floats, held: Floats, status: Codes) -> None:
+def angles(
+    machine: Machine,
+    rotary: Floats,
+    way: Codes,
+    axis: Floats,
+    held: Floats,
+    status: Codes,
+    deciding: int = BOTH,
+) -> None:
     """Turn ``rotary`` (n, 2) from programmed values or NaN to positions, winding on from ``held`` (2,)."""
     vector = ~np.isnan(axis[:, 0])
     branches = np.full((2, len(rotary), 2), np.nan) if vector.any() else np.empty((2, 0, 2))
@@ -97,6 +115,7 @@ def angles(machine: Machine, rotary: Floats, way: Codes, axis: Floats, held: Flo
         np.array([a.endless for a in axes]),
         np.array([[a.low, a.high] for a in axes]),
         np.array([-180.0 if a.output == "-180..180" else 0.0 for a in axes]),
+        deciding,
         status,
     )
 
@@ -132,6 +151,7 @@ def wind(
     endless: Flags,
     travel: Floats,
     lowest: Floats,
+    deciding: int,
     status: Codes,
 ) -> None:
     """Take the values of ``rotary`` (n, 2), NaN where nothing was programmed, to the turns that the control takes.
@@ -142,6 +162,7 @@ def wind(
     endless   (2,) bool
     travel    (2, 2) float64     lowest and highest value of each axis
     lowest    (2,) float64       where the turn that the axis displays begins, 0 or -180
+    deciding  as in ``settle``
     """
     a, b = held[0], held[1]
     for row in range(rotary.shape[0]):
@@ -149,7 +170,7 @@ def wind(
             a = reach(a, rotary[row, 0], way[row] & 15, lowest[0])
             b = reach(b, rotary[row, 1], way[row] >> 4, lowest[1])
         else:
-            best = np.inf
+            found = False
             one, two = a, b
             inside = False
             for branch in range(2):
@@ -162,16 +183,39 @@ def wind(
                     travel[0, 0] - SLACK <= p <= travel[0, 1] + SLACK
                     and travel[1, 0] - SLACK <= q <= travel[1, 1] + SLACK
                 )
-                cost = abs(p - a) + abs(q - b)
-                if (fits and not inside) or (fits == inside and cost < best - 1e-9):
-                    best, one, two, inside = cost, p, q, fits
-            if best == np.inf:
+                if not found or (fits and not inside) or (fits == inside and sooner(p, q, one, two, a, b, deciding)):
+                    one, two, inside, found = p, q, fits, True
+            if not found:
                 status[row] |= UNREACHABLE
             elif not inside:
                 status[row] |= OUT_OF_TRAVEL
             a, b = one, two
         rotary[row, 0] = a
         rotary[row, 1] = b
+
+
+@njit(cache=True)
+def sooner(p: float, q: float, one: float, two: float, a: float, b: float, deciding: int) -> bool:
+    """Whether a control whose axes stand at ``a`` and ``b`` takes ``p`` and ``q`` rather than ``one`` and ``two``."""
+    if deciding == BOTH:
+        return abs(p - a) + abs(q - b) < abs(one - a) + abs(two - b) - 1e-9
+    if deciding == 1:
+        p, q, one, two, a, b = q, p, two, one, b, a
+    for way in (
+        abs(p - a) - abs(one - a),
+        abs(q - b) - abs(two - b),
+        from_zero(p) - from_zero(one),
+        from_zero(q) - from_zero(two),
+    ):
+        if abs(way) > _SAME_WAY:
+            return way < 0.0
+    return False
+
+
+@njit(cache=True)
+def from_zero(angle: float) -> float:
+    """How far an angle is from the nearest whole turn, degrees."""
+    return abs(angle - 360.0 * math.floor(angle / 360.0 + 0.5))
 
 
 @njit(cache=True)

@@ -36,6 +36,9 @@ class Rows:
     held    (5,)     axis values after the rows that are settled
     """
 
+    #: The rotary axis that decides between two positions for a vector, as ``poses.settle`` has it.
+    deciding = poses.BOTH
+
     def __init__(self, machine: Machine, note: Note, file: Changes[int]) -> None:
         self.machine = machine
         self.note = note
@@ -191,6 +194,7 @@ class Rows:
             c.vector[waiting],
             self.held[columns],
             self.tips,
+            self.deciding,
         )
         self.by_tip.set(c.settled, self.tips)
         self._report(status, c.settled - c.base)

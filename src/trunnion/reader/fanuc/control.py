@@ -4,7 +4,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
-from trunnion.machine import Axis, Machine, Output
+from trunnion.machine import Axis, Carries, Machine, Output
 from trunnion.reader import tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.frames import Frame, about, turn
@@ -46,6 +46,8 @@ class FanucControl(Rs274Control):
         self.rotation = Frame()
         #: G43.5: words I J K of lines are vectors.
         self.vectors = False
+        #: In one table or in one head the axis that carries the other; on mixed machines that of the table.
+        self.deciding = 1 if all(machine.axes[k].carries is Carries.PART for k in machine.rotary) else 0
 
     def shorter(self, axis: Axis) -> bool:
         """Always, as axes roll over that are set to; but for axes whose values are written as they wind."""
@@ -120,9 +122,8 @@ class FanucControl(Rs274Control):
             self.note("G53.1: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return
         columns = list(self.machine.rotary)
-        first = self.machine.rotary.index(self.machine.primary)
+        first = self.deciding
         reached = [(self._way_to(pair, columns), pair) for pair in inside]
-        # The axis that carries the other counts first.
         _, best = min(reached, key=lambda item: (round(item[0][first], 6), round(item[0][1 - first], 6)))
         bits = int(Written.FIRST | Written.SECOND)
         self.event("tilt", "G53.1")
