@@ -122,6 +122,13 @@ def test_planes_that_nothing_can_stand_on_and_other_forms_are_named(run: Runner)
     assert [finding.line for finding in got.errors] == [2, 4, 5]
 
 
+def test_the_axes_turn_to_a_plane_inside_their_travel_by_whole_turns(run: Runner) -> None:
+    nutated = load_machine("generic_nutated_b45_c", {"control": CONTROL})  # B goes from 0 to 200 degrees
+    got = run("G54 G0 B195.792 C44.844\nG68.2 X0 Y0 Z0 I55.941 J88.919 K-1.599\nG53.1\nG69\n", nutated)
+    assert got.errors == ()
+    close(got.rotary, [[44.844, 195.792]] * 2, atol=0.005)
+
+
 @settings(max_examples=40, suppress_health_check=FRESH)
 @given(angle=st.floats(-360, 360), x=st.floats(-50, 50), y=st.floats(-50, 50))
 def test_g68_turns_about_its_point(angle: float, x: float, y: float, run: Runner) -> None:

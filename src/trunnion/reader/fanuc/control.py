@@ -8,6 +8,7 @@ from trunnion.machine import Axis, Carries, Machine, Output
 from trunnion.reader import tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.frames import Frame, about, turn
+from trunnion.reader.poses import PLAIN
 from trunnion.reader.rows import Note
 from trunnion.reader.rs274.control import Rs274Control
 from trunnion.reader.run import Written
@@ -117,25 +118,16 @@ class FanucControl(Rs274Control):
             return
         self.settle()
         pairs = tilt.solutions(self.machine, self.frame.linear[:, 2], self.held)
-        inside = [pair for pair in pairs if tilt.fits(self.machine, pair)]
+        inside = [tilt.turned_inside(self.machine, pair, self.held) for pair in pairs if tilt.fits(self.machine, pair)]
         if not inside:
             self.note("G53.1: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return
-        columns = list(self.machine.rotary)
-        first = self.deciding
-        reached = [(self._way_to(pair, columns), pair) for pair in inside]
-        _, best = min(reached, key=lambda item: (round(item[0][first], 6), round(item[0][1 - first], 6)))
+        held, first = self.held[list(self.machine.rotary)], self.deciding
+        ways = [np.round(np.abs(np.array(pair) - held), 6).tolist() for pair in inside]
+        _, best = min(zip(ways, inside, strict=True), key=lambda item: (item[0][first], item[0][1 - first]))
         bits = int(Written.FIRST | Written.SECOND)
         self.event("tilt", "G53.1")
-        self.move_axes(Kind.RAPID, self.held[self._slides].copy(), list(best), self.default_way, bits)
-
-    def _way_to(self, pair: tuple[float, float], columns: list[int]) -> tuple[float, float]:
-        """How far each rotary axis turns to a position."""
-        ways = []
-        for column, value in zip(columns, pair, strict=True):
-            step = value - float(self.held[column])
-            ways.append(abs(step - 360.0 * round(step / 360.0)) if self.machine.axes[column].endless else abs(step))
-        return ways[0], ways[1]
+        self.move_axes(Kind.RAPID, self.held[self._slides].copy(), list(best), PLAIN, bits)
 
     # Positions of the machine
 
