@@ -8,12 +8,13 @@ import os
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
-from trunnion.cli.reading import toolpaths
-
 
 def main() -> None:
     """Run from the command line."""
-    gc.disable()
+    gc.disable()  # as the command begins
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    from trunnion.cli.reading import toolpaths
+
     source, name, target = sys.argv[1:]
     with ThreadPoolExecutor(1) as aside:
         coming = toolpaths([source], None, False, aside)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from tests.plan.naive import EveryWay, moves_of, nearest_neighbour, rapids_at
 from trunnion.arrays import Floats
 from trunnion.machine import Machine, forward, load_machine, shipped, slide_positions
+from trunnion.plan import poses
 from trunnion.plan.placing import REWIND
 from trunnion.plan.poses import Poses, choose, choose_nearest, follow, least_cost, settled, sides_travel_alike, take
 from trunnion.plan.states import MOST_TURNS, REWOUND, STATE, states_of
@@ -149,6 +150,19 @@ def test_where_nothing_is_to_be_chosen_one_pass_finds_the_optimum(name: str, mov
     assert not wanted.outcome.any()
 
 
+@settings(deadline=None, max_examples=200)
+@given(st.sampled_from(sorted(ALIKE)), smooth_paths(4.0) | short_paths(30), st.integers(1, 12))
+def test_one_pass_does_not_depend_on_how_many_rows_go_by_at_a_time(name: str, moves: Moves, rows: int) -> None:
+    whole = settled(ALIKE[name], moves, False)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(poses, "_CHUNK", rows)
+        found = settled(ALIKE[name], moves, False)
+    assert (found is None) == (whole is None)
+    if found is not None and whole is not None:
+        for column in ("state", "rotary", "outcome", "extremes", "where", "changes"):
+            assert np.array_equal(getattr(found, column), getattr(whole, column))
+
+
 @pytest.mark.parametrize("name", sorted(n for n, m in ALIKE.items() if not any(a.preferred_sign for a in m.axes)))
 def test_one_pass_is_enough_for_a_path_like_most(name: str) -> None:
     machine = ALIKE[name]
@@ -159,8 +173,12 @@ def test_one_pass_is_enough_for_a_path_like_most(name: str) -> None:
         assert settled(machine, path, False) is not None
 
 
+#: The nearest neighbour asks no one which side is preferred.
+IMPARTIAL = [name for name in shipped() if not any(axis.preferred_sign for axis in load_machine(name).axes)]
+
+
 @settings(deadline=None, max_examples=120)
-@given(st.sampled_from(shipped()), smooth_paths(30.0))
+@given(st.sampled_from(IMPARTIAL), smooth_paths(30.0))
 def test_on_every_machine_it_is_the_nearest_neighbour_or_cheaper(name: str, moves: Moves) -> None:
     machine = load_machine(name)
     naive = nearest_neighbour(machine, moves)

@@ -29,6 +29,26 @@ _SURELY_NEAR: Final = 60.0
 _CLEAR: Final = 1.0
 
 
+# Columns of ``tilts``: what a tool axis asks of the rotary axes on a side of the machine. Bits of ``solve_tilt``; then
+# as ``branch_angles`` returns them.
+STATUS: Final = 0
+FIRST: Final = 1
+SECOND: Final = 2
+COS_1: Final = 3
+SIN_1: Final = 4
+COS_2: Final = 5
+SIN_2: Final = 6
+
+# How ``straight_on`` stands between two rows: rotary values, degrees; the first one where it was last held by the tool
+# axis; the side; whether that could still be the other one; whether the last tool axis was at the pole.
+LAST_1: Final = 0
+LAST_2: Final = 1
+HELD: Final = 2
+SIDE: Final = 3
+UNDECIDED: Final = 4
+WAS_POLE: Final = 5
+
+
 @njit(cache=True)
 def beyond(value: float, low: float, high: float) -> bool:
     """Whether a value lies outside of its limits for good."""
@@ -154,12 +174,35 @@ def place(
 
 
 @njit(cache=True, nogil=True)
+def lean(packed: Packed, axis: Floats, side: int, tilts: Floats) -> None:
+    """What tool axes (k, 3) ask of the rotary axes on one side, into ``tilts`` (k, 7), columns as named above."""
+    for row in range(axis.shape[0]):
+        i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
+        if row > 0 and i == axis[row - 1, 0] and j == axis[row - 1, 1] and k == axis[row - 1, 2]:
+            for column in range(7):
+                tilts[row, column] = tilts[row - 1, column]
+            continue
+        status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
+        tilts[row, STATUS] = status
+        if not status & UNREACHABLE:
+            first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(
+                packed, u0, u1, cos, sin if side == 0 else -sin, status
+            )
+            tilts[row, FIRST], tilts[row, SECOND] = first, second
+            tilts[row, COS_1], tilts[row, SIN_1], tilts[row, COS_2], tilts[row, SIN_2] = cos_1, sin_1, cos_2, sin_2
+
+
+@njit(cache=True, nogil=True)
 def straight_on(
     packed: Packed,
     choice: Choice,
     display_low: Floats,
+    first_row: int,
     tip: Floats,
     axis: Floats,
+    tilts: Floats,
+    leaning: int,
+    stand: Floats,
     state: Codes,
     found: Floats,
     outcome: Codes,
@@ -175,23 +218,29 @@ def straight_on(
     filled, at the first row that leaves something to choose: a limit is left, an axis would have to wind back, or the
     other side is not clearly farther away.
 
-    joints  (5,) float64   what it works with; a kernel that makes arrays takes longer to load
+    first_row  where to begin; rows before have gone by
+    tilts      (k, 7) float64   of the k rows to be done now, by ``lean`` for the side ``leaning``
+    stand      (6,) float64     how it stands before ``first_row``, and on return after the last row: columns above
+    joints     (5,) float64     what it works with; a kernel that makes arrays takes longer to load
     """
     columns, low, high, span = packed.columns, choice.low, choice.high, choice.span
     low_1, high_1, low_2, high_2 = low[columns[0]], high[columns[0]], low[columns[1]], high[columns[1]]
-    last_1, last_2 = choice.start
-    held, side, undecided, was_pole = folded(last_1), 0, True, False
-    status, u0, u1, cos, sin = 0, 0.0, 0.0, 0.0, 0.0
+    last_1, last_2, held = stand[LAST_1], stand[LAST_2], stand[HELD]
+    side, undecided, was_pole = int(stand[SIDE]), stand[UNDECIDED] != 0.0, stand[WAS_POLE] != 0.0
     first, second, cos_1, sin_1, cos_2, sin_2 = 0.0, 0.0, 1.0, 0.0, 1.0, 0.0
-    for row in range(tip.shape[0]):
+    for at in range(tilts.shape[0]):
+        row = first_row + at
         i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
-        if row == 0 or i != axis[row - 1, 0] or j != axis[row - 1, 1] or k != axis[row - 1, 2]:
-            status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
+        if at == 0 or i != axis[row - 1, 0] or j != axis[row - 1, 1] or k != axis[row - 1, 2]:
+            status = int(tilts[at, STATUS])
             if status & UNREACHABLE:
                 return False
-            first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(
-                packed, u0, u1, cos, sin if side == 0 else -sin, status
-            )
+            first, second, cos_1, sin_1, cos_2, sin_2 = (
+                tilts[at, FIRST], tilts[at, SECOND], tilts[at, COS_1], tilts[at, SIN_1], tilts[at, COS_2],
+                tilts[at, SIN_2],
+            )  # fmt: skip
+            if side != leaning:
+                first, second, cos_1, sin_1, cos_2, sin_2 = _on_side(packed, i, j, k, side)
             if status & POLE:
                 first = held
                 cos_1, sin_1 = math.cos(math.radians(first)), packed.sense_1 * math.sin(math.radians(first))
@@ -209,7 +258,7 @@ def straight_on(
                     side = 1
                     for earlier in range(row):
                         state[earlier] += max(span[1], 1) * max(span[3], 1)
-                    first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(packed, u0, u1, cos, -sin, status)
+                    first, second, cos_1, sin_1, cos_2, sin_2 = _on_side(packed, i, j, k, side)
                     one, two = folded(first - last_1), folded(second - last_2)
                 elif not here < there - _CLEAR:
                     return False
@@ -239,7 +288,18 @@ def straight_on(
         if outcome[row] != FINE:
             return False
         state[row] = index
+    stand[LAST_1], stand[LAST_2], stand[HELD], stand[SIDE] = last_1, last_2, held, side
+    stand[UNDECIDED], stand[WAS_POLE] = undecided, was_pole
     return True
+
+
+@njit(cache=True)
+def _on_side(
+    packed: Packed, i: float, j: float, k: float, side: int
+) -> tuple[float, float, float, float, float, float]:
+    """What ``branch_angles`` returns for a tool axis on a side."""
+    status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
+    return branch_angles(packed, u0, u1, cos, sin if side == 0 else -sin, status)
 
 
 @njit(cache=True)

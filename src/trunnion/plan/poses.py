@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.beside import one_ahead
 from trunnion.machine import Machine, Packed, pack
 from trunnion.plan.optimum import CUTS, IDLE, TOUCHES, cheapest, nearest, trace, workspace
-from trunnion.plan.placing import place, straight_on
+from trunnion.plan.placing import SIDE, folded, lean, place, straight_on
 from trunnion.plan.states import LIMIT_TOLERANCE, STATE, Choice, States, limits_of, states_of
 from trunnion.toolpath import Kind, Moves, Phase
 
@@ -41,6 +42,9 @@ class Poses:
 
 #: Changes that are kept one by one.
 _NAMED = 50
+
+#: Rows that are planned at a time: half a megabyte, and milliseconds enough that two threads seldom meet.
+_CHUNK = 16384
 
 #: Axes at right angles, or parallel, within this sine.
 _SQUARE = 1e-12
@@ -132,13 +136,23 @@ def settled(machine: Machine, moves: Moves, keep_slides: bool) -> Poses | None:
     if any(axis.preferred_sign for axis in machine.axes) or not sides_travel_alike(machine):
         return None
     packed, poses = pack(machine), _empty(np.empty(len(moves), np.uint8))
-    choice = choice_of(machine, packed, states_of(machine), keep_slides)
-    done = straight_on(
-        packed, choice, _display_low(machine), moves.tip, moves.axis,
-        poses.state, poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where, poses.changes,
-        np.empty(5),
-    )  # fmt: skip
-    return poses if done else None
+    choice, display_low = choice_of(machine, packed, states_of(machine), keep_slides), _display_low(machine)
+    stand = np.array([*choice.start, folded(choice.start[0]), 0.0, 1.0, 0.0])
+    room, joints = np.empty((2, min(_CHUNK, len(moves)), 7)), np.empty(5)
+
+    def leaning(first: int) -> tuple[int, int, Floats]:
+        axis, side = moves.axis[first : first + _CHUNK], int(stand[SIDE])
+        tilts = room[first // _CHUNK % 2, : len(axis)]
+        lean(packed, axis, side, tilts)
+        return first, side, tilts
+
+    for first, side, tilts in one_ahead(leaning, range(0, len(moves), _CHUNK)):
+        if not straight_on(
+            packed, choice, display_low, first, moves.tip, moves.axis, tilts, side, stand,
+            poses.state, poses.rotary, poses.outcome, poses.beyond, poses.extremes, poses.where, poses.changes, joints,
+        ):  # fmt: skip
+            return None
+    return poses
 
 
 def sides_travel_alike(machine: Machine) -> bool:

@@ -10,16 +10,15 @@ swivelled planes are already resolved to it.
 """
 
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, fields
 from enum import IntEnum, IntFlag
 from functools import cached_property
-from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
+from trunnion.beside import one_ahead
 from trunnion.errors import Severity
 from trunnion.machine import Machine, Packed, forward, pack, tool_axes
 from trunnion.reader.columns import Ramps, Steps
@@ -28,9 +27,6 @@ from trunnion.toolpath import Arcs
 
 #: Rows that are worked out at a time: some megabytes, and milliseconds enough that two threads seldom meet.
 CHUNK = 32768
-
-#: Stretches from which on a second thread is worth its start.
-_WORTH_A_THREAD = 2
 
 
 class Written(IntFlag):
@@ -251,16 +247,8 @@ class Run:
         While one stretch is looked at the next one is worked out, on another core if there is one.
         """
         bounds = [(first, min(first + CHUNK, len(self))) for first in range(0, len(self), CHUNK)]
-        if len(bounds) < _WORTH_A_THREAD:
-            yield from ((first, end, self.stretch(first, end)) for first, end in bounds)
-            return
-        with ThreadPoolExecutor(1) as aside:
-            coming = aside.submit(self.stretch, *bounds[0])
-            for (first, end), after in zip_longest(bounds, bounds[1:]):
-                ready = coming.result()
-                if after is not None:
-                    coming = aside.submit(self.stretch, *after)
-                yield first, end, ready
+        for (first, end), poses in zip(bounds, one_ahead(lambda rows: self.stretch(*rows), bounds), strict=True):
+            yield first, end, poses
 
     def oriented(self, first: int, end: int) -> Codes:
         """Column ``orientation`` of consecutive rows."""

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -58,29 +59,76 @@ def verify(
     """
     settings = settings or Settings()
     run = with_rapids(run, settings.rapid_feed)
-    checks: list[Check] = []
     wanted = Wanted(toolpaths, allowed or Allowed(), settings.absolute) if toolpaths else None
     walker = Walker(run, NAMED, math.inf, times=columns)
-    pairs = None
     if wanted is not None:
-        believed = believe(wanted, run.machine)
-        pairs, off_tip, off_axis, spans = _paired(run, wanted, walker, settings)
-        case = Case(run, wanted, pairs, settings)
-        checks += [demands.order(case), _tip(case, off_tip), _axis(case, off_axis, believed)]
-        checks += [demands.kind(case), demands.feed(case, believed), in_force.spindle(case), in_force.tool(case)]
-        checks += [in_force.coolant(case), in_force.offset(case), in_force.home(case), holes(case)]
+        case, spans, checks, last = _held_against(Case(run, wanted, None, settings), walker)
     else:
         alone = _spans(run, settings)
         _go_by(run, walker, *alone)
         spans = alone[0] if alone else None
         case = Case(run, None, None, settings)
-        checks.append(in_force.offset(case))
+        checks, last = [in_force.offset(case)], _of_itself(case)
     way = walker.walked()
-    checks += [_span(case, way, spans), _travel(case, way), _speed(case, way), _acceleration(case, way)]
-    checks += [turns(case), modal.modal(case), modal.words(case)]
+    checks += [_span(case, way, spans), _travel(case, way), _speed(case, way), _acceleration(case, way), *last]
     cl_line = _cl_lines(case) if columns else np.zeros(0, np.int32)
     operations = tuple(_operations(case))
     return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line, operations)
+
+
+def _held_against(case: Case, walker: Walker) -> tuple[Case, Spans | None, list[Check], list[Check]]:
+    """Checks against what was wanted: the case with its pairs, what was seen between points, checks, the last checks.
+
+    Partners are by counting if that fits, else by position. Where the tool is takes half of the time, and what is asked
+    besides is found out meanwhile.
+    """
+    run, wanted = case.run, case.wanted
+    assert wanted is not None
+    believed = believe(wanted, run.machine)
+    counted = in_order(run, wanted)
+    case = replace(case, pairs=counted or _by_position(case))
+    with ThreadPoolExecutor(1) as aside:
+        asked = aside.submit(_asked_besides, case, believed)
+        spans = _spans(run, case.settings, wanted, case.pairs)
+        off = _deviations(case)
+        _go_by(run, walker, off, *spans)
+    if counted and any(one.count for one in off.found()):
+        case = replace(case, pairs=_by_position(case))
+        spans = _spans(run, case.settings, wanted, case.pairs)
+        off = _deviations(case)
+        _go_by(run, off, *spans)
+        order, besides, last = _asked_besides(case, believed)
+    else:
+        order, besides, last = asked.result()
+    off_tip, off_axis = off.found()
+    checks = [order, _tip(case, off_tip), _axis(case, off_axis, believed), *besides]
+    return case, spans[0] if spans else None, checks, last
+
+
+def _by_position(case: Case) -> Pairs:
+    """Partners by where they are."""
+    assert case.wanted is not None
+    span = case.settings.span
+    bend = span if span is not None or case.settings.span_tip is None else 180.0
+    return matched(case.run, case.wanted, bend=bend)
+
+
+def _deviations(case: Case) -> Deviations:
+    assert case.wanted is not None
+    assert case.pairs is not None
+    return Deviations(case.run.machine, case.wanted, case.pairs, NAMED, case.run.programmed)
+
+
+def _asked_besides(case: Case, believed: Believed) -> tuple[Check, list[Check], list[Check]]:
+    """All that neither asks where the tool is nor how it gets there: the order, demands, and ``_of_itself``."""
+    besides = [demands.kind(case), demands.feed(case, believed), in_force.spindle(case), in_force.tool(case)]
+    besides += [in_force.coolant(case), in_force.offset(case), in_force.home(case), holes(case)]
+    return demands.order(case), besides, _of_itself(case)
+
+
+def _of_itself(case: Case) -> list[Check]:
+    """What every program must do."""
+    return [turns(case), modal.modal(case), modal.words(case)]
 
 
 def _operations(case: Case) -> Iterator[Share]:
@@ -123,20 +171,6 @@ def _go_by(run: Run, *each: Walker | Deviations | Spans) -> None:
     for first, end, poses in run.stretches():
         for one in each:
             one.take(first, end, poses)
-
-
-def _paired(run: Run, wanted: Wanted, walker: Walker, settings: Settings) -> tuple[Pairs, Off, Off, Spans | None]:
-    """Partners and how far they are apart: by counting if that fits, else by position. The walker goes along."""
-    counted = in_order(run, wanted)
-    bend = settings.span if settings.span is not None or settings.span_tip is None else 180.0
-    pairs = counted or matched(run, wanted, bend=bend)
-    off, spans = Deviations(run.machine, wanted, pairs, NAMED, run.programmed), _spans(run, settings, wanted, pairs)
-    _go_by(run, walker, off, *spans)
-    if counted and any(one.count for one in off.found()):
-        pairs = matched(run, wanted, bend=bend)
-        off, spans = Deviations(run.machine, wanted, pairs, NAMED, run.programmed), _spans(run, settings, wanted, pairs)
-        _go_by(run, off, *spans)
-    return pairs, *off.found(), spans[0] if spans else None
 
 
 def _tip(case: Case, off: Off) -> Check:
