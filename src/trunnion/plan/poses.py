@@ -12,7 +12,7 @@ from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.beside import one_ahead
 from trunnion.machine import Machine, Packed, pack
 from trunnion.plan.optimum import CUTS, IDLE, TOUCHES, cheapest, nearest, trace, workspace
-from trunnion.plan.placing import SIDE, folded, lean, place, straight_on
+from trunnion.plan.placing import SIDE, lean, place, straight_on
 from trunnion.plan.states import LIMIT_TOLERANCE, STATE, Choice, States, limits_of, states_of
 from trunnion.toolpath import Kind, Moves, Phase
 
@@ -137,7 +137,7 @@ def settled(machine: Machine, moves: Moves, keep_slides: bool) -> Poses | None:
         return None
     packed, poses = pack(machine), _empty(np.empty(len(moves), np.uint8))
     choice, display_low = choice_of(machine, packed, states_of(machine), keep_slides), _display_low(machine)
-    stand = np.array([*choice.start, folded(choice.start[0]), 0.0, 1.0, 0.0])
+    stand = np.array([*choice.start, math.remainder(choice.start[0], 360.0), 0.0, 1.0, 0.0])
     room, joints = np.empty((2, min(_CHUNK, len(moves)), 7)), np.empty(5)
 
     def leaning(first: int) -> tuple[int, int, Floats]:

@@ -36,6 +36,9 @@ _POINTED: Final = 16
 
 _POWERS: Final = np.array([10.0**k for k in range(23)])
 
+#: Digits that a double holds exactly, whatever they are.
+_DIGITS: Final = 15
+
 #: Larger numbers are looked at by the interpreter, which knows how far machines reach.
 _FARTHEST: Final = 1e5
 
@@ -48,7 +51,6 @@ _MINUS: Final = 45
 _POINT: Final = 46
 _ZERO: Final = 48
 _THREE: Final = 51
-_NINE: Final = 57
 _EQUALS: Final = 61
 
 
@@ -166,24 +168,27 @@ def scan(
                 negative = text[at] == _MINUS
                 at += 1
             mantissa = 0
-            digits = 0
             decimals = 0
-            point = False
-            while True:
-                char = text[at]
-                if _ZERO <= char <= _NINE:
-                    mantissa = 10 * mantissa + int(char) - _ZERO
-                    digits += 1
-                    if point:
-                        decimals += 1
-                elif char == _POINT and not point and what > PREPARATORY:
-                    point = True
-                else:
-                    break
+            first = at
+            digit = int(text[at]) - _ZERO
+            while 0 <= digit <= 9:
+                mantissa = 10 * mantissa + digit
                 at += 1
-                if digits > 15:
-                    break
-            if digits == 0 or digits > 15 or (pointed and not point and mantissa != 0):
+                digit = int(text[at]) - _ZERO
+            digits = at - first
+            point = what > PREPARATORY and text[at] == _POINT
+            if point:
+                at += 1
+                first = at
+                digit = int(text[at]) - _ZERO
+                while 0 <= digit <= 9:
+                    mantissa = 10 * mantissa + digit
+                    at += 1
+                    digit = int(text[at]) - _ZERO
+                decimals = at - first
+                digits += decimals
+            # Of more digits than fit into a mantissa nothing is used.
+            if digits == 0 or digits > _DIGITS or (pointed and not point and mantissa != 0):
                 plain = False
                 break
             # What may follow a number: a blank, the end, a comment, or a word of one letter that this kernel knows.

@@ -56,7 +56,9 @@ class Text:
         #: Row of the run before which this text began.
         self.first_row = 0
         self._ended = False
-        self._tail = b""
+        # A chunk, and before it what the last one held of its line.
+        self._room = bytearray(0 if whole else LONGEST_LINE + CHUNK + 1)
+        self._left = self._filled = 0
         self.buffer: Bytes = np.zeros(0, np.uint8)
         self.position = 0
         self.line = 1
@@ -93,7 +95,7 @@ class Text:
     @property
     def _behind(self) -> int:
         """Bytes before the next line."""
-        return self.position + (0 if self.whole else self._file.tell() - len(self.buffer) - len(self._tail))
+        return self.position + (0 if self.whole else self._file.tell() - self._filled)
 
     def expected(self, rows: int) -> int:
         """How many rows there will be if the text goes on as it began, with ``rows`` up to here.
@@ -128,20 +130,26 @@ class Text:
         return decode(window[:length])
 
     def _read(self) -> None:
+        """Take the next chunk: what is left of the last one goes before it, in the same memory."""
         self._wait(self._file.tell() + CHUNK)
+        left, end = self._left, self._filled
+        self._room[: end - left] = self._room[left:end]
+        filled = end - left
         try:
-            chunk = self._file.read(CHUNK)
+            got = self._file.readinto(memoryview(self._room)[filled : filled + CHUNK])
         except OSError as error:
             raise self.problem(0, f"cannot be read: {error}") from None
-        if not chunk:
+        if not got:
             self._ended = True
-            chunk = b"\n" if self._tail else b""
-        data = self._tail + chunk
-        cut = data.rfind(b"\n") + 1
-        self._tail = data[cut:]
-        if len(self._tail) > LONGEST_LINE:
+            self._room[filled : filled + 1] = b"\n"
+            got = 1 if filled else 0
+        filled += got
+        cut = self._room.rfind(b"\n", 0, filled) + 1
+        if filled - cut > LONGEST_LINE:
             raise self.problem(self.line, f"is longer than {LONGEST_LINE} characters", "this is no program")
-        self.buffer = np.frombuffer(data, np.uint8)[:cut]
+        self._left, self._filled = cut, filled
+        self.buffer = np.frombuffer(self._room, np.uint8, cut)
+        self.buffer.setflags(write=False)
         self.position = 0
 
     def _wait(self, size: int) -> None:
