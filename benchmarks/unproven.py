@@ -3,16 +3,16 @@
 Reads, plans and writes as the command does, and does not read its program back. No command of Trunnion does that.
 """
 
-import gc
 import os
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
+from trunnion.cli import at_full_speed
+
 
 def main() -> None:
     """Run from the command line."""
-    gc.disable()  # as the command begins
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    at_full_speed()
     from trunnion.cli.reading import toolpaths
 
     source, name, target = sys.argv[1:]
