@@ -89,6 +89,11 @@ def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Inte
     return reader
 
 
+def numbers_lengths(machine: Machine) -> bool:
+    """Whether a machine's programs call the length of the tool by a number (H), which is then the column ``edge``."""
+    return family_of(machine) in ("fanuc_30i", "linuxcnc")
+
+
 def can_read(machine: Machine) -> bool:
     """Whether there is a reader for the programs of a machine."""
     return family_of(machine) in READERS

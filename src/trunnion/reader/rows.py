@@ -62,6 +62,7 @@ class Rows:
         self._tool_names = [""]
         self._chosen = 0
         self.edge = Changes(-1)
+        self.compensation = Changes(0)
         self.offset = Changes(0)
         self.tcp_rows = Changes(False)
         self.machine_rows = Changes(False)
@@ -102,6 +103,11 @@ class Rows:
         """Change to the tool that was chosen."""
         self.tool.set(self.row, self._chosen)
         self.event("tool_change", self._tool_names[self._chosen])
+
+    @property
+    def tool_in_spindle(self) -> str:
+        """Number or name of the tool that was changed to last; empty before the first change."""
+        return self._tool_names[self.tool.now]
 
     # With a kernel
 
@@ -249,6 +255,7 @@ class Rows:
                 spindle=self.spindle.steps(n, np.int8),
                 tool=self.tool.steps(n, np.int32),
                 edge=self.edge.steps(n, np.int32),
+                compensation=self.compensation.steps(n, np.int8),
                 offset=self.offset.steps(n, np.uint16),
                 tcp=self.tcp_rows.steps(n, np.bool_),
                 machine_frame=self.machine_rows.steps(n, np.bool_),

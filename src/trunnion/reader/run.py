@@ -110,6 +110,7 @@ class State:
     spindle: Steps
     tool: Steps
     edge: Steps
+    compensation: Steps
     offset: Steps
     tcp: Steps
     machine_frame: Steps
@@ -167,7 +168,8 @@ class Run:
     rpm            (n,)   float64  programmed spindle speed, 0 before the first S
     spindle        (n,)   int8     +1 M3, -1 M4, 0 off
     tool           (n,)   int32    index into ``tools``; 0 is the empty name, no tool yet
-    edge           (n,)   int32    D number, -1 before the first D; Fanuc: H of the length in force, else -1
+    edge           (n,)   int32    D number, -1 before the first D; Fanuc, LinuxCNC: H of the length in force, else -1
+    compensation   (n,)   int8     of the tool's radius: +1 left of the path (G41), -1 right of it, 0 off; not simulated
     offset         (n,)   uint16   work offset as the program numbers it (G54, preset 2), 0 before the first
     tcp            (n,)   bool     tool centre point control was on
     machine_frame  (n,)   bool     a block with positions of machine axes: SUPA, G53, M91
@@ -318,6 +320,10 @@ class Run:
     @cached_property
     def edge(self) -> Lines:
         return self.state.edge.column()
+
+    @cached_property
+    def compensation(self) -> NDArray[np.int8]:
+        return self.state.compensation.column()
 
     @cached_property
     def offset(self) -> NDArray[np.uint16]:

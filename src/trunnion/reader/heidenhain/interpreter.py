@@ -36,6 +36,9 @@ _TENTH: Final = 0.1 * INCH
 _PLAIN = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][Nn]?[ \t])")
 _LOOK: Final = 32
 
+#: Radius compensation: left of the path, right of it, off.
+_SIDES: Final = {"R0": 0, "RL": 1, "RR": -1}
+
 _LABEL = re.compile(r"(Q[LR]?[0-9]{1,4})|([0-9]{1,5})")
 _CYCLE = re.compile(r"[ \t]*(DEF|CALL)(?![A-Z])")
 _CALL = re.compile(r"[ \t]*(LBL|PGM)(?![A-Z])")
@@ -106,7 +109,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         return Activation(text, 0)
 
     def _may_be_plain(self, text: Text) -> bool:
-        if self._begun or self._functions.modal_call:
+        if self._begun or self._functions.modal_call or self._control.compensation.now:
             return False
         return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
 
@@ -226,6 +229,8 @@ class HeidenhainInterpreter(Interpreter[Activation]):
             axes = polar_end(control, block, circle=head == "CP")
         elif block.polar:
             raise KlartextError(f"{head} has no polar coordinates")
+        if block.radius is not None and head != "CR":
+            raise KlartextError(f"{head} has no radius")
         circle = circle_of(control, head, block) if head[0] == "C" else None
         vector = block.tool_axis
         feed = self._feed(block)
@@ -234,6 +239,8 @@ class HeidenhainInterpreter(Interpreter[Activation]):
             control.place[3] = feed
         control.kind = RAPID if block.rapid else LINEAR
         if block.side:
+            control.compensation.set(control.row, _SIDES[block.side])
+        if block.side in ("RL", "RR"):
             text = "radius compensation is not simulated: the path is that of the tool centre as programmed"
             self._note(f"{block.side}: {text}", Severity.WARNING)
         if M_SECOND_MACHINE in machine:

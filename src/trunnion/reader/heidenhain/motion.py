@@ -45,7 +45,7 @@ class Block:
     vectors     components of surface normal and tool axis
     polar       PR and PA
     direction   1 for DR+, -1 for DR-, 0 without
-    side        RL or RR
+    side        RL, RR or R0
     m           M words with what belongs to them, None for flags
     """
 
@@ -127,7 +127,9 @@ def _value(block: Block, name: str, value: float, how: How) -> None:
         block.feed = value
     elif name == "R":
         # R0 switches compensation off; a radius stands before it.
-        if value != 0.0:
+        if value == 0.0:
+            block.side = "R0"
+        else:
             block.radius = value
     elif name == "M":
         if value != int(value) or not 0 <= value < 10000:

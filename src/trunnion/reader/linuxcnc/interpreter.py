@@ -211,6 +211,7 @@ class LinuxcncInterpreter(OWordInterpreter):
             self._to_initial = code == 980
         elif code in LENGTHS:
             control.set_length(LENGTHS[code])
+            control.edge.set(control.row, self._length_number(block) if LENGTHS[code] else -1)
         elif code in (901, 911):
             control.relative_centres = code == 911
         elif code in LINES:
@@ -223,6 +224,13 @@ class LinuxcncInterpreter(OWordInterpreter):
             self._name_code(code, NAMED, SILENT)
         elif not self._modal(code):
             self._name_code(code, NAMED, SILENT)
+
+    def _length_number(self, block: Block) -> int:
+        """Which length G43 takes: that of H, or of the tool in the spindle; 0 where nobody knows its number."""
+        if "H" in block.words:
+            return int(block.words["H"].value)
+        name = self._control.tool_in_spindle
+        return int(name) if name.isdigit() else 0
 
     def _m_word(self, code: int, block: Block) -> None:
         control = self._control

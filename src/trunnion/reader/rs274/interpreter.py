@@ -26,6 +26,9 @@ from trunnion.reader.word import How, Word
 MOTIONS: Final = {0: RAPID, 10: LINEAR, 20: CLOCKWISE, 30: COUNTER}
 PLANES: Final = {170: 2, 180: 1, 190: 0}
 FEED_MODES: Final = {930: 93, 940: 94, 950: 95}
+
+#: Radius compensation: left of the path, right of it, off.
+SIDES: Final = {400: 0, 410: 1, 411: 1, 412: 1, 420: -1, 421: -1, 422: -1}
 CANCEL: Final = 800
 
 #: M codes that are events as they are: kind and value.
@@ -207,6 +210,8 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _name_code(self, code: int, named: dict[int, tuple[str, bool]], silent: frozenset[int]) -> None:
         """Say that a G code is known and not simulated, or not known."""
+        if code in SIDES:
+            self.control.compensation.set(self.control.row, SIDES[code])
         if code in named:
             text, grave = named[code]
             self._note(f"{spelled(code)}: {text}", Severity.ERROR if grave else Severity.WARNING)

@@ -33,6 +33,7 @@ from trunnion.reader.sinumerik.words import (
     G_NO_MOTION,
     G_OFFSETS,
     G_PLANES,
+    G_SIDES,
     G_SILENT,
     G_UNITS,
     M_CHANGE,
@@ -225,6 +226,8 @@ class SinumerikInterpreter(Interpreter[Activation]):
 
     def _g(self, code: int) -> None:
         control = self._control
+        if code in G_SIDES:
+            control.compensation.set(control.row, G_SIDES[code])
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER):
             control.kind = code
         elif code in G_PLANES:
@@ -242,7 +245,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
             self._note(f"G{code}: {text}", Severity.ERROR if grave else Severity.WARNING)
             if code in (33, 63, 331, 332):
                 control.kind = LINEAR
-        elif code not in G_SILENT and code not in G_MACHINE and code != 4:
+        elif code not in G_SILENT and code not in G_SIDES and code not in G_MACHINE and code != 4:
             self._note(f"unknown word G{code}", Severity.ERROR)
 
     def _word(self, word: str, block: Block) -> None:

@@ -25,10 +25,12 @@ G_FEEDS: Final = {
 G_OFFSETS: Final = frozenset({54, 55, 56, 57, 500, *range(505, 600)})
 G_MACHINE: Final = frozenset({53, 153})
 
+#: Radius compensation: left of the path, right of it, off.
+G_SIDES: Final = {40: 0, 41: 1, 42: -1}
+
 #: G words that change how the control drives, not where to.
 G_SILENT: Final = {
     9: "exact stop, one block",
-    40: "no radius compensation",
     60: "exact stop",
     601: "exact stop fine",
     602: "exact stop coarse",
