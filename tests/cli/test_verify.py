@@ -147,7 +147,8 @@ def machine_without_tcp(folder: Path) -> Path:
 
 
 CHECKS = [
-    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "offset", "home", "holes", "span", "travel",
+    "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "compensation",
+    "stops", "offset", "home", "holes", "span", "travel",
     "speed", "acceleration", "turns", "modal", "words",
 ]  # fmt: skip
 

@@ -40,6 +40,9 @@ _WINDOWS = (8, 48, 384)
 #: Partings that are looked into; beyond them the two sides are taken to be different programs.
 _PARTINGS = 2000
 
+#: A point is where a hole left the tool when it is off by less than this, mm and as the length of a vector.
+_SAME = 1e-9
+
 #: Words that turn rotary axes.
 _TURNS = Written.FIRST | Written.SECOND
 
@@ -162,6 +165,7 @@ def in_order(run: Run, wanted: Wanted) -> Pairs | None:
 
 def _fresh(wanted: Wanted) -> Iterator[tuple[int, Flags]]:
     """CL rows that do not say the point before once more, within an operation; as ``Rows.where`` takes them."""
+    behind = np.array(sorted(wanted.left_at), np.int64)
     for part in wanted.parts:
         moves = part.operation.moves
         for start in range(0, len(moves), CHUNK):
@@ -170,7 +174,13 @@ def _fresh(wanted: Wanted) -> Iterator[tuple[int, Flags]]:
             same = (tip == moves.tip[before][: len(tip)]).all(axis=1)
             same &= (axis == moves.axis[before][: len(tip)]).all(axis=1)
             fresh = ~same | (moves.kind[now] == Kind.ARC)
-            yield part.first + start, fresh if start else np.concatenate(([True], fresh))
+            fresh = fresh if start else np.concatenate(([True], fresh))
+            first = part.first + start
+            near = slice(*np.searchsorted(behind, [max(first, part.first + 1), first + len(fresh)]))
+            for row in behind[near].tolist():
+                (tip, axis), point = wanted.left_at[row], wanted.point(row)
+                fresh[row - first] = max(np.abs(point.tip - tip).max(), np.abs(point.axis - axis).max()) > _SAME
+            yield part.first + start, fresh
 
 
 def matched(run: Run, wanted: Wanted, *, bend: float | None = None) -> Pairs:
@@ -190,6 +200,9 @@ class _Matcher:
         self._tilt = Tilt.of(run.machine)
         made = made_in(run, wanted.holes)
         self._leads = leads(run, [hole.first - k for hole in made for k in (1, 2, 3)], made)
+        all_made = len(made) == len(wanted.holes)
+        self._made = np.array([hole.first for hole in made] if all_made else [], np.int64)
+        self._holes = np.array([hole.row for hole in wanted.holes] if all_made else [], np.int64)
         limits = [part.allowed for part in wanted.parts]
         self._near = np.array([(each.tip * 1.001 + 1e-9, np.radians(2.0 * each.angle) + 2e-7) for each in limits])
         self._n, self._m = len(self._rows), len(wanted)
@@ -266,10 +279,13 @@ class _Matcher:
 
     def _fits(self, i: int, j: int, count: int) -> Flags:
         """Which of ``count`` motions from the i-th on are where the points from row j on want them, (count,) bool."""
-        is_, points = self._run.poses(self._rows.part(i, i + count)), np.arange(j, j + count)
+        rows, points = self._rows.part(i, i + count), np.arange(j, j + count)
+        is_ = self._run.poses(rows)
         tip, axis = self._limits_of(points)
         fits = (np.abs(is_.tip - self._wanted.tip(points)) <= tip[:, None]).all(axis=1)
         fits &= (np.abs(is_.axis - self._wanted.axis(points)) <= axis[:, None]).all(axis=1)
+        if len(self._holes):  # no point is met before the holes that stand before it
+            fits &= np.searchsorted(self._made, rows) == np.searchsorted(self._holes, points, "right")
         return np.asarray(fits)
 
     def _repeats(self, j: int) -> bool:
@@ -283,9 +299,9 @@ class _Matcher:
             if arc.sweep * arc.radius > 2.0 * tip:
                 return False
         before = self._wanted.point(j - 1)
+        was_tip, was_axis = self._wanted.left_at.get(j, (before.tip, before.axis))
         return bool(
-            (np.abs(point.tip - before.tip) <= 2.0 * tip).all()
-            and (np.abs(point.axis - before.axis) <= 2.0 * axis).all()
+            (np.abs(point.tip - was_tip) <= 2.0 * tip).all() and (np.abs(point.axis - was_axis) <= 2.0 * axis).all()
         )
 
     def _skip_repeats(self, i: int, j: int) -> int:

@@ -46,6 +46,7 @@ class Hole:
     feed      mm/min, or mm/rev where per_rev
     dwell     seconds, or spindle turns where dwell_turns
     tools     what the tool may be called; empty: nobody says
+    lengths   numbers that its length may have where programs call it by one; empty: nobody says
     digit     how far the feed may be off for being rounded, in its unit
     rpm, sense  the spindle: rev/min and 1 clockwise, -1 the other way, 0 standing; None: nobody says
     """
@@ -68,6 +69,7 @@ class Hole:
     sense: int
     allowed: float
     tools: tuple[str, ...] = ()
+    lengths: tuple[int, ...] = ()
     digit: float = 0.005
 
 

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
-from trunnion.reader import Run
+from trunnion.reader import Run, numbers_lengths
 from trunnion.toolpath import Kind
 from trunnion.verify.case import NAMED, Case, judged
 from trunnion.verify.cycles import Hole, Made, made_in
+from trunnion.verify.in_force import lacks_length, lengths_of
 from trunnion.verify.model import Check, Place
 from trunnion.verify.wanted import is_called
 
@@ -161,6 +162,9 @@ def holes(case: Case) -> Check:
         if names and not is_called(has, names):
             text = f"tool {has or 'none'} is in the spindle; the CL file wants {names[0]}"
             found.append((there.first, 0.0, text))
+        lengths = lengths_of(case.settings.tool, hole.lengths) if numbers_lengths(run.machine) else ()
+        if lengths and (number := int(run.state.edge[there.first])) not in lengths:
+            found.append((there.first, 0.0, lacks_length(number, lengths)))
         k = pairs.cl.before(hole.row)
         if (k and pairs.nc[k - 1] >= there.first) or (k < len(pairs.nc) and pairs.nc[k] < there.end):
             found.append((there.first, 0.0, "the hole is made before or after its turn"))

@@ -1,13 +1,13 @@
 """What is in force in a program against what the CL file asks for: spindle, tool, coolant, offset, home."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.machine import Machine
-from trunnion.reader import Run
+from trunnion.reader import Happening, Run, numbers_lengths
 from trunnion.toolpath import Kind
 from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.case import NAMED, Case, judged
@@ -123,6 +123,8 @@ def tool(case: Case) -> Check:
                 places.append(case.at(calls[-1], 0.0, f"{text}: this is the last word on it"))
     if settings.edge is not None:
         places += _edges(case, pairs, settings.edge)
+    if numbers_lengths(run.machine):
+        places += _lengths(case)
     for event in run.events if known else ():
         if event.kind == "tool_change":
             text = str(event.value or "")
@@ -153,6 +155,41 @@ def _edges(case: Case, pairs: Pairs, asked: int) -> list[Place]:
     return places
 
 
+def lengths_of(tool: str, numbers: tuple[int, ...]) -> tuple[int, ...]:
+    """Numbers that the length of a tool may have; ``tool`` is the one that a setting names, or empty."""
+    return (int(tool),) if tool.isdigit() else numbers
+
+
+def lacks_length(number: int, numbers: tuple[int, ...]) -> str:
+    """What is wrong with working with a length: its number, -1 for none."""
+    has = "without a tool length" if number < 0 else f"with the length of H{number}"
+    return f"works {has}; the CL file wants H{numbers[0]}"
+
+
+def _lengths(case: Case) -> list[Place]:
+    """The first motion of each tool without the length of that tool: its own number, or the register of LOAD/TOOL."""
+    wanted, pairs, run = case.wanted, case.pairs, case.run
+    assert wanted is not None
+    assert pairs is not None
+    places: list[Place] = []
+    for stretch in wanted.tools():
+        call = stretch.value
+        assert isinstance(call, Call)
+        numbers = lengths_of(case.settings.tool, call.lengths)
+        first, end = _part(case, stretch)
+        if not numbers or first == end:
+            continue
+        bad = _first_wrong(pairs, first, end, partial(_has_none_of, run, numbers))
+        if bad is not None:
+            row, cl = bad
+            places.append(case.place(row, 0.0, lacks_length(int(run.state.edge[row]), numbers), cl))
+    return places
+
+
+def _has_none_of(run: Run, numbers: tuple[int, ...], nc: Ints) -> Flags:
+    return ~np.isin(run.state.edge.at(nc), numbers)
+
+
 def coolant(case: Case) -> Check:
     """Coolant at every point, as far as its words are the control's own."""
     wanted, pairs, run = case.wanted, case.pairs, case.run
@@ -161,21 +198,33 @@ def coolant(case: Case) -> Check:
     places: list[Place] = []
     changes = [(event.before_row, str(event.value), event) for event in run.events if event.kind == "coolant"]
     rows = np.array([row for row, _, _ in changes], np.int64)
+    own = np.array([event.before_row for event in run.events if event.kind == "m"], np.int64)
     asked: set[str] = set()
     unread: set[str] = set()
+    before = ""
     for stretch in wanted.coolant():
         first, end = _part(case, stretch)
         if first == end:
             continue
         word = str(stretch.value)
         want = _COOLANT.get(word)
-        if want is None:
-            unread.add(word)
-            continue
-        asked.add(want)
         begin, stop = pairs.nc[first], pairs.nc[end - 1]
+        since = pairs.nc[first - 1] if first else -1
+        said = bool(((own > since) & (own <= begin)).any())  # a word of the machine builder
+        if want is None or (want == "mist" and said):
+            unread.add(word)
+            if not said and not (word == before and not ((rows > since) & (rows <= begin)).any()):
+                text = f"the CL file wants coolant {word} from here on, and no word of the machine builder stands here"
+                places.append(case.place(begin, 0.0, text, pairs.cl[first]))
+            before = word
+            continue
+        before = word
+        asked.add(want)
         if want == "off":
             begin += 1  # M9 acts after the motion of its block
+            if begin > stop and not _switched_off(changes, begin):
+                text = "coolant is still on; the CL file wants it off"
+                places.append(case.place(stop, 0.0, text, pairs.cl[first]))
         k = int(np.searchsorted(rows, begin, "right"))
         now = changes[k - 1][1] if k else "off"
         inside = [state for row, state, _ in changes[k:] if row <= stop]
@@ -196,8 +245,53 @@ def coolant(case: Case) -> Check:
     return judged("coolant", "coolant as the CL file says", places, good)
 
 
+def _switched_off(changes: Sequence[tuple[int, str, Happening]], row: int) -> bool:
+    """Whether coolant is off right before a row, or was at any time between the row before it and it."""
+    now = "off"
+    for at, state, _ in changes:
+        if at > row:
+            break
+        if at == row and now == "off":
+            return True
+        now = state
+    return now == "off"
+
+
 def _differs(state: str, want: str, unread: set[str]) -> bool:
     return state != want and not (unread and state != "off" and want != "off")
+
+
+def compensation(case: Case) -> Check:
+    """To which side of its path the tool's radius is compensated, at every point; and off on the way home."""
+    wanted, pairs, run = case.wanted, case.pairs, case.run
+    assert wanted is not None
+    assert pairs is not None
+    side = run.state.compensation
+    title = "radius compensation as the CL file says"
+    stretches = wanted.compensation()
+    asked = {stretch.value for stretch in stretches} - {0}
+    if not asked and set(side.used().tolist()) <= {0}:
+        return Check("compensation", title, True, "the CL file asks for none")
+    names = {1: "left of the path", -1: "right of the path", 0: "off"}
+    places: list[Place] = []
+    for stretch in stretches:
+        want = stretch.value
+        assert isinstance(want, int)
+        bad = _first_wrong(pairs, *_part(case, stretch), partial(_on_another_side, run, want))
+        if bad is not None:
+            row, cl = bad
+            text = f"radius compensation is {names[int(side[row])]}; the CL file wants it {names[want]}"
+            places.append(case.place(row, 0.0, text, cl))
+    home = run.state.machine_frame.where(True)
+    still_on = home[side.at(home) != 0]
+    if len(still_on):
+        places.append(case.place(int(still_on[0]), 0.0, "moves home with radius compensation on"))
+    good = ", ".join(names[value] for value in sorted(value for value in asked if isinstance(value, int)))
+    return judged("compensation", title, sorted(places, key=lambda p: p.nc_line), good or "off")
+
+
+def _on_another_side(run: Run, side: int, nc: Ints) -> Flags:
+    return np.asarray(run.state.compensation.at(nc) != side)
 
 
 def offset(case: Case) -> Check:

@@ -173,7 +173,8 @@ def _without_a_plane(case: Case) -> list[Place]:
         turned = ~run.state.by_tip.at(nc)
         if not turned.any():  # with TCP, as most are
             continue
-        turned &= (np.abs(run.rotary[nc]) > _TURNED).any(axis=1)
+        # Whole turns stand everything where it stood.
+        turned &= (np.abs(run.rotary[nc] - 360.0 * np.rint(run.rotary[nc] / 360.0)) > _TURNED).any(axis=1)
         turned &= ~places_only(run, nc)  # on the way from plane to plane
         for k in np.flatnonzero(turned)[: NAMED - len(places)].tolist():
             text = "works under turned rotary axes with TCP off and in no plane: say where the workpiece zero is (zero)"

@@ -16,6 +16,7 @@ from trunnion.verify.align import Pairs, in_order, matched
 from trunnion.verify.arcs import Arc, turned
 from trunnion.verify.between import Spans
 from trunnion.verify.case import NAMED, Case, Settings
+from trunnion.verify.halts import stops
 from trunnion.verify.holes import holes
 from trunnion.verify.model import Check, Place, Share, Verification
 from trunnion.verify.points import Deviations, Off
@@ -122,7 +123,8 @@ def _deviations(case: Case) -> Deviations:
 def _asked_besides(case: Case, believed: Believed) -> tuple[Check, list[Check], list[Check]]:
     """All that neither asks where the tool is nor how it gets there: the order, demands, and ``_of_itself``."""
     besides = [demands.kind(case), demands.feed(case, believed), in_force.spindle(case), in_force.tool(case)]
-    besides += [in_force.coolant(case), in_force.offset(case), in_force.home(case), holes(case)]
+    besides += [in_force.coolant(case), in_force.compensation(case), stops(case)]
+    besides += [in_force.offset(case), in_force.home(case), holes(case)]
     return demands.order(case), besides, _of_itself(case)
 
 

@@ -32,6 +32,9 @@ from trunnion.toolpath import (
 )
 from trunnion.verify.cycles import Hole, Spin, holes_of, spindle_at, without_holes
 
+#: Radius compensation to either side of the path.
+_SIDES = {"LEFT": 1, "RIGHT": -1}
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Agreed:
@@ -94,15 +97,21 @@ class Spindle:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """The tool that is to be in the spindle; the number is None before the first LOAD/TOOL."""
+    """The tool that is to be in the spindle; the number is None before the first LOAD/TOOL, ``adjust`` its register."""
 
     number: int | None
-    name: str
+    adjust: int = 0
+    name: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:
         """What a program may call it."""
         return tuple(str(text) for text in (self.number, self.name) if text not in (None, ""))
+
+    @property
+    def lengths(self) -> tuple[int, ...]:
+        """Numbers that its length may have: its own, or the register that LOAD/TOOL names."""
+        return tuple(number for number in (self.number, self.adjust) if number)
 
 
 def is_called(text: str, names: tuple[str, ...]) -> bool:
@@ -148,15 +157,15 @@ class Wanted:
         found: list[Hole] = []
         first = 0
         spindle: Spin | None = None
-        number: int | None = None
+        call = Call(None)
         for (path, whole), limit in zip(moving, limits, strict=True):
             seen = seen_from(frame, whole)
             operation, rows = without_holes(seen)
-            loads = [event.number for event in seen.events if isinstance(event, LoadTool)]
-            number = loads[-1] if loads else number
-            tools = () if number is None else Call(number, seen.tool.name).names
+            loads = [(event.number, event.adjust) for event in seen.events if isinstance(event, LoadTool)]
+            call = Call(*loads[-1], seen.tool.name) if loads else replace(call, name=seen.tool.name)
+            tools = () if call.number is None else call.names
             holes = holes_of(seen, rows, first, path.file, limit.tip, spindle)
-            found += [replace(hole, tools=tools, digit=limit.feed) for hole in holes]
+            found += [replace(hole, tools=tools, lengths=call.lengths, digit=limit.feed) for hole in holes]
             spindle = spindle_at(seen, len(seen.moves), spindle)
             parts.append(Part(path.file, operation, first, limit))
             first += len(operation.moves)
@@ -229,6 +238,11 @@ class Wanted:
         return self.parts[int(np.searchsorted(self.firsts, row, "right")) - 1]
 
     @cached_property
+    def left_at(self) -> dict[int, tuple[Floats, Floats]]:
+        """Row -> tip and tool axis where the last hole before it leaves the tool, for rows right behind holes."""
+        return {hole.row: (hole.tip + hole.retract * hole.axis, hole.axis) for hole in self.holes}
+
+    @cached_property
     def inserts(self) -> dict[int, int]:
         """Row -> how many texts of the CL file's own (INSERT) stand before it."""
         count: dict[int, int] = {}
@@ -272,17 +286,30 @@ class Wanted:
             stretches += _stretches(part, changes)
         return stretches
 
-    def tools(self) -> list[Stretch]:
-        """Stretches of ``Call``."""
-        number: int | None = None
+    def compensation(self) -> list[Stretch]:
+        """Stretches of sides: 1 left, -1 right, 0 none. Each operation starts without; ON is the last side again."""
         stretches: list[Stretch] = []
         for part in self.parts:
-            name = part.operation.tool.name
-            changes: list[tuple[int, object]] = [(0, Call(number, name))]
+            changes: list[tuple[int, object]] = [(0, 0)]
+            last = 0
+            for event in part.operation.events:
+                if isinstance(event, CutterComp):
+                    last = _SIDES.get(event.side, last)
+                    changes.append((event.row, 0 if event.side == "OFF" else last))
+            stretches += _stretches(part, changes)
+        return stretches
+
+    def tools(self) -> list[Stretch]:
+        """Stretches of ``Call``."""
+        call = Call(None)
+        stretches: list[Stretch] = []
+        for part in self.parts:
+            call = replace(call, name=part.operation.tool.name)
+            changes: list[tuple[int, object]] = [(0, call)]
             for event in part.operation.events:
                 if isinstance(event, LoadTool):
-                    number = event.number
-                    changes.append((event.row, Call(number, name)))
+                    call = Call(event.number, event.adjust, call.name)
+                    changes.append((event.row, call))
             stretches += _stretches(part, changes)
         return stretches
 
