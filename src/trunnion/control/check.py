@@ -55,12 +55,13 @@ def check_program(program: Program) -> list[Problem]:
             what = f"operation {operation.name} has no spindle speed"
             problems.append(Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING))
         loaded = any(isinstance(e, LoadTool) for e in operation.events) or setting_of(program, "tool")
-        if not loaded and operation.tool.name and operation.tool.name != in_spindle:
+        stays = not loaded and operation.tool.name == in_spindle
+        if not loaded and operation.tool.name and not stays:
             what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
             problems.append(
                 Problem(program.file, operation.line, what, "--set tool=NUMBER calls it by number", Severity.WARNING)
             )
-        if operation.tool.name and (not loaded or setting_of(program, "tool_call") == "name"):
+        if operation.tool.name and (not (loaded or stays) or setting_of(program, "tool_call") == "name"):
             problems += _unsaid(program, operation.line, _call_by_name, program.control, operation.tool.name)
         in_spindle = operation.tool.name
         for event in operation.events:
