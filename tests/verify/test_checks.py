@@ -143,6 +143,9 @@ def test_a_proper_end_is_missed_and_tcp_left_on_at_it_is_seen(verified: Verifier
     assert "no end" in check(verified(body + "TRAFOOF\n"), "modal").summary
     assert "ends the program with TCP on" in check(verified(body + "M30\n"), "modal").summary
     assert check(verified(body + "TRAFOOF\nM30\n"), "modal").passed
+    assert check(verified(body + "trafoof\nM30\n"), "modal").passed
+    for silent in (";TRAFOOF", 'MSG("TRAFOOF")', "M0 ;TRAFOOF", "_TRAFOOF=1"):
+        assert "ends the program with TCP on" in check(verified(f"{body}{silent}\nM30\n"), "modal").summary
     assert check(verified(body + "TRAFOOF\nM5\nT2\nM6\nM30\n"), "modal").passed
 
 

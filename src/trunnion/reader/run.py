@@ -82,6 +82,7 @@ class Happening:
     kind    one of the names in ``docs/reader.md``: tool, tool_change, spindle, coolant, dwell, stop, message, ...
     value   a number, a text or the values of the cycle, as the kind has it
     file    as in ``Run.file``
+    tcp     the control held the tip then (TCP); the rows beside it need not tell
     """
 
     line: int
@@ -89,6 +90,7 @@ class Happening:
     kind: str
     value: Value = None
     file: int = 0
+    tcp: bool = False
 
 
 #: ``State.orientation`` before the first word of an ``Orientation``: as the words of each block have it.

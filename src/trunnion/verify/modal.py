@@ -1,12 +1,11 @@
 """What no program should do, whatever it is for: faults of modal state, and words that nobody knows."""
 
-from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from trunnion.errors import InputError, Severity
-from trunnion.reader import Finding, Happening, Run, Written
+from trunnion.reader import Finding, Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.align import CHUNK, PLACES
 from trunnion.verify.case import NAMED, Case, judged
@@ -91,26 +90,10 @@ def _tcp_left_on(case: Case) -> list[Place]:
     if len(wrong):
         places.append(case.place(int(wrong[0]), 0.0, "moves in the machine's frame with TCP on"))
     for event in run.events:
-        if event.kind not in ("tool_change", "end"):
-            continue
-        row = event.before_row - 1
-        if 0 <= row < len(run) and run.state.tcp[row] and not _switched_off(run, row, event):
+        if event.tcp and event.kind in ("tool_change", "end"):
             what = "changes the tool" if event.kind == "tool_change" else "ends the program"
             places.append(case.at(event, 0.0, f"{what} with TCP on"))
     return places
-
-
-def _switched_off(run: Run, row: int, event: Happening) -> bool:
-    """Whether TCP is switched off between a motion and what happens after it; rows do not tell, the text does."""
-    if run.state.file[row] != event.file:
-        return row + 1 < len(run) and not run.state.tcp[row + 1]
-    first, last = run.blocks[row], event.line
-    try:
-        with Path(run.files[event.file]).open(encoding="utf-8", errors="replace") as text:
-            between = list(islice(text, first - 1, max(last, first)))
-    except OSError:
-        return row + 1 < len(run) and not run.state.tcp[row + 1]
-    return any("TRAFOOF" in line.partition(";")[0].upper() for line in between)
 
 
 def _turned_under_tcp(case: Case) -> list[Place]:
