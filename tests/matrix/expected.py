@@ -24,6 +24,7 @@ FAMILIES: Final[dict[str, tuple[Family, tuple[str, ...]]]] = {
 _NO_VECTORS: Final = "orientation is no setting"
 _NO_CYCLE: Final = "has no cycle on this control whose words are known"
 _LEAVES: Final = "leaves the hole as it asks for"
+_PECKS: Final = "whether G84 pecks, and how, is a parameter of the control"
 
 #: What people call families of controls, by the first of their names in definitions.
 NAMES: Final = {
@@ -37,6 +38,8 @@ NAMES: Final = {
 
 _FANUC: Final = {
     "DRILL,DEEP, strokes shorter": "strokes that become shorter",
+    "TAP,BRKCHP": _PECKS,
+    "TAP,DEEP": _PECKS,
     "BORE,NODRAG": "the angle at which the spindle stops is a parameter of the control",
 }
 
@@ -55,6 +58,8 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
         "simultaneous milling without TCP": "has no words for without TCP",
         "DRILL,DEEP, strokes shorter": "strokes that become shorter",
         "DRILL,BRKCHP": _NO_CYCLE,
+        "TAP,BRKCHP": _NO_CYCLE,
+        "TAP,DEEP": _NO_CYCLE,
         "BORE,NODRAG": _NO_CYCLE,
         "BORE,MANUAL": _NO_CYCLE,
     },
@@ -66,6 +71,8 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
         "the same, the tool axis as a vector": _NO_VECTORS,
         "drilling in five planes": "hole-making cycles while the tool axis changes, or with TCP",
         "DRILL,DEEP, strokes shorter": "strokes that become shorter",
+        "TAP,BRKCHP": _LEAVES,
+        "TAP,DEEP": _LEAVES,
         "BORE,NODRAG": _LEAVES,
         "BORE,MANUAL": _LEAVES,
     },

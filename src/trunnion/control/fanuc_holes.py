@@ -38,6 +38,9 @@ def cycle_call(
     assert cycle.retract is not None
     number = formats["coordinate"].text
     dwell = _dwell(cycle, turning, formats)
+    if cycle.making not in _CYCLES:
+        what = f"CYCLE/{cycle.making}: whether G84 pecks, and how, is a parameter of the control"
+        raise CycleError(what, "leave DEEP or BRKCHP out, or output the holes as motion")
     plain, waiting = _CYCLES[cycle.making]
     code = waiting if dwell else plain
     if code is None:

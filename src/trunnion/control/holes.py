@@ -10,7 +10,7 @@ from trunnion.nc import NumberFormat
 from trunnion.plan.holes import Cycle, CycleError, Making, Turning
 from trunnion.toolpath import Sense
 
-#: Tool axis of CYCLE83: the third axis of the plane G17.
+#: Tool axis of CYCLE83 and CYCLE84: the third axis of the plane G17.
 _THIRD_AXIS = "3"
 
 #: mm; NaN is no less.
@@ -62,10 +62,7 @@ def cycle_call(
     heights = Heights.of(cycle, top)
     number = formats["coordinate"].text
     first = [number(value) for value in (heights.retract, heights.top, heights.above, heights.depth)]
-    say = _REST.get(cycle.making)
-    if say is None:
-        raise CycleError(f"CYCLE/{cycle.making}, which is not written for this control", "leave DEEP or BRKCHP out")
-    name, arguments = say(cycle, turning, _dwell(cycle, turning, formats), lift, number)
+    name, arguments = _REST[cycle.making](cycle, turning, _dwell(cycle, turning, formats), lift, number)
     return f"{name}({','.join([*first, *arguments])})"
 
 
@@ -123,6 +120,18 @@ def _tap(cycle: Cycle, turning: Turning | None, dwell: str, lift: float | None, 
     return "CYCLE84", ["", dwell, sense, "", number(pitch), "0", f"{rpm:g}", f"{rpm:g}"]
 
 
+def _tap_in_strokes(cycle: Cycle, turning: Turning | None, dwell: str, lift: float | None, number: Number) -> Rest:
+    """As in one stroke; the tool axis, PIT in mm, technology as it is, VARI, DAM the stroke, VRT."""
+    stroke, less, _ = cycle.steps
+    if less:
+        what = "a thread in strokes that become shorter: the control has equal ones"
+        raise CycleError(what, "write STEP with one number")
+    full = cycle.making is Making.TAP_DEEP
+    name, arguments = _tap(cycle, turning, dwell, lift, number)
+    back = "0" if full else number(_CHIP_BREAK)
+    return name, [*arguments, _THIRD_AXIS, "1", "0", "2" if full else "1", number(min(stroke, cycle.depth)), back]
+
+
 def _tap_chuck(cycle: Cycle, turning: Turning | None, dwell: str, lift: float | None, number: Number) -> Rest:
     """The spindle turns back by itself; sense after the cycle, with encoder, no size, pitch."""
     pitch, _, sense = _pitch(cycle, turning)
@@ -157,6 +166,8 @@ _REST: dict[Making, Callable[[Cycle, Turning | None, str, float | None, Number],
     Making.CHIPS: _peck,
     Making.TAP: _tap,
     Making.TAP_CHUCK: _tap_chuck,
+    Making.TAP_CHIPS: _tap_in_strokes,
+    Making.TAP_DEEP: _tap_in_strokes,
     Making.REAM: _ream,
     Making.DRAG: _oriented,
     Making.LIFT: _oriented,

@@ -58,6 +58,9 @@ _MAKINGS = {
 #: Those that say the length of a stroke.
 _IN_STROKES = (Making.DEEP, Making.CHIPS, Making.TAP_DEEP, Making.TAP_CHIPS)
 
+#: Threads.
+_TAPS = (Making.TAP, Making.TAP_CHUCK, Making.TAP_DEEP, Making.TAP_CHIPS)
+
 #: No length, feed or angle of a cycle is so large.
 _FARTHEST = 1e6
 
@@ -112,6 +115,8 @@ def cycle_of(event: CycleOn) -> Cycle:
         raise CycleError(what, "output the holes as motion")
     if making is Making.TAP and "OPTION" in words:
         making = Making.TAP_CHUCK
+    if making in (Making.TAP_DEEP, Making.TAP_CHIPS) and "OPTION" in words:
+        raise CycleError(f"CYCLE/{making} with OPTION, a compensating chuck", "leave OPTION out, or tap in one stroke")
     above = _one(values, "RAPTO", _one(values, "CLEAR", math.nan))
     if not above >= 0.0:
         raise CycleError("CYCLE without RAPTO, or with one below the hole", "write RAPTO,distance above the point")
@@ -268,6 +273,6 @@ def feed_of(cycle: Cycle, turning: Turning | None, modal: float, modal_per_rev: 
     """The feed that is in force in the cycle, and whether it is per turn: the cycle's own, or the modal one."""
     if cycle.feed is None:
         return modal, modal_per_rev
-    if cycle.making in (Making.TAP, Making.TAP_CHUCK) and cycle.per_rev and turning is not None:
+    if cycle.making in _TAPS and cycle.per_rev and turning is not None:
         return cycle.feed * turning.rpm, False
     return cycle.feed, cycle.per_rev
