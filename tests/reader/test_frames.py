@@ -146,3 +146,42 @@ def test_cycle800_accepts_fifteen_values_and_names_what_it_cannot_do(run: Runner
     assert run('CYCLE800(0,"",0,57,0,0,0,0,30,0,0,0,0,1,)\nX1').findings == ()
     assert "_MODE 64" in run('CYCLE800(0,"",0,64,0,0,0,0,30,0,0,0,0,1,)').errors[0].text
     assert "retracts" in run('CYCLE800(1,"",0,57,0,0,0,0,30,0,0,0,0,1,)').findings[0].text
+
+
+@pytest.mark.parametrize(
+    ("words", "along"),
+    [
+        ("TOROT\nG1 Z10", 10.0),
+        ("TOROTZ\nG1 Z-5", -5.0),
+        ("TRANS X3 Y-4 Z5\nTOROT\nG1 Z10", 10.0 + vector(3, -4, 5) @ (Z(40) @ Y(30))[:, 2]),
+        ("TRANS X3 Y-4 Z5\nTOFRAME\nG1 Z10", 10.0),
+        ("TOROT\nTOROTOF\nTOROT\nG1 Z10", 10.0),
+    ],
+)
+def test_z_of_a_frame_is_turned_to_the_tool(words: str, along: float, run: Runner) -> None:
+    result = run(f"G54\nG0 B30 C40\nTRAORI\nG0 X7 Y2 Z20 F100\n{words}\nTRAFOOF\nM30\n")
+    assert not result.findings
+    axis = (Z(40) @ Y(30))[:, 2]
+    start, end = result.tip[-2:]
+    close(result.axis[-1], axis, atol=1e-12)
+    close(np.cross(end - start, axis), np.zeros(3), atol=1e-9)
+    close(end @ axis, along, atol=1e-9)
+
+
+def test_what_the_tool_has_turned_is_turned_back(run: Runner) -> None:
+    result = run("TRAORI\nG54\nG0 X7 Y2 Z20 B30 C40\nTRANS X1\nTOROT\nG0 Z50\nTOROTOF\nG0 X1 Y2 Z3\n")
+    close(result.tip[-1], [2, 2, 3], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("TRAORI\nG0 B30\nTOROT\nX5", "X and Y before TOROTOF"),
+        ("TRAORI\nG0 B30\nTOROT\nTRANS\nG0 X5", "X and Y before TOROTOF"),
+        ("TRAORI\nG0 B30\nTOROT\nCYCLE86(10,0,3,-6,,,3,1,0,0,0)", "lifts off along X and Y"),
+        ("G0 B30\nTOROT", "without TRAORI"),
+        ("TRAORI\nAROT X10\nTOROT", "on top of a turned frame"),
+    ],
+)
+def test_what_settings_of_the_control_decide_is_not_guessed(text: str, says: str, run: Runner) -> None:
+    assert any(says in finding.text for finding in run(text + "\n").errors)

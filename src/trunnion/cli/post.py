@@ -26,7 +26,7 @@ from trunnion.files import Growing, Output, output
 from trunnion.machine import Machine, forward, load_machine
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
 from trunnion.plan.arcs import off_circle
-from trunnion.toolpath import Toolpath
+from trunnion.toolpath import CycleOn, Toolpath
 
 if TYPE_CHECKING:
     from trunnion.reader import Run
@@ -296,6 +296,9 @@ def _allowed(program: Program) -> "list[Allowed]":
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
         if "arc_angle" in half:
             tip += _by_angles(motion, half["X"], half["arc_angle"])
+        if motion.manner is Manner.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
+            # Heights of holes are printed along their axes from the zero, which rounded rotary positions turn.
+            tip += math.radians(angle) * float(np.abs(motion.operation.moves.tip).max())
         if motion.manner is Manner.WITHOUT_TCP:
             tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
         if not motion.begins:

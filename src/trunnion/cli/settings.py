@@ -155,6 +155,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         turns=control.turns,
         arcs_with_tcp=not (control.only_vectors and control.by_vectors(settings)),
         pose_planes=control.plane_from_pose,
+        turns_between_holes=control.turns_between_holes(settings),
         tcp=tcp,
         **known,
     )

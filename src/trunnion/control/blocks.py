@@ -177,7 +177,7 @@ class Blocks:
                 self._turn_over()
                 text, fitting = -1, self._fitting()
             stop = min(start + max(1, fitting), last)
-            text = self._chunk(motion, start, stop, [e for e in joining if start <= e.row < stop], text)
+            text = self.chunk(motion, start, stop, [e for e in joining if start <= e.row < stop], text)
             self.progress(stop - start)
             start = stop
         return text
@@ -205,7 +205,10 @@ class Blocks:
         self._feed_mode = ABSENT
         self._by_vector = ABSENT
 
-    def _chunk(self, motion: Motion, start: int, stop: int, joining: Sequence[WordEvent], text: int) -> int:
+    def chunk(
+        self, motion: Motion, start: int, stop: int, joining: Sequence[WordEvent], text: int, *, anew: bool = False
+    ) -> int:
+        """As ``rows``, all in one file; ``anew``: a point at which the tool already stands gets its block."""
         moves, arcs, control = motion.operation.moves, motion.operation.arcs, self.control
         part = slice(start, stop)
         self.height = float(moves.tip[stop - 1, 2])
@@ -214,7 +217,7 @@ class Blocks:
         columns = {
             word: counts(np.ascontiguousarray(moves.tip[part, c]), decimals["X"]) for c, word in enumerate("XYZ")
         }
-        forced: dict[str, bool | Ints] = {}
+        forced: dict[str, bool | Ints] = {"X": np.ones(stop - start, np.int64)} if anew else {}
         by_vector = self._vectors
         in_force: dict[str, int] = {}
         if motion.plane is None:  # in a plane the rotary axes stand where they were put

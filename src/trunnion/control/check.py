@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from trunnion.control.definition import Control
-from trunnion.control.family import UnsayableError
+from trunnion.control.family import HOLES, IN_PLANES, UnsayableError
+from trunnion.control.hole_positions import check_positions
 from trunnion.control.program import Program, kind_of, setting_of, settings_of, words_of
 from trunnion.control.slides import TIP, feed_format, feed_rule, feeds, slides_of
 from trunnion.control.vectors import first_elsewhere
@@ -179,14 +180,18 @@ def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
 
 def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Problem]:
     """What the cycles of a motion ask for and this control cannot be told; ``held``: the spindle before it."""
-    operation, problems = motion.as_written(), []
-    moves = operation.moves
+    if not any(isinstance(event, CycleOn) for event in motion.operation.events):
+        return []
+    operation, problems = motion.as_written(), list[Problem]()
+    moves, settings = operation.moves, settings_of(program)
+    turns = motion.manner is Manner.TCP and program.control.turns_between_holes(settings)
+    settings |= {} if turns else {HOLES: IN_PLANES}
     for event in operation.events:
         if not isinstance(event, CycleOn):
             continue
         try:
             cycle = cycle_of(event)
-            if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP):
+            if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP) and not turns:
                 planes = Manner.TILTED in program.control.manners(settings_of(program))
                 cure = (
                     "leave the setting manner out, or end the cut before the tool axis changes"
@@ -196,14 +201,16 @@ def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Prob
                 raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
             spindle = turning(operation.events, event.row, held)
             formats = program.control.number_formats(motion.three_axis)
-            program.control.family.hole_call(cycle, 0.0, spindle, settings_of(program), formats)
+            program.control.family.hole_call(cycle, 0.0, spindle, settings, formats)
             feed, _ = feed_of(cycle, spindle, float(moves.feed[event.row]), False)
             if not feed > 0.0:
                 raise CycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
             low = event.row > 0 and moves.tip[event.row - 1, 2] < moves.tip[event.row, 2] + cycle.above - 1e-6
-            if low and moves.kind[event.row - 1] != Kind.RAPID:
+            if low and not turns and moves.kind[event.row - 1] != Kind.RAPID:
                 cure = "draw the tool back before the cycle"
                 raise CycleError("CYCLE while the tool is below the height of RAPTO", cure)
         except CycleError as error:
             problems.append(Problem(program.file, event.line, error.what, error.cure))
+    if turns and not problems:
+        problems = [Problem(program.file, e.line, e.what, e.cure) for e in check_positions(operation)]
     return problems

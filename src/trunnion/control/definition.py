@@ -12,7 +12,7 @@ from importlib.resources.abc import Traversable
 from typing import TypedDict
 
 from trunnion.control.families import FAMILIES
-from trunnion.control.family import BY_RADIUS, Family
+from trunnion.control.family import BY_RADIUS, HOLES, IN_PLANES, Family
 from trunnion.control.subprograms import Naming
 from trunnion.control.template import Template
 from trunnion.definition import Table, extended
@@ -186,6 +186,10 @@ class Control:
     def manners(self, settings: Mapping[str, str]) -> frozenset[Manner]:
         """In which manners operations can be said."""
         return frozenset(manner for manner in Manner if self.kind(manner, settings))
+
+    def turns_between_holes(self, settings: Mapping[str, str]) -> bool:
+        """Whether the tool turns from hole to hole under TCP, and cycles drill along it."""
+        return (settings.get(HOLES) or self.settings.get(HOLES, IN_PLANES)) != IN_PLANES
 
     def number_formats(self, three_axis: bool) -> dict[str, NumberFormat]:
         """The number formats by name, for one kind of operation."""

@@ -34,6 +34,10 @@ BY_RADIUS = ("arc_by_radius", "arc_radius")
 #: So many of its last digits may the centre be off that a control finds by a radius; beyond that it is told the centre.
 CENTRE_DIGITS = 2.0
 
+#: The setting that says how holes are made between which the tool axis changes, on controls that have several ways, and
+#: the way that all have which know tilted planes: each axis has its plane. Any other turns the tool from hole to hole.
+HOLES, IN_PLANES = "holes", "planes"
+
 
 class UnsayableError(Exception):
     """A family has no way to say something; ``what`` it is, and the ``cure``."""
@@ -151,7 +155,8 @@ class Family(Protocol):
         turning
             The spindle; None while it stands.
         settings
-            Those of the run over those of the definition.
+            Those of the run over those of the definition. ``HOLES`` is ``IN_PLANES`` unless each hole has its own tool
+            axis: then ``top`` is along it, and ``EACH_HOLE`` is a line alone, before those of a hole's cycle.
         formats
             Of the definition.
 

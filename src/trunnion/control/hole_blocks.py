@@ -8,10 +8,11 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.control.blocks import Blocks
 from trunnion.control.definition import CALL
-from trunnion.control.family import EACH_HOLE, FIRST_HOLE, WordEvent
+from trunnion.control.family import EACH_HOLE, FIRST_HOLE, HOLES, IN_PLANES, WordEvent
+from trunnion.control.hole_positions import write_positions
 from trunnion.control.program import settings_of
 from trunnion.nc import counts
-from trunnion.plan import Motion
+from trunnion.plan import Manner, Motion
 from trunnion.plan.holes import Cycle, Turning, cycle_of, feed_of
 from trunnion.toolpath import CycleOn
 
@@ -20,6 +21,8 @@ def write_holes(
     blocks: Blocks, motion: Motion, first: int, last: int, joining: Sequence[WordEvent], text: int, cycle: CycleOn
 ) -> int:
     """Rows ``first`` to ``last`` as holes, with the events that join them; arguments and result as ``Blocks.rows``."""
+    if motion.manner is Manner.TCP:
+        return write_positions(blocks, motion, first, last, joining, text, cycle)
     said = cycle_of(cycle)
     place = blocks.writer.word("X").format.decimals
     tops = counts(np.ascontiguousarray(motion.operation.moves.tip[first:last, 2]), place)
@@ -60,7 +63,7 @@ def _of_one_height(
     ids, texts = blocks.phase_texts()
     wanted = ids[moves.phase[first:last]]
     spoken = np.where(wanted != np.concatenate(([text], wanted[:-1])), wanted, -1)
-    formats, settings = control.number_formats(motion.three_axis), settings_of(blocks.program)
+    formats, settings = control.number_formats(motion.three_axis), settings_of(blocks.program) | {HOLES: IN_PLANES}
     called = CALL in blocks.family.WORDS
     said = replace(cycle, feed=feed, per_rev=per_rev) if called else cycle
     lines = blocks.family.hole_call(said, top, turning, settings, formats)

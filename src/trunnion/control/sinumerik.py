@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from trunnion.arrays import Floats
 from trunnion.control import iso
-from trunnion.control.family import Codes, Formats, UnsayableError
+from trunnion.control.family import EACH_HOLE, HOLES, IN_PLANES, Codes, Formats, UnsayableError
 from trunnion.control.holes import cycle_call, is_lift
 from trunnion.control.iso import arc_words as arc_words
 from trunnion.control.iso import event_words as event_words
@@ -16,7 +16,7 @@ from trunnion.control.iso import row_words as row_words
 from trunnion.control.template import Value
 from trunnion.control.turns import about_three
 from trunnion.plan import Motion
-from trunnion.plan.holes import Cycle, Turning
+from trunnion.plan.holes import Cycle, CycleError, Making, Turning
 from trunnion.toolpath import Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = (
@@ -28,6 +28,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "plane": PLANES,
     "swivel_mode": ("57", "27", "39", "45", "30", "54"),
     "orientation": ("angles", "vector"),
+    HOLES: (IN_PLANES, "torot", "positions"),
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, "interpolation"})
@@ -99,9 +100,12 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
 def hole_call(
     cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    """``MCALL`` with the call of the cycle."""
+    """``MCALL`` with the call of the cycle; or for each hole a frame that is turned to the tool, and the call."""
     lift = float(settings["bore_lift"]) if settings.get("bore_lift") else None
-    return [f"MCALL {cycle_call(cycle, top, turning, lift, formats)}"]
+    if settings[HOLES] != IN_PLANES and cycle.making is Making.LIFT:
+        raise CycleError("BORE,NODRAG while the tool axis changes: X of the frame is not known", "--set holes=planes")
+    call = cycle_call(cycle, top, turning, lift, formats)
+    return [EACH_HOLE, "TOROT", call, "TOROTOF", "TRANS"] if settings[HOLES] == "torot" else [f"MCALL {call}"]
 
 
 def hole_end() -> list[str]:

@@ -87,6 +87,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         operation = lines_for_arcs(operation, kept, chord_tolerance)
         stretch = _stretch(Asked(machine, path.file, operation, original, wishes, keep_slides))
         planes = Manner.TILTED in wishes.manners and wished.manner is None
+        planes &= manner is Manner.WITHOUT_TCP or not wishes.turns_between_holes
         if plane is not None and wishes.machine_x:
             plane = plane_of(operation.moves.axis[0], own, machine_x(machine, stretch.poses.rotary[0]))
         parts = by_axis(operation) if manner in (Manner.TCP, Manner.WITHOUT_TCP) and planes else None

@@ -37,6 +37,7 @@ class Wishes:
     arcs_with_tcp   the control takes circles while it holds the tip; False: they become lines
     pose_planes     the control takes a tilted plane from the rotary position: only circles about the tool axis stay
                     circles there
+    turns_between_holes  where the tool axis changes between holes, they are not made in planes
     tcp             the control holds the tip (TCP); False: the slides and rotary axes themselves are led
     tip_tolerance   without TCP: how far the tip may be off its line between CL points, mm
     axis_tolerance  how far the tool axis may be off its great circle between CL points, degrees; None: with TCP it is
@@ -61,6 +62,7 @@ class Wishes:
     turns: bool = True
     arcs_with_tcp: bool = True
     pose_planes: bool = False
+    turns_between_holes: bool = False
     tcp: bool = True
     tip_tolerance: float = 0.005
     axis_tolerance: float | None = None

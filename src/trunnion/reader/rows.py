@@ -88,7 +88,7 @@ class Rows:
 
     def event(self, kind: str, value: Value = None) -> None:
         """Note that something happens before the next row."""
-        self.events.append(Happening(self.line, self.row, kind, value, self._file.now, self.tcp_rows.now))
+        self.events.append(Happening(self.line, self.row, kind, value, self._file.now, bool(self.tcp_rows.now)))
 
     # Tools
 

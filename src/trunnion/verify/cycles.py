@@ -31,6 +31,12 @@ from trunnion.verify.rapids import PLACES, levels
 #: A motion is along the tool axis, or across it, when it is off by less than this, mm.
 _STRAIGHT = 1e-6
 
+#: With TCP the same comes to this, mm, and this share of the way.
+_PLACED, _LEANS = 2e-5, 1e-6
+
+#: Tool axes are the same when no component differs by more than this.
+_TURNED = 1e-6
+
 #: A spindle: rev/min, and 1 for clockwise, -1 for the other way, 0 for standing still.
 Spin = tuple[float, int]
 
@@ -199,6 +205,26 @@ def made_in(run: Run, holes: Sequence[Hole] = ()) -> list[Made]:
     return found
 
 
+def straight_over(run: Run, first: Hole, made: Made, second: Hole, there: Made) -> float | None:
+    """How high the tip stays on its way from a hole to the next one, whose axis is another, while the tool turns (TCP).
+
+    At each place of the way it is counted from where the cycle of that hole may begin over which the tip is higher; the
+    least of these heights, mm. None: the tool does not turn, or not on this way.
+    """
+    rows = np.arange(made.end, there.first + 1)
+    turned = float(np.abs(first.axis - second.axis).max()) > _TURNED
+    if not turned or not len(rows) or not run.state.tcp.at(rows).all():
+        return None
+    tips = run.poses(np.concatenate(([made.end - 1], rows))).tip
+    heights = np.stack([(tips - hole.tip) @ hole.axis - hole.above for hole in (first, second)])
+    lowest = float(heights.max(axis=0).min())
+    apart = heights[0] - heights[1]
+    for k in np.flatnonzero(apart[:-1] * apart[1:] < 0.0).tolist():  # as high over both
+        part = apart[k] / (apart[k] - apart[k + 1])
+        lowest = min(lowest, float(heights[0, k] + part * (heights[0, k + 1] - heights[0, k])))
+    return lowest
+
+
 def _leg(run: Run, row: int) -> tuple[float, float]:
     """How far a row goes across the tool axis and, if it does so by nothing else, along it, mm."""
     poses = run.poses(np.array([row - 1, row]))
@@ -218,7 +244,7 @@ def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
     """Which of the motions that answer to no CL point only lead to a hole.
 
     They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, over
-    the hole at that height, and straight down; or, from home or after a turn, to the hole itself.
+    the hole at that height, and straight down; or, from home or while the tool turns, over the hole itself.
     """
     approach, unasked = set(levels(run).tolist()), set(extra)
     lawful = set()
@@ -239,8 +265,10 @@ def _leads_how(run: Run, row: int, first: int, approach: set[int]) -> str:
     poses = run.poses(np.array([row - 1, row, first]))
     way, rest, axis = poses.tip[1] - poses.tip[0], poses.tip[2] - poses.tip[1], poses.axis[1]
     up, left = float(way @ axis), float(rest @ axis)
-    straight = float(np.linalg.norm(way - up * axis)) < _STRAIGHT
-    over = float(np.linalg.norm(rest - left * axis)) < _STRAIGHT and left < _STRAIGHT
+    # With TCP places and axes are rounded each by itself.
+    near, part = (_PLACED, _LEANS) if run.state.tcp[row] else (_STRAIGHT, 0.0)
+    straight = float(np.linalg.norm(way - up * axis)) < near + part * abs(up)
+    over = float(np.linalg.norm(rest - left * axis)) < near + part * abs(left) and left < near
     from_home = (
         row - 1 in approach
         or bool(run.state.machine_frame[row - 1])
@@ -252,4 +280,6 @@ def _leads_how(run: Run, row: int, first: int, approach: set[int]) -> str:
         return "from home"
     if straight and over:
         return "down"
+    if over and float(np.abs(poses.axis[0] - axis).max()) > _TURNED:
+        return "turned"
     return "across" if over and abs(up) < _STRAIGHT else ""

@@ -10,9 +10,10 @@ from trunnion.arrays import Floats, Ints
 from trunnion.reader import Run, numbers_lengths
 from trunnion.toolpath import Kind
 from trunnion.verify.case import NAMED, Case, judged
-from trunnion.verify.cycles import Hole, Made, made_in
+from trunnion.verify.cycles import Hole, Made, made_in, straight_over
 from trunnion.verify.in_force import lacks_length, lengths_of
 from trunnion.verify.model import Check, Place
+from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import is_called
 
 #: A spindle speed is printed without decimals.
@@ -28,8 +29,13 @@ _FED_OUT = ("TAP", "REAM")
 _CHIP = 5.0
 
 
-def faults(run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]]) -> Iterator[tuple[int, float, str]]:
-    """What is wrong with one hole: row, value and words; ``waits`` are the dwells of the run, by row."""
+def faults(
+    run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]], over: float | None = None
+) -> Iterator[tuple[int, float, str]]:
+    """What is wrong with one hole: row, value and words.
+
+    ``waits`` are the dwells of the run, by row; ``over`` is as ``straight_over`` has it, from the hole before.
+    """
     spindle = float(run.state.rpm[made.end - 1])
     rows = np.arange(max(made.first - 1, 0), made.end)
     poses = run.poses(rows)
@@ -48,7 +54,11 @@ def faults(run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]]) -
         k = int(np.argmax(off))
         yield int(at[k]), float(aside[1:][k]), f"{aside[1:][k]:.5f} mm beside the hole that the CL file asks for"
         return
-    if kind[0] != Kind.RAPID or h[0] < hole.above - near or (aside[0] > near and height[0] < hole.above - near):
+    if over is not None and over < -near:
+        text = f"goes to the hole {-over:.4f} mm too low over both it and the one before"
+        yield int(at[0]), over, text
+    aslant = over is None and aside[0] > near and height[0] < hole.above - near
+    if kind[0] != Kind.RAPID or h[0] < hole.above - near or aslant:
         low = min(float(h[0]), float(height[0]))
         yield int(at[0]), low, f"goes to the hole {low:.4f} mm above it; the CL file wants at least {hole.above:g}"
     if len(h) < 3 or (kind == Kind.RAPID).all():
@@ -67,6 +77,11 @@ def faults(run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]]) -
     turns = int(run.state.spindle[made.end - 1])
     if hole.rpm is not None and (turns != hole.sense or (turns and abs(spindle - hole.rpm) > _RPM)):
         yield int(at[1]), spindle, f"the spindle turns with {turns * spindle:g}, not with {hole.sense * hole.rpm:g}"
+
+
+def _any_between(rows: Rows, first: int, last: int) -> bool:
+    """Whether any of growing ``rows`` is from ``first`` to ``last``."""
+    return rows.before(last + 1) > rows.before(first)
 
 
 def _strokes(run: Run, hole: Hole, at: Ints, h: Floats, near: float) -> Iterator[tuple[int, float, str]]:
@@ -155,8 +170,12 @@ def holes(case: Case) -> Check:
             waits.setdefault(event.before_row, []).append(event.value)
     places: list[Place] = []
     count = 0
+    last: tuple[Hole, Made] | None = None
     for hole, there in zip(wanted.holes, made, strict=False):
-        found = list(faults(run, hole, there, waits))
+        asked = last is not None and _any_between(pairs.nc, last[1].end, there.first)
+        over = None if last is None or asked else straight_over(run, *last, hole, there)
+        found = list(faults(run, hole, there, waits, over))
+        last = hole, there
         names = (case.settings.tool,) if case.settings.tool else hole.tools
         has = run.tools[run.state.tool[there.first]]
         if names and not is_called(has, names):
@@ -177,7 +196,6 @@ def holes(case: Case) -> Check:
         places.append(case.place(there.first, 0.0, "drills where the CL file has no more holes"))
     for hole in wanted.holes[len(made) :]:
         count += 1
-        last = Place(case.last_line, -1, 0.0, "no cycle makes this hole", hole.file, hole.line)
-        places.append(last)
+        places.append(Place(case.last_line, -1, 0.0, "no cycle makes this hole", hole.file, hole.line))
     good = f"{len(made)} holes" if made else "the CL file has none"
     return judged("holes", title, places, good, count)

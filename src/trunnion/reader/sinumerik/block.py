@@ -21,6 +21,7 @@ from trunnion.reader.sinumerik.words import (
     SILENT,
     SILENT_CALLS,
     SILENT_VALUES,
+    TOOL_FRAMES,
     TYPES,
     WAYS,
 )
@@ -30,7 +31,7 @@ from trunnion.reader.word import How, Word
 FASTEST: Final = 1e9
 
 #: Names that stand alone and are handed to the interpreter.
-_MODES: Final = FRAMES | ORIENTATION | SILENT | frozenset({"SUPA", "CIP", "TRAFOOF", "TRAORI"})
+_MODES: Final = FRAMES | ORIENTATION | SILENT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "TRAFOOF", "TRAORI"})
 
 #: Names with a value that belong to circles and frames.
 _PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})

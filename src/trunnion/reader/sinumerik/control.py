@@ -5,21 +5,23 @@ slide that stands on the working plane, wherever the tool points; D0 takes it aw
 """
 
 from collections.abc import Mapping
-from functools import partial
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Axis, Machine, Output
+from trunnion.machine import Axis, Machine, Output, forward
 from trunnion.reader import arcs, tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.control import LINEAR, Circle, Control
+from trunnion.reader.drilling import Step
 from trunnion.reader.frames import Frame
 from trunnion.reader.rows import FARTHEST, Note
 from trunnion.reader.run import Written
 from trunnion.reader.scan import letters
+from trunnion.reader.settings import reading_of
 from trunnion.reader.word import How, Word
 from trunnion.toolpath import Kind
 
@@ -36,6 +38,9 @@ class SinumerikControl(Control):
 
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         self._machine_vectors = False
+        #: From TOROT or TOFRAME to what ends them: Z of the frame lies along the tool. Settings say where X and Y lie,
+        #: and whether it is a frame of its own, that no TRANS takes away.
+        self.tool_frame = False
         super().__init__(machine, note, file, shortest=shortest)
         self.table = letters((self.names[0], self.names[1]), comment=";", assign="=")
 
@@ -133,6 +138,54 @@ class SinumerikControl(Control):
         if centre is None:
             raise arcs.ArcError("the circle has no centre" if in_plane else "the circle has neither end nor centre")
         return arcs.by_centre(start, end, centre, self.plane, clockwise, turns)
+
+    # Frames along the tool
+
+    @cached_property
+    def _cycles_along_tool(self) -> bool:
+        """Whether cycles turn the frame as TOROT does while TCP is on: the machine's own do, Siemens' do not."""
+        table = reading_of(self.machine)
+        along = table.flag("cycles_along_tool", False)
+        table.finish()
+        table.check()
+        return along
+
+    def turn_frame(self, word: str) -> None:
+        """TOROT (the zero stays), TOFRAME (it is that of the work offset), and the words that end them."""
+        program = self.program_frame
+        if word.endswith("OF"):
+            if self.tool_frame:
+                self.set_program_frame(Frame(shift=program.shift), old=False)
+                self.event("frame", "")
+            self.tool_frame = False
+            return
+        if not self.tcp or self.tilted or (not self.tool_frame and not np.array_equal(program.linear, np.eye(3))):
+            self.note(f"{word} without TRAORI, or on top of a turned frame, is not simulated", Severity.ERROR)
+            return
+        self.set_program_frame(self._along_tool(program.shift if word.startswith("TOROT") else np.zeros(3)), old=False)
+        self.tool_frame = True
+        self.event("frame", word)
+
+    def _along_tool(self, zero: Floats) -> Frame:
+        """The frame at a zero whose Z lies along the tool, and X in the plane of X and Z of the work offset."""
+        self.settle()
+        z = forward(self.machine, self.held[None])[1][0]
+        x = np.array([z[2], 0.0, -z[0]])
+        length = float(np.linalg.norm(x))
+        x = np.array([1.0, 0.0, 0.0]) if length < 1e-9 else x / length
+        return Frame(np.column_stack((x, np.cross(z, x), z)), zero)
+
+    def drill(self, steps: list[Step]) -> None:
+        """A drilling cycle where the tool is; along the tool where the definition says that cycles do so."""
+        turns = self.tcp and not (self.tilted or self.tool_frame) and self._cycles_along_tool
+        program = self.program_frame
+        if turns:
+            self.set_program_frame(self._along_tool(program.shift), old=False)
+        if (turns or self.tool_frame) and any(any(step.aside) for step in steps):
+            self.note("the cycle lifts off along X and Y of a frame that the control's settings turn", Severity.ERROR)
+        super().drill(steps)
+        if turns:
+            self.set_program_frame(program, old=False)
 
     # CYCLE800
 

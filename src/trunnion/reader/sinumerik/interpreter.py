@@ -43,6 +43,7 @@ from trunnion.reader.sinumerik.words import (
     M_RETURN,
     M_SPINDLE,
     SILENT,
+    TOOL_FRAMES,
 )
 from trunnion.reader.text import Subprograms, Text
 
@@ -91,7 +92,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
 
     def _may_be_plain(self, text: Text) -> bool:
         call = self._stack[-1]
-        if not self._control.absolute or call.modal is not None:
+        if not self._control.absolute or call.modal is not None or self._control.tool_frame:
             return False
         begin = text.buffer[text.position : text.position + _LOOK].tobytes()
         return _PLAIN.match(begin) is not None
@@ -209,6 +210,10 @@ class SinumerikInterpreter(Interpreter[Activation]):
                 self._note("I, J and K have no meaning for a straight line", Severity.WARNING)
             if block.vector and not control.tips:
                 self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.WARNING)
+            if control.tool_frame and {"X", "Y"} & block.axes.keys():
+                self._note(
+                    "X and Y before TOROTOF point where the control's settings have them: not known", Severity.ERROR
+                )
             control.move(
                 block.axes,
                 block.tool_axis,
@@ -265,6 +270,8 @@ class SinumerikInterpreter(Interpreter[Activation]):
                 control.set_orientation(Orientation.GREAT_CIRCLE)
             case "ORIMKS" | "ORIWKS":
                 control.set_machine_vectors(word == "ORIMKS")
+            case _ if word in TOOL_FRAMES:
+                control.turn_frame(word)
             case "SPOS":
                 control.event("spindle", "oriented")
             case _:
