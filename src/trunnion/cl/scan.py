@@ -10,7 +10,7 @@ The kernels check nothing but syntax: what a statement means is the business of 
 import numpy as np
 
 from trunnion.arrays import Bytes, Floats, Ints, Lines
-from trunnion.kernels import njit
+from trunnion.kernels import ONE, njit, signed, unsigned
 
 #: A statement longer than this is no CL statement; it bounds the memory that one statement can take.
 LONGEST = 1 << 20
@@ -118,45 +118,47 @@ def scan(
 
 
 @njit(cache=True)
-def _point(data: Bytes, at: int, tip: Floats, axis: Floats, row: int) -> int:
+def _point(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) -> int:
     """Read a plain ``GOTO/x,y,z[,i,j,k]`` line into a row; return where the next line begins, or 0 if it is not plain.
 
     Blanks may stand around the numbers and a ``$$`` comment behind them. No bound is checked on the way:
     the newline at the end of the buffer stops every loop.
     """
-    if data[at] != 71 or data[at + 1] != 79 or data[at + 2] != 84 or data[at + 3] != 79:
-        return 0
-    at += 4
+    at = unsigned(begin)
+    for letter in _GOTO:
+        if data[at] != letter:
+            return 0
+        at += ONE
     while data[at] == _BLANK:
-        at += 1
+        at += ONE
     if data[at] != _SLASH:
         return 0
     read = 0
     while True:
-        at += 1
+        at += ONE
         while data[at] == _BLANK:
-            at += 1
+            at += ONE
         negative = data[at] == _MINUS
         if negative or data[at] == _PLUS:
-            at += 1
+            at += ONE
         mantissa = 0
         first = at
         digit = int(data[at]) - _ZERO
         while 0 <= digit <= 9:
             mantissa = mantissa * 10 + digit
-            at += 1
+            at += ONE
             digit = int(data[at]) - _ZERO
-        digits = at - first
+        digits = signed(at - first)
         decimals = 0
         if data[at] == _POINT:
-            at += 1
+            at += ONE
             first = at
             digit = int(data[at]) - _ZERO
             while 0 <= digit <= 9:
                 mantissa = mantissa * 10 + digit
-                at += 1
+                at += ONE
                 digit = int(data[at]) - _ZERO
-            decimals = at - first
+            decimals = signed(at - first)
             digits += decimals
         # Whole number and power of ten are both exact here, so that one division rounds correctly.
         if digits == 0 or digits > _DIGITS or mantissa > _EXACT:
@@ -170,16 +172,16 @@ def _point(data: Bytes, at: int, tip: Floats, axis: Floats, row: int) -> int:
             axis[row, read - 3] = value
         read += 1
         while data[at] == _BLANK:
-            at += 1
+            at += ONE
         if data[at] != _COMMA:
             break
         if read == 6:
             return 0
-    if data[at] == _DOLLAR and data[at + 1] == _DOLLAR:
+    if data[at] == _DOLLAR and data[at + ONE] == _DOLLAR:
         while data[at] != _NEWLINE:
-            at += 1
+            at += ONE
     if data[at] == _RETURN:
-        at += 1
+        at += ONE
     if data[at] != _NEWLINE:
         return 0
     if read == 3:
@@ -188,7 +190,8 @@ def _point(data: Bytes, at: int, tip: Floats, axis: Floats, row: int) -> int:
         axis[row, 2] = np.nan
     elif read != 6:
         return 0
-    return at + 1
+    following: int = signed(at + ONE)
+    return following
 
 
 @njit(cache=True)

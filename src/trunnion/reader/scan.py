@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Bytes, Codes, Floats, Ints
-from trunnion.kernels import njit
+from trunnion.kernels import ONE, njit, signed, unsigned
 from trunnion.reader.handover import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, Notes, Target
 
 NUMBER: Final = 1
@@ -124,7 +124,7 @@ def scan(
     values = notes.numbers
     gaps = table[_SPACE] == GAP
     while position < end and row < room and noted < comments.shape[0] and feeds_noted < notes.feeds.shape[0]:
-        at = position
+        at = unsigned(position)
         seen = 0
         number = -1
         motion = kind
@@ -133,31 +133,31 @@ def scan(
         while True:
             char = text[at]
             if char in (_SPACE, _TAB, _CR):
-                at += 1
+                at += ONE
                 continue
             if char == _LF:
                 break
             if table[char] == COMMENT:
-                comment = at + 1
+                comment = signed(at + ONE)
                 while text[at] != _LF:
-                    at += 1
+                    at += ONE
                 break
             what = int(table[char]) & _MEANING
             pointed = (table[char] & _POINTED) != 0
             upper = char & 0xDF
             slot = what
-            at += 1
-            if vectors and 65 <= upper <= 67 and text[at] == _THREE and text[at + 1] == _EQUALS:
+            at += ONE
+            if vectors and 65 <= upper <= 67 and text[at] == _THREE and text[at + ONE] == _EQUALS:
                 slot = VECTOR + upper - 65
                 what = ROTARY
-                at += 2
+                at += ONE + ONE
             elif what == 0 or what > VECTOR + 2:
                 plain = False
                 break
             elif what >= SLIDE and table[text[at]] == ASSIGN:
-                at += 1
+                at += ONE
             while gaps and (text[at] == _SPACE or text[at] == _TAB):
-                at += 1
+                at += ONE
             if seen & (1 << slot) or (what == NUMBER and seen != 0):
                 plain = False
                 break
@@ -166,26 +166,26 @@ def scan(
             negative = False
             if what >= SLIDE and (text[at] == _PLUS or text[at] == _MINUS):
                 negative = text[at] == _MINUS
-                at += 1
+                at += ONE
             mantissa = 0
             decimals = 0
             first = at
             digit = int(text[at]) - _ZERO
             while 0 <= digit <= 9:
                 mantissa = 10 * mantissa + digit
-                at += 1
+                at += ONE
                 digit = int(text[at]) - _ZERO
-            digits = at - first
+            digits = signed(at - first)
             point = what > PREPARATORY and text[at] == _POINT
             if point:
-                at += 1
+                at += ONE
                 first = at
                 digit = int(text[at]) - _ZERO
                 while 0 <= digit <= 9:
                     mantissa = 10 * mantissa + digit
-                    at += 1
+                    at += ONE
                     digit = int(text[at]) - _ZERO
-                decimals = at - first
+                decimals = signed(at - first)
                 digits += decimals
             # Of more digits than fit into a mantissa nothing is used.
             if digits == 0 or digits > _DIGITS or (pointed and not point and mantissa != 0):
@@ -255,9 +255,9 @@ def scan(
             comments[noted, 0] = line
             comments[noted, 1] = row
             comments[noted, 2] = comment
-            comments[noted, 3] = at
+            comments[noted, 3] = signed(at)
             noted += 1
-        position = at + 1
+        position = signed(at + ONE)
         line += 1
     counts[KIND] = kind
     counts[ROW] = row
