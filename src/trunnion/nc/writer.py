@@ -12,11 +12,13 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Flags, Ints
 from trunnion.errors import Problem, Refused
-from trunnion.kernels import njit
+from trunnion.kernels import ONE, njit, signed, unsigned
 from trunnion.nc.words import ABSENT, Word
 
 #: Rows that a caller best hands over at a time: the table of one chunk stays in the processor's cache.
 CHUNK = 16384
+
+_TWO = ONE + ONE
 
 _DIGITS = 20  # of an int64, with sign and point
 _LETTERS = 12
@@ -50,43 +52,44 @@ def _put_whole(number: int, out: Bytes, at: int) -> int:
 
     (pair * 103) >> 10 is pair // 10 for pairs below 100.
     """
-    length, power = 1, 10
+    end, power = at + ONE, 10
     while number >= power:
-        length += 1
+        end += ONE
         power *= 10
-    rest, place = number, at + length
+    rest, place = number, end
     while rest >= 100:
         quotient = rest // 100
         pair = rest - quotient * 100
         tens = (pair * 103) >> 10
-        place -= 2
+        place -= _TWO
         out[place] = 48 + tens
-        out[place + 1] = 48 + pair - tens * 10
+        out[place + ONE] = 48 + pair - tens * 10
         rest = quotient
     if rest >= 10:
         tens = (rest * 103) >> 10
         out[at] = 48 + tens
-        out[at + 1] = 48 + rest - tens * 10
+        out[at + ONE] = 48 + rest - tens * 10
     else:
         out[at] = 48 + rest
-    return at + length
+    return end
 
 
 @njit(cache=True, inline="always")
 def _put_fraction(fraction: int, decimals: int, out: Bytes, at: int) -> int:
     """Write exactly so many digits at ``at``, with zeros in front; returns where they end."""
-    rest, place = fraction, at + decimals
-    while place - at >= 2:
+    end = at + unsigned(decimals)
+    rest, place = fraction, end
+    while place - at >= _TWO:
         quotient = rest // 100
         pair = rest - quotient * 100
         tens = (pair * 103) >> 10
-        place -= 2
+        place -= _TWO
         out[place] = 48 + tens
-        out[place + 1] = 48 + pair - tens * 10
+        out[place + ONE] = 48 + pair - tens * 10
         rest = quotient
     if place > at:
         out[at] = 48 + rest
-    return at + decimals
+    return end
 
 
 @njit(cache=True, inline="always")
@@ -105,11 +108,11 @@ def _put_number(
     rest = count
     if count < 0:
         out[at] = 45
-        at += 1
+        at += ONE
         rest = -count
     elif plus:
         out[at] = 43
-        at += 1
+        at += ONE
     # A product is quicker than a division by a number that the compiler does not know; it is one off at most.
     whole = int(rest * (1.0 / scale))
     fraction = rest - whole * scale
@@ -124,12 +127,12 @@ def _put_number(
         at = _put_whole(whole, out, at)
     if fraction > 0 or trailing:
         out[at] = 46
-        at = _put_fraction(fraction, decimals, out, at + 1)
-        while not trailing and out[at - 1] == 48:
-            at -= 1
+        at = _put_fraction(fraction, decimals, out, at + ONE)
+        while not trailing and out[at - ONE] == 48:
+            at -= ONE
     elif decimals > 0 and point:
         out[at] = 46
-        at += 1
+        at += ONE
     return at
 
 
@@ -166,7 +169,7 @@ def _write_blocks(
     number       (4,)   int64   next block number, step, first, highest; the first is kept up to date
     """
     words, rows = table.shape
-    at = 0
+    at = unsigned(0)
     for row in range(rows):
         for piece in range(line_before[row], line_before[row + 1] + 1):  # the lines, then the row itself
             # skip sign and block number are written first, and taken back when nothing follows them
@@ -174,22 +177,22 @@ def _write_blocks(
             headed = piece == line_before[row + 1] or not bare_text[line_of[piece]]
             for k in range(skip.shape[0] if headed else 0):
                 out[at] = skip[k]
-                at += 1
+                at += ONE
             if numbered and headed:
                 for k in range(number_letter.shape[0]):
                     out[at] = number_letter[k]
-                    at += 1
+                    at += ONE
                 at = _put_whole(number[0], out, at)
                 out[at] = 32
-                at += 1
+                at += ONE
             has_number = False
             if piece < line_before[row + 1]:
                 has_number = True
                 line = line_of[piece]
                 for k in range(0 if line == 0 else text_ends[line - 1], text_ends[line]):
                     out[at] = text_bytes[k]
-                    at += 1
-                at += 1  # stands for the blank that every word leaves behind it
+                    at += ONE
+                at += ONE  # stands for the blank that every word leaves behind it
             else:
                 for word in range(words):
                     count = table[word, row]
@@ -200,16 +203,16 @@ def _write_blocks(
                     last[word] = count
                     for k in range(rule[word, _LETTER_LENGTH]):
                         out[at] = spelling[word, k]
-                        at += 1
+                        at += ONE
                     if rule[word, _BARE] == 1:
                         out[at] = 32
-                        at += 1
+                        at += ONE
                         continue
                     has_number = True
                     if count == 0 and rule[word, _ZERO_LENGTH] > 0:
                         for k in range(rule[word, _ZERO_LENGTH]):
                             out[at] = spelling[word, _LETTERS + k]
-                            at += 1
+                            at += ONE
                     else:
                         at = _put_number(
                             count,
@@ -224,18 +227,19 @@ def _write_blocks(
                         )
                     if rule[word, _CLOSING]:
                         out[at] = rule[word, _CLOSING]
-                        at += 1
+                        at += ONE
                     out[at] = 32
-                    at += 1
+                    at += ONE
             if not has_number:
                 at = block_start
                 continue
-            out[at - 1] = 10
+            out[at - ONE] = 10
             if numbered and headed:
                 number[0] += number[1]
                 if number[0] > number[3]:
                     number[0] = number[2]
-    return at
+    written: int = signed(at)
+    return written
 
 
 class BlockWriter:
