@@ -19,6 +19,7 @@ from trunnion.nc.words import ABSENT, Word
 CHUNK = 16384
 
 _TWO = ONE + ONE
+_U10, _U100, _U103, _ZERO = unsigned(10), unsigned(100), unsigned(103), unsigned(48)
 
 _DIGITS = 20  # of an int64, with sign and point
 _LETTERS = 12
@@ -47,48 +48,45 @@ class BlockNumbers:
 
 
 @njit(cache=True, inline="always")
-def _put_whole(number: int, out: Bytes, at: int) -> int:
-    """Write the digits of a number from 0 up at ``at``, two at a time; returns where they end.
+def _put_pair(pair: int, out: Bytes, at: int) -> None:
+    """Write two digits at ``at``: (pair * 103) >> 10 is pair // 10 for pairs below 100."""
+    tens = (pair * _U103) >> _U10
+    out[at] = _ZERO + tens
+    out[at + ONE] = _ZERO + pair - tens * _U10
 
-    (pair * 103) >> 10 is pair // 10 for pairs below 100.
-    """
-    end, power = at + ONE, 10
-    while number >= power:
+
+@njit(cache=True, inline="always")
+def _put_whole(number: int, out: Bytes, at: int) -> int:
+    """Write the digits of a number from 0 up at ``at``, two at a time; returns where they end."""
+    rest, end, power = unsigned(number), at + ONE, _U10
+    while rest >= power:
         end += ONE
-        power *= 10
-    rest, place = number, end
-    while rest >= 100:
-        quotient = rest // 100
-        pair = rest - quotient * 100
-        tens = (pair * 103) >> 10
+        power *= _U10
+    place = end
+    while rest >= _U100:
+        quotient = rest // _U100
         place -= _TWO
-        out[place] = 48 + tens
-        out[place + ONE] = 48 + pair - tens * 10
+        _put_pair(rest - quotient * _U100, out, place)
         rest = quotient
-    if rest >= 10:
-        tens = (rest * 103) >> 10
-        out[at] = 48 + tens
-        out[at + ONE] = 48 + rest - tens * 10
+    if rest >= _U10:
+        _put_pair(rest, out, at)
     else:
-        out[at] = 48 + rest
+        out[at] = _ZERO + rest
     return end
 
 
 @njit(cache=True, inline="always")
 def _put_fraction(fraction: int, decimals: int, out: Bytes, at: int) -> int:
     """Write exactly so many digits at ``at``, with zeros in front; returns where they end."""
-    end = at + unsigned(decimals)
-    rest, place = fraction, end
+    rest, end = unsigned(fraction), at + unsigned(decimals)
+    place = end
     while place - at >= _TWO:
-        quotient = rest // 100
-        pair = rest - quotient * 100
-        tens = (pair * 103) >> 10
+        quotient = rest // _U100
         place -= _TWO
-        out[place] = 48 + tens
-        out[place + ONE] = 48 + pair - tens * 10
+        _put_pair(rest - quotient * _U100, out, place)
         rest = quotient
     if place > at:
-        out[at] = 48 + rest
+        out[at] = _ZERO + rest
     return end
 
 
