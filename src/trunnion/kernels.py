@@ -20,9 +20,9 @@ from numba.core.runtime import nrt
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
-#: Kernels that go over bytes keep places as unsigned numbers: Numba asks of every signed index whether it counts from the
-#: end, which takes a third of their time. A sum of signed and unsigned would be a float: add ``ONE``, and come back
-#: with ``signed``.
+#: Kernels that go over bytes keep places as unsigned numbers: Numba asks of every signed index whether it counts from
+#: the end, which takes a third of their time. A sum of signed and unsigned would be a float: add ``ONE``, and come
+#: back with ``signed``.
 unsigned: Any = np.uint64
 signed: Any = np.int64
 ONE: Any = np.uint64(1)

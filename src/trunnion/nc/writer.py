@@ -58,7 +58,8 @@ def _put_pair(pair: int, out: Bytes, at: int) -> None:
 @njit(cache=True, inline="always")
 def _put_whole(number: int, out: Bytes, at: int) -> int:
     """Write the digits of a number from 0 up at ``at``, two at a time; returns where they end."""
-    rest, end, power = unsigned(number), at + ONE, _U10
+    rest, power = unsigned(number), _U10
+    end: int = at + ONE
     while rest >= power:
         end += ONE
         power *= _U10
@@ -78,7 +79,8 @@ def _put_whole(number: int, out: Bytes, at: int) -> int:
 @njit(cache=True, inline="always")
 def _put_fraction(fraction: int, decimals: int, out: Bytes, at: int) -> int:
     """Write exactly so many digits at ``at``, with zeros in front; returns where they end."""
-    rest, end = unsigned(fraction), at + unsigned(decimals)
+    rest = unsigned(fraction)
+    end: int = at + unsigned(decimals)
     place = end
     while place - at >= _TWO:
         quotient = rest // _U100
