@@ -222,6 +222,47 @@ def test_macros_have_variables_of_their_own(run: Runner) -> None:
     close(slides(got), [[2.5, 1, 0], [5, 2, 0], [5, 2, 2], [50, 2, 2]])
 
 
+def test_macros_inside_each_other_keep_their_variables_and_are_told_of_where_they_are_too_many(run: Runner) -> None:
+    calls = "".join(f"O{n}\nG65 P{n + 1} A[#1+1]\nG0 X#1\nM99\n" for n in range(2, 6))
+    got = fanuc(run, f"O1\n#1=50.\nG65 P2 A1.\nG0 X#1\nM30\n{calls}O6\nG0 X#1\nM99\n")
+    close(slides(got)[:, 0], [5, 4, 3, 2, 1, 50])
+    assert [(finding.line, str(finding.severity)) for finding in got.findings] == [(19, "warning")]
+    endless = fanuc(run, "O1\nG65 P2\nM30\nO2\nG0 X1.\nM99\n")
+    assert endless.findings == ()
+    with pytest.raises(InputError, match="deeper than 16 levels"):
+        fanuc(run, "O1\nG65 P1 A1.\nM30\n")
+
+
+def test_macros_that_are_not_there_or_not_named_are_errors_and_nothing_is_opened(run: Runner, tmp_path: Path) -> None:
+    (tmp_path / "O9010.nc").write_text("O9010\nG0 X99.\nM99\n")
+    got = fanuc(run, "G65 P9010 A1.\nG66 P9010\nG0 X1.\nG67\nG65 A1.\nG65 P1.5\nG66.1 P1\nM30\n")
+    assert [finding.line for finding in got.errors] == [1, 3, 5, 6, 7]
+    assert slides(got)[:, 0].tolist() == [1.0]
+
+
+def test_arguments_become_the_variables_of_their_letters(run: Runner) -> None:
+    letters = {
+        "A": 1,
+        "B": 2,
+        "C": 3,
+        "I": 4,
+        "J": 5,
+        "K": 6,
+        "D": 7,
+        "E": 8,
+        "F": 9,
+        "H": 11,
+        "M": 13,
+        "Q": 17,
+        "R": 18,
+    }
+    letters |= {"S": 19, "T": 20, "U": 21, "V": 22, "W": 23, "X": 24, "Y": 25, "Z": 26}
+    said = " ".join(f"{letter}{number}." for letter, number in letters.items())
+    reads = "\n".join(f"X#{number}" for number in letters.values())
+    got = fanuc(run, f"O1\nG65 P2 {said}\nM30\nO2\nG0\n{reads}\nX[#10+#33]\nM99\n")
+    assert slides(got)[:, 0].tolist() == [float(number) for number in letters.values()] + [0.0]
+
+
 def test_a_modal_macro_follows_every_motion(run: Runner) -> None:
     got = fanuc(run, "O1\nG66 P2 A3.\nG0 X1.\nX2.\nG67\nX3.\nM30\nO2\nG0 Z#1\nZ0.\nM99\n")
     assert got.errors == ()

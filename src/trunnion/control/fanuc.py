@@ -4,6 +4,7 @@ Facts: FANUC's operator's manuals and public posts; docs/controls/fanuc.md has t
 parameters of the control.
 """
 
+import re
 import unicodedata
 from collections.abc import Mapping
 from textwrap import wrap
@@ -33,7 +34,9 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "contour": ("none", "G05.1", "G05"),
     "orientation": ("angles", "vector"),
 }
-FIELDS: frozenset[str] = frozenset({"plane_first", "plane_second", "plane_third", "contour_on", "contour_off"})
+FIELDS: frozenset[str] = frozenset(
+    {"plane_first", "plane_second", "plane_third", "contour_on", "contour_off", "call_word", "call_arguments"}
+)
 
 #: AI contour control on and off: in the control's own form, and in that of older controls.
 _CONTOUR: Final = {"none": (None, None), "G05.1": ("G05.1 Q1", "G05.1 Q0"), "G05": ("G05 P10000", "G05 P0")}
@@ -56,6 +59,10 @@ _ROOM: Final = 76
 
 #: Digits of a program number.
 _DIGITS: Final = 8
+
+#: The call of a program: as a subprogram, or as a macro with arguments. These have a point, without which their numbers
+#: would count in increments.
+_CALL: Final = re.compile(r"(M98|G65)((?: [A-FHIJKMQ-Z][-+]?(?:\d+\.\d*|\.\d+))*)", re.ASCII)
 
 
 def comment(text: str) -> list[str]:
@@ -81,11 +88,14 @@ def tool_call(number: int, name: str, by_name: bool) -> str:
 
 
 def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """The Euler angles of a plane about Z, the new X and the new Z; the words that switch contour control."""
+    """The Euler angles of a plane about Z, the new X and the new Z; the words that switch contour control; those of a
+    call."""
     on, off = _CONTOUR[str(settings["contour"])]
     turned = (None, None, None) if plane is None else about_first_and_third(plane)
     names = "plane_first", "plane_second", "plane_third"
-    return {**dict(zip(names, turned, strict=True)), "contour_on": on, "contour_off": off}
+    call, _, arguments = str(settings.get("call") or "M98").partition(" ")
+    words = {"contour_on": on, "contour_off": off, "call_word": call, "call_arguments": arguments}
+    return {**dict(zip(names, turned, strict=True)), **words}
 
 
 def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
@@ -152,9 +162,18 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
         wrong.append(("program", f"write the program's number, at most {_DIGITS} digits, such as program=1234"))
     if tool and not (tool.isdecimal() and tool.isascii()):
         wrong.append(("tool", "write the tool's number, such as tool=5"))
+    if not _is_call(settings.get("call", "M98")):
+        wrong.append(("call", "write M98, or G65, with arguments such as G65 A1. B-2.5, each letter once"))
     if not is_shift(settings.get("bore_lift", "")):
         wrong.append(("bore_lift", "write millimetres above 0, such as 0.5, or nothing"))
     return wrong
+
+
+def _is_call(text: str) -> bool:
+    """Whether programs can be called so: M98 takes no arguments, and G65 each letter once."""
+    match = _CALL.fullmatch(text)
+    letters = [word[0] for word in match[2].split()] if match else []
+    return bool(match) and len(set(letters)) == len(letters) and not (letters and text.startswith("M98"))
 
 
 def hole_call(

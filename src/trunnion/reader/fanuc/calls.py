@@ -21,6 +21,9 @@ from trunnion.reader.text import Subprograms
 #: Times that a subprogram may be called at once.
 _MOST_CALLS: Final = 1_000_000_000
 
+#: Macros inside each other, as the manual has it (B-63684EN).
+_MOST_MACROS: Final = 4
+
 #: Programs of a number of at most four digits: more are how often they run.
 _FOUR: Final = 10_000
 
@@ -113,6 +116,9 @@ class CallInterpreter(Rs274Interpreter[Activation]):
         entered.macro = arguments is not None
         if arguments is not None:
             self._variables.enter(arguments)
+            if self._variables.depth > _MOST_MACROS:
+                what = f"macros inside each other deeper than {_MOST_MACROS} levels: controls may have no more"
+                self._note(what, Severity.WARNING)
         self._stack.append(entered)
 
     def _return(self, call: Activation, line: int, block: Block) -> None:

@@ -123,6 +123,11 @@ class Variables:
         else:
             table[key] = value
 
+    @property
+    def depth(self) -> int:
+        """How many macros are inside each other now."""
+        return len(self._local) - 1
+
     def enter(self, arguments: dict[int, float]) -> None:
         """Begin a macro with local variables of its own."""
         self._local.append(arguments)
