@@ -1,5 +1,6 @@
 """Fanuc programs: the whole text of a few, and random operations of all manners written, read back and proven."""
 
+import io
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -22,9 +23,11 @@ from trunnion.cli.settings import wishes_of
 from trunnion.control import load_control
 from trunnion.control.fanuc import comment, inside, wrong_settings
 from trunnion.control.turns import about_first_and_third
+from trunnion.convert import convert
 from trunnion.errors import InputError, Refused
 from trunnion.machine import Machine, load_machine
-from trunnion.reader import run_program
+from trunnion.nc import BlockNumbers
+from trunnion.reader import offset_name, run_program
 from trunnion.toolpath import Moves, Toolpath
 from trunnion.verify import Verification, failures, verify
 
@@ -350,6 +353,26 @@ def test_a_helix_of_more_than_one_turn_becomes_lines_and_one_of_less_stays_a_cir
         assert (len(body(text)) > 100) == (lines == 0)
 
 
+@pytest.mark.parametrize(("said", "code"), [("G55", 55), ("G54.1 P3", 603), ("G54.1P12", 612)])
+def test_the_work_offset_that_is_asked_for_is_the_one_that_is_proven(said: str, code: int, folder: Path) -> None:
+    """Also the many of G54.1; in force from the first motion on, in every operation, and no other one beside it."""
+    model, path = load_machine("matsuura_mx330"), read(LEANING + END, folder)
+    found, text = posted(path, folder, model, work_offset=said)
+    assert f" {said}\n" in text
+    assert set(found.run.offset[~found.run.machine_frame].tolist()) <= {0, code}
+    check = next(check for check in found.checks if check.key == "offset")
+    assert (check.passed, check.summary) == (True, f"{offset_name(code)} throughout")
+    program, _ = planned_program([path], model, CONTROL, {"work_offset": said}, False, wishes_of({}, CONTROL))
+    asked = write(program, io.BytesIO()).settings
+    for other in ("G54", "G54.1 P4"):
+        target = folder / "other.nc"
+        target.write_text(text.replace(f" {said}\n", f" {other}\n"), encoding="ascii")
+        broken = [check.key for check in failures(verify(run_program(target, model), [path], settings=asked))]
+        assert "offset" in broken
+    again = convert(found.run, CONTROL)
+    assert again.settings.get("work_offset") == offset_name(code)
+
+
 @settings(max_examples=60)
 @given(st.text())
 def test_comments_are_what_the_control_has_characters_for(text: str) -> None:
@@ -384,6 +407,20 @@ def test_euler_angles_make_the_plane_again(first: float, second: float, third: f
 )
 def test_settings_that_are_no_numbers_are_named(name: str, value: str, good: bool) -> None:
     assert (wrong_settings({name: value}) == []) == good
+
+
+def test_block_numbers_are_every_n_th_or_none(folder: Path) -> None:
+    model, path = load_machine("matsuura_mx330"), read(LEANING + END, folder)
+    for numbers in (BlockNumbers("N", 5, 5, 9995, True, "%O("), BlockNumbers("N", 10, 10, 99990, False, "%O(")):
+        control = replace(CONTROL, numbers=numbers)
+        program, _ = planned_program([path], model, control, {}, False, wishes_of({}, control))
+        target = folder / "numbers.nc"
+        with target.open("wb") as sink:
+            claim = write(program, sink)
+        found = verify(run_program(target, model), [path], allowed=claim.allowed, settings=claim.settings)
+        assert not failures(found)
+        words = re.findall(r"(?m)^N(\d+) ", target.read_text(encoding="ascii"))
+        assert [int(word) for word in words] == [5 * (k + 1) for k in range(17)] * numbers.numbered
 
 
 def test_block_numbers_begin_anew_and_nothing_else_has_any(folder: Path) -> None:

@@ -187,6 +187,37 @@ def test_cycles_make_the_motions_of_the_manual(block: str, run: Runner) -> None:
     assert got.findings == ()
 
 
+#: Where the tool is beside the hole, and where it waits: what the manual says of the cycles that shift it or dwell.
+ASIDE = {
+    "G98 G76 X1. Z-10. R2. Q.5 P100 F100.": ([0, 0, 0, 0.5, 0.5, 0], {-10: 0.1}),
+    "G99 G76 X1. Z-10. R2. Q-.5 F100.": ([0, 0, 0, 0.5, 0.5, 0], {}),
+    "G98 G87 X1. Z-5. R-20. Q3. P250 F100.": ([0, 3, 3, 0, 0, 3, 3, 0], {-5: 0.25}),
+    "G98 G88 X1. Z-10. R2. P100 F100.": ([0, 0, 0, 0, 0], {-10: 0.1}),
+    "G98 G89 X1. Z-10. R2. P100 F100.": ([0, 0, 0, 0, 0], {-10: 0.1}),
+    "G98 G82 X1. Z-10. R2. P500 F100.": ([0, 0, 0, 0], {-10: 0.5}),
+    "G99 G84 X1. Z-10. R2. P200 F100.": ([0, 0, 0, 0], {-10: 0.2}),
+}
+
+
+@pytest.mark.parametrize("block", ASIDE)
+def test_cycles_shift_the_tool_and_wait_where_the_manual_says(block: str, run: Runner) -> None:
+    got = fanuc(run, f"G90 G0 X0. Y0. Z30.\n{block}\nG80\n")
+    rows = np.flatnonzero(got.block == 2)
+    aside, dwells = ASIDE[block]
+    close(slides(got)[rows][:, 0] - 1.0, aside)
+    close(slides(got)[rows][:, 1], 0.0)
+    waited = {float(slides(got)[e.before_row - 1][2]): e.value for e in got.events if e.kind == "dwell"}
+    assert waited == dwells
+    assert got.findings == ()
+
+
+def test_back_boring_needs_g98_and_shifts_by_i_and_j_too(run: Runner) -> None:
+    got = fanuc(run, "G90 G0 X0. Y0. Z30.\nG98 G87 X1. Z-5. R-20. I-1. J2. F100.\nG80\nG99 G87 X9. Z-5. R-20. Q1.\n")
+    rows = got.block == 2
+    close(slides(got)[rows][:, :2] - [1.0, 0.0], [[0, 0], [-1, 2], [-1, 2], [0, 0], [0, 0], [-1, 2], [-1, 2], [0, 0]])
+    assert [(finding.line, "G98" in finding.text) for finding in got.errors] == [(4, True)]
+
+
 def test_words_of_a_cycle_hold_until_it_ends(run: Runner) -> None:
     got = fanuc(run, "G90 G0 Z20.\nG99 G81 X1. Z-10. R2. F100.\nX2.\nZ-5.\nG91 X1. K3\nG90 G80\nX0.\n")
     drilled = got.kind == int(Kind.LINEAR)

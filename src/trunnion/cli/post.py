@@ -3,6 +3,7 @@
 import argparse
 import math
 import os
+import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -364,6 +365,8 @@ def _asked(program: Program, wishes: Wishes) -> "Settings":
     values = {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
     rate = program.control.formats.get("inverse_time")
     offset = values["work_offset"].strip().upper().removeprefix("G")
+    more = re.fullmatch(r"54\.1 *P0*(\d{1,3})", offset)
+    offset = str(600 + int(more[1])) if more else offset
     return Settings(
         tool=values["tool"].strip('"'),
         work_offset=int(offset) if offset.isdigit() else None,

@@ -26,7 +26,7 @@ from trunnion.convert.said import Item, items
 from trunnion.convert.settings import number, settings_of
 from trunnion.convert.source import LANGUAGES, Source
 from trunnion.errors import Problem
-from trunnion.reader import Run, Written
+from trunnion.reader import Run, Written, offset_name
 from trunnion.reader.settings import family_of
 from trunnion.toolpath import Frame, Kind, Operation, Phase, Tool, Toolpath
 from trunnion.verify import with_rapids
@@ -267,7 +267,7 @@ class _Converter:
         Where the source calls no edges, the number is that of a length (H), which goes with the tool.
         """
         offset, edge = int(self._run.offset[part.rows[0]]), int(self._run.edge[part.rows[0]])
-        named = {"work_offset": f"G{offset}"} if offset and self._offset_is_word else {}
+        named = {"work_offset": offset_name(offset)} if offset and self._offset_is_word else {}
         return named | ({"edge": str(edge)} if edge >= 0 and "edge" in self._control.settings else {})
 
     @property

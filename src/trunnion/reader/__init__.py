@@ -6,7 +6,18 @@ This room is written from the language of the controls. It shares nothing with w
 from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.families import can_read, numbers_lengths, reader_of, run_program
 from trunnion.reader.feeds import FeedPath, counted, ways
-from trunnion.reader.run import Comment, Finding, Happening, Orientation, Poses, Run, State, Stretch, Written
+from trunnion.reader.run import (
+    Comment,
+    Finding,
+    Happening,
+    Orientation,
+    Poses,
+    Run,
+    State,
+    Stretch,
+    Written,
+    offset_name,
+)
 from trunnion.reader.subdivide import Samples, subdivide
 
 __all__ = [
@@ -26,6 +37,7 @@ __all__ = [
     "can_read",
     "counted",
     "numbers_lengths",
+    "offset_name",
     "reader_of",
     "run_program",
     "subdivide",

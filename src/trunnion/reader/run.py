@@ -93,6 +93,15 @@ class Happening:
     tcp: bool = False
 
 
+#: Codes of work offsets above this are those of ``G54.1 P``.
+MORE_OFFSETS = 600
+
+
+def offset_name(code: int) -> str:
+    """The word of a work offset that is called by one: ``G54``, ``G505``, ``G54.1 P3``."""
+    return f"G{code}" if code <= MORE_OFFSETS else f"G54.1 P{code - MORE_OFFSETS}"
+
+
 #: ``State.orientation`` before the first word of an ``Orientation``: as the words of each block have it.
 BY_WORDS = 2
 

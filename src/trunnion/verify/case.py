@@ -20,7 +20,7 @@ class Settings:
     """What the CL file does not say, but whoever asked for the program does.
 
     tool         tool number or name in place of the one that LOAD/TOOL names; empty: as the CL file says
-    work_offset  54..57 or 505..599; None: one throughout, whichever
+    work_offset  54..59, 505..599, or 600 more than the P of G54.1; None: one throughout, whichever
     edge         number of the cutting edge (D) under which the tool works; None: whichever
     span         degrees that the tool axis may be off between points; None: it is told, not judged
     span_tip     mm that the tip may be off its line between points without TCP; None: it is told, not judged

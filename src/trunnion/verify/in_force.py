@@ -7,7 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.machine import Machine
-from trunnion.reader import Happening, Run, numbers_lengths
+from trunnion.reader import Happening, Run, numbers_lengths, offset_name
 from trunnion.toolpath import Kind
 from trunnion.verify.align import CHUNK, Pairs
 from trunnion.verify.case import NAMED, Case, judged
@@ -333,7 +333,7 @@ def _at_the_part(run: Run) -> Rows:
 
 
 def _offset(code: int) -> str:
-    return "no work offset" if code == 0 else f"G{code}"
+    return "no work offset" if code == 0 else offset_name(code)
 
 
 def _only_turns(run: Run, machine: Machine, first: int, end: int) -> bool:
