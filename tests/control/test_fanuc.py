@@ -28,7 +28,7 @@ from trunnion.errors import InputError, Refused
 from trunnion.machine import Machine, load_machine
 from trunnion.nc import BlockNumbers
 from trunnion.reader import offset_name, run_program
-from trunnion.toolpath import Moves, Toolpath
+from trunnion.toolpath import LoadTool, Moves, Toolpath
 from trunnion.verify import Verification, failures, verify
 
 FANUC = load_machine("matsuura_mx330").control
@@ -407,6 +407,18 @@ def test_euler_angles_make_the_plane_again(first: float, second: float, third: f
 )
 def test_settings_that_are_no_numbers_are_named(name: str, value: str, good: bool) -> None:
     assert (wrong_settings({name: value}) == []) == good
+
+
+def test_the_length_is_that_of_the_register_that_the_cl_file_names(folder: Path) -> None:
+    """Also in an operation that goes on with the tool; a tool that the run calls instead has its own."""
+    model = load_machine("matsuura_mx330")
+    first = LEANING.replace("ADJUST,1\n", "ADJUST,17\n")
+    second = LEANING.replace("OP1", "OP2").replace("LOAD/TOOL,1,ADJUST,1\n", "")
+    text = proven(read(first + END + second + END, folder), folder, model)
+    assert re.findall(r"G43.4 H(\d+)", text) == ["17", "17"]
+    back = convert(run_program(folder / "part.nc", model), CONTROL).toolpath
+    assert {event.adjust for each in back.operations for event in each.events if isinstance(event, LoadTool)} == {17}
+    assert re.findall(r"G43.4 H(\d+)", proven(read(first + END, folder), folder, model, tool="5")) == ["5"]
 
 
 def test_block_numbers_are_every_n_th_or_none(folder: Path) -> None:

@@ -18,7 +18,7 @@ from trunnion.control.vectors import first_elsewhere, leads_there, vectors_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
-from trunnion.toolpath import Coolant, Kind, Phase, SpindleOn
+from trunnion.toolpath import Coolant, Kind, LoadTool, Phase, SpindleOn
 
 _PHASE_TEXT = {
     Phase.RAPID: "rapid",
@@ -69,6 +69,7 @@ class Blocks:
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
         self._tool = ""
+        self._register = 0
         self._vectors = False  # of this motion
         self._turns_over = any(word.key == BY_VECTOR for word in self._words)
         self._again: dict[str, int] = {}
@@ -103,6 +104,9 @@ class Blocks:
             want it so.
         """
         self._tool = tool
+        loads = [event for event in motion.operation.events if isinstance(event, LoadTool)]
+        if loads:  # a tool that the run calls instead has its own
+            self._register = 0 if setting_of(self.program, "tool") else loads[-1].adjust
         self.comes_level = comes_level and self.control.level_approach and motion.manner in _LEVEL
         self._words = words_of(self.program, motion)
         self.writer.use(self._words)
@@ -279,7 +283,8 @@ class Blocks:
     def first_words(self, motion: Motion) -> dict[str, int]:
         """What the control is told of the tool with the first motion, as counts."""
         said = {"orientation": "vector" if self._vectors else "angles"}
-        words = self.family.first_words(motion, self._tool, settings_of(self.program) | said)
+        settings = settings_of(self.program) | said
+        words = self.family.first_words(motion, self._tool, self._register, settings)
         return {word: self.count(word, value) for word, value in words.items()}
 
     def _axis_counts(self, rotary: Floats) -> dict[str, Ints]:

@@ -114,7 +114,7 @@ class Family(Protocol):
     def event_words(self, event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
         """The words of an event that joins a motion block, with their values."""
 
-    def first_words(self, motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+    def first_words(self, motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
         """The words that join the first block of a motion's rows, such as those of the tool's length.
 
         Where X and Y are gone to before Z, they stand in the block with Z.
@@ -125,6 +125,8 @@ class Family(Protocol):
             All rows of one manner, in one plane.
         tool
             What ``tool_call`` returned for the tool in the spindle, or the setting of the run.
+        register
+            Of its length, as LOAD/TOOL names it; 0 for none.
         settings
             Those of the run over those of the definition.
         """

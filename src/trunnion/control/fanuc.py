@@ -98,14 +98,16 @@ def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Val
     return {**dict(zip(names, turned, strict=True)), **words}
 
 
-def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
-    """G43, or G43.4 or G43.5, with H, and D where there is a radius compensation: both have the tool's own number.
+def first_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
+    """G43, or G43.4 or G43.5, with H, and D where there is a radius compensation.
+
+    H is the register that LOAD/TOOL names, or else the tool's own number; D is that number.
 
     They stand with the motion to the first point, and so mean the same whether or not the control moves by itself
     where they stand alone (parameter TOS).
     """
     length = _TIP[settings["orientation"]] if motion.manner is Manner.TCP else _LENGTH
-    words = {"length": length, "length_number": float(tool)}
+    words = {"length": length, "length_number": float(register or tool)}
     compensated = any(isinstance(event, CutterComp) for event in motion.operation.events)
     return {**words, "radius_number": float(tool)} if compensated else words
 

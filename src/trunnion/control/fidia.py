@@ -91,7 +91,7 @@ def message(event: Message) -> list[str]:
     return comment(event.text)
 
 
-def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+def first_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
     """None."""
     return {}
 

@@ -121,7 +121,7 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
     return {"spindle": codes["spindle_off"]}
 
 
-def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+def first_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
     """None."""
     return {}
 

@@ -67,7 +67,7 @@ def stop(event: Stop, codes: Codes) -> list[str]:
     return [*(_shown(event.text) if event.text else ()), f"M{code}"]
 
 
-def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+def first_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
     """None."""
     return {}
 

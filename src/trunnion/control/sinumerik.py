@@ -80,7 +80,7 @@ def stop(event: Stop, codes: Codes) -> list[str]:
     return [*(comment(event.text) if event.text else ()), f"M{code}"]
 
 
-def first_words(motion: Motion, tool: str, settings: Mapping[str, str]) -> dict[str, float]:
+def first_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
     """The cutting edge, whose length counts from here on."""
     return {"edge": int(settings["edge"])} if "edge" in settings else {}
 

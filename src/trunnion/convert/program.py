@@ -10,7 +10,7 @@ axes before an operation's first position.
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -26,9 +26,9 @@ from trunnion.convert.said import Item, items
 from trunnion.convert.settings import number, settings_of
 from trunnion.convert.source import LANGUAGES, Source
 from trunnion.errors import Problem
-from trunnion.reader import Run, Written, offset_name
+from trunnion.reader import Run, Written, numbers_lengths, offset_name
 from trunnion.reader.settings import family_of
-from trunnion.toolpath import Frame, Kind, Operation, Phase, Tool, Toolpath
+from trunnion.toolpath import Frame, Kind, LoadTool, Operation, Phase, Tool, Toolpath
 from trunnion.verify import with_rapids
 
 _PHASES = {
@@ -310,6 +310,13 @@ class _Converter:
     def _operation(self, part: _Part, said: Sequence[Item], events: Events) -> Operation:
         run, values = self._run, part.values
         phase, happened = events.of(said, run, part.rows, part.line)
+        lengths = run.edge[part.rows][run.edge[part.rows] > 0]
+        if len(lengths) and numbers_lengths(run.machine):
+            register = int(lengths[0])
+            happened = tuple(
+                replace(one, adjust=register) if isinstance(one, LoadTool) and one.number != register else one
+                for one in happened
+            )
         named = f"TOOL_{events.tool}" if events.tool else Path(run.files[0]).stem
         return Operation(
             name=values.get("operation", "") or named,
