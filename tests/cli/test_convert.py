@@ -245,3 +245,37 @@ def test_a_setting_that_makes_no_sense_is_named(setting: str, word: str, tmp_pat
 def test_a_zero_that_is_no_point_is_named(tmp_path: Path, capfd: Capture) -> None:
     arguments = [str(HUB), "--machine", "yl569", "--to-machine", "yl569", "--set", "zero=1,2"]
     assert "zero is '1,2'" in failed(tmp_path, capfd, *arguments)
+
+
+def test_a_program_by_vectors_comes_back_as_it_is(tmp_path: Path, capfd: Capture) -> None:
+    first, again = tmp_path / "first.mpf", tmp_path / "again.mpf"
+    cl = str(YL569 / "2_hub_rough.cls")
+    assert main(["post", cl, "--machine", "yl569", "--output", str(first), "--set", "orientation=vector"]) == 0
+    capfd.readouterr()
+    convert = ["convert", str(first), "--machine", "yl569", "--to-machine"]
+    assert main([*convert, "yl569", "--output", str(again)]) == 0
+    assert "warning" not in capfd.readouterr().err
+    assert again.read_bytes() == first.read_bytes()
+    assert there_and_back(first, tmp_path, capfd) == first.read_bytes()
+    assert main([*convert, "dmu65", "--output", str(again)]) == 0
+    assert "orientation is 'vector', which is not carried over" in capfd.readouterr().err
+    assert main([*convert, "yl569", "--output", str(again), "--set", "orientation=angles"]) == 0
+    assert "A3=" not in again.read_text(encoding="utf-8")
+
+
+def test_several_files_become_one_or_several_as_it_is_set(tmp_path: Path, capfd: Capture) -> None:
+    several, again = tmp_path / "several.mpf", tmp_path / "again.mpf"
+    cl = str(YL569 / "2_hub_rough.cls")
+    given = ["--set", "programs=operations", "--set", "orientation=vector"]
+    assert main(["post", cl, "--machine", "yl569", "--output", str(several), *given]) == 0
+    capfd.readouterr()
+    parts = sorted(str(path) for path in tmp_path.glob("*.spf"))
+    convert = ["convert", str(several), "--with", *parts, "--machine", "yl569", "--to-machine", "yl569"]
+    assert main([*convert, "--output", str(again)]) == 0
+    assert "2 files become one program; --set programs=operations" in capfd.readouterr().err
+    assert "A3=" in again.read_text(encoding="utf-8")
+    (tmp_path / "new").mkdir()
+    assert main([*convert, "--output", str(tmp_path / "new" / "again.mpf"), "--set", "programs=operations"]) == 0
+    assert "become one program" not in capfd.readouterr().err
+    (part,) = (tmp_path / "new").glob("*.spf")
+    assert "A3=" in part.read_text(encoding="utf-8")

@@ -40,6 +40,9 @@ def run(arguments: argparse.Namespace) -> int:
         division = division_of(settings, target_control, target, made)
         settings = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
         converted = _read(arguments, machine, control)
+        if arguments.subprograms and division is None and not arguments.to_cl:
+            what = f"{1 + len(arguments.subprograms)} files become one program"
+            say([Problem(arguments.file, 0, what, "--set programs=operations writes several", Severity.WARNING)])
         carried = _carried(converted.settings, control, target_control, arguments.file) | settings
         if "tool" in settings and "tool_call" not in settings:
             carried.pop("tool_call", None)

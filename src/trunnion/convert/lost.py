@@ -116,15 +116,17 @@ def remark_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], remark: Rem
             _at(run, rows[places], what, "only the tool axis is carried over", remark)
 
 
-def remark_ways(run: Run, operations: Iterable[Ints], remark: Remarks) -> None:
+def remark_ways(run: Run, operations: Iterable[Ints], by_vectors: bool, remark: Remarks) -> None:
     """Say where the tool turns between two points in another way than a program of ours lets it turn.
 
     operations   the rows (n,) of each operation
+    by_vectors   orientations will be said by vectors: these turn the tool on great circles
     """
     for rows in operations:
         turned = np.abs(np.diff(run.axis[rows], axis=0, prepend=run.axis[rows[:1]])).max(axis=1) > 1e-9
         turned &= run.kind[rows] != Kind.RAPID
         circle = turned & run.tcp[rows] & (run.orientation[rows] == Orientation.GREAT_CIRCLE)
+        circle &= not by_vectors
         free = turned & ~run.tcp[rows]
         for there, what in ((circle, "turn the tool on a great circle"), (free, "turn the tool without TCP")):
             places = np.flatnonzero(there)

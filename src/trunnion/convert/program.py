@@ -137,7 +137,7 @@ class _Converter:
         remark_homes(run, self._remark)
         offset = "G" if self._offset_is_word else "work offset "
         remark_registers(run, rows, offset, self._remark)
-        remark_ways(run, rows, self._remark)
+        remark_ways(run, rows, settings.get("orientation") == "vector", self._remark)
         remark_poses(run, zip(rows, (operation.moves for operation in operations), strict=True), self._remark)
         remark_words(self._sources, self._family, self._known, self._remark)
         return Converted(Toolpath(run.files[0], operations, settings.get("part", "")), settings, self._remark.problems)
@@ -258,8 +258,16 @@ class _Converter:
             self._known |= ended
             there = (n for n in range(part.begin, part.end) if said[n].file == 0 and said[n].line in ended)
             part.end = next((n for n in there if said[n].kind != "skip"), part.end)
-            plane = {"plane": "frames"} if "plane_x" in part.values and "swivel_style" not in part.values else {}
-            part.values = {**common, **part.values, **plane, **self._registers(part)}
+            part.values = {**common, **part.values, **self._plane(part.line, first), **self._registers(part)}
+
+    def _plane(self, first: int, last: int) -> dict[str, str]:
+        """The way in which a head from line to line says its tilted plane, where the control has several."""
+        lines, control = self._source.texts(first, last), self._control
+        for way in control.family.PLANES if "plane" in control.settings else ():
+            wanted = patterns(self._called((f"plane_on_{way}",)), self._values, control.settings)
+            if any(not each.bare and each.expression.fullmatch(text) for _, text in lines for each in wanted):
+                return {"plane": way}
+        return {}
 
     def _registers(self, part: _Part) -> dict[str, str]:
         """Work offset and edge in force at the first row; an offset that is no G word was found in the head.
@@ -268,7 +276,15 @@ class _Converter:
         """
         offset, edge = int(self._run.offset[part.rows[0]]), int(self._run.edge[part.rows[0]])
         named = {"work_offset": offset_name(offset)} if offset and self._offset_is_word else {}
-        return named | ({"edge": str(edge)} if edge >= 0 and "edge" in self._control.settings else {})
+        named |= {"edge": str(edge)} if edge >= 0 and "edge" in self._control.settings else {}
+        return named | ({"orientation": how} if (how := self._orientation(part.rows)) else {})
+
+    def _orientation(self, rows: Ints) -> str:
+        """How a program says orientations under TCP; empty where it says none, or the control has but one way."""
+        if "orientation" not in self._control.settings:
+            return ""
+        said = int(np.bitwise_or.reduce(self._run.programmed[rows[self._run.tcp[rows]]], initial=0))
+        return "vector" if said & Written.VECTOR else "angles" if said & (Written.FIRST | Written.SECOND) else ""
 
     @property
     def _offset_is_word(self) -> bool:
