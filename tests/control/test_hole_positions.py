@@ -207,3 +207,24 @@ def test_holes_along_any_axes_are_proven_on_every_machine(
     for axis in axes:
         beside = np.linalg.norm(tips - (tips @ axis)[:, None] * axis, axis=1)
         assert (tips @ axis)[beside < 1e-3].min() == pytest.approx(40.0 - depth, abs=1e-3)
+
+
+@pytest.mark.parametrize("way", ["torot", "positions"])
+def test_holes_go_on_in_another_file_from_where_the_tool_stands(tmp_path: Path, way: str) -> None:
+    turns = np.radians(7.0 * np.arange(300))
+    axes = [np.array((0.8 * np.cos(a), 0.8 * np.sin(a), 0.6)) for a in turns]
+    cl, nc = tmp_path / "many.cls", tmp_path / "many.mpf"
+    cl.write_text(holes(axes), encoding="utf-8")
+    given = [f"holes={way}", "orientation=vector", "programs=operations", "split=20480"]
+    said = [word for setting in given for word in ("--set", setting)]
+    assert main(["post", str(cl), "--machine", str(along_tool(tmp_path)), "--output", str(nc), *said]) == 0
+    parts = sorted(tmp_path.glob("*.spf"))
+    assert len(parts) > 1
+    for part in parts[1:]:
+        assert part.stat().st_size <= 20480
+        first = next(
+            line for line in part.read_text(encoding="utf-8").splitlines() if " X" in line and "HOME" not in line
+        )
+        assert re.fullmatch(r"N\d+ G40 G94 G17 G0 ORIVECT X\S+ Y\S+ Z\S+ A3=\S+ B3=\S+ C3=\S+ S4000 D1 M3", first), (
+            first
+        )

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from tests.convert.toolpaths import SAYABLE, operations
 from tests.paths import YL569
+from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.cli.settings import wishes_of
 from trunnion.control import Division, Program, check_program, load_control, write_program
@@ -22,7 +23,24 @@ from trunnion.files import output
 from trunnion.machine import load_machine
 from trunnion.plan import plan
 from trunnion.reader import Run, run_program
-from trunnion.toolpath import Coolant, Dwell, Toolpath
+from trunnion.toolpath import (
+    Arcs,
+    Coolant,
+    CycleOff,
+    CycleOn,
+    Dwell,
+    Event,
+    Frame,
+    Kind,
+    LoadTool,
+    Moves,
+    Operation,
+    Phase,
+    Sense,
+    SpindleOn,
+    Tool,
+    Toolpath,
+)
 from trunnion.verify import compare
 
 
@@ -127,6 +145,66 @@ def test_a_program_in_several_files_does_what_it_does_in_one(
         assert path.read_text(encoding="utf-8").rstrip().endswith(language.end.format(name=path.stem))
 
 
+#: Cycles that all these controls have, each with its number of holes.
+CYCLES = st.lists(
+    st.tuples(
+        st.sampled_from([("DRILL",), ("DRILL", "DEEP"), ("TAP",), ("BORE",)]),
+        st.lists(st.tuples(*[st.integers(-300, 300)] * 2, st.sampled_from([0, 0, 40])), min_size=1, max_size=12),
+    ),
+    min_size=1,
+    max_size=3,
+)
+
+
+def drilling(cycles: list[tuple[tuple[str, ...], list[tuple[int, int, int]]]], axis: tuple[float, ...]) -> Toolpath:
+    """Holes on a plane and on steps of it, a rapid before and behind those of each cycle; lengths are tenths."""
+    across = np.linalg.svd(np.array([axis]))[2][1:]
+    points, kinds, events = list[Floats](), list[Kind](), list[Event]([LoadTool(0, 1, 1), SpindleOn(0, 1, 1000.0, Sense.CLW)])
+    for mode, places in cycles:
+        flat = [0.1 * (x * across[0] + y * across[1] + z * np.array(axis)) for x, y, z in places]
+        feed = ("MMPR", (1.25,)) if mode == ("TAP",) else ("MMPM", (90.0,))
+        values = (("RAPTO", (3.0,)), ("FEDTO", (-12.0,)), ("RTRCTO", (9.0,)), ("STEP", (2.5,)), feed)
+        events += [CycleOn(len(points) + 1, 1, mode, values), CycleOff(len(points) + 1 + len(flat), 1)]
+        points += [flat[0] + 50.0 * np.array(axis), *flat, flat[-1] + 50.0 * np.array(axis)]
+        kinds += [Kind.RAPID, *[Kind.LINEAR] * len(flat), Kind.RAPID]
+    n = len(points)
+    kind = np.array(kinds, np.uint8)
+    moves = Moves(
+        np.array(points), np.tile(axis, (n, 1)), kind, np.where(kind, np.uint8(Phase.CUT), np.uint8(Phase.RAPID)),
+        np.full(n, 300.0), np.zeros(n, bool), np.arange(1, n + 1, dtype=np.int32),
+    )  # fmt: skip
+    tool = Tool("DRILL", "D8", 8.0, 0.0, 75.0)
+    operation = Operation("HOLES", tool, Frame(), moves, Arcs.none(), tuple(events), 1, 0.01, 0.01)
+    return Toolpath("holes.cls", (operation,))
+
+
+@pytest.mark.parametrize("machine", CONTROLS)
+@settings(max_examples=15)
+@given(cycles=CYCLES, tilted=st.booleans(), room=st.sampled_from([1800, 3000]))
+def test_holes_are_divided_between_two_of_them(
+    tmp_path_factory: pytest.TempPathFactory,
+    machine: str,
+    cycles: list[tuple[tuple[str, ...], list[tuple[int, int, int]]]],
+    tilted: bool,
+    room: int,
+) -> None:
+    axis = (0.48, 0.36, 0.8) if tilted else (0.0, 0.0, 1.0)
+    made = written(machine, drilling(cycles, axis), tmp_path_factory.getbasetemp(), ROOM_FOR_THE_END + room)
+    assume(made is not None)  # LinuxCNC has no planes
+    assert made is not None
+    one, several = made
+    run = several.run(machine)
+    assert run.errors == one.errors == ()
+    found = compare(one, run, 1e-9)
+    assert found.same, "\n".join(found.lines())
+    drills = [np.count_nonzero((each.programmed == 0) & (each.kind != Kind.RAPID)) for each in (one, run)]
+    assert drills[0] == drills[1] > 0
+    waits = [[e.value for e in each.events if e.kind == "dwell"] for each in (one, run)]
+    assert waits[0] == waits[1]
+    if room == 1800 and sum(len(places) for _, places in cycles) > 8:
+        assert len(several.others) > 1
+
+
 @pytest.mark.parametrize("machine", CONTROLS)
 @settings(max_examples=20)
 @given(toolpath=TOOLPATHS)
@@ -178,6 +256,20 @@ def test_parts_of_an_operation_are_no_larger_than_asked_and_say_what_is_in_force
     assert main([*common[:-1], str(again)]) == 0
     files = ["--to-with", *map(str, parts)]
     assert main(["diff", str(again), str(target), "--machine", "yl569", *files, "--tolerance", "1e-9"]) == 0
+
+
+def test_parts_with_holes_are_no_larger_than_asked(tmp_path: Path) -> None:
+    cl, target = tmp_path / "holes.cls", tmp_path / "holes.mpf"
+    head, end = (YL569 / "2_hub_rough.cls").read_text().split("GOTO/", 1)[0], "END-OF-PATH\n"
+    points = "".join(f"GOTO/{k % 40},{k // 40},{k % 3}\n" for k in range(900))
+    cycle = "CYCLE/DRILL,DEEP,RAPTO,3,FEDTO,-12,STEP,2.5,RTRCTO,9,MMPM,90\n"
+    cl.write_text(f"{head}GOTO/0,0,50,0,0,1\n{cycle}{points}CYCLE/OFF\nRAPID\nGOTO/0,0,50\n{end}")
+    common = ["post", str(cl), "--machine", "yl569", "--output", str(target)]
+    assert main([*common, "--set", "programs=operations", "--set", f"split={LEAST_SIZE}"]) == 0
+    parts = sorted(tmp_path.glob("*.spf"))
+    assert len(parts) > 3
+    assert all(path.stat().st_size <= LEAST_SIZE for path in parts)
+    assert parts[1].read_text().splitlines()[5].endswith("S2000 D1 M3"), parts[1].read_text()[:600]
 
 
 NAMINGS = st.sampled_from([Naming(".spf", True, 24, ("CYCLE",)), Naming(".ngc", False, 12)])

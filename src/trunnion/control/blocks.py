@@ -5,6 +5,7 @@ Out:    blocks through the block writer; what is in force between them is kept h
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import BinaryIO
 
 import numpy as np
@@ -18,7 +19,7 @@ from trunnion.control.vectors import first_elsewhere, leads_there, vectors_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
-from trunnion.toolpath import Coolant, Kind, LoadTool, Phase, SpindleOn
+from trunnion.toolpath import Arcs, Coolant, Kind, LoadTool, Phase, SpindleOn
 
 _PHASE_TEXT = {
     Phase.RAPID: "rapid",
@@ -36,6 +37,9 @@ _SAID_AGAIN = ("plane", "feed_mode", "cutter_comp", "speed", "edge", "spindle", 
 
 #: Bytes of the lines that stand before a row of their own, at most: a phase, an arc's centre.
 _LINES_OF_A_ROW = 256
+
+#: Bytes of the lines before and behind the holes of a cycle, at most.
+_LINES_OF_A_CYCLE = 1024
 
 #: Manners in which X and Y of the program are across the tool.
 _LEVEL = (Manner.THREE_AXIS, Manner.TILTED)
@@ -186,15 +190,34 @@ class Blocks:
             start = stop
         return text
 
-    def _fitting(self) -> int:
-        """So many rows surely fit into the file, at least one where it must not end here.
+    def holes(self, motion: Motion, row: int, text: int) -> tuple[int, int]:
+        """How many holes surely fit into the file from a row on, with what begins and ends their cycle: at least one.
+
+        In a file that has no room left they do not begin: the next one begins where the tool stands. Returns the
+        number, and the index of the phase text that was printed last.
+        """
+        fitting = self._fitting(_LINES_OF_A_CYCLE)
+        if fitting >= 1 or row == 0:
+            return max(1, fitting), text
+        self._turn_over()
+        moves = motion.operation.moves
+        tip, kind = moves.tip.copy(), moves.kind.copy()
+        if motion.manner in _LEVEL:
+            tip[row - 1, 2] = self.height
+        kind[row - 1] = Kind.RAPID
+        stands = replace(motion.operation, moves=replace(moves, tip=tip, kind=kind), arcs=Arcs.none())
+        text = self.chunk(replace(motion, operation=stands), row - 1, row, (), -1, anew=True)
+        return max(1, self._fitting(_LINES_OF_A_CYCLE)), text
+
+    def _fitting(self, kept: int = 0) -> int:
+        """So many rows surely fit into the file beside what is ``kept``, at least one where it must not end here.
 
         Radius compensation goes on to the end: the control looks ahead there, and not from file to file.
         """
         if self.largest is None:
             return CHUNK
         widest = self.writer.widest_row + _LINES_OF_A_ROW
-        fitting = min(CHUNK, (self.largest - self.writer.size) // widest)
+        fitting = min(CHUNK, (self.largest - kept - self.writer.size) // widest)
         off = self.control.codes.get("comp_off", ABSENT)
         compensated = self.writer.in_force().get("cutter_comp", off) != off
         return max(1, fitting) if compensated else fitting

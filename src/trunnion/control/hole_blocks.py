@@ -29,8 +29,12 @@ def write_holes(
     begins = {0, *(np.flatnonzero(np.diff(tops)) + 1).tolist(), *(e.row - first for e in joining if e.row >= first)}
     ends = sorted(k for k in begins if k < last - first)
     for k, end in zip(ends, [*ends[1:], last - first], strict=True):
-        here = [event for event in joining if event.row == first + k]
-        text = _of_one_height(blocks, motion, first + k, first + end, here, text, said)
+        row = first + k
+        while row < first + end:
+            fitting, text = blocks.holes(motion, row, text)
+            stop, here = min(row + fitting, first + end), [event for event in joining if event.row == row]
+            text = _of_one_height(blocks, motion, row, stop, here, text, said)
+            row = stop
     blocks.progress(last - first)
     return text
 

@@ -42,8 +42,12 @@ def write_positions(
     over = replace(motion, operation=replace(motion.operation, moves=replace(moves, tip=_left(motion.operation))))
     starts = sorted(k for k in ends if 0 <= k <= last - first)
     for k, end in pairwise(starts):
-        here = [event for event in joining if event.row == first + k]
-        text = _of_one_height(blocks, over, first + k, first + end, here, text, said, float(heights[k]))
+        row = first + k
+        while row < first + end:
+            fitting, text = blocks.holes(over, row, text)
+            stop, here = min(row + fitting, first + end), [event for event in joining if event.row == row]
+            text = _of_one_height(blocks, over, row, stop, here, text, said, float(heights[k]))
+            row = stop
     blocks.progress(last - first)
     return text
 

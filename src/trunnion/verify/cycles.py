@@ -254,7 +254,7 @@ def leads(run: Run, extra: Sequence[int], made: Sequence[Made]) -> set[int]:
             leg = _leads_how(run, row, hole.first, approach)
             if leg:
                 lawful.add(row)
-            if leg not in ("down", "across"):
+            if leg not in ("down", "across", "turned", "nowhere"):
                 break
             row -= 1
     return lawful
@@ -274,12 +274,15 @@ def _leads_how(run: Run, row: int, first: int, approach: set[int]) -> str:
         or bool(run.state.machine_frame[row - 1])
         or (int(run.programmed[row - 1]) & int(PLACES)) == 0
     )
+    turned = float(np.abs(poses.axis[0] - axis).max()) > _TURNED
+    if float(np.abs(way).max()) < near and not turned:
+        return "nowhere"  # where a program goes on in another file, it says again where the tool stands
     if straight and up > 0.0:
         return "up"
     if float(np.abs(rest).max()) < _STRAIGHT and from_home:
         return "from home"
     if straight and over:
         return "down"
-    if over and float(np.abs(poses.axis[0] - axis).max()) > _TURNED:
+    if over and turned:
         return "turned"
     return "across" if over and abs(up) < _STRAIGHT else ""
