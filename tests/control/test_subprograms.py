@@ -159,7 +159,11 @@ CYCLES = st.lists(
 def drilling(cycles: list[tuple[tuple[str, ...], list[tuple[int, int, int]]]], axis: tuple[float, ...]) -> Toolpath:
     """Holes on a plane and on steps of it, a rapid before and behind those of each cycle; lengths are tenths."""
     across = np.linalg.svd(np.array([axis]))[2][1:]
-    points, kinds, events = list[Floats](), list[Kind](), list[Event]([LoadTool(0, 1, 1), SpindleOn(0, 1, 1000.0, Sense.CLW)])
+    points, kinds, events = (
+        list[Floats](),
+        list[Kind](),
+        list[Event]([LoadTool(0, 1, 1), SpindleOn(0, 1, 1000.0, Sense.CLW)]),
+    )
     for mode, places in cycles:
         flat = [0.1 * (x * across[0] + y * across[1] + z * np.array(axis)) for x, y, z in places]
         feed = ("MMPR", (1.25,)) if mode == ("TAP",) else ("MMPM", (90.0,))

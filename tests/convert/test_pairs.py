@@ -243,7 +243,10 @@ def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_fil
 ) -> None:
     folder = tmp_path_factory.getbasetemp()
     one = SITES[source]
-    run, claim = made(path, one, {}, folder / f"level{one.control.extension}")
+    try:
+        run, claim = made(path, one, {}, folder / f"level{one.control.extension}")
+    except InputError:
+        assume(False)  # LinuxCNC has no planes for holes
     for two in SITES.values():
         found = convert(run, one.control)
         assert [str(remark) for remark in found.remarks] == []
