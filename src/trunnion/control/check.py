@@ -185,7 +185,7 @@ def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Prob
     operation, problems = motion.as_written(), list[Problem]()
     moves, settings = operation.moves, settings_of(program)
     turns = motion.manner is Manner.TCP and program.control.turns_between_holes(settings)
-    settings |= {} if turns else {HOLES: IN_PLANES}
+    level = {} if turns else {HOLES: IN_PLANES}
     for event in operation.events:
         if not isinstance(event, CycleOn):
             continue
@@ -198,10 +198,12 @@ def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Prob
                     if planes
                     else "this control has no tilted planes: output these holes as motions, without CYCLE"
                 )
+                if HOLES in settings and motion.manner is Manner.TCP:
+                    cure += f", or turn the tool from hole to hole (--set {HOLES}=…)"
                 raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
             spindle = turning(operation.events, event.row, held)
             formats = program.control.number_formats(motion.three_axis)
-            program.control.family.hole_call(cycle, 0.0, spindle, settings, formats)
+            program.control.family.hole_call(cycle, 0.0, spindle, settings | level, formats)
             feed, _ = feed_of(cycle, spindle, float(moves.feed[event.row]), False)
             if not feed > 0.0:
                 raise CycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
