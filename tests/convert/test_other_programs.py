@@ -204,7 +204,7 @@ def remarks_on(programs: Programs, *lines: str) -> list[tuple[int, str]]:
             "Z goes to the machine position 300, which is not carried over",
         ),
         (
-            ["TRAORI", "ORIWKS", "ORIVECT", "G0 X0 Y0 Z0 A3=0 B3=0 C3=1", "G1 X1 A3=1 B3=0 C3=1 F1"],
+            ["TRAORI", "ORIWKS", "ORIVECT", "G0 X0 Y0 Z0 B0 C0", "G1 X1 B30 F1"],
             5,
             "1 points turn the tool on a great circle, which is not carried over",
         ),
