@@ -24,7 +24,7 @@ from trunnion.toolpath import Toolpath
 CHUNK = 4 << 20
 #: Statements that one walk of the scan writes down before it hands over.
 _SPANS = 1 << 15
-_SURVEY = 1 << 20
+_SURVEY = CHUNK
 #: No statement that makes a row is shorter.
 _SHORTEST = len("GOTO/\n")
 _BOM = b"\xef\xbb\xbf"

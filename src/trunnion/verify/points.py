@@ -205,7 +205,8 @@ def axes_apart(
     chord = e0 * e0 + e1 * e1 + e2 * e2
     if not chord > _NOISE * _NOISE:
         return (math.sqrt(chord), 0.0) if chord == chord else (0.0, np.inf)
-    angle = 2.0 * math.asin(min(0.5 * math.sqrt(chord), 1.0))
+    # The angle of a small chord is the chord itself, to the eleventh digit.
+    angle = math.sqrt(chord) if chord < 1e-10 else 2.0 * math.asin(min(0.5 * math.sqrt(chord), 1.0))
     if chord > 1e-4:  # not a small difference any more: the angle itself
         return angle, math.degrees(angle)
     # The second axis where the first has turned it to, and the ways into which both turn the tool.
