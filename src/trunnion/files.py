@@ -5,6 +5,7 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Condition
@@ -62,6 +63,7 @@ class Output:
         self.path = folder / name
         self.main: BinaryIO = self.path.open("w+b")
         self._others: dict[Path, BinaryIO] = {}
+        self._aside: ThreadPoolExecutor | None = None
 
     def begin(self, name: str) -> BinaryIO:
         """Begin another file of the same folder."""
@@ -80,6 +82,18 @@ class Output:
         for sink in (self.main, *self._others.values()):
             sink.flush()
 
+    def settle(self) -> None:
+        """Begin to bring what is written to the disk, beside whatever comes next: ``keep`` has less to wait for."""
+        self.flush()
+        self._aside = self._aside or ThreadPoolExecutor(1)
+        self._aside.submit(os.fsync, self.main.fileno())
+
+    def keep(self) -> None:
+        """See that all is on the disk for good, so that no power failure leaves half a file under its new name."""
+        self.flush()
+        for sink in (self.main, *self._others.values()):
+            os.fsync(sink.fileno())
+
     def begin_again(self) -> None:
         """Forget all that was written."""
         self.main.seek(0)
@@ -91,6 +105,8 @@ class Output:
 
     def close(self) -> None:
         """Write no more."""
+        if self._aside is not None:
+            self._aside.shutdown()
         for sink in (self.main, *self._others.values()):
             sink.close()
 
@@ -133,6 +149,7 @@ def output(target: str) -> Iterator[Output]:
         made = Output(hidden, path.name)
         try:
             yield made
+            made.keep()
         finally:
             made.close()
         _move([*made.others, made.path], path.parent)

@@ -51,8 +51,6 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     printed = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
     wishes = wishes_of(settings, control, arguments.explain or bool(arguments.report))
     targets = _targets(arguments, control)
-    import trunnion.verify  # noqa: F401 - wanted for the proof, and now it takes no time: the first CL file is being read
-
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
@@ -160,12 +158,13 @@ def running(
         run = aside.submit(_run, made, machine, growing, division)
         try:
             yield growing, run
-            made.flush()
+            made.settle()
         finally:
             growing.end()
 
 
 def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> "Run | None":
+    import trunnion.verify  # noqa: F401 - wanted next, and no kernel waits for it here
     from trunnion.reader import can_read, run_program
 
     if not can_read(machine):
