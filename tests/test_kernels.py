@@ -61,6 +61,36 @@ def test_what_is_loaded_is_what_was_compiled_and_more_can_be_compiled_after_it(t
     assert loaded[2] == "1 2 1"
 
 
+AHEAD = """
+import numpy as np
+from some_kernels import doubled, length
+from trunnion.kernels import load
+
+load(doubled, length)
+print(len(doubled.signatures), sum(doubled.stats.cache_hits.values()), sum(doubled.stats.cache_misses.values()))
+print(doubled(np.array([0.5, -2.0, 3.0])).tolist())
+print(len(doubled.signatures), sum(doubled.stats.cache_hits.values()), sum(doubled.stats.cache_misses.values()))
+"""
+
+
+def test_what_is_kept_can_be_loaded_ahead_and_nothing_is_compiled_for_it(tmp_path: Path) -> None:
+    (tmp_path / "some_kernels.py").write_text(SOURCE, encoding="utf-8")
+    fresh = run(tmp_path, AHEAD)
+    kept = run(tmp_path, AHEAD)
+
+    assert fresh[0] == "0 0 0"  # nothing is kept yet
+    assert fresh[1] == kept[1]
+    assert kept[0] == kept[2] == "1 1 0"
+
+
+def test_what_was_kept_of_other_sources_is_not_loaded(tmp_path: Path) -> None:
+    (tmp_path / "some_kernels.py").write_text(SOURCE, encoding="utf-8")
+    run(tmp_path, AHEAD)
+    (tmp_path / "some_kernels.py").write_text(SOURCE.replace("2.0 *", "3.0 *"), encoding="utf-8")
+
+    assert run(tmp_path, AHEAD)[0] == "0 0 0"
+
+
 def test_without_compiling_a_kernel_is_the_function_itself(tmp_path: Path) -> None:
     (tmp_path / "some_kernels.py").write_text(SOURCE, encoding="utf-8")
     script = "import os; os.environ['NUMBA_DISABLE_JIT'] = '1'\nimport some_kernels\nprint(type(some_kernels.length))"

@@ -48,6 +48,17 @@ def njit(**options: Any) -> Callable[[Kernel], Kernel]:
     return compiled
 
 
+def load(*kernels: Any) -> None:
+    """Load what is kept of kernels now, while there is time, and not when they are first called.
+
+    Kernels of which nothing is kept stay as they are.
+    """
+    for kernel in kernels:
+        code = getattr(kernel, "_cache", None)
+        for signature in code.signatures(kernel) if isinstance(code, _MachineCode) else ():
+            kernel.compile(signature)
+
+
 class _MachineCode:
     """The machine code of one kernel, by the types of its arguments: a cache as Numba's dispatchers want one.
 
@@ -67,6 +78,15 @@ class _MachineCode:
         """The folder."""
         path: str = self._files.cache_path
         return path
+
+    def signatures(self, kernel: Any) -> list[Any]:
+        """The types for which machine code is kept; none where Numba keeps its list in a way that is not known."""
+        try:
+            kept = self._files._cache_file._load_index()
+            codegen = kernel.targetctx.codegen()
+            return [key[0] for key in kept if key == self._files._index_key(key[0], codegen)]
+        except (AttributeError, TypeError, LookupError):
+            return []
 
     def load_overload(self, signature: Any, context: Any) -> Any:
         """What was compiled for a signature, or None."""

@@ -24,7 +24,10 @@ from trunnion.control.family import CENTRE_DIGITS
 from trunnion.control.standing import inside_limits
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import Growing, Output, output
+from trunnion.kernels import load
 from trunnion.machine import Machine, forward, load_machine
+from trunnion.nc import KERNELS as WRITING
+from trunnion.plan import KERNELS as PLANNING
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
 from trunnion.plan.arcs import off_circle
 from trunnion.toolpath import CycleOn, Toolpath
@@ -51,6 +54,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     printed = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
     wishes = wishes_of(settings, control, arguments.explain or bool(arguments.report))
     targets = _targets(arguments, control)
+    load(*PLANNING, *WRITING)
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
@@ -164,14 +168,14 @@ def running(
 
 
 def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> "Run | None":
-    import trunnion.verify  # noqa: F401 - wanted next, and no kernel waits for it here
-    from trunnion.reader import can_read, run_program
+    from trunnion import reader, verify  # the checks are wanted next, and no kernel waits for them here
 
-    if not can_read(machine):
+    if not reader.can_read(machine):
         return None
+    load(*reader.KERNELS, *verify.KERNELS)
     if division is not None:
         growing.wait()
-    return run_program(made.path, machine, subprograms=made.others, growing=growing)
+    return reader.run_program(made.path, machine, subprograms=made.others, growing=growing)
 
 
 def write(

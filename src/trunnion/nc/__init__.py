@@ -5,7 +5,20 @@ Out:    the bytes of the program, in blocks.
 Knows nothing of machines, of CL files, or of what a word means to a control.
 """
 
-from trunnion.nc.words import ABSENT, NumberFormat, Word, counts
-from trunnion.nc.writer import CHUNK, ROOM_OF_NUMBER, BlockNumbers, BlockWriter
+from trunnion.nc.words import ABSENT, NumberFormat, Word, count_column, counts
+from trunnion.nc.writer import CHUNK, ROOM_OF_NUMBER, BlockNumbers, BlockWriter, write_blocks
 
-__all__ = ["ABSENT", "CHUNK", "ROOM_OF_NUMBER", "BlockNumbers", "BlockWriter", "NumberFormat", "Word", "counts"]
+#: Kernels that every program needs.
+KERNELS = (count_column, write_blocks)
+
+__all__ = [
+    "ABSENT",
+    "CHUNK",
+    "KERNELS",
+    "ROOM_OF_NUMBER",
+    "BlockNumbers",
+    "BlockWriter",
+    "NumberFormat",
+    "Word",
+    "counts",
+]

@@ -80,7 +80,7 @@ class Word:
 
 
 @njit(cache=True, nogil=True)
-def _count_column(value: Floats, scale: float, out: Ints) -> None:
+def count_column(value: Floats, scale: float, out: Ints) -> None:
     """Round ``value * scale`` to whole numbers as if the product were exact.
 
     The product of two doubles is hi + lo with lo no more than half a last place of hi, so hi alone decides unless its
@@ -139,5 +139,5 @@ def counts(value: Floats, decimals: int, out: Ints | None = None) -> Ints:
         widest = max(abs(float(np.fmax.reduce(value))), abs(float(np.fmin.reduce(value))))
         if widest * scale > LARGEST_COUNT:  # False for NaN: a column without a number
             raise OverflowError(f"{widest:g} with {decimals} decimals has more digits than a control can read")
-    _count_column(value, scale, out)
+    count_column(value, scale, out)
     return out

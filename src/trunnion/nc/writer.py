@@ -137,7 +137,7 @@ def _put_number(
 
 
 @njit(cache=True, nogil=True)
-def _write_blocks(
+def write_blocks(
     table: Ints,
     forced: Ints,
     line_before: Ints,
@@ -401,7 +401,7 @@ class BlockWriter:
         text_room = sum(len(encoded[k]) + heads + 1 for k in line_of)
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
         bare = tuple(self._numbers.unnumbered)
-        written = _write_blocks(
+        written = write_blocks(
             table,
             forced,
             before,

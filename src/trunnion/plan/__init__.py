@@ -9,10 +9,15 @@ Knows nothing of text, neither of CL files nor of NC programs.
 from trunnion.plan.clearance import Clearance, Surface
 from trunnion.plan.duration import seconds
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole, Why
+from trunnion.plan.placing import lean, straight_on
 from trunnion.plan.planner import plan
 from trunnion.plan.wishes import Wishes
 
+#: Kernels that most programs need.
+KERNELS = (lean, straight_on)
+
 __all__ = [
+    "KERNELS",
     "Clearance",
     "Decision",
     "Departures",

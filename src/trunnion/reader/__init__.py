@@ -6,6 +6,7 @@ This room is written from the language of the controls. It shares nothing with w
 from trunnion.reader.columns import Ramps, Steps
 from trunnion.reader.families import can_read, numbers_lengths, reader_of, run_program
 from trunnion.reader.feeds import FeedPath, counted, ways
+from trunnion.reader.poses import joint_rows, wind
 from trunnion.reader.run import (
     Comment,
     Finding,
@@ -20,7 +21,11 @@ from trunnion.reader.run import (
 )
 from trunnion.reader.subdivide import Samples, subdivide
 
+#: Kernels that every program needs.
+KERNELS = (wind, joint_rows)
+
 __all__ = [
+    "KERNELS",
     "Comment",
     "FeedPath",
     "Finding",

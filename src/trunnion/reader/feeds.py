@@ -64,9 +64,10 @@ def ways(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats
 def counted(run: Run, rows: Ints) -> Floats:
     """(k,) float64: what F per minute counts in rows, in any order, where that is not the tip's way; else NaN."""
     way = np.full(len(rows), np.nan)
-    free = np.flatnonzero(
-        ~run.state.tcp.at(rows) & (run.kind[rows] == Kind.LINEAR) & (run.state.feed_mode.at(rows) == 94)
-    )
+    without = ~run.state.tcp.at(rows)
+    if not without.any():
+        return way
+    free = np.flatnonzero(without & (run.kind[rows] == Kind.LINEAR) & (run.state.feed_mode.at(rows) == 94))
     if not len(free):
         return way
     before = run.rotary[rows[free] - 1]

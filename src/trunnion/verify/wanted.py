@@ -203,6 +203,9 @@ class Wanted:
     def _taken(self, name: str, rows: Ints) -> NDArray[Any]:
         if len(rows) and rows[-1] < (part := self.part_of(int(rows[0]))).end:
             column: NDArray[Any] = getattr(part.operation.moves, name)
+            first, last = int(rows[0]) - part.first, int(rows[-1]) - part.first
+            if column.ndim == 1 and last - first == len(rows) - 1:
+                return column[first : last + 1]
             return column[rows - part.first]
         pieces = np.split(rows, np.searchsorted(rows, self.firsts[1:]))
         taken = zip(self.parts, pieces, strict=True)
