@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
+from trunnion import reader
 from trunnion.cli.progress import progress
 from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
 from trunnion.cli.verify import check_report
@@ -33,7 +34,6 @@ from trunnion.plan.arcs import off_circle
 from trunnion.toolpath import CycleOn, Toolpath
 
 if TYPE_CHECKING:
-    from trunnion.reader import Run
     from trunnion.verify import Allowed, Settings, Verification
 
 #: A turn of the rotary axes turns the tool axis by no less than this part of it, however near the pole.
@@ -121,9 +121,7 @@ def planned_program(
 
 def _unprovable(machine: Machine, control: Control) -> list[Problem]:
     """Why a program of this machine can be written but not read back; empty where it can."""
-    from trunnion.reader import can_read
-
-    if can_read(machine):
+    if reader.can_read(machine):
         return []
     what = f"programs for {control.name} cannot be read back yet: nothing proves this one"
     return [Problem(machine.key, 0, what)]
@@ -150,7 +148,7 @@ class Claim:
 @contextmanager
 def running(
     made: Output, machine: Machine, division: Division | None
-) -> "Iterator[tuple[Growing, Future[Run | None]]]":
+) -> "Iterator[tuple[Growing, Future[reader.Run | None]]]":
     """Run a program while it is being written, and get ready for that before: what runs it is imported meanwhile.
 
     Gives who wants to know how far the program is written, and the run, complete when the block has ended; None where
@@ -167,8 +165,8 @@ def running(
             growing.end()
 
 
-def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> "Run | None":
-    from trunnion import reader, verify  # the checks are wanted next, and no kernel waits for them here
+def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> reader.Run | None:
+    from trunnion import verify  # wanted next, and no kernel waits for it here
 
     if not reader.can_read(machine):
         return None
@@ -208,7 +206,7 @@ def write(
 
 def prove(
     claim: Claim,
-    run: "Run | None",
+    run: reader.Run | None,
     paths: Sequence[Toolpath],
     made: Output,
     target: str,
