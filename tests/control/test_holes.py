@@ -122,7 +122,7 @@ def test_the_feed_of_a_cycle_is_its_own_and_the_modal_one_comes_back(post: Post)
         ("DRILL,RAPTO,3,FEDTO,-20", "without a feed"),
         ("DRILL,CSINK,RAPTO,3,CSKDIA,10,MMPM,100", "without the angle"),
         ("DRILL,RAPTO,3,FEDTO,-1e12,MMPM,100", "no machine has"),
-        ("BORE,BACK,RAPTO,3,FEDTO,-20,MMPM,100", "cannot be written"),
+        ("BORE,BACK,RAPTO,3,FEDTO,-20,MMPM,100", "does not say how far the tool must move off its axis"),
         ("TAP,BRKCHP,RAPTO,3,FEDTO,-20,MMPR,1.25", "without STEP"),
         ("TAP,BRKCHP,RAPTO,3,FEDTO,-20,STEP,5,MMPR,1.25,OPTION", "a compensating chuck"),
         ("TAP,DEEP,RAPTO,3,FEDTO,-20,STEP,5,1,2,MMPR,1.25", "strokes that become shorter"),

@@ -110,6 +110,9 @@ def cycle_of(event: CycleOn) -> Cycle:
     if any(not abs(number) < _FARTHEST for given in values.values() for number in given):
         raise CycleError("CYCLE with a number that no machine has", "write lengths in mm or inches, feeds per minute")
     making = _MAKINGS.get(event.mode)
+    if event.mode == ("BORE", "BACK"):
+        what = "CYCLE/BORE,BACK does not say how far the tool must move off its axis to pass the hole, and to which side"
+        raise CycleError(what, "output the holes as motion")
     if making is None:
         what = f"CYCLE/{','.join(event.mode)} is a cycle that cannot be written"
         raise CycleError(what, "output the holes as motion")
