@@ -49,6 +49,8 @@ class Moves:
     feed     (n,)   float64   mm/min, or mm/rev where ``per_rev``; NaN before the first FEDRAT; rapids carry it on
     per_rev  (n,)   bool      feed is per spindle revolution
     line     (n,)   int32     line of the CL file, from 1
+    normal   (n, 3) float64   unit vector out of the surface where the tool touches it, NaN where nobody knows; None:
+                              nobody asked for it
     """
 
     tip: Floats
@@ -58,13 +60,22 @@ class Moves:
     feed: Floats
     per_rev: Flags
     line: Lines
+    normal: Floats | None = None
 
     def __post_init__(self) -> None:
-        for column in (self.tip, self.axis, self.kind, self.phase, self.feed, self.per_rev, self.line):
-            column.setflags(write=False)
+        for column in (self.tip, self.axis, self.kind, self.phase, self.feed, self.per_rev, self.line, self.normal):
+            if column is not None:
+                column.setflags(write=False)
 
     def __len__(self) -> int:
         return len(self.tip)
+
+    def part(self, rows: slice | Ints | Flags) -> "Moves":
+        """Some of the rows."""
+        return Moves(
+            self.tip[rows], self.axis[rows], self.kind[rows], self.phase[rows], self.feed[rows], self.per_rev[rows],
+            self.line[rows], None if self.normal is None else self.normal[rows],
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -289,9 +300,10 @@ class Operation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Toolpath:
-    """A CL file, read: its operations in order, and what was noticed while reading."""
+    """A CL file, read: its operations in order, and what was noticed while reading. ``unit``: of its lengths, mm."""
 
     file: str
     operations: tuple[Operation, ...]
     part: str = ""
     remarks: tuple[Problem, ...] = field(default=())
+    unit: float = 1.0

@@ -108,7 +108,7 @@ def read_in_chunks(
         columns.tip[:rows] *= unit
     operations = tuple(operation(draft, columns, unit, findings) for draft in interpreter.drafts)
     findings.check()
-    return Toolpath(str(path), operations, interpreter.part, findings.remarks)
+    return Toolpath(str(path), operations, interpreter.part, findings.remarks, unit)
 
 
 def _survey(file: BinaryIO, findings: Findings) -> Survey:

@@ -21,6 +21,7 @@ from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set
 from trunnion.cli.verify import check_report
 from trunnion.cli.verify import report as write_report
 from trunnion.control import Control, Division, Program, check_program, load_control, write_program
+from trunnion.control.definition import SURFACE_NORMAL
 from trunnion.control.family import CENTRE_DIGITS
 from trunnion.control.standing import inside_limits
 from trunnion.errors import InputError, Problem, Refused, Severity
@@ -62,6 +63,10 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
         with output(target) as made:
             division = division_of(settings, control, target, made)
             paths = list(islice(toolpaths, len(files)))
+            if {**control.settings, **settings}.get("normals") == "contact":
+                from trunnion.cl.contact import with_normals
+
+                paths = [with_normals(path) for path in paths]
             for path in paths:
                 say(path.remarks)
             with running(made, machine, division) as (growing, run):
@@ -284,6 +289,7 @@ def _allowed(program: Program) -> "list[Allowed]":
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
         tip, angle = half["X"], max(half["primary"], half["secondary"])
+        normal = half.get(SURFACE_NORMAL[0], 0.0)
         # Near a pole angles are noisy, and the check takes the ways of the tool axis for straight.
         angle += 1e-8 + angle * math.radians(angle) / _LEAST_LEVER
         if motion.plane is not None and control.plane_from_pose:
@@ -296,6 +302,7 @@ def _allowed(program: Program) -> "list[Allowed]":
             if inside_limits(machine, motion, turning) is not motion:
                 tilt += 1.5 * 10.0**-turning
             tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
+            normal = math.sqrt(3.0) * (normal + math.radians(tilt))
         if "arc_angle" in half:
             tip += _by_angles(motion, half["X"], half["arc_angle"])
         if motion.manner is Manner.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
@@ -305,11 +312,11 @@ def _allowed(program: Program) -> "list[Allowed]":
             tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
         if not motion.begins:
             before = allowed.pop()
-            tip, angle = max(tip, before.tip), max(angle, before.angle)
+            tip, angle, normal = max(tip, before.tip), max(angle, before.angle), max(normal, before.normal)
         apart = motion.departures
         agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
         found = 2.0 * CENTRE_DIGITS * half["X"] if control.arcs_by_radius else 0.0
-        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed, found))
+        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed, found, normal))
     return allowed
 
 

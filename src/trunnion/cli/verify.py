@@ -33,6 +33,10 @@ def run(arguments: argparse.Namespace) -> int:
     usual = usual_settings(machine)
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
     done = run_program(Path(arguments.file), machine, subprograms=[Path(file) for file in arguments.subprograms])
+    if len(done.normals):
+        from trunnion.cl.contact import with_normals
+
+        paths = [with_normals(path) for path in paths]
     found = verify(
         done,
         paths,

@@ -70,6 +70,7 @@ def check_program(program: Program) -> list[Problem]:
             problems += _event_problems(program, motion, event, rpm)
         if motion.manner is Manner.TCP and program.control.only_vectors:
             problems += _not_by_vectors(program, motion)
+        problems += _normal_problems(program, motion)
         if motion.manner is Manner.WITHOUT_TCP and kind_of(program, motion):
             problems += _problems_without_tcp(program, motion)
         if not kind_of(program, motion):
@@ -134,6 +135,36 @@ def _not_by_vectors(program: Program, motion: Motion) -> list[Problem]:
     what = f"{what} {motion.operation.name} is written with rotary positions"
     cure = "nothing, or orientation=angles, which says so of all operations"
     return [Problem(program.file, int(motion.operation.moves.line[row]), what, cure, Severity.WARNING)]
+
+
+def _normal_problems(program: Program, motion: Motion) -> list[Problem]:
+    """What speaks against saying the surface's normals of an operation, and where it has none."""
+    operation, problems = motion.operation, list[Problem]()
+    moves = operation.moves
+    if moves.normal is None or not np.isfinite(moves.normal).any():
+        return []
+    place, name = (program.file, operation.line), operation.name
+    off = "leave the setting normals out"
+    if motion.manner is Manner.WITHOUT_TCP:
+        what = f"operation {name}: surface normals without TCP, where X, Y and Z are slides"
+        problems.append(Problem(*place, what, off))
+    if motion.manner is Manner.TCP and setting_of(program, "orientation") != "vector":
+        what = f"operation {name}: with TCP the control would stand the tool on the surface's normal"
+        problems.append(Problem(*place, what, "--set orientation=vector says the tool axis beside it"))
+    if len(operation.arcs.row):
+        what = "a circle, on which no surface normal can be said: the control would not compensate the tool there"
+        problems.append(Problem(program.file, int(moves.line[operation.arcs.row[0]]), what, "output lines only"))
+    without = (moves.kind == Kind.LINEAR) & ~np.isfinite(moves.normal[:, 0])
+    between = without[:-1] & (moves.line[:-1] == moves.line[1:]) & np.isfinite(moves.normal[1:, 0])
+    if between.any():
+        what = "a point between CL points, where nobody knows the surface's normal"
+        line = int(moves.line[int(np.argmax(between))])
+        problems.append(Problem(program.file, line, what, "leave the setting axis_tolerance out"))
+    elif without.any():
+        what = f"operation {name}: {int(without.sum())} of {len(moves)} points have no contact point"
+        how = "the control does not compensate the tool there"
+        problems.append(Problem(*place, what, how, Severity.WARNING))
+    return problems
 
 
 def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:

@@ -58,6 +58,9 @@ CALL = "call"
 AXIS_VECTOR = ("axis_x", "axis_y", "axis_z")
 VECTOR_LINE = "vector_line"
 
+#: The words of the surface's normal where the tool touches it, in blocks that open with ``VECTOR_LINE``.
+SURFACE_NORMAL = ("surface_x", "surface_y", "surface_z")
+
 #: Words that say whether an orientation is gone to by its vector or by the rotary axes, on controls that can have both.
 BY_VECTOR, BY_AXES = "by_vector", "by_axes"
 

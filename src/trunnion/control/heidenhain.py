@@ -22,7 +22,8 @@ from trunnion.plan.holes import Cycle, Turning
 from trunnion.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 
 WORDS: tuple[str, ...] = (
-    "line", "vector_line", "axis_x", "axis_y", "axis_z", "arc", *BY_RADIUS, "helix", "arc_angle", "arc_rise",
+    "line", "vector_line", "surface_x", "surface_y", "surface_z", "axis_x", "axis_y", "axis_z", "arc", *BY_RADIUS,
+    "helix", "arc_angle", "arc_rise",
     "counterclockwise", "clockwise", "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant",
     "feed_mode", "call",
 )  # fmt: skip
@@ -42,6 +43,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "rotary_feed": ("degrees", "tip"),
     "retract": ("home", "m140"),
     "orientation": ("angles", "vector"),
+    "normals": ("off", "contact"),
 }
 
 _VECTOR: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")

@@ -164,6 +164,13 @@ def remark_homes(run: Run, remark: Remarks) -> None:
             _at(run, placed[away], what, "the control's templates say where to park", remark)
 
 
+def remark_normals(run: Run, remark: Remarks) -> None:
+    """Say that normals of surfaces stay behind."""
+    if len(run.normals):
+        what = f"{len(run.normals)} blocks say the surface's normal, which is not carried over"
+        _at(run, run.normals.row, what, "a CL file has contact points of the CAM in its place", remark)
+
+
 def _at(run: Run, rows: Ints, what: str, cure: str, remark: Remarks) -> None:
     """A remark about rows, at the first of them."""
     remark(int(run.block[rows[0]]), what, cure, int(run.file[rows[0]]))

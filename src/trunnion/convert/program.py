@@ -20,7 +20,15 @@ from trunnion.control.definition import Control
 from trunnion.control.template import Template
 from trunnion.convert.events import Events
 from trunnion.convert.heads import match, patterns
-from trunnion.convert.lost import Remarks, remark_homes, remark_poses, remark_registers, remark_ways, remark_words
+from trunnion.convert.lost import (
+    Remarks,
+    remark_homes,
+    remark_normals,
+    remark_poses,
+    remark_registers,
+    remark_ways,
+    remark_words,
+)
 from trunnion.convert.moves import arcs_of, moves_of
 from trunnion.convert.said import Item, items
 from trunnion.convert.settings import number, settings_of
@@ -135,6 +143,7 @@ class _Converter:
         settings = settings_of(control, [(part.line, part.values) for part in parts], self._remark)
         rows = [part.rows for part in parts]
         remark_homes(run, self._remark)
+        remark_normals(run, self._remark)
         offset = "G" if self._offset_is_word else "work offset "
         remark_registers(run, rows, offset, self._remark)
         remark_ways(run, rows, settings.get("orientation") == "vector", self._remark)

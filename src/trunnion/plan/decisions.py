@@ -1,6 +1,6 @@
 """The decision log of an operation: where it starts, where it changes its state, and why."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -137,9 +137,7 @@ def _start(planned: Planned) -> Decision:
 
 def _part(planned: Planned, rows: slice) -> Planned:
     """Some rows of an operation, to be planned by themselves."""
-    moves = planned.operation.moves
-    cut = type(moves)(**{f.name: getattr(moves, f.name)[rows] for f in fields(moves)})
-    operation = replace(planned.operation, moves=cut)
+    operation = replace(planned.operation, moves=planned.operation.moves.part(rows))
     return replace(planned, operation=operation, rotary=planned.rotary[rows], state=planned.state[rows])
 
 

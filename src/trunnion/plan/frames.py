@@ -43,9 +43,10 @@ def frame_of(origin: Floats, x: Floats, y: Floats) -> Frame:
 def _carried(operation: Operation, turn: Floats, shift: Floats) -> Operation:
     """All places p of an operation become turn p + shift, all directions u turn u."""
     moves, arcs = operation.moves, operation.arcs
+    normal = None if moves.normal is None else moves.normal @ turn.T
     return replace(
         operation,
-        moves=replace(moves, tip=moves.tip @ turn.T + shift, axis=moves.axis @ turn.T),
+        moves=replace(moves, tip=moves.tip @ turn.T + shift, axis=moves.axis @ turn.T, normal=normal),
         arcs=replace(arcs, centre=arcs.centre @ turn.T + shift, normal=arcs.normal @ turn.T),
         events=tuple(
             replace(event, tip=tuple(turn @ event.tip + shift), axis=tuple(turn @ event.axis))

@@ -111,7 +111,7 @@ def cycle_of(event: CycleOn) -> Cycle:
         raise CycleError("CYCLE with a number that no machine has", "write lengths in mm or inches, feeds per minute")
     making = _MAKINGS.get(event.mode)
     if event.mode == ("BORE", "BACK"):
-        what = "CYCLE/BORE,BACK does not say how far the tool must move off its axis to pass the hole, and to which side"
+        what = "CYCLE/BORE,BACK does not say how far the tool must move off its axis to pass the hole, nor where to"
         raise CycleError(what, "output the holes as motion")
     if making is None:
         what = f"CYCLE/{','.join(event.mode)} is a cycle that cannot be written"
@@ -261,8 +261,7 @@ def by_axis(operation: Operation) -> list[tuple[int, int]] | None:
 def part_of(operation: Operation, first: int, end: int) -> Operation:
     """Rows ``first`` to ``end`` of an operation without arcs, with the cycle that holds where they begin."""
     moves = operation.moves
-    rows = slice(first, end)
-    cut = type(moves)(*(getattr(moves, n)[rows] for n in ("tip", "axis", "kind", "phase", "feed", "per_rev", "line")))
+    cut = moves.part(slice(first, end))
     last = end == len(moves)
     inside = [e for e in operation.events if first <= e.row < end or (last and e.row == end)]
     held = [e for e in operation.events if isinstance(e, CycleOn | CycleOff) and e.row < first]

@@ -133,4 +133,11 @@ def _with_rows(moves: Moves, rewinds: Sequence[Rewind], rows: Ints, wishes: Wish
         np.insert(moves.feed, at, np.stack((feed, feed, wishes.engage * feed), axis=1).ravel()),
         np.insert(moves.per_rev, at, np.repeat(moves.per_rev[rows], ADDED)),
         np.insert(moves.line, at, np.repeat(moves.line[source], ADDED)),
+        None if moves.normal is None else np.insert(moves.normal, at, _only_back(moves.normal[source]), axis=0),
     )
+
+
+def _only_back(normal: Floats) -> Floats:
+    """(3 n, 3): normals (n, 3) of rows behind which three are put in, of which the third is back there."""
+    away = np.full_like(normal, np.nan)
+    return np.stack((away, away, normal), axis=1).reshape(-1, 3)

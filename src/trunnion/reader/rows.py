@@ -9,15 +9,27 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from trunnion.arrays import Codes, Floats
+from trunnion.arrays import Codes, Floats, Ints
 from trunnion.errors import Severity
 from trunnion.machine import Machine
 from trunnion.machine.inverse import pack
 from trunnion.reader import poses
 from trunnion.reader.columns import Changes, Columns, affine
 from trunnion.reader.feeds import FeedPath
-from trunnion.reader.handover import COMMENTS, FEEDS, FIELDS, KIND, LINE, POSITION, ROOM, ROW, Notes, Target
-from trunnion.reader.run import BY_WORDS, Comment, Finding, Happening, Run, State, Value, Written
+from trunnion.reader.handover import (
+    COMMENTS,
+    FEEDS,
+    FIELDS,
+    KIND,
+    LINE,
+    NORMALS,
+    POSITION,
+    ROOM,
+    ROW,
+    Notes,
+    Target,
+)
+from trunnion.reader.run import BY_WORDS, Comment, Finding, Happening, Normals, Run, State, Value, Written
 from trunnion.toolpath import Arcs, Kind
 
 #: Larger positions (mm, degrees) are none that a machine could have.
@@ -71,10 +83,18 @@ class Rows:
         self.by_tip = Changes(False)
         self.feed_path = Changes(int(FeedPath.SLIDES))
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
+        self._touching: list[tuple[Ints, Floats]] = []
 
         self.counts = np.zeros(FIELDS, np.int64)
         self.counts[KIND] = 1
-        self.notes = Notes(np.empty((ROOM, 4), np.int64), np.empty(ROOM, np.int64), np.empty(ROOM), np.zeros(12))
+        self.notes = Notes(
+            np.empty((ROOM, 4), np.int64),
+            np.empty(ROOM, np.int64),
+            np.empty(ROOM),
+            np.empty(ROOM, np.int64),
+            np.empty((ROOM, 3)),
+            np.zeros(12),
+        )
         self.place = np.zeros(5)
         self.place[3] = math.nan
         self.map = affine(np.eye(3), np.zeros(3))
@@ -122,6 +142,7 @@ class Rows:
         self.counts[ROW] = self.columns.n
         self.counts[COMMENTS] = 0
         self.counts[FEEDS] = 0
+        self.counts[NORMALS] = 0
         self.place[4] = self.feed.now
         self.counts[POSITION] = position
         self.counts[LINE] = line
@@ -135,6 +156,8 @@ class Rows:
         self._turned |= bool(bits & (Written.FIRST | Written.SECOND | Written.VECTOR))
         noted = int(self.counts[FEEDS])
         self.feed.extend(self.notes.feed_rows[:noted], self.notes.feeds[:noted])
+        if said := int(self.counts[NORMALS]):
+            self._touching.append((self.notes.touching[:said].copy(), self.notes.normals[:said].copy()))
         self.columns.n = new
         return bits
 
@@ -144,7 +167,7 @@ class Rows:
         return (
             self.columns.n == self.columns.capacity
             or self.columns.full
-            or ROOM in (self.counts[COMMENTS], self.counts[FEEDS])
+            or ROOM in (self.counts[COMMENTS], self.counts[FEEDS], self.counts[NORMALS])
         )
 
     # By hand
@@ -182,6 +205,10 @@ class Rows:
     def curve(self, row: int, centre: Floats, normal: Floats, radius: float, turns: int) -> None:
         """Note the circle of a row of kind ``Kind.ARC``, in the workpiece frame."""
         self._arcs.append((row, centre, normal, radius, turns))
+
+    def touch(self, normal: Floats) -> None:
+        """Note the surface's normal (3,), as it was programmed, of the row that was made last."""
+        self._touching.append((np.array([self.row - 1]), (self.turn @ normal)[None]))
 
     def settle(self) -> None:
         """Work out where the axes are after the rows so far."""
@@ -266,11 +293,18 @@ class Rows:
             ),
             start=self.start,
             arcs=self._curves(),
+            normals=self._normals(),
             tools=tuple(self.tools),
             comments=comments,
             events=self.events,
             findings=tuple(findings),
         )
+
+    def _normals(self) -> Normals:
+        if not self._touching:
+            return Normals.none()
+        rows, vectors = zip(*self._touching, strict=True)
+        return Normals(np.concatenate(rows), np.concatenate(vectors))
 
     def _curves(self) -> Arcs:
         if not self._arcs:

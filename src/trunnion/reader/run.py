@@ -107,6 +107,29 @@ BY_WORDS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Normals:
+    """The surface's normals that blocks say: ``row`` (k,), growing, and ``vector`` (k, 3) in the workpiece frame.
+
+    Vectors are as long as the program has them.
+    """
+
+    row: Ints
+    vector: Floats
+
+    def __post_init__(self) -> None:
+        for column in (self.row, self.vector):
+            column.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    @staticmethod
+    def none() -> "Normals":
+        """No normals at all."""
+        return Normals(np.zeros(0, np.int64), np.zeros((0, 3)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class State:
     """What changes seldom, as columns that are kept by their changes. The same names in ``Run`` are the whole columns.
 
@@ -165,6 +188,7 @@ class Run:
                                    the values of the slides X, Y and Z
     rotary         (n, 2) float64  positions of the rotary axes as they wind, deg, as in ``machine.rotary``
     start          (5,)   float64  axis values before row 0
+    normals                        a ``Normals``: where blocks say that of the surface (LN)
 
     Worked out of these when asked for:
 
@@ -199,6 +223,7 @@ class Run:
     state: State
     start: Floats
     arcs: Arcs
+    normals: Normals = field(default_factory=Normals.none)
     tools: tuple[str, ...] = ("",)
     comments: list[Comment] = field(default_factory=list)
     events: list[Happening] = field(default_factory=list)

@@ -91,15 +91,11 @@ def without_holes(operation: Operation) -> tuple[Operation, Flags]:
         return operation, holes
     kept = ~holes
     place = np.concatenate(([0], np.cumsum(kept)))
-    left_over = Moves(
-        moves.tip[kept], moves.axis[kept], moves.kind[kept], moves.phase[kept],
-        moves.feed[kept], moves.per_rev[kept], moves.line[kept],
-    )  # fmt: skip
     arcs = operation.arcs
     stay = kept[arcs.row] if len(arcs.row) else np.zeros(0, bool)
     left = Arcs(place[arcs.row[stay]], arcs.centre[stay], arcs.normal[stay], arcs.radius[stay], arcs.turns[stay])
     events = tuple(replace(event, row=int(place[event.row])) for event in operation.events)
-    return replace(operation, moves=left_over, arcs=left, events=events), holes
+    return replace(operation, moves=moves.part(kept), arcs=left, events=events), holes
 
 
 def holes_of(

@@ -19,6 +19,7 @@ from trunnion.verify.case import NAMED, Case, Settings
 from trunnion.verify.halts import stops
 from trunnion.verify.holes import holes
 from trunnion.verify.model import Check, Place, Share, Verification
+from trunnion.verify.normals import normals
 from trunnion.verify.points import Deviations, Off
 from trunnion.verify.rapids import with_rapids
 from trunnion.verify.turns import turns
@@ -125,6 +126,7 @@ def _asked_besides(case: Case, believed: Believed) -> tuple[Check, list[Check], 
     besides = [demands.kind(case), demands.feed(case, believed), in_force.spindle(case), in_force.tool(case)]
     besides += [in_force.coolant(case), in_force.compensation(case), stops(case)]
     besides += [in_force.offset(case), in_force.home(case), holes(case)]
+    besides += normals(case)
     return demands.order(case), besides, _of_itself(case)
 
 

@@ -62,6 +62,7 @@ class Allowed:
     feed    of a feed from the CL file's, in its own unit
     agreed  where it may be otherwise
     centre  mm more for the centre of a circle, which a control may have to find by a radius
+    normal  of a component of the surface's normal
     """
 
     tip: float = 0.001
@@ -70,6 +71,7 @@ class Allowed:
     feed: float = 0.005
     agreed: Agreed | None = None
     centre: float = 0.0
+    normal: float = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -345,6 +347,7 @@ def seen_from(frame: Frame, operation: Operation) -> Operation:
             moves.feed,
             moves.per_rev,
             moves.line,
+            None if moves.normal is None else moves.normal @ turn.T,
         ),
         arcs=Arcs(arcs.row, arcs.centre @ turn.T + shift, arcs.normal @ turn.T, arcs.radius, arcs.turns),
     )

@@ -270,3 +270,28 @@ def test_another_machine(run: Runner) -> None:
     close(found.axis[0], [sine * half, sine * half, cosine], atol=1e-12)
     close(found.tip[0], [1, 2, 3], atol=1e-9)
     assert np.isfinite(found.joints).all()
+
+
+# Normals of surfaces
+
+
+def test_normals_are_kept_as_the_workpiece_sees_them(run: Runner) -> None:
+    text = (
+        "L X+1 F100\nLN X+2 Y+0 Z+0 NX+0.6 NY+0 NZ+0.8\nLN X+3 Y+0 Z+0 NZ-2 TX+0 TY+0 TZ+1\nL X+4\n"
+        "Q5 = 0.28\nLN X+5 NX+Q5 NY+0.96\nPLANE SPATIAL SPA-30 SPB+0 SPC+0 STAY\nLN X+6 Y+1 Z+1 NX+0 NY+1 NZ+0\n"
+    )
+    found = run(text)
+    assert found.normals.row.tolist() == [1, 2, 4, 5]
+    turned = [0.0, math.cos(math.radians(30.0)), -0.5]
+    close(found.normals.vector, [[0.6, 0, 0.8], [0, 0, -2], [0.28, 0.96, 0], turned])
+
+
+def test_normals_of_many_blocks_are_all_kept(run: Runner) -> None:
+    """More than the kernel notes at a time, with others between them."""
+    rows = range(9000)
+    lines = [f"L{'N' if k % 3 else ''} X{k}" + (f" NX0.6 NY{k}" if k % 3 else "") for k in rows]
+    found = run("L Y0 F100\n" + "\n".join(lines))
+    wanted = [k for k in rows if k % 3]
+    assert found.normals.row.tolist() == [k + 1 for k in wanted]
+    assert found.normals.vector[:, 1].tolist() == wanted
+    assert found.findings == ()

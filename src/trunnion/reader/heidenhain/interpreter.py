@@ -247,7 +247,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
             self._note("M92: where it counts from is set in the machine, taken as M91", Severity.WARNING)
         if vector is not None and not control.tips:
             self._note("TX TY TZ need M128: the vector is taken as the tool axis", Severity.WARNING)
-        moves = bool(axes) or vector is not None or circle is not None
+        moves, row = bool(axes) or vector is not None or circle is not None, control.row
         if moves:
             control.move(
                 axes,
@@ -256,6 +256,8 @@ class HeidenhainInterpreter(Interpreter[Activation]):
                 machine_frame=bool(machine),
                 feed_written=block.feed is not None and not block.rapid,
             )
+            if block.normal is not None and control.row > row:
+                control.touch(block.normal)
         calls = any(code == M_CALL for code, _ in block.m)
         if calls or (self._functions.modal_call and moves and not machine):
             self._drill(call)

@@ -63,12 +63,20 @@ class Block:
     @property
     def tool_axis(self) -> Floats | None:
         """TX TY TZ, (3,); components that are not written are 0."""
-        if not self.vectors.keys() & {"TX", "TY", "TZ"}:
-            return None
-        vector = np.array([self.vectors.get(name, 0.0) for name in ("TX", "TY", "TZ")])
-        if not np.any(vector):
+        vector = self._vector("TX", "TY", "TZ")
+        if vector is not None and not np.any(vector):
             raise KlartextError("the tool vector has no length")
         return vector
+
+    @property
+    def normal(self) -> Floats | None:
+        """NX NY NZ, (3,), the same way."""
+        return self._vector("NX", "NY", "NZ")
+
+    def _vector(self, *names: str) -> Floats | None:
+        if not self.vectors.keys() & set(names):
+            return None
+        return np.array([self.vectors.get(name, 0.0) for name in names])
 
 
 def read_block(words: Sequence[Word], parameters: Parameters) -> Block:

@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Codes, Floats, Ints
 from trunnion.kernels import njit
-from trunnion.reader.handover import COMMENTS, FEEDS, LINE, POSITION, ROW, Notes, Target
+from trunnion.reader.handover import COMMENTS, FEEDS, LINE, NORMALS, POSITION, ROW, Notes, Target
 
 FEED: Final = 1
 COMPENSATION: Final = 2
@@ -93,12 +93,19 @@ def scan(
     row = counts[ROW]
     noted = counts[COMMENTS]
     feeds_noted = counts[FEEDS]
+    normals_noted = counts[NORMALS]
     position = counts[POSITION]
     line = counts[LINE]
     comments = notes.comments
     room = min(target.kind.shape[0], target.base + target.way.shape[0])
     values = np.zeros(14)
-    while position < end and row < room and noted < comments.shape[0] and feeds_noted < notes.feeds.shape[0]:
+    while (
+        position < end
+        and row < room
+        and noted < comments.shape[0]
+        and feeds_noted < notes.feeds.shape[0]
+        and normals_noted < notes.touching.shape[0]
+    ):
         at = position
         seen = 0
         number = -1
@@ -232,6 +239,15 @@ def scan(
             bits = (moves & 0b11111) | (32 if tilts else 0)
             target.programmed[row] = bits | (64 if seen & (1 << FEED) and not rapid else 0)
             target.way[waits] = way
+            if seen >> NORMAL:
+                for k in range(3):
+                    values[NORMAL + k] = values[NORMAL + k] if seen & (1 << (NORMAL + k)) else 0.0
+                for k in range(3):
+                    notes.normals[normals_noted, k] = (
+                        turn[k, 0] * values[NORMAL] + turn[k, 1] * values[NORMAL + 1] + turn[k, 2] * values[NORMAL + 2]
+                    )
+                notes.touching[normals_noted] = row
+                normals_noted += 1
             row += 1
         if comment >= 0:
             comments[noted, 0] = line
@@ -244,5 +260,6 @@ def scan(
     counts[ROW] = row
     counts[COMMENTS] = noted
     counts[FEEDS] = feeds_noted
+    counts[NORMALS] = normals_noted
     counts[POSITION] = position
     counts[LINE] = line
