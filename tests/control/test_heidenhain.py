@@ -11,6 +11,7 @@ from tests.control.klartext import CONTROLS, MACHINES, SHARES, SIMULTANEOUS, TCP
 from tests.control.test_planes import reachable, text_of
 from tests.control.test_program import FOOT, HEAD
 from trunnion.cl import read_cl
+from trunnion.cli import main
 from trunnion.errors import InputError, Refused
 
 
@@ -139,6 +140,8 @@ WRONG = {
     "work_offset": "G54",
     "plane": "euler",
     "tcpm": "m130",
+    "retract_distance": "-5",
+    "normals": "on",
 }
 
 
@@ -176,15 +179,47 @@ ENDED = sorted(name for name, each in MACHINES.items() if np.isfinite(each.limit
 
 
 @settings(max_examples=25)
-@given(name=st.sampled_from(ENDED), shares=st.lists(SHARES, min_size=1, max_size=2), manner=st.booleans())
+@given(
+    name=st.sampled_from(ENDED),
+    shares=st.lists(SHARES, min_size=1, max_size=2),
+    manner=st.booleans(),
+    distance=st.sampled_from(["", "0.5", "40"]),
+)
 def test_a_retract_along_the_tool_axis_is_proven(
-    name: str, shares: list[tuple[float, float]], manner: bool, folder: Path
+    name: str, shares: list[tuple[float, float]], manner: bool, distance: str, folder: Path
 ) -> None:
     machine, file = MACHINES[name], folder / "retract.cls"
     text = text_of([reachable(machine, share) for share in shares], [(0.0, 0.0, 0.0), (30.0, -5.0, 2.0)])
     file.write_text(text, encoding="utf-8")
-    said = {"manner": "tcp"} if manner else {}
+    said = {"retract_distance": distance, **({"manner": "tcp"} if manner else {})}
     try:
         proven(read_cl(file), machine, CONTROLS["mikron_600u"], folder, retract="m140", **said)
     except (Refused, InputError):
         assume(False)
+
+
+def test_the_tool_can_leave_along_its_own_axis_by_a_distance(post: Post) -> None:
+    given = ("--set", "retract=m140", "--set", "retract_distance=12.5")
+    for text in (SIMULTANEOUS, TILTED):
+        along = post(text, *given)
+        assert [block for block in along if block != "L M140 MB12.5"] == post(text)
+        assert "L M140 MB12.5" in along
+
+
+FAULTS = [
+    ("MB12.5", "MB-12.5"),  # into the part
+    ("L M140 MB12.5", "L M140 MB12.5 F200"),  # at a feed, which nobody asked for
+    ("L M140 MB12.5", "L M140 MB12.5\nL M140 MB12.5"),  # and once more
+]
+
+
+@pytest.mark.parametrize(("right", "wrong"), FAULTS)
+def test_a_wrong_retract_by_a_distance_is_found(
+    right: str, wrong: str, post: Post, capfd: pytest.CaptureFixture[str]
+) -> None:
+    _, out, _ = post.all(SIMULTANEOUS, "--set", "retract=m140", "--set", "retract_distance=12.5")
+    program = post.folder / "part.h"
+    for text, code in ((out, 0), (out.replace(right, wrong), 1)):
+        program.write_text(text, encoding="utf-8")
+        assert main(["verify", str(program), "--machine", "dmu65", "--cl", str(post.folder / "part.cls")]) == code
+    assert "order         FAIL" in capfd.readouterr().out

@@ -147,6 +147,10 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
         wrong.append(("work_offset", "write the number of the preset, such as 1"))
     if settings.get("disengage", "") not in ("", "1", "2", "3", "4"):
         wrong.append(("disengage", "write 1 for -X, 2 for -Y, 3 for +X or 4 for +Y"))
+    distance = settings.get("retract_distance", "")
+    if distance and not (re.fullmatch(r"[0-9]{1,5}(\.[0-9]{1,4})?", distance) and float(distance) > 0.0):
+        cure = "write how far the tool goes back along its axis, mm, such as 50; or nothing"
+        wrong.append(("retract_distance", cure))
     if blank not in ("", "extents") and _corners(blank) is None:
         cure = (
             "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first; or extents, for all that is cut"
@@ -194,7 +198,8 @@ def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Val
     found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
     at_tip = settings["rotary_feed"] == "tip"
     found |= {"feed_at_tip": "M116" if at_tip else None, "feed_in_degrees": "M117" if at_tip else None}
-    found["retract_along"] = "L M140 MB MAX" if settings["retract"] == "m140" else None
+    distance = str(settings.get("retract_distance") or " MAX")
+    found["retract_along"] = f"L M140 MB{distance}" if settings["retract"] == "m140" else None
     found["positioning"] = _POSITIONING[str(settings["plane_move"])]
     spatial = "spatial_c", "spatial_b", "spatial_a"
     if plane is None:

@@ -23,7 +23,7 @@ from trunnion.verify.between import follow
 from trunnion.verify.cycles import hole_rows, leads, made_in
 from trunnion.verify.points import Tilt
 from trunnion.verify.rapids import PLACES as PLACES
-from trunnion.verify.rapids import levels
+from trunnion.verify.rapids import leaving, levels
 from trunnion.verify.retreats import comes_back
 from trunnion.verify.rows import Rows
 from trunnion.verify.wanted import Wanted
@@ -122,7 +122,7 @@ def places_only(run: Run, rows: Ints) -> Flags:
 def points(run: Run, wanted: Wanted) -> Rows:
     """Rows of a run that ought to answer to CL points, without those that make holes or lead to the first point."""
     rows = answers(run)
-    none = np.concatenate((hole_rows(made_in(run, wanted.holes)), levels(run)))
+    none = np.concatenate((hole_rows(made_in(run, wanted.holes)), levels(run), leaving(run)))
     more = _taken_along(run, wanted)
     if not len(none) and not len(more):
         return rows

@@ -18,6 +18,11 @@ _CHUNK = 8192
 PLACES = Written.X | Written.Y | Written.Z | Written.VECTOR
 
 
+#: So far off its axis may the tool be that leaves along it, mm, and so much may the axis change.
+_STRAIGHT = 1e-6
+_STEADY = 1e-9
+
+
 def with_rapids(run: Run, feed: float | None) -> Run:
     """The run with every line at the feed, mm/min, that stands for rapid motion as a rapid; itself without one."""
     if feed is None:
@@ -28,6 +33,25 @@ def with_rapids(run: Run, feed: float | None) -> Run:
         fast = (run.state.feed.part(start, end) == feed) & (run.state.feed_mode.part(start, end) == 94)
         kind[start:end][fast & (kind[start:end] == Kind.LINEAR)] = Kind.RAPID
     return replace(run, kind=kind)
+
+
+def leaving(run: Run) -> Ints:
+    """Rows in which the tool leaves the part along its own axis by a distance, growing; no CL point asks for them.
+
+    They go straight out at rapid, and what comes next are positions of the machine.
+    """
+    said = [event.before_row for event in run.events if event.kind == "leave"]
+    if not said:
+        return np.zeros(0, np.int64)
+    rows = np.unique(np.array(said, np.int64))
+    rows = rows[(rows > 0) & (rows + 1 < len(run))]
+    rows = rows[run.state.machine_frame.at(rows + 1) & (run.kind[rows] == Kind.RAPID)]
+    before, after = run.poses(rows - 1), run.poses(rows)
+    way = after.tip - before.tip
+    out = np.einsum("ij,ij->i", way, after.axis)
+    aside = np.abs(way - out[:, None] * after.axis).max(axis=1, initial=0.0)
+    still = np.abs(after.axis - before.axis).max(axis=1, initial=0.0) < _STEADY
+    return np.asarray(rows[(out > 0.0) & (aside < _STRAIGHT) & still])
 
 
 def levels(run: Run) -> Ints:

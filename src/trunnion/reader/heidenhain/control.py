@@ -297,8 +297,7 @@ class HeidenhainControl(Control):
             self.place[3] = feed
         bits = sum(1 << axis for axis in range(3) if abs(per_mm[axis]) > 1e-9)
         still = [math.nan, math.nan]
-        if to_the_end:
-            self.event("retract", "M140")
+        self.event(*(("retract", "M140") if to_the_end else ("leave", distance)))
         self.machine_rows.set(self.row, to_the_end)
         self.move_axes(Kind.RAPID if rapid else Kind.LINEAR, slides + distance * per_mm, still, 0, bits)
         self.machine_rows.set(self.row, False)
