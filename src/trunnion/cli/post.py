@@ -27,7 +27,7 @@ from trunnion.control.standing import inside_limits
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import Growing, Output, output
 from trunnion.kernels import load
-from trunnion.machine import Machine, forward, load_machine
+from trunnion.machine import Machine, load_machine
 from trunnion.nc import KERNELS as WRITING
 from trunnion.plan import KERNELS as PLANNING
 from trunnion.plan import Decision, Manner, Motion, Wishes, plan
@@ -301,7 +301,7 @@ def _allowed(program: Program) -> "list[Allowed]":
             tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
             if inside_limits(machine, motion, turning) is not motion:
                 tilt += 1.5 * 10.0**-turning
-            tip, angle = _in_plane(motion, tip, tilt), angle + tilt / _lever(motion, machine)
+            tip, angle = _in_plane(motion, tip, tilt), math.sqrt(2.0) * tilt + 1e-8
             normal = math.sqrt(3.0) * (normal + math.radians(tilt))
         if "arc_angle" in half:
             tip += _by_angles(motion, half["X"], half["arc_angle"])
@@ -316,7 +316,18 @@ def _allowed(program: Program) -> "list[Allowed]":
         apart = motion.departures
         agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
         found = 2.0 * CENTRE_DIGITS * half["X"] if control.arcs_by_radius else 0.0
-        allowed.append(Allowed(tip, angle, control.chord_tolerance, half["feed"], agreed, found, normal))
+        allowed.append(
+            Allowed(
+                tip,
+                angle,
+                control.chord_tolerance,
+                half["feed"],
+                agreed,
+                centre=found,
+                normal=normal,
+                plane=motion.plane is not None,
+            )
+        )
     return allowed
 
 
@@ -346,21 +357,6 @@ def _in_plane(motion: Motion, half: float, tilt: float) -> float:
     reach = float(np.abs(motion.as_written().moves.tip).max())
     rounded = half * (1.0 + float(np.abs(motion.plane.matrix()).sum(axis=1).max()))
     return rounded + float(np.radians(tilt)) * reach * math.sqrt(3.0)
-
-
-def _lever(motion: Motion, machine: Machine) -> float:
-    """How far a turn of the rotary axes turns the tool axis at the least: near a pole hardly at all.
-
-    The smaller singular value of the ways of the tool axis as either rotary axis turns.
-    """
-    step = 0.01
-    joints = np.zeros((3, len(machine.axes)))
-    joints[:, list(machine.rotary)] = motion.rotary[0]
-    for k, column in enumerate(machine.rotary):
-        joints[k + 1, column] += step
-    _, axis = forward(machine, joints)
-    ways = (axis[1:] - axis[0]) / math.radians(step)
-    return max(float(np.linalg.svd(ways, compute_uv=False)[-1]), _LEAST_LEVER)
 
 
 def _asked(program: Program, wishes: Wishes) -> "Settings":

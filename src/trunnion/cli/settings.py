@@ -145,6 +145,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         manner=manner,
         own_manner=own_manner,
         manners=control.manners(settings),
+        level=_level(control),
         arcs_about_z=control.arcs_about_z,
         helices_by_angle="arc_angle" in control.family.WORDS,
         machine_x=control.plane_along_machine,
@@ -159,6 +160,12 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         tcp=tcp,
         **known,
     )
+
+
+def _level(control: Control) -> float:
+    """Sine of a tilt that prints as none: half the last digit of a rotary word."""
+    name = next(word.format for word in control.words if word.name == "primary")
+    return math.sin(math.radians(0.5 * 10.0 ** -control.number_formats(three_axis=False)[name].decimals))
 
 
 def division_of(settings: Mapping[str, str], control: Control, target: str, made: Output) -> Division | None:

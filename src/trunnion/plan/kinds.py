@@ -4,9 +4,13 @@ In:     an operation in the program's coordinate system, and the coordinate syst
 Out:    how the machine is to make it, and its plane if it is tilted.
 
 By rule: a tool axis that is +Z of the program throughout is three-axis, one that stands still otherwise is a tilted
-plane, one that changes is simultaneous. The user's word is stronger than the rule. A tilted plane for which the control
-has no words is made as a simultaneous operation, where it has words for that.
+plane, one that changes is simultaneous. A tilt that the control's own digits print as none is none. The user's word
+is stronger than the rule. A tilted plane for which the control has no words is made as a simultaneous operation, where
+it has words for that.
 """
+
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -17,6 +21,8 @@ from trunnion.plan.frames import frame_of
 from trunnion.plan.motion import Manner
 from trunnion.plan.wishes import Wishes
 from trunnion.toolpath import Frame, Operation
+
+_UP: Final = np.array([0.0, 0.0, 1.0])
 
 #: Tool axes are the same when no component differs by more than this; CL files print seven decimals or more.
 _SAME = 1e-7
@@ -31,14 +37,23 @@ _WHOLE = 4
 _CLOSE = 1e-3
 
 
-def manner_of(operation: Operation, wish: Manner | None) -> Manner:
-    """How an operation is to be made; ``wish`` is the user's word, None where there is none."""
+def manner_of(operation: Operation, wish: Manner | None, level: float = 0.0) -> Manner:
+    """How an operation is to be made; ``wish``: the user's word, or None; ``level`` as in ``Wishes``."""
     if wish is not None:
         return wish
     axis = operation.moves.axis
     if not _steady(axis, axis[0]):
         return Manner.TCP
-    return Manner.THREE_AXIS if _steady(axis[:1], np.array([0.0, 0.0, 1.0])) else Manner.TILTED
+    upright = _steady(axis[:1], _UP) or (axis[0, 2] > 0.0 and float(np.hypot(axis[0, 0], axis[0, 1])) < level)
+    return Manner.THREE_AXIS if upright else Manner.TILTED
+
+
+def uprighted(operation: Operation) -> Operation:
+    """A three-axis operation with its tool axis right on +Z, from which it is off by what nobody prints."""
+    moves = operation.moves
+    if (moves.axis[0] == _UP).all() and (moves.axis == _UP).all():
+        return operation
+    return replace(operation, moves=replace(moves, axis=np.tile(_UP, (len(moves), 1))))
 
 
 def in_other_words(file: str, operation: Operation, manner: Manner, wishes: Wishes) -> tuple[Manner, list[Problem]]:
@@ -53,7 +68,11 @@ def in_other_words(file: str, operation: Operation, manner: Manner, wishes: Wish
 
 
 def contradictions(
-    file: str, operation: Operation, manner: Manner, manners: frozenset[Manner] = frozenset(Manner)
+    file: str,
+    operation: Operation,
+    manner: Manner,
+    manners: frozenset[Manner] = frozenset(Manner),
+    level: float = 0.0,
 ) -> list[Problem]:
     """Why an operation cannot be made in a manner, be it the user's wish or the control's words."""
     axis, line = operation.moves.axis, operation.moves.line
@@ -61,12 +80,13 @@ def contradictions(
         what = f"operation {operation.name}: the control has no words for {manner}"
         return [Problem(file, operation.line, what, f"it has words for {', '.join(sorted(manners))}")]
     if manner is Manner.THREE_AXIS:
-        wanted, what = np.array([0.0, 0.0, 1.0]), "the tool axis is not +Z of the program, and manner is three-axis"
+        wanted, what = _UP, "the tool axis is not +Z of the program, and manner is three-axis"
     elif manner is Manner.TILTED:
         wanted, what = axis[0], "the tool axis changes, and manner is tilted"
     else:
         return []
-    wrong = np.flatnonzero(np.abs(axis - wanted).max(axis=1) > _SAME)
+    off = max(_SAME, level if manner is Manner.THREE_AXIS else 0.0)
+    wrong = np.flatnonzero(np.abs(axis - wanted).max(axis=1) > off)
     cure = "leave the setting manner out, or split the operation"
     return [Problem(file, int(line[wrong[0]]), f"operation {operation.name}: {what}", cure)] if len(wrong) else []
 

@@ -16,7 +16,7 @@ from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower
 from trunnion.plan.frames import into_frame, into_plane, seen_from
 from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
-from trunnion.plan.kinds import contradictions, in_other_words, machine_x, manner_of, plane_of
+from trunnion.plan.kinds import contradictions, in_other_words, machine_x, manner_of, plane_of, uprighted
 from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
@@ -70,9 +70,13 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
             against.append(Problem(path.file, error.line, error.what, error.cure))
             continue
         wished, own = wishes.of(original.name), seen_from(original.frame, program_frame)
-        manner, reworded = in_other_words(path.file, operation, manner_of(operation, wished.manner), wished)
+        manner = manner_of(operation, wished.manner, wishes.level)
+        manner, reworded = in_other_words(path.file, operation, manner, wished)
         said += reworded
-        against += contradictions(path.file, operation, manner, wishes.manners)
+        contradicting = contradictions(path.file, operation, manner, wishes.manners, wishes.level)
+        against += contradicting
+        if manner is Manner.THREE_AXIS and not contradicting:
+            operation = uprighted(operation)
         plane = plane_of(operation.moves.axis[0], own) if manner is Manner.TILTED else None
         there = operation if plane is None else into_plane(operation, plane)
         kept = plain_arcs(there, wishes.arcs_about_z, wishes.helices_by_angle)

@@ -83,6 +83,11 @@ class Deviations:
         if said.any():  # a tool axis that is said as a vector is off by an angle of its own
             apart = np.linalg.norm(poses.axis[nc[said]] - moves.axis[cl[said]], axis=1)
             off_axis[said] = np.degrees(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)))
+        beyond = np.flatnonzero(off_axis > part.allowed.angle) if part.allowed.plane else np.zeros(0, np.int64)
+        if len(beyond):
+            apart = np.linalg.norm(poses.axis[nc[beyond]] - moves.axis[cl[beyond]], axis=1)
+            angle = np.degrees(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)))
+            off_axis[beyond] = np.minimum(angle, off_axis[beyond])
         self._tip.take(start, off_tip, squares[0], part.allowed.tip)
         self._axis.take(start, off_axis, squares[1], part.allowed.angle)
 

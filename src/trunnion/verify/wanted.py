@@ -63,6 +63,8 @@ class Allowed:
     agreed  where it may be otherwise
     centre  mm more for the centre of a circle, which a control may have to find by a radius
     normal  of a component of the surface's normal
+    plane   the tool stands on a tilted plane, and its axis may be off as an angle by itself, whatever that comes to in
+            a rotary axis: near a pole one of them is nearly free
     """
 
     tip: float = 0.001
@@ -72,6 +74,7 @@ class Allowed:
     agreed: Agreed | None = None
     centre: float = 0.0
     normal: float = 1e-6
+    plane: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
