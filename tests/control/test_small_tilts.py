@@ -43,10 +43,11 @@ def toolpath_of(axis: Floats) -> Toolpath:
 
 
 def proof(
-    name: str, axis: Floats, folder: Path, beside: Floats | None = None, **given: str
+    name: str, axis: Floats, folder: Path, beside: Floats | None = None, plane: str = ""
 ) -> tuple[Manner, Verification]:
     """How a program is made, and its proof, against another tool axis if there is one."""
     machine, control = MACHINES[name], CONTROLS[name]
+    given = {"plane": plane} if plane else {}
     wishes, target = wishes_of(given, control), folder / "tilt.nc"
     program, _ = planned_program([toolpath_of(axis)], machine, control, given, False, wishes)
     with target.open("wb") as sink:
@@ -72,9 +73,9 @@ def test_a_tool_axis_that_hardly_leans_is_proven(
     name: str, tilt: float, azimuth: float, way: int, folder: Path
 ) -> None:
     planes = CONTROLS[name].family.PLANES
-    plane = {"plane": planes[way % len(planes)]} if len(planes) > 1 else {}
+    plane = planes[way % len(planes)] if len(planes) > 1 else ""
     try:
-        manner, found = proof(name, leaning(tilt, azimuth), folder, **plane)
+        manner, found = proof(name, leaning(tilt, azimuth), folder, plane=plane)
     except (Refused, InputError):
         assume(False)
     assert found.passed, [(check.key, check.summary) for check in found.checks if not check.passed]
