@@ -167,6 +167,10 @@ def test_axes_are_settled_as_by_the_twin(given_vectors: list[list[float] | None]
     assert np.allclose(axis, np.reshape(naive.settle(given_vectors, [0, 0, 1]), (-1, 3)), rtol=0, atol=3e-16)
 
 
+def _bytes(column: Floats | None) -> bytes | None:
+    return None if column is None else column.tobytes()
+
+
 def fingerprint(toolpath: Toolpath) -> object:
     """Everything in a toolpath, as comparable values."""
     return [
@@ -175,7 +179,7 @@ def fingerprint(toolpath: Toolpath) -> object:
         [
             (
                 *(operation.name, operation.tool, operation.frame, operation.events, operation.line),
-                *(getattr(operation.moves, name).tobytes() for name in operation.moves.__slots__),
+                *(_bytes(getattr(operation.moves, name)) for name in operation.moves.__slots__),
                 *(getattr(operation.arcs, name).tobytes() for name in operation.arcs.__slots__),
             )
             for operation in toolpath.operations

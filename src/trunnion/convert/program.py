@@ -19,7 +19,7 @@ from trunnion.arrays import Flags, Ints
 from trunnion.control.definition import Control
 from trunnion.control.template import Template
 from trunnion.convert.events import Events
-from trunnion.convert.heads import match, patterns
+from trunnion.convert.heads import match, patterns, spellings
 from trunnion.convert.lost import (
     Remarks,
     remark_homes,
@@ -120,6 +120,7 @@ class _Converter:
         axes = run.machine.axes
         primary, secondary = axes[run.machine.primary].name, axes[run.machine.secondary].name
         self._values = {"primary": primary, "secondary": secondary, "machine": run.machine.name}
+        self._spoken = spellings(control)
         self._known: set[int] = set()
         # M number -> CL word; of words with one number OFF, ON and then the first
         self._coolants: dict[int, str] = {}
@@ -169,7 +170,7 @@ class _Converter:
     def _first_lines(self, said: Iterable[Item], templates: Iterable[Template]) -> set[int]:
         """The lines of ``said`` that are the first line of one of the templates, if that is more than a value."""
         settings = self._control.settings
-        firsts = [patterns([template], self._values, settings)[:1] for template in templates]
+        firsts = [patterns([template], self._values, settings, self._spoken)[:1] for template in templates]
         first = [line.expression for lines in firsts for line in lines if not line.bare]
         lines = sorted({item.line for item in said if item.file == 0})
         return {line for line in lines if any(each.fullmatch(self._source.text(line)) for each in first)}
@@ -251,9 +252,9 @@ class _Converter:
     def _match_heads(self, parts: Sequence[_Part], said: Sequence[Item]) -> None:
         """Find the lines of templates, and what they say. Where an operation's end begins, its path has ended."""
         templates, run, settings = self._control.templates, self._run, self._control.settings
-        start = patterns([templates["program_start"]], self._values, settings)
-        head = patterns(self._called(_HEADS), self._values, settings)
-        tail = patterns([*self._called(_ENDS), templates["program_end"]], self._values, settings)
+        start = patterns([templates["program_start"]], self._values, settings, self._spoken)
+        head = patterns(self._called(_HEADS), self._values, settings, self._spoken)
+        tail = patterns([*self._called(_ENDS), templates["program_end"]], self._values, settings, self._spoken)
         common: dict[str, str] = {}
         for k, part in enumerate(parts):
             after = parts[k + 1].line if k + 1 < len(parts) else self._source.count + 1

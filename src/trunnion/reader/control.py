@@ -387,12 +387,23 @@ class Control(Rows, ABC):
             if step.feed is not None:
                 # A negative feed is a part of the one in force.
                 self.place[3] = -step.feed * feed if step.feed < 0.0 else step.feed
-            self.emit(Kind.RAPID if step.rapid else Kind.LINEAR, end, 0, still, 0, None)
+            if step.turns:
+                self._round(hole, end, step.turns)
+            else:
+                self.emit(Kind.RAPID if step.rapid else Kind.LINEAR, end, 0, still, 0, None)
             self.place[3] = feed
             if step.dwell:
                 self.event("dwell", step.dwell)
         self.kind = kind
         self._check_askew(self.row - first_row)
+
+    def _round(self, hole: Floats, end: Floats, turns: int) -> None:
+        """Whole turns about a hole, from where the tool is to a point above or below; positive counter-clockwise."""
+        arc = arcs.by_centre(self.place[:3].copy(), end, hole, self.plane, turns < 0, abs(turns) - 1)
+        placed, row = self._place_arc(arc, turned=False), self.row
+        still = [math.nan, math.nan]
+        if self.emit(Kind.LINEAR if placed is None else Kind.ARC, end, 0, still, 0, None) and placed is not None:
+            self.curve(row, *placed, arc.turns)
 
     def _check_askew(self, rows: int) -> None:
         """Say so if the tool does not stand along the drilling axis."""

@@ -24,6 +24,7 @@ class Step:
     feed      mm/min, or None: the feed in force; negative: that part of it
     aside     offsets in the first and second axis of the plane, mm, from the hole
     dwell     seconds to wait afterwards, negative: spindle turns
+    turns     whole turns about the hole on the way, positive counter-clockwise
     """
 
     rapid: bool
@@ -31,6 +32,7 @@ class Step:
     feed: float | None = None
     aside: tuple[float, float] = (0.0, 0.0)
     dwell: float = 0.0
+    turns: int = 0
 
 
 def sane(value: float | None) -> float | None:

@@ -5,6 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.reader.conftest import Runner, close
+from trunnion.errors import Severity
 from trunnion.reader import Run
 from trunnion.reader.drilling import CycleError
 from trunnion.reader.heidenhain.cycles import infeeds
@@ -172,7 +173,7 @@ def test_other_cycles_from_where_the_tool_stands(run: Runner) -> None:
     "text",
     [
         define(200, Q200=2, Q201=0, Q206=1, Q202=1, Q203=0), define(200, Q200=2, Q201=-5),
-        define(207, **{**DRILL, "Q239": 0}), define(202, **{**DRILL, "Q214": 7}), define(208, **DRILL),
+        define(207, **{**DRILL, "Q239": 0}), define(202, **{**DRILL, "Q214": 7}), define(251, **DRILL),
         define(240, **{**DRILL, "Q343": 1}), define(205, **{**DRILL, "Q379": 20, "Q253": 1}),
         "CYCL DEF 1.0 PECKING\n", PECK.format(2, 0, 1), define(256, **DRILL),
     ],
@@ -225,3 +226,33 @@ def test_infeeds_shrink_to_the_least_and_end_at_the_depth(
 def test_pecks_without_end_are_refused() -> None:
     with pytest.raises(CycleError, match="more than"):
         infeeds(100.0, 0.01, 0.0, 0.01)
+
+
+# Bore milling, whose tool goes round: what is simulated is the wall
+
+
+@pytest.mark.parametrize(
+    ("values", "turns", "sense"),
+    [({}, 6, 1.0), ({"Q334": 17}, 1, 1.0), ({"Q334": 8.5, "Q351": 1}, 2, 1.0), ({"Q334": 4, "Q351": -1}, 5, -1.0)],
+)
+def test_a_bore_is_milled_in_helices_and_once_round_at_its_bottom(
+    values: dict[str, float], turns: int, sense: float, run: Runner
+) -> None:
+    found = run(BEFORE + define(208, **{**DRILL, "Q334": 3, "Q335": 20, "Q342": 0, **values}) + "CYCL CALL")
+    assert [finding.severity for finding in found.findings] == [Severity.WARNING]
+    place = [[3, 4, 12], [13, 4, 12], [13, 4, -5], [13, 4, -5], [3, 4, -5], [3, 4, 12], [3, 4, 60]]
+    close(found.tip[1:], place)
+    kinds = [Kind.RAPID, Kind.LINEAR, Kind.ARC, Kind.ARC, Kind.LINEAR, Kind.RAPID, Kind.RAPID]
+    assert found.kind[1:].tolist() == kinds
+    assert found.arcs.turns.tolist() == [turns - 1, 0]  # besides the turn that comes back to its start
+    close(found.arcs.centre[:, :2], [[3, 4], [3, 4]])
+    close(found.arcs.normal, [[0, 0, sense]] * 2)
+    close(found.arcs.radius, [10, 10])
+    assert set(found.feed[1:].tolist()) >= {150.0}
+
+
+@pytest.mark.parametrize("values", [{"Q334": 0}, {"Q335": 0}, {"Q334": 1e-4}, {"Q335": -5}])
+def test_a_bore_that_cannot_be_milled_is_named(values: dict[str, float], run: Runner) -> None:
+    found = run(BEFORE + define(208, **{**DRILL, "Q334": 3, "Q335": 20, **values}) + "CYCL CALL")
+    assert len(found) == 1
+    assert Severity.ERROR in [finding.severity for finding in found.findings]

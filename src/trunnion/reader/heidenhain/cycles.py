@@ -225,6 +225,27 @@ def _tap_rigid(hole: Hole) -> list[Step]:
     return [Step(False, hole.at(hole.total), feed), Step(False, hole.start, feed)]
 
 
+def _bore_mill(hole: Hole) -> list[Step]:
+    """208: in helices down along the wall, no deeper a turn than Q334, once more round at the bottom, and out.
+
+    The tool's radius is the control's: what goes round is the point of the wall. Q351 is -1 for up-cut milling.
+    """
+    radius, most = 0.5 * hole.need(335), hole.need(334)
+    if radius <= 0.0 or most <= 0.0:
+        raise CycleError("has no diameter (Q335) or no infeed (Q334)")
+    share = (hole.total + hole.need(200)) / most
+    if not 0.0 < share <= MOST_PECKS:
+        raise CycleError(f"would turn more than {MOST_PECKS} times, or not at all")
+    side, aside = -1 if hole.get(351) < 0.0 else 1, (radius, 0.0)
+    return [
+        Step(False, None, hole.feed, aside=aside),
+        Step(False, hole.at(hole.total), hole.feed, aside=aside, turns=side * math.ceil(round(share, 9))),
+        Step(False, None, hole.feed, aside=aside, turns=side),
+        Step(False, None, hole.feed),
+        Step(True, hole.start),
+    ]
+
+
 def _tap_break(hole: Hole) -> list[Step]:
     """209: chip breaks every Q257; back by Q256 pitches, or all the way out if it is 0."""
     feed = _pitch(hole)
@@ -267,6 +288,7 @@ CYCLES: Final[dict[int, Callable[[Hole], list[Step]]]] = {
     205: _deep,
     206: _tap,
     207: _tap_rigid,
+    208: _bore_mill,
     209: _tap_break,
     240: _centre,
     241: _gun_drill,

@@ -15,6 +15,7 @@ from trunnion.reader.heidenhain.parameters import KlartextError, Parameters, can
 from trunnion.reader.heidenhain.planes import spatial
 from trunnion.reader.heidenhain.words import (
     AXIS_SCALING,
+    BORE_MILLING,
     CYCLES_NAMED,
     DATUM,
     DWELL,
@@ -206,6 +207,9 @@ class Definitions:
             named[int(target[1:])] = value
         if number in CYCLES or number in CYCLES_NAMED:
             self.waiting = Cycle(number, named=named)
+            if number == BORE_MILLING:
+                text = "cycle 208: the tool's radius is the control's, and the path is that of the wall"
+                self._note(text, Severity.WARNING)
         elif number == PRESET:
             self._preset(named)
         else:

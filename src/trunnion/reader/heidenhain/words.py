@@ -134,12 +134,15 @@ AXIS_SCALING: Final = 26
 TOLERANCE: Final = 32
 PRESET: Final = 247
 
+#: The one whose path the reader knows but for the tool's radius.
+BORE_MILLING: Final = 208
+
 #: Cycles that are known and not simulated: whether the path is doubtful because of it when they are called.
 CYCLES_NAMED: Final = {
     3: "slot milling", 4: "pocket milling", 5: "circular pocket", 6: "rough-out", 12: "program call", 14: "contour",
     15: "pilot drilling", 16: "contour milling", 18: "thread cutting", 20: "contour data", 21: "pilot drilling",
     22: "rough-out", 23: "floor finishing", 24: "side finishing", 25: "contour train", 27: "cylinder surface",
-    28: "cylinder surface slot", 29: "cylinder surface ridge", 39: "cylinder surface contour", 208: "bore milling",
+    28: "cylinder surface slot", 29: "cylinder surface ridge", 39: "cylinder surface contour",
     220: "polar pattern", 221: "linear pattern", 225: "engraving", 230: "multipass milling", 231: "ruled surface",
     232: "face milling", 233: "face milling", 239: "load measuring", 251: "rectangular pocket",
     252: "circular pocket", 253: "slot milling", 254: "circular slot", 256: "rectangular stud", 257: "circular stud",
