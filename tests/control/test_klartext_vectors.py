@@ -22,6 +22,7 @@ from tests.control.klartext import (
 )
 from tests.control.test_program import FOOT, HEAD
 from trunnion.errors import InputError, Refused
+from trunnion.machine import Output
 from trunnion.toolpath import Moves
 
 
@@ -99,3 +100,24 @@ def test_a_rewind_is_said_by_the_rotary_axes(post: Post) -> None:
     assert "draws back 50 mm in the cut to rewind" in err
     assert re.search(r"^[0-9]+ L C[-+][0-9.]+ A[-+][0-9.]+ FMAX$", out, re.MULTILINE)
     assert out.count(" LN ") > 100
+
+
+@settings(max_examples=40)
+@given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS)
+def test_axes_stand_where_rotary_words_would_have_them(name: str, moves: Moves, folder: Path) -> None:
+    """The control finds the planned position for each vector; where it would not, the block has rotary words."""
+    machine, control = MACHINES[name], CONTROLS["mikron_600u"]
+    try:
+        runs = [
+            proven(toolpath_of(moves), machine, control, folder, orientation=way).run for way in ("angles", "vector")
+        ]
+    except (Refused, InputError):
+        assume(False)
+    words, vectors = runs
+    assert len(words) == len(vectors)
+    apart = words.rotary - vectors.rotary
+    for k, column in enumerate(machine.rotary):
+        if machine.axes[column].endless and machine.axes[column].output is not Output.NONE:
+            apart[:, k] -= 360.0 * np.rint(apart[:, k] / 360.0)
+    digit = 10.0 ** -control.number_formats(three_axis=False)["angle"].decimals
+    assert np.abs(apart).max() <= digit + 1e-9

@@ -11,15 +11,16 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.control.definition import AXIS_VECTOR, BY_AXES, BY_VECTOR, SURFACE_NORMAL, VECTOR_LINE
+from trunnion.control.definition import AXIS_VECTOR, BY_AXES, BY_VECTOR, VECTOR_LINE
 from trunnion.control.family import WordEvent
+from trunnion.control.normals import normal_words, touching_rows
 from trunnion.control.program import Program, angle_counts, setting_of, settings_of, words_of
 from trunnion.control.slides import Slides, feed_rule, feeds, slides_of
 from trunnion.control.vectors import first_elsewhere, leads_there, vectors_of
 from trunnion.errors import InputError, Problem
 from trunnion.nc import ABSENT, CHUNK, ROOM_OF_NUMBER, BlockWriter, counts
 from trunnion.plan import Manner, Motion
-from trunnion.toolpath import Arcs, Coolant, Kind, LoadTool, Moves, Phase, SpindleOn
+from trunnion.toolpath import Arcs, Coolant, Kind, LoadTool, Phase, SpindleOn
 
 _PHASE_TEXT = {
     Phase.RAPID: "rapid",
@@ -250,7 +251,7 @@ class Blocks:
         if motion.plane is None:  # in a plane the rotary axes stand where they were put
             for word, axis in self._rotary:
                 columns[word] = self._angle_counts(motion.rotary[part, self._column[axis]], word, axis)
-        touching = self._touching(motion, part)
+        touching = touching_rows(motion, part)
         if by_vector:
             in_force = self._orient(motion, start, stop, columns, forced, touching)
         columns["feed"] = np.where(
@@ -259,7 +260,7 @@ class Blocks:
         columns |= self.family.row_words(rapid, moves.per_rev[part], control.codes)
         if (by_vector or touching.any()) and any(word.key == VECTOR_LINE for word in self._words):
             said = columns[AXIS_VECTOR[0]] != ABSENT if by_vector else touching
-            columns |= self._normals(moves, part, said & touching)
+            columns |= normal_words(moves, part, said & touching, self.writer)
             columns |= {VECTOR_LINE: np.where(said, 1, ABSENT), "line": np.where(said, ABSENT, columns["line"])}
             forced |= dict.fromkeys("XYZ", said.astype(np.int64))
         if self._slides is not None:
@@ -317,21 +318,6 @@ class Blocks:
         decimals = self.writer.word(AXIS_VECTOR[0]).format.decimals
         vectors = vectors_of(self.program.machine, rotary)
         return {word: counts(np.ascontiguousarray(vectors[:, k]), decimals) for k, word in enumerate(AXIS_VECTOR)}
-
-    def _touching(self, motion: Motion, part: slice) -> Flags:
-        """Rows of a line along which the tool touches a surface whose normal is to be said."""
-        moves = motion.operation.moves
-        if moves.normal is None or motion.manner is Manner.WITHOUT_TCP:
-            return np.zeros(len(moves.kind[part]), np.bool_)
-        return np.asarray((moves.kind[part] == Kind.LINEAR) & np.isfinite(moves.normal[part, 0]))
-
-    def _normals(self, moves: Moves, part: slice, rows: Flags) -> dict[str, Ints]:
-        """The words of the surface's normal in these rows."""
-        if moves.normal is None or not rows.any():
-            return {}
-        decimals = self.writer.word(SURFACE_NORMAL[0]).format.decimals
-        normal = np.where(rows[:, None], moves.normal[part], np.nan)
-        return {word: counts(np.ascontiguousarray(normal[:, k]), decimals) for k, word in enumerate(SURFACE_NORMAL)}
 
     def _orient(
         self,
