@@ -274,7 +274,7 @@ class _Converter:
         """The way in which a head from line to line says its tilted plane, where the control has several."""
         lines, control = self._source.texts(first, last), self._control
         for way in control.family.PLANES if "plane" in control.settings else ():
-            wanted = patterns(self._called((f"plane_on_{way}",)), self._values, control.settings)
+            wanted = patterns(self._called((f"plane_on_{way}",)), self._values, control.settings, self._spoken)
             if any(not each.bare and each.expression.fullmatch(text) for _, text in lines for each in wanted):
                 return {"plane": way}
         return {}
