@@ -16,8 +16,10 @@ from trunnion.plan import Motion
 #: How much farther away the other position must be, degrees: controls may count what is nearest in ways of their own.
 _CLEARLY = 0.5
 
-#: Ways that differ by no more are the same, degrees.
-_SAME = 1e-6
+#: Ways that differ by no more are the same, degrees; and how much they must differ where an axis may stand elsewhere by
+#: what a vector's last digit turns it.
+_SAME = 1e-9
+_SURELY = 1e-4
 
 #: Where an axis cannot go, degrees.
 _NOWHERE = 1e9
@@ -49,7 +51,7 @@ def first_elsewhere(machine: Machine, motion: Motion, words: Sequence[Word]) -> 
         before[0] = np.round(motion.rotary[0], of_angles)
     shown = np.column_stack(printed)[rows] / np.float64(10**digits)
     in_table = [machine.axes[column].carries is Carries.PART for column in machine.rotary]
-    leads = leads_by_one_axis(machine, shown, motion.rotary[rows], before, 1 if all(in_table) else 0)
+    leads = leads_by_one_axis(machine, shown, motion.rotary[rows], before, 1 if all(in_table) else 0, rows == 1)
     return -1 if leads.all() else int(rows[np.argmin(leads)])
 
 
@@ -85,11 +87,14 @@ def leads_there(machine: Machine, vectors: Floats, rotary: Floats, before: Float
     return leads & ~pole
 
 
-def leads_by_one_axis(machine: Machine, vectors: Floats, rotary: Floats, before: Floats, deciding: int) -> Flags:
+def leads_by_one_axis(
+    machine: Machine, vectors: Floats, rotary: Floats, before: Floats, deciding: int, placed: Flags
+) -> Flags:
     """Whether a control that has one rotary axis decide between two positions gets to the planned one.
 
     It takes the position to which that axis turns less, and where that is the same, the one to which the other axis
-    turns less. Arguments and result as ``leads_there``; ``deciding`` is 0 or 1, as ``machine.rotary`` has them. Of the
+    turns less. Arguments and result as ``leads_there``; ``deciding`` is 0 or 1, as ``machine.rotary`` has them. Where
+    ``placed`` (n,) the axes stand at ``before`` by words, and not about there by a vector. Of the
     planned positions it is only asked which of the two they are: what a vector leaves open of them near a pole is
     nothing that the tool axis would show. Limits of axes count for nothing: it may not have been told of them.
     """
@@ -97,10 +102,11 @@ def leads_by_one_axis(machine: Machine, vectors: Floats, rotary: Floats, before:
     right = np.all(np.abs(_apart(machine, found, rotary)) <= 0.5 * _CLEARLY, axis=2)
     ways = np.abs(found - before)
     leads = np.zeros(len(vectors), np.bool_)
+    slack = np.where(placed, _SAME, -_SURELY)
     for this, that in ((0, 1), (1, 0)):
         more = ways[this] - ways[that]
         # Where the first axis decides by a hair, the other one must say the same.
-        nearer = (more[:, deciding] < -_CLEARLY) | ((more[:, deciding] <= _SAME) & (more[:, 1 - deciding] < -_CLEARLY))
+        nearer = (more[:, deciding] < -_CLEARLY) | ((more[:, deciding] <= slack) & (more[:, 1 - deciding] < -_CLEARLY))
         leads |= np.asarray(right[this] & nearer, np.bool_)
     return leads & ~pole
 
