@@ -184,8 +184,8 @@ def sensible(paths: st.SearchStrategy[Toolpath]) -> st.SearchStrategy[Toolpath]:
 
 
 def _skips_alternate(path: Toolpath) -> bool:
-    skips = [event.on for operation in path.operations for event in operation.events if isinstance(event, BlockSkip)]
-    return all(on is (k % 2 == 0) for k, on in enumerate(skips))
+    each = ([e.on for e in operation.events if isinstance(e, BlockSkip)] for operation in path.operations)
+    return all(on is (k % 2 == 0) for skips in each for k, on in enumerate(skips))
 
 
 def toolpaths(

@@ -94,6 +94,7 @@ class _Author:
         self._printed = Printed(program)
         self._notices = [line for text in program.notices for line in self._family.comment(text)]
         self._held = Held()
+        self._unskipped: float | None = None  # height before the blocks that may be skipped; None: home
         self._said_tool = ""  # that this file has called
         self._speed: Value = None  # of the spindle, as a text said it last
         self._before: Motion | None = None
@@ -207,6 +208,8 @@ class _Author:
         end = self._control.templates[f"operation_end_{kind}"].lines if ends else ()
         self._motion(written, int(not below and self._stands_there(written)), end)
         self._before = written
+        if ends:
+            self._skip(False)  # the way home, and the next operation, are for every run of the program
         self._blocks.back_in_force()
         if ends:
             self._expand(f"operation_end_{kind}", values, motion)
@@ -306,6 +309,16 @@ class _Author:
         said = any(isinstance(event, SpindleOn) and event.row == 0 for event in operation.events)
         return [] if said or self._blocks.spindle is None else [replace(self._blocks.spindle, row=0)]
 
+    def _skip(self, on: bool, row: int = 0) -> None:
+        """Blocks from a row on have the block-skip sign, or no longer: what those with it said may not be in force."""
+        blocks, writer = self._blocks, self._blocks.writer
+        if on and not writer.skips:
+            self._unskipped = blocks.height if row else None
+        elif writer.skips and not on:
+            writer.forget()
+            blocks.highest = None if self._unskipped is None else max(self._unskipped, blocks.height)
+        writer.skip_blocks(on)
+
     def _own_block(self, motion: Motion, event: Event) -> None:
         """Events that are no words of a motion block."""
         if isinstance(event, SpindleOn):
@@ -322,4 +335,4 @@ class _Author:
             self._blocks.lines([event.text])
             self._blocks.writer.forget()  # nobody knows what the text has changed
         elif isinstance(event, BlockSkip):
-            self._blocks.writer.skip_blocks(event.on)
+            self._skip(event.on, event.row)

@@ -53,6 +53,7 @@ class Blocks:
     spindle  what the spindle was last told, also where it has been stopped since; None before
     coolant  its kind, as it was last told
     height   of the tool along Z of the frame, at the last row written, mm
+    highest  behind blocks that may be skipped: it is not above this, but may be below ``height``; None: it is there
     largest  bytes that the rows of a file may come to; None: no matter how many
     full     is called where a file has no room for another row: it turns to the next one
     comes_level  whether the tool goes to X and Y of an operation's first point before it goes down
@@ -70,6 +71,7 @@ class Blocks:
         self.spindle: SpindleOn | None = None
         self.coolant = "OFF"
         self.height = 0.0
+        self.highest: float | None = None
         self.comes_level = False
         self._slides: Slides | None = None
         self._feed_mode = ABSENT
@@ -239,7 +241,7 @@ class Blocks:
         """As ``rows``, all in one file; ``anew``: a point at which the tool already stands gets its block."""
         moves, arcs, control = motion.operation.moves, motion.operation.arcs, self.control
         part = slice(start, stop)
-        self.height = float(moves.tip[stop - 1, 2])
+        self.height, self.highest = float(moves.tip[stop - 1, 2]), None
         rapid = moves.kind[part] == Kind.RAPID
         decimals = {word: self.writer.word(word).format.decimals for word in ("X", "feed")}
         columns = {

@@ -12,9 +12,11 @@ from trunnion.control.slides import TIP, feed_format, feed_rule, feeds, slides_o
 from trunnion.control.vectors import first_elsewhere
 from trunnion.errors import Problem, Severity
 from trunnion.machine import Carries
+from trunnion.nc import NumberFormat
 from trunnion.plan import Manner, Motion
 from trunnion.plan.holes import CycleError, Turning, cycle_of, feed_of, turning
 from trunnion.toolpath import (
+    BlockSkip,
     Coolant,
     CutterComp,
     CycleOn,
@@ -27,6 +29,9 @@ from trunnion.toolpath import (
     SpindleOff,
     SpindleOn,
 )
+
+#: A feed that is off by more than this part of itself for being rounded is told.
+_COARSE = 0.01
 
 
 def check_program(program: Program) -> list[Problem]:
@@ -49,6 +54,7 @@ def check_program(program: Program) -> list[Problem]:
                     program.file, int(moves.line[unfed[0]]), "cutting motion without a feed", "put FEDRAT before it"
                 )
             )
+        problems += _coarse_feeds(program, motion)
         refused = program.control.family.refused(operation, spindle)
         problems += [Problem(program.file, line, why.what, why.cure) for line, why in refused]
         spindle = spindle or any(isinstance(e, SpindleOn) for e in operation.events)
@@ -81,6 +87,52 @@ def check_program(program: Program) -> list[Problem]:
             fallback = setting_of(program, "fallback_tolerance")
             what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
             problems.append(Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING))
+    return [*problems, *_left_skipping(program)]
+
+
+def _coarse_feeds(program: Program, motion: Motion) -> list[Problem]:
+    """The first feed of an operation that prints as none, and the first that its last digit makes quite another one."""
+    moves, form = motion.operation.moves, program.control.number_formats(motion.three_axis)["feed"]
+    if motion.manner is Manner.WITHOUT_TCP or not len(moves):
+        return []
+    anew = np.flatnonzero(np.diff(moves.feed, prepend=np.nan) != 0.0)
+    said = anew[(moves.kind[anew] != Kind.RAPID) & (moves.feed[anew] > 0.0)]
+    each = (_coarse(form, float(moves.feed[k]), bool(moves.per_rev[k])) for k in said.tolist())
+    problems = [Problem(program.file, int(moves.line[k]), *why) for k, why in zip(said, each, strict=True) if why]
+    return sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)[:1]
+
+
+def _coarse(form: NumberFormat, feed: float, per_rev: bool) -> tuple[str, str, Severity] | None:
+    """What a format makes of a feed: none, or quite another one; None where it says the feed."""
+    printed = round(feed, form.decimals)
+    cure = "say it in mm/min (MMPM)" if per_rev else "raise it"
+    if printed < form.least:
+        return f"a feed of {feed:g} is less than the control can be told", cure, Severity.ERROR
+    if abs(printed - feed) > _COARSE * feed:
+        return f"a feed of {feed:g} prints as {printed:g}", cure, Severity.WARNING
+    return None
+
+
+def _left_skipping(program: Program) -> list[Problem]:
+    """Operations that end, or turn to another plane, while blocks are marked to be skipped.
+
+    What leads away from an operation is for every run. A turn is not: without it the blocks behind are somewhere else.
+    """
+    motions = program.motions
+    problems: list[Problem] = []
+    on: BlockSkip | None = None
+    for k, motion in enumerate(motions):
+        for event in motion.operation.events:
+            if isinstance(event, BlockSkip):
+                on = event if event.on else None
+        if on is not None and (k + 1 == len(motions) or motions[k + 1].begins):
+            what = f"OPSKIP/ON ends with operation {motion.operation.name}: the way home cannot be skipped"
+            problems.append(Problem(program.file, on.line, what, "write OPSKIP/OFF", Severity.WARNING))
+            on = None
+        elif on is not None:
+            line = int(motions[k + 1].operation.moves.line[0])
+            what = "the tool axis turns to another plane between blocks that may be skipped"
+            problems.append(Problem(program.file, line, what, "write OPSKIP/OFF before it, and OPSKIP/ON behind it"))
     return problems
 
 
@@ -217,6 +269,7 @@ def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Prob
     moves, settings = operation.moves, settings_of(program)
     turns = motion.manner is Manner.TCP and program.control.turns_between_holes(settings)
     level = {} if turns else {HOLES: IN_PLANES}
+    told: list[Problem] = []
     for event in operation.events:
         if not isinstance(event, CycleOn):
             continue
@@ -235,9 +288,12 @@ def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Prob
             spindle = turning(operation.events, event.row, held)
             formats = program.control.number_formats(motion.three_axis)
             program.control.family.hole_call(cycle, 0.0, spindle, settings | level, formats)
-            feed, _ = feed_of(cycle, spindle, float(moves.feed[event.row]), False)
+            feed, per_rev = feed_of(cycle, spindle, float(moves.feed[event.row]), False)
             if not feed > 0.0:
                 raise CycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
+            coarse = _coarse(formats["feed"], feed, per_rev) if not cycle.making.startswith("TAP") else None
+            if coarse:
+                told.append(Problem(program.file, event.line, *coarse))
             low = event.row > 0 and moves.tip[event.row - 1, 2] < moves.tip[event.row, 2] + cycle.above - 1e-6
             if low and not turns and moves.kind[event.row - 1] != Kind.RAPID:
                 cure = "draw the tool back before the cycle"
@@ -246,4 +302,4 @@ def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Prob
             problems.append(Problem(program.file, event.line, error.what, error.cure))
     if turns and not problems:
         problems = [Problem(program.file, e.line, e.what, e.cure) for e in check_positions(operation)]
-    return problems
+    return [*problems, *told]

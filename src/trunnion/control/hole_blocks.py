@@ -120,11 +120,15 @@ def _approach(
     for event in joining:
         block |= blocks.event_words(event)
     blocks.block(block)
-    blocks.height = retract
+    blocks.height, blocks.highest = retract, None
 
 
 def _stand(blocks: Blocks, rapid: Mapping[str, int], place: Mapping[str, int], low: float, exact: bool) -> None:
     """No lower than ``low`` before the tool goes to the first hole, or ``exact`` there: as heights are printed."""
+    if blocks.highest is not None:
+        blocks.height = max(blocks.highest, low)
+        blocks.block({**rapid, "Z": blocks.count("X", blocks.height)})
+        blocks.highest = None
     here, there = blocks.count("X", blocks.height), blocks.count("X", low)
     down = exact and here > there
     if down:  # over the hole first, and not aslant

@@ -1,0 +1,143 @@
+"""Blocks that may be skipped: whether they are or not, the others do the same."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from trunnion.arrays import Ints
+from trunnion.cli import main
+from trunnion.machine import load_machine
+from trunnion.reader import Run, Written, run_program
+from trunnion.toolpath import Kind
+
+MACHINES = ["yl569", "dmu65", "hs664rt", "matsuura_mx330", "xyzac_trt", "generic_head_head_ca"]
+
+HEAD = """TOOL PATH/{name},TOOL,D10
+TLDATA/MILL,10,0,75,0,0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,{tool}
+SPINDL/RPM,1000,CLW
+RAPID
+GOTO/0,0,50,0,0,1
+FEDRAT/MMPM,500
+GOTO/0,0,5
+"""
+
+MILLED = """OPSKIP/ON
+FEDRAT/MMPM,200
+GOTO/10,20,4
+CIRCLE/20,20,4,0,0,1,10
+GOTO/20,30,4
+OPSKIP/OFF
+GOTO/20,20,4
+OPSKIP/ON
+RAPID
+GOTO/25,20,30
+OPSKIP/OFF
+RAPID
+GOTO/25,25,30
+FEDRAT/MMPM,300
+GOTO/25,25,4
+OPSKIP/ON
+GOTO/30,25,4
+"""
+
+TURNED = """GOTO/5,0,5,0.1,0,0.99498743710662
+OPSKIP/ON
+GOTO/5,5,5,0.2,0.1,0.974679434480896
+OPSKIP/OFF
+GOTO/5,9,5
+"""
+
+DRILLED = """RAPID
+GOTO/0,0,30
+CYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100
+GOTO/0,0,0
+OPSKIP/ON
+GOTO/10,0,0
+OPSKIP/OFF
+GOTO/20,0,0
+GOTO/30,0,0
+OPSKIP/ON
+GOTO/40,0,0
+CYCLE/OFF
+RAPID
+GOTO/40,0,30
+OPSKIP/OFF
+RAPID
+GOTO/40,9,30
+"""
+
+TEXTS = {"milled": MILLED, "turned": TURNED, "drilled": DRILLED}
+
+
+def places(run: Run, skipped: set[int]) -> Ints:
+    """Rows that go to a place of the workpiece beside them, or drill; none that may be skipped."""
+    words = run.programmed & int(Written.X | Written.Y | Written.Z)
+    goes = ((words != 0) & (words != Written.Z)) | ((run.programmed == 0) & (run.kind == Kind.LINEAR))
+    kept = np.array([line not in skipped for line in run.block.tolist()])
+    return np.flatnonzero(goes & kept & ~run.machine_frame)
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
+def test_blocks_behind_skipped_ones_do_the_same(
+    machine: str, text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, out = tmp_path / "part.cls", tmp_path / "part.nc"
+    first = HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n"
+    path.write_text(first + HEAD.format(name="TWO", tool=2) + "GOTO/9,9,5\nEND-OF-PATH\n", encoding="utf-8")
+    assert main(["post", str(path), "--machine", machine, "--output", str(out)]) == 0
+    last = text.rstrip().rpartition("OPSKIP/")[2]
+    assert last.startswith("OFF") or "OPSKIP/ON ends with operation ONE" in capsys.readouterr().err
+    model = load_machine(machine)
+    whole, short = run_program(out, model), run_program(out, model, skip=True)
+    lines = out.read_text(encoding="utf-8").splitlines()
+    skipped = {k for k, line in enumerate(lines, 1) if line.startswith("/")}
+    assert skipped
+    here, there = places(short, set()), places(whole, skipped)
+    assert len(here)
+    assert short.block[here].tolist() == whole.block[there].tolist()
+    assert short.joints[here] == pytest.approx(whole.joints[there], abs=1e-9)
+    for column in ("kind", "feed_mode", "rpm", "spindle", "tool", "offset", "tcp"):
+        assert np.array_equal(getattr(short, column)[here], getattr(whole, column)[there]), column
+    cuts = short.kind[here] != Kind.RAPID
+    assert np.array_equal(short.feed[here][cuts], whole.feed[there][cuts])
+    assert not any(line.startswith("/") and ("M6" in line or "M91" in line or "SUPA" in line) for line in lines)
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_a_hole_behind_a_retract_that_may_be_skipped_is_gone_to_from_above(
+    machine: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "CYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100\nGOTO/0,0,0\nOPSKIP/ON\nRAPID\nGOTO/0,0,50\nOPSKIP/OFF\n"
+        "GOTO/50,0,20\nCYCLE/OFF\n"
+    )
+    path, out = tmp_path / "part.cls", tmp_path / "part.nc"
+    path.write_text(HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n", encoding="utf-8")
+    assert main(["post", str(path), "--machine", machine, "--output", str(out)]) == 0
+    run = run_program(out, load_machine(machine), skip=True)
+    across = np.flatnonzero((np.abs(np.diff(run.tip[:, 0])) > 1.0) & ~run.machine_frame[1:])
+    assert len(across)
+    assert (run.tip[across + 1, 2] > 22.0).any()
+    assert not ((run.tip[across, 2] < 22.0) & (run.tip[across + 1, 0] > 49.0)).any()
+
+
+@pytest.mark.parametrize("machine", ["yl569", "dmu65", "hs664rt", "matsuura_mx330"])
+def test_turns_to_another_plane_are_not_skipped(
+    machine: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "RAPID\nGOTO/0,0,30\nCYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100\nGOTO/0,0,0\nOPSKIP/ON\n"
+        "GOTO/5,0,0\nGOTO/20,0,0,0.5,0,0.86602540378444\nOPSKIP/OFF\nGOTO/20,5,0\nCYCLE/OFF\nRAPID\nGOTO/40,9,60\n"
+    )
+    path, out = tmp_path / "part.cls", tmp_path / "part.nc"
+    path.write_text(HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n", encoding="utf-8")
+    asked = main(["post", str(path), "--machine", machine, "--output", str(out)])
+    text = text.replace("OPSKIP/ON\n", "").replace("OPSKIP/OFF\n", "")
+    path.write_text(HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n", encoding="utf-8")
+    assert (asked, main(["post", str(path), "--machine", machine, "--output", str(out)])) == (2, 0)
+    assert "turns to another plane between blocks that may be skipped" in capsys.readouterr().err
