@@ -195,3 +195,12 @@ def test_a_lead_to_a_hole_is_not_taken_for_the_point_behind_it(
     )
     program = posted("matsuura_mx330", text).read_text(encoding="utf-8")
     assert failed("matsuura_mx330", program) == set()
+
+
+@pytest.mark.parametrize("machine", ["yl569", "matsuura_mx330", "xyzac_trt"])
+def test_a_constant_surface_speed_is_no_feed_per_turn(
+    machine: str, posted: Callable[[str, str], Path], failed: Proving
+) -> None:
+    program = posted(machine, "GOTO/10,0,5\nFEDRAT/MMPR,0.25\nGOTO/20,0,5\n").read_text(encoding="utf-8")
+    assert failed(machine, program) == set()
+    assert failed(machine, program.replace("G95 ", "G96 ")) == {"words"}

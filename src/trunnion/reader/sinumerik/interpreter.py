@@ -35,6 +35,7 @@ from trunnion.reader.sinumerik.words import (
     G_PLANES,
     G_SIDES,
     G_SILENT,
+    G_SURFACE,
     G_UNITS,
     M_CHANGE,
     M_ENDS,
@@ -243,6 +244,8 @@ class SinumerikInterpreter(Interpreter[Activation]):
             control.absolute = code == 90
         elif code in G_FEEDS:
             control.feed_mode.set(control.row, G_FEEDS[code])
+            if code in G_SURFACE:
+                self._note(f"G{code}: constant surface speed: only the kind of feed is followed", Severity.WARNING)
         elif code in G_OFFSETS:
             control.set_offset(code, f"G{code}")
         elif code in G_NAMED:

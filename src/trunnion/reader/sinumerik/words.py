@@ -22,6 +22,9 @@ G_FEEDS: Final = {
     972: 94,
     973: 95,
 }
+
+#: Constant surface speed.
+G_SURFACE: Final = frozenset({96, 961, 962})
 G_OFFSETS: Final = frozenset({54, 55, 56, 57, 500, *range(505, 600)})
 G_MACHINE: Final = frozenset({53, 153})
 
