@@ -256,6 +256,25 @@ def test_a_tool_change_within_an_operation_is_refused(post: Post) -> None:
     assert "part.cls:12: error: tool change within an operation" in err
 
 
+@pytest.mark.parametrize(
+    ("statement", "said"),
+    [
+        ("SELECT/TOOL,8", "SELECT/TOOL,8 is not written"),
+        ("SET/MODE,INCR", "SET/MODE,INCR is not followed"),
+        ("SPINDL/RPM,900,CLW,RANGE,2", "the gear range of SPINDL is not written"),
+    ],
+)
+def test_what_is_left_out_of_the_program_is_said(statement: str, said: str, post: Post) -> None:
+    code, _, err = post.all(HEAD + statement + "\nGOTO/20,0,5\n" + FOOT)
+    assert code == 0
+    assert f"part.cls:12: warning: {said}" in err
+
+
+def test_what_every_program_does_needs_no_word(post: Post) -> None:
+    _, _, err = post.all(HEAD + "SET/MODE,ABSOL\nMULTAX/ON\nGOTO/20,0,5\n" + FOOT)
+    assert "warning" not in err
+
+
 def test_blocks_go_without_numbers_if_somebody_says_so(post: Post) -> None:
     _, numbered, _ = post.all(HEAD + FOOT)
     code, plain, err = post.all(HEAD + FOOT, "--set", "numbers=off")

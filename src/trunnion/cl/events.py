@@ -128,6 +128,10 @@ class EventStatements:
                 elif last != "RANGE":
                     speed = value
             last = value
+        if "RANGE" in words or words & {"LOW", "MEDIUM", "HIGH"}:
+            self._findings.remark(
+                self._line, "the gear range of SPINDL is not written", "INSERT/ says it, if it must be"
+            )
         sense = self._sense(words)
         surface = words & _SURFACE.keys()
         if speed is None:

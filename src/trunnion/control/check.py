@@ -25,6 +25,8 @@ from trunnion.toolpath import (
     GoHome,
     Kind,
     LoadTool,
+    Mode,
+    SelectTool,
     Sense,
     SpindleOff,
     SpindleOn,
@@ -32,6 +34,10 @@ from trunnion.toolpath import (
 
 #: A feed that is off by more than this part of itself for being rounded is told.
 _COARSE = 0.01
+
+
+#: Statements about the form of a program that every program meets.
+_FOLLOWED = {("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULTAX",), ("MULTAX", "ON")}
 
 
 def check_program(program: Program) -> list[Problem]:
@@ -170,6 +176,12 @@ def _event_problems(program: Program, motion: Motion, event: Event, rpm: float |
         return [Problem(*place, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
     if isinstance(event, GoHome) and event.row < rows:
         return [Problem(*place, "GOHOME before the operation's end", "begin a new operation after it")]
+    if isinstance(event, SelectTool):
+        what = f"SELECT/TOOL,{event.number} is not written: the control is told of a tool when it is changed to"
+        return [Problem(*place, what, "INSERT/ says what the tool changer wants", Severity.WARNING)]
+    if isinstance(event, Mode) and event.words not in _FOLLOWED:
+        what = f"{event.words[0]}/{','.join(event.words[1:])} is not followed: the control's definition has the form"
+        return [Problem(*place, what, "compare the program with what it asks for", Severity.WARNING)]
     if isinstance(event, Coolant) and event.kind not in program.control.coolant:
         known = ", ".join(program.control.coolant)
         return [Problem(*place, f"{program.control.name} has no coolant {event.kind}", f"use one of {known}")]
