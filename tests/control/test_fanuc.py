@@ -331,8 +331,6 @@ def test_a_control_that_taps_rigidly_by_itself_needs_no_m29(folder: Path) -> Non
 @pytest.mark.parametrize(
     ("text", "what"),
     [
-        (f"CYCLE/DRILL,DEEP,{HEIGHTS}STEP,3,1,1,MMPM,90\nGOTO/10,5,2\n", "strokes that become shorter"),
-        (f"CYCLE/DRILL,DEEP,{HEIGHTS}STEP,3,DWELL,1,MMPM,90\nGOTO/10,5,2\n", "for which G83 has no word"),
         (f"CYCLE/BORE,NODRAG,{HEIGHTS}MMPM,90\nGOTO/10,5,2\n", "how far the tool lifts off"),
         (f"CYCLE/BORE,NODRAG,90,{HEIGHTS}MMPM,90\nGOTO/10,5,2\n", "a parameter of the control"),
         (f"SPINDL/OFF\nCYCLE/TAP,{HEIGHTS}MMPR,1\nGOTO/10,5,2\n", "spindle stands still"),

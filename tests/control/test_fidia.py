@@ -269,8 +269,6 @@ def test_each_cycle_has_its_word(mode: str, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "what"),
     [
-        (f"CYCLE/DRILL,BRKCHP,{HEIGHTS}STEP,2,MMPM,90\nGOTO/10,5,2\n", "no cycle on this control"),
-        (f"CYCLE/DRILL,DEEP,{HEIGHTS}STEP,3,1,1,MMPM,90\nGOTO/10,5,2\n", "strokes that become shorter"),
         (f"CYCLE/BORE,NODRAG,90,{HEIGHTS}MMPM,90\nGOTO/10,5,2\n", "no cycle on this control"),
         (f"CYCLE/TAP,{HEIGHTS}MMPR,1.0001\nGOTO/10,5,2\n", "the pitch would be wrong"),
         (f"SPINDL/RPM,500,CCLW\nCYCLE/TAP,{HEIGHTS}MMPR,1\nGOTO/10,5,2\n", "left hand"),

@@ -147,11 +147,15 @@ def test_a_tap_with_the_spindle_standing_is_refused() -> None:
         cycle_of(CycleOn(0, 1, ("TAP",), (("RAPTO", (3.0,)),)))
 
 
-def test_holes_while_the_tool_axis_changes_in_a_cut_are_refused(post: Post) -> None:
+def test_holes_of_an_operation_whose_axis_changes_in_a_cut_are_motion_with_tcp(post: Post) -> None:
     text = HEAD + f"GOTO/20,0,30,0.6,0,0.8\nCYCLE/DRILL,{HEIGHTS}MMPM,100\nGOTO/10,0,0\n" + FOOT
-    code, out, err = post.all(text)
-    assert (code, out) == (2, [])
-    assert "while the tool axis changes" in err
+    code, lines, err = post.all(text)
+    assert code == 0
+    assert (
+        "part.cls:13: warning: no cycle goes along a tilted axis with TCP; 1 hole of CYCLE/DRILL made as motion" in err
+    )
+    assert "1 holes, 1 of them by motion" in err
+    assert "G1 X-2. Z-16. F100." in lines
 
 
 def test_each_tool_axis_of_a_hole_pattern_has_its_plane(post: Post) -> None:

@@ -13,10 +13,10 @@ from tests.reader.judge import canonical, needs_judge
 from tests.reader.test_linuxcnc_judge import agree
 from trunnion.cl import read_cl
 from trunnion.cli.post import planned_program, write
+from trunnion.cli.settings import wishes_of
 from trunnion.control import load_control
 from trunnion.errors import InputError, Refused
 from trunnion.machine import load_machine
-from trunnion.plan import Wishes
 from trunnion.reader import run_program
 from trunnion.verify import failures, verify
 
@@ -82,8 +82,6 @@ def test_the_feed_of_a_cycle_is_its_own_and_the_modal_one_comes_back(post: Post)
 
 
 REFUSED = {
-    "DRILL,DEEP,{h}STEP,6.0,1.0,2.0,MMPM,250": "strokes that become shorter",
-    "DRILL,DEEP,{h}STEP,6.0,DWELL,1,MMPM,250": "leave DWELL out",
     "TAP,{h}MMPR,1.25,DWELL,1": "leave DWELL out",
     "BORE,NODRAG,90,{h}MMPM,100": "output the holes as motion",
     "BORE,MANUAL,{h}MMPM,100": "output the holes as motion",
@@ -115,6 +113,8 @@ MODES = st.sampled_from(
         "DRILL,{h}MMPR,0.125",
         "DRILL,DEEP,{h}STEP,{s},MMPM,250",
         "DRILL,BRKCHP,{h}STEP,{s},MMPM,250",
+        "DRILL,DEEP,{h}STEP,{s},0.5,1.0,MMPM,250",
+        "DRILL,BRKCHP,{h}STEP,{s},DWELL,{d},MMPM,250",
         "TAP,{h}MMPR,1.25",
         "TAP,{h}MMPM,1100",
         "TAP,{h}MMPR,0.7,OPTION",
@@ -151,9 +151,8 @@ def test_holes_of_all_cycles_are_proven_and_linuxcnc_makes_them_as_our_reader_do
     cl, target = folder / "holes.cls", folder / "holes.ngc"
     cl.write_text(text, encoding="utf-8")
     path = read_cl(cl)
-    wishes = Wishes(manners=CONTROL.manners({}))
     try:
-        program, _ = planned_program([path], MACHINE, CONTROL, {}, force=False, wishes=wishes)
+        program, _ = planned_program([path], MACHINE, CONTROL, {}, force=False, wishes=wishes_of({}, CONTROL))
     except (InputError, Refused):
         return  # a retract height by AUTO below the hole, or a cut that ends too low
     with target.open("wb") as sink:

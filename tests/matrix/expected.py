@@ -37,7 +37,6 @@ NAMES: Final = {
 }
 
 _FANUC: Final = {
-    "DRILL,DEEP, strokes shorter": "strokes that become shorter",
     "TAP,BRKCHP": _PECKS,
     "TAP,DEEP": _PECKS,
     "BORE,NODRAG": "the angle at which the spindle stops is a parameter of the control",
@@ -49,15 +48,12 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
     "fanuc_30i": _FANUC,
     "fanuc_31i_basic": {
         **_FANUC,
-        "drilling in five planes": "hole-making cycles while the tool axis changes, or with TCP",
         "simultaneous milling with TCP": "tcp is on, and the machine's control has none",
         "the same, the tool axis as a vector": "tcp is on, and the machine's control has none",
     },
     "fidia_nc15": {
         "the same, the tool axis as a vector": _NO_VECTORS,
         "simultaneous milling without TCP": "has no words for without TCP",
-        "DRILL,DEEP, strokes shorter": "strokes that become shorter",
-        "DRILL,BRKCHP": _NO_CYCLE,
         "TAP,BRKCHP": _NO_CYCLE,
         "TAP,DEEP": _NO_CYCLE,
         "BORE,NODRAG": _NO_CYCLE,
@@ -69,8 +65,6 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
     },
     "linuxcnc": {
         "the same, the tool axis as a vector": _NO_VECTORS,
-        "drilling in five planes": "hole-making cycles while the tool axis changes, or with TCP",
-        "DRILL,DEEP, strokes shorter": "strokes that become shorter",
         "TAP,BRKCHP": _LEAVES,
         "TAP,DEEP": _LEAVES,
         "BORE,NODRAG": _LEAVES,

@@ -56,11 +56,12 @@ def allowed_of(program: Program) -> "list[Allowed]":
             tip += math.radians(angle) * float(np.abs(motion.operation.moves.tip).max())
         if motion.manner is Manner.WITHOUT_TCP:
             tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
+        apart = motion.departures
+        agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
         if not motion.begins:
             before = allowed.pop()
             tip, angle, normal = max(tip, before.tip), max(angle, before.angle), max(normal, before.normal)
-        apart = motion.departures
-        agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
+            agreed = before.agreed
         found = 2.0 * CENTRE_DIGITS * half["X"] if control.arcs_by_radius else 0.0
         allowed.append(
             Allowed(

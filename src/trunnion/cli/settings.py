@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.control import Control, Division
+from trunnion.control.check import why_unsaid
 from trunnion.control.subprograms import LEAST_SIZE
 from trunnion.errors import InputError, Problem
 from trunnion.files import Output
@@ -26,6 +27,7 @@ _CHOICES = {
     "rewind": ("insert", "none"),
     "pole": tuple(Pole),
     "lower_feed": ("no", "yes"),
+    "cycles": ("on", "off"),
 }
 
 #: Settings that are numbers: their limits, and what to write.
@@ -158,6 +160,8 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         pose_planes=control.plane_from_pose,
         turns_between_holes=control.turns_between_holes(settings),
         tcp=tcp,
+        unsaid=why_unsaid(control, settings),
+        holes_as_motion=settings.get("cycles", "on") == "off",
         **known,
     )
 

@@ -200,7 +200,8 @@ class _Author:
         self._blocks.begin(motion, str(values["tool"]), self._goes_on(motion), comes_level=level)
         if below:
             self._expand(f"draw_back_{kind}", values, motion)
-        self._expand(f"{'approach' if motion.begins else 'next_plane'}_{kind}", values, motion)
+        onward = "next_axis" if motion.plane is None else "next_plane"
+        self._expand(f"{'approach' if motion.begins else onward}_{kind}", values, motion)
         if motion.plane is not None:
             self._expand(f"plane_on_{kind}", values, motion)
         self._blocks.rotary_stand(motion)
@@ -216,14 +217,14 @@ class _Author:
 
     def _goes_on(self, motion: Motion) -> bool:
         """Whether the tool comes from another plane of the same operation, and not from home."""
-        return not motion.begins and self._control.plane_from_pose
+        return not motion.begins and motion.plane is not None and self._control.plane_from_pose
 
     def _drawn_back(self) -> bool:
         """Whether the CL file itself has drawn the tool back, at rapid, at the end of the motion before this one."""
         assert self._before is not None
         operation = self._before.operation
         cycles = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
-        in_hole = bool(cycles) and isinstance(cycles[-1], CycleOn)
+        in_hole = self._before.in_hole or (bool(cycles) and isinstance(cycles[-1], CycleOn))
         return not in_hole and bool(operation.moves.kind[-1] == Kind.RAPID)
 
     def _stands_there(self, motion: Motion) -> bool:

@@ -1,6 +1,6 @@
 """What speaks against a program before it is written: what it would lack, and what its control cannot be told."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.machine import Carries
 from trunnion.nc import NumberFormat
 from trunnion.plan import Manner, Motion
-from trunnion.plan.holes import CycleError, Turning, cycle_of, feed_of, turning
+from trunnion.plan.holes import Cycle, CycleError, Turning, UnsaidError, cycle_of, feed_of, turning
 from trunnion.toolpath import (
     BlockSkip,
     Coolant,
@@ -51,8 +51,14 @@ def check_program(program: Program) -> list[Problem]:
         moves = operation.moves
         problems += _hole_problems(program, motion, held)
         held = turning(operation.events, len(moves), held) or held
-        if not motion.begins:
-            continue
+        for event in operation.events:
+            rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
+            problems += _event_problems(program, motion, event, rpm)
+        if motion.manner is Manner.TCP and program.control.only_vectors:
+            problems += _not_by_vectors(program, motion)
+        problems += _normal_problems(program, motion)
+        if motion.manner is Manner.WITHOUT_TCP and kind_of(program, motion):
+            problems += _problems_without_tcp(program, motion)
         unfed = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
         if len(unfed):
             problems.append(
@@ -63,6 +69,9 @@ def check_program(program: Program) -> list[Problem]:
         problems += _coarse_feeds(program, motion)
         refused = program.control.family.refused(operation, spindle)
         problems += [Problem(program.file, line, why.what, why.cure) for line, why in refused]
+        if not motion.begins:
+            problems += _no_way_on(program, motion)
+            continue
         spindle = spindle or any(isinstance(e, SpindleOn) for e in operation.events)
         if not spindle:
             what = f"operation {operation.name} has no spindle speed"
@@ -77,14 +86,6 @@ def check_program(program: Program) -> list[Problem]:
         if operation.tool.name and (not (loaded or stays) or setting_of(program, "tool_call") == "name"):
             problems += _unsaid(program, operation.line, _call_by_name, program.control, operation.tool.name)
         in_spindle = operation.tool.name
-        for event in operation.events:
-            rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
-            problems += _event_problems(program, motion, event, rpm)
-        if motion.manner is Manner.TCP and program.control.only_vectors:
-            problems += _not_by_vectors(program, motion)
-        problems += _normal_problems(program, motion)
-        if motion.manner is Manner.WITHOUT_TCP and kind_of(program, motion):
-            problems += _problems_without_tcp(program, motion)
         if not kind_of(program, motion):
             what = f"operation {operation.name}: {program.control.name} has no words for {motion.manner}"
             problems.append(Problem(program.file, operation.line, what, "--set manner=… says another manner"))
@@ -142,6 +143,17 @@ def _left_skipping(program: Program) -> list[Problem]:
     return problems
 
 
+def _no_way_on(program: Program, motion: Motion) -> list[Problem]:
+    """What is lacking where an operation goes on from home under another tool axis."""
+    kind = kind_of(program, motion)
+    if motion.plane is not None or not kind or f"next_axis_{kind}" in program.control.templates:
+        return []
+    moves, name = motion.operation.moves, program.control.name
+    what = f"holes along another axis than the one before, {motion.manner}: {name} is not told how to go on from home"
+    cure = f"write the template next_axis_{kind} into the control's definition, or split the operation"
+    return [Problem(program.file, int(moves.line[0]), what, cure)]
+
+
 def _asks_tolerance(program: Program, motion: Motion) -> bool:
     """Whether an operation's beginning depends on its tolerance, and has none of its own."""
     names = "operation_start", f"approach_{kind_of(program, motion)}"
@@ -170,7 +182,7 @@ def _event_problems(program: Program, motion: Motion, event: Event, rpm: float |
     if isinstance(event, Dwell):
         formats = control.number_formats(motion.three_axis)
         return _unsaid(program, event.line, control.family.dwell, event, rpm, formats)
-    if isinstance(event, LoadTool) and event.row > 0:
+    if isinstance(event, LoadTool) and (event.row > 0 or not motion.begins):
         return [Problem(*place, "tool change within an operation", "begin a new operation with the new tool")]
     if isinstance(event, CutterComp) and event.side == "ON":
         return [Problem(*place, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
@@ -273,6 +285,23 @@ def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
     return problems
 
 
+def why_unsaid(control: Control, settings: Mapping[str, str]) -> Callable[[Cycle, Turning | None], str]:
+    """Why a control has no cycle for a hole; empty where it has, or where the CL file leaves something out."""
+    known = {**control.settings, **{key: value for key, value in settings.items() if value}}
+    formats = control.number_formats(three_axis=True)
+
+    def why(cycle: Cycle, spindle: Turning | None) -> str:
+        try:
+            control.family.hole_call(cycle, 0.0, spindle, known, formats)
+        except UnsaidError as error:
+            return error.what
+        except CycleError:
+            pass
+        return ""
+
+    return why
+
+
 def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Problem]:
     """What the cycles of a motion ask for and this control cannot be told; ``held``: the spindle before it."""
     if not any(isinstance(event, CycleOn) for event in motion.operation.events):
@@ -288,15 +317,17 @@ def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Prob
         try:
             cycle = cycle_of(event)
             if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP) and not turns:
+                how = "with TCP" if motion.manner is Manner.TCP else "without TCP"
+                what = f"CYCLE/{cycle.making} {how}: no cycle goes along a tilted axis there, and no motion can make it"
                 planes = Manner.TILTED in program.control.manners(settings_of(program))
                 cure = (
                     "leave the setting manner out, or end the cut before the tool axis changes"
                     if planes
-                    else "this control has no tilted planes: output these holes as motions, without CYCLE"
+                    else "clamp the part so that these holes stand along +Z, or post for a control with tilted planes"
                 )
                 if HOLES in settings and motion.manner is Manner.TCP:
                     cure += f", or turn the tool from hole to hole (--set {HOLES}=…)"
-                raise CycleError("hole-making cycles while the tool axis changes, or with TCP", cure)
+                raise CycleError(what, cure)
             spindle = turning(operation.events, event.row, held)
             formats = program.control.number_formats(motion.three_axis)
             program.control.family.hole_call(cycle, 0.0, spindle, settings | level, formats)

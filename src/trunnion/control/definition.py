@@ -404,11 +404,14 @@ def _naming(table: Table) -> Naming:
 def _templates(table: Table, family: Family, plane_from_pose: bool, subprograms: bool) -> dict[str, Template]:
     """Those that every definition has, those of subprograms, and those of the kinds of operations that it has any for.
 
+    The way from home to the next axis of an operation with holes is one that a definition need not have.
+
     Where a plane is taken from the rotary position, the tool may have to be drawn back before the next one.
     """
     found = {}
     of_planes = ("approach", "plane_on", *(("draw_back",) if plane_from_pose else ()), "next_plane", "operation_end")
     kinds = [_of_kind(kind, ("approach", "operation_end")) for kind in (FIVE_AXIS, WITHOUT_TCP)]
+    kinds += [(f"next_axis_{kind}",) for kind in (FIVE_AXIS, WITHOUT_TCP)]
     kinds += [_of_kind(plane, of_planes) for plane in family.PLANES]
     wanted = [name for names in ((SPINDLE_ON,), *kinds) if any(name in table for name in names) for name in names]
     for name in (*TEMPLATES, *(SUBPROGRAM if subprograms else ()), *wanted):

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from trunnion.control.family import FIRST_HOLE, Formats
-from trunnion.plan.holes import Cycle, CycleError, Making, Turning
+from trunnion.plan.holes import Cycle, CycleError, Making, Turning, UnsaidError
 from trunnion.toolpath import Sense
 
 #: The G word of each cycle, without a dwell and with one; None: it has no word for a dwell.
@@ -45,7 +45,7 @@ def cycle_call(
     code = waiting if dwell else plain
     if code is None:
         what = f"{cycle.making} with a dwell at the bottom, for which {plain} has no word"
-        raise CycleError(what, "leave DWELL out, or output the holes as motion")
+        raise UnsaidError(what, "leave DWELL out")
     before: list[str] = []
     if cycle.making in (Making.TAP, Making.TAP_CHUCK):
         spindle = _checked_thread(cycle, turning)
@@ -85,7 +85,7 @@ def _dwell(cycle: Cycle, turning: Turning | None, formats: Formats) -> str:
 def _stroke(cycle: Cycle) -> float:
     """Q: all strokes are alike, and counted from where the feed begins."""
     if any(cycle.steps[1:]):
-        raise CycleError("strokes that become shorter, where Q is one stroke", "write STEP with one number")
+        raise UnsaidError("strokes that become shorter, where Q is one stroke", "write STEP with one number")
     return cycle.steps[0]
 
 

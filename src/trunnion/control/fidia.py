@@ -16,7 +16,7 @@ from trunnion.control.iso import event_words as event_words
 from trunnion.control.template import Value
 from trunnion.nc import ABSENT, counts
 from trunnion.plan import Motion
-from trunnion.plan.holes import Cycle, CycleError, Making, Turning
+from trunnion.plan.holes import Cycle, CycleError, Making, Turning, UnsaidError
 from trunnion.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense, Stop
 
 WORDS: tuple[str, ...] = (
@@ -119,7 +119,7 @@ def hole_call(
     assert cycle.retract is not None
     if cycle.making not in _CYCLES:
         what = f"{cycle.making} has no cycle on this control whose words are known"
-        raise CycleError(what, "output the holes as motion")
+        raise UnsaidError(what, "output the holes as motion")
     _check_thread(cycle, turning)
     try:
         dwell = _seconds(cycle.dwell, cycle.dwell_turns, None if turning is None else turning.rpm)
@@ -138,7 +138,7 @@ def hole_call(
 def _peck(cycle: Cycle) -> float:
     """D is one stroke: all are alike, and counted from where the feed begins."""
     if any(cycle.steps[1:]):
-        raise CycleError("strokes that become shorter, where D is one stroke", "write STEP with one number")
+        raise UnsaidError("strokes that become shorter, where D is one stroke", "write STEP with one number")
     return cycle.steps[0]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Final
 
 from trunnion.control.family import EACH_HOLE, FIRST_HOLE, Formats
-from trunnion.plan.holes import Cycle, CycleError, Making, Turning
+from trunnion.plan.holes import Cycle, CycleError, Making, Turning, UnsaidError
 from trunnion.toolpath import Sense
 
 #: What a cycle says besides its heights: the G word, then its own words.
@@ -76,9 +76,9 @@ def _drill(cycle: Cycle, turning: Turning | None, formats: Formats) -> Words:
 def _peck(cycle: Cycle, turning: Turning | None, formats: Formats) -> Words:
     """Equal strokes of Q, which count from R."""
     if any(cycle.steps[1:]):
-        raise CycleError("strokes that become shorter, where Q is one stroke", "write STEP with one number")
+        raise UnsaidError("strokes that become shorter, where Q is one stroke", "write STEP with one number")
     if cycle.dwell:
-        raise CycleError("DWELL at the bottom of a hole in strokes: the control has none there", "leave DWELL out")
+        raise UnsaidError("DWELL at the bottom of a hole in strokes: the control has none there", "leave DWELL out")
     return (83 if cycle.making is Making.DEEP else 73), [f"Q{formats['coordinate'].text(cycle.steps[0])}"]
 
 

@@ -9,14 +9,14 @@ word means.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
 
 import numpy as np
 
-from trunnion.arrays import Flags
+from trunnion.arrays import Flags, Ints
 from trunnion.toolpath import Arcs, CycleOff, CycleOn, Event, Kind, Operation, Sense, SpindleOff, SpindleOn
 
 
@@ -71,6 +71,10 @@ class CycleError(Exception):
     def __init__(self, what: str, cure: str, line: int = 0) -> None:
         super().__init__(what)
         self.what, self.cure, self.line = what, cure, line
+
+
+class UnsaidError(CycleError):
+    """A control has no words for a cycle that says all that it must; motion may make its holes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,6 +208,16 @@ def with_holes(operation: Operation) -> Operation:
     return replace(operation, moves=replace(moves, kind=kind), events=tuple(events))
 
 
+def holes_of_cycles(operation: Operation) -> Iterator[tuple[CycleOn, int]]:
+    """The cycles of an operation as ``with_holes`` leaves it, each with the row after its last hole."""
+    begun: CycleOn | None = None
+    for event in operation.events:
+        if isinstance(event, CycleOn | CycleOff) and begun is not None:
+            yield begun, event.row
+        if isinstance(event, CycleOn | CycleOff):
+            begun = event if isinstance(event, CycleOn) else None
+
+
 def _under(operation: Operation, row: int) -> CycleOn:
     """The cycle that holds at a row which is a hole."""
     return next(e for e in reversed(operation.events) if isinstance(e, CycleOn) and e.row <= row)
@@ -248,19 +262,27 @@ def by_axis(operation: Operation) -> list[tuple[int, int]] | None:
 
     None if it has none, or if it cannot be parted there: for arcs, or because the axis changes in a cut.
     """
-    moves = operation.moves
     if not any(isinstance(event, CycleOn) for event in operation.events) or len(operation.arcs.row):
         return None
-    turns = np.flatnonzero(np.abs(np.diff(moves.axis, axis=0)).max(axis=1, initial=0.0) > 1e-7) + 1
-    if (moves.kind[turns] != Kind.RAPID).any():
+    turns = turned(operation)
+    if (operation.moves.kind[turns] != Kind.RAPID).any():
         return None
-    ends = [0, *turns.tolist(), len(moves)]
-    return list(pairwise(ends))
+    return between(turns, len(operation.moves))
+
+
+def turned(operation: Operation) -> Ints:
+    """The rows under another tool axis than the row before them."""
+    return np.flatnonzero(np.abs(np.diff(operation.moves.axis, axis=0)).max(axis=1, initial=0.0) > 1e-7) + 1
+
+
+def between(starts: Ints, count: int) -> list[tuple[int, int]]:
+    """Rows from, to, for each part of ``count`` rows of which all but the first begin at ``starts``."""
+    return list(pairwise([0, *starts.tolist(), count]))
 
 
 def part_of(operation: Operation, first: int, end: int) -> Operation:
-    """Rows ``first`` to ``end`` of an operation without arcs, with the cycle that holds where they begin."""
-    moves = operation.moves
+    """Rows ``first`` to ``end`` of an operation, with the cycle that holds where they begin. No arc leads there."""
+    moves, arcs = operation.moves, operation.arcs
     cut = moves.part(slice(first, end))
     last = end == len(moves)
     inside = [e for e in operation.events if first <= e.row < end or (last and e.row == end)]
@@ -268,7 +290,9 @@ def part_of(operation: Operation, first: int, end: int) -> Operation:
     events = [replace(event, row=event.row - first) for event in inside]
     if held and isinstance(held[-1], CycleOn) and not any(isinstance(e, CycleOff) and e.row == 0 for e in events):
         events.insert(0, replace(held[-1], row=0))
-    return replace(operation, moves=cut, arcs=Arcs.none(), events=tuple(events))
+    here = (arcs.row >= first) & (arcs.row < end)
+    kept = Arcs(arcs.row[here] - first, arcs.centre[here], arcs.normal[here], arcs.radius[here], arcs.turns[here])
+    return replace(operation, moves=cut, arcs=kept, events=tuple(events))
 
 
 def feed_of(cycle: Cycle, turning: Turning | None, modal: float, modal_per_rev: bool) -> tuple[float, bool]:

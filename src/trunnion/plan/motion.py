@@ -67,7 +67,8 @@ class Motion:
     plane        the tilted plane as seen from the program's coordinate system, for that manner only. Its Z is the tool
                  axis
     departures   where it is not made as its CL file has it
-    begins       False: it goes on with the operation of the motion before it, in another plane
+    begins       False: it goes on with the operation of the motion before it, in another plane or from home
+    in_hole      its last row is that of a hole: the tool is drawn back no farther than its cycle says
     """
 
     operation: Operation
@@ -76,6 +77,7 @@ class Motion:
     plane: Frame | None = None
     departures: Departures = field(default_factory=Departures.none)
     begins: bool = True
+    in_hole: bool = False
 
     def __post_init__(self) -> None:
         self.rotary.setflags(write=False)
@@ -101,6 +103,7 @@ class Why(StrEnum):
     FEED = "feed"
     MORE = "more"
     POINTS = "points"
+    HOLES = "holes"
     NEAREST = "nearest"
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.machine import Machine, inverse
 from trunnion.plan.ahead import beyond_words, cure_words, out_of_reach_by
@@ -15,15 +16,15 @@ from trunnion.plan.clearance import Clearance
 from trunnion.plan.decisions import Planned, decisions, pose_words
 from trunnion.plan.departures import Asked, near_pole, slower
 from trunnion.plan.frames import into_frame, into_plane, seen_from
-from trunnion.plan.holes import CycleError, by_axis, part_of, with_holes
+from trunnion.plan.holes import CycleError, Turning, between, by_axis, part_of, turned, turning, with_holes
 from trunnion.plan.kinds import contradictions, in_other_words, machine_x, manner_of, plane_of, uprighted
-from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole
+from trunnion.plan.motion import Decision, Departures, Manner, Motion, Plan, Pole, Why
 from trunnion.plan.placing import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.plan.poses import Poses, beyond_fit, follow
-from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, with_rewinds
+from trunnion.plan.rewind import Rewind, compensated, joints_of, lacks_room, rewind_at, rewound, with_rewinds
 from trunnion.plan.states import LIMIT_TOLERANCE, limits_of
 from trunnion.plan.wishes import Wishes
-from trunnion.toolpath import Frame, Moves, Operation, Toolpath
+from trunnion.toolpath import CycleOn, Frame, Kind, Moves, Operation, Toolpath
 
 #: How many rows of one kind of trouble are named one by one.
 _NAMED = 5
@@ -63,6 +64,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
     stretches: list[_Stretch] = []
     against: list[Problem] = []
     said: list[Problem] = []
+    held: Turning | None = None
     for path, original in pairs:
         try:
             operation = into_frame(with_holes(original), program_frame)
@@ -89,14 +91,23 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         if plane is not None and wishes.pose_planes:
             kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)
-        stretch = _stretch(Asked(machine, path.file, operation, original, wishes, keep_slides))
         planes = Manner.TILTED in wishes.manners and wished.manner is None
         planes &= manner is Manner.WITHOUT_TCP or not wishes.turns_between_holes
+        parts = by_axis(operation) if manner in (Manner.TCP, Manner.WITHOUT_TCP) and planes else None
+        try:
+            holes = _holes(path.file, operation, wishes, manner if parts is None else Manner.TILTED, parts, held)
+        except CycleError as error:
+            against.append(Problem(path.file, error.line, error.what, error.cure))
+            continue
+        finally:
+            held = turning(original.events, len(original.moves), held)
+        said += holes.said
+        stretch = _stretch(Asked(machine, path.file, holes.operation, original, wishes, keep_slides))
         if plane is not None and wishes.machine_x:
             plane = plane_of(operation.moves.axis[0], own, machine_x(machine, stretch.poses.rotary[0]))
-        parts = by_axis(operation) if manner in (Manner.TCP, Manner.WITHOUT_TCP) and planes else None
-        kind = replace(stretch, manner=manner, plane=plane)
-        stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own, parts=parts))
+        kind = replace(stretch, manner=manner, plane=plane, parts=holes.parts, in_hole=holes.in_hole)
+        kind = replace(kind, log=(*stretch.log, *holes.log))
+        stretches.append(kind if parts is None else replace(kind, manner=Manner.TILTED, plane=own))
     if against:
         raise Refused(against)
     problems = [*said, *_unknown_speeds(pairs[0][0].file, machine, wishes)]
@@ -132,6 +143,8 @@ class _Stretch:
     """An operation with its poses, as it is before rewinds are put in, the file that it came from, and its kind.
 
     ``parts`` are the rows of its planes, where holes make it one in several of them; ``plane`` is then its own frame.
+    With TCP, or without, they are the rows between which the tool goes home. ``in_hole`` says of each whether it ends
+    in a hole that is motion.
     """
 
     file: str
@@ -144,6 +157,7 @@ class _Stretch:
     manner: Manner = Manner.TCP
     plane: Frame | None = None
     parts: Sequence[tuple[int, int]] = ()
+    in_hole: Sequence[bool] = ()
 
     @property
     def refused(self) -> bool:
@@ -151,24 +165,78 @@ class _Stretch:
 
     def motions(self, machine: Machine, wishes: Wishes) -> list[Motion]:
         """What is to be written."""
+        operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
         if not self.parts:
-            operation, rotary = with_rewinds(self.operation, self.poses.rotary, self.rewinds, wishes)
             return [Motion(operation, rotary, self.manner, self.plane, self.departures)]
-        assert self.plane is not None
         return [
             Motion(
-                part_of(self.operation, first, end),
-                self.poses.rotary[first:end].copy(),
+                part_of(operation, first, end),
+                rotary[first:end].copy(),
                 self.manner,
-                plane_of(
-                    self.operation.moves.axis[first],
-                    self.plane,
-                    machine_x(machine, self.poses.rotary[first]) if wishes.machine_x else None,
-                ),
-                begins=first == 0,
+                self._plane_at(operation.moves.axis[first], rotary[first], machine, wishes),
+                self.departures if begin == 0 else Departures.none(),
+                begins=begin == 0,
+                in_hole=in_hole,
             )
-            for first, end in self.parts
+            for (begin, _), (first, end), in_hole in zip(
+                self.parts, rewound(self.parts, self.rewinds), self.in_hole, strict=True
+            )
         ]
+
+    def _plane_at(self, axis: Floats, rotary: Floats, machine: Machine, wishes: Wishes) -> Frame | None:
+        """The plane of one of the parts, under a tool axis (3,) with the rotary axes at (2,), degrees."""
+        if self.manner is not Manner.TILTED:
+            return None
+        assert self.plane is not None
+        return plane_of(axis, self.plane, machine_x(machine, rotary) if wishes.machine_x else None)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Holes:
+    """An operation with the holes as motion that must be, its parts, and what there is to say about it."""
+
+    operation: Operation
+    parts: Sequence[tuple[int, int]]
+    in_hole: Sequence[bool] = ()
+    said: Sequence[Problem] = ()
+    log: Sequence[Decision] = ()
+
+
+def _holes(
+    file: str,
+    operation: Operation,
+    wishes: Wishes,
+    manner: Manner,
+    parts: Sequence[tuple[int, int]] | None,
+    held: Turning | None,
+) -> _Holes:
+    """Make holes as motion where they have to be; ``parts``: rows of the planes of the operation, as it is."""
+    if not any(isinstance(event, CycleOn) for event in operation.events):
+        return _Holes(operation, ())
+    from trunnion.plan.hole_rows import ASKED, as_motion  # holes are seldom, and few of them are motion
+
+    moves, why = operation.moves, ""
+    along_tool = manner is Manner.TCP and wishes.turns_between_holes and not wishes.holes_as_motion
+    if manner in (Manner.TCP, Manner.WITHOUT_TCP) and not along_tool:
+        why = f"no cycle goes along a tilted axis {'with TCP' if manner is Manner.TCP else 'without TCP'}"
+        turns = turned(operation)
+        parts = between(turns[moves.kind[turns] == Kind.RAPID], len(moves))
+    home = np.zeros(len(moves), np.bool_)
+    home[[first for first, _ in parts or ()]] = True
+    drilled = as_motion(operation, wishes, held, home, why)
+    begins = drilled.first
+    kept = [(int(begins[first]), int(begins[end])) for first, end in parts or ()]
+    in_hole = [bool(begins[end] - begins[end - 1] > 1) for _, end in parts or ()]
+    said, log = [], []
+    for one in drilled.resolved:
+        holes = "1 hole" if one.holes == 1 else f"{one.holes} holes"
+        text = f"{holes} of CYCLE/{one.making} made as motion: {one.why}"
+        log.append(Decision(file, operation.name, one.line, -1, Why.HOLES, text))
+        if one.why != ASKED:
+            said.append(
+                Problem(file, one.line, one.why, f"{holes} of CYCLE/{one.making} made as motion", Severity.WARNING)
+            )
+    return _Holes(drilled.operation, kept, in_hole, said, log)
 
 
 def _stretch(asked: Asked) -> _Stretch:

@@ -110,6 +110,12 @@ def with_rewinds(
     )
 
 
+def rewound(parts: Sequence[tuple[int, int]], rewinds: Sequence[Rewind]) -> list[tuple[int, int]]:
+    """Rows from, to, of parts of an operation once all rewinds are put in; none is before the first row of a part."""
+    rows = np.array([rewind.row for rewind in rewinds], np.int64)
+    return [(int(_moved(rows, first)), int(_moved(rows, end))) for first, end in parts]
+
+
 def _moved(rewound: Ints, row: int | Ints) -> Ints:
     """New index of a row, or of rows."""
     return np.asarray(row + ADDED * np.searchsorted(rewound, row, side="right"))

@@ -1,16 +1,22 @@
 """What whoever asks for a program may wish of its planning."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
 
 from trunnion.plan.clearance import Clearance
+from trunnion.plan.holes import Cycle, Turning
 from trunnion.plan.motion import Manner, Pole
 
 #: How far the tool axis may be off between CL points without TCP, degrees, unless something else is asked.
 AXIS_WITHOUT_TCP: Final = 0.05
+
+
+def _never(cycle: Cycle, spindle: Turning | None) -> str:
+    """Nothing is unsaid."""
+    return ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +47,8 @@ class Wishes:
     turns_between_holes  where the tool axis changes between holes, they are not made in planes
     tcp             the control holds the tip (TCP); False: the slides and rotary axes themselves are led
     tip_tolerance   without TCP: how far the tip may be off its line between CL points, mm
+    unsaid          why the control has no cycle for a hole, with the spindle as it turns there; empty where it has one
+    holes_as_motion  holes are made as motion even where the control has a cycle
     axis_tolerance  how far the tool axis may be off its great circle between CL points, degrees; None: with TCP it is
                     not looked at, without TCP it is ``AXIS_WITHOUT_TCP``
     """
@@ -67,6 +75,8 @@ class Wishes:
     turns_between_holes: bool = False
     tcp: bool = True
     tip_tolerance: float = 0.005
+    unsaid: Callable[[Cycle, Turning | None], str] = _never
+    holes_as_motion: bool = False
     axis_tolerance: float | None = None
 
     def of(self, operation: str) -> "Wishes":

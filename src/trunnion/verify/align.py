@@ -20,7 +20,7 @@ from trunnion.reader import Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.arcs import Arc, arc_of
 from trunnion.verify.between import follow
-from trunnion.verify.cycles import hole_rows, leads, made_in
+from trunnion.verify.drilled import hole_rows, leads, made_in
 from trunnion.verify.points import Tilt
 from trunnion.verify.rapids import PLACES as PLACES
 from trunnion.verify.rapids import leaving, levels
@@ -122,7 +122,7 @@ def places_only(run: Run, rows: Ints) -> Flags:
 def points(run: Run, wanted: Wanted) -> Rows:
     """Rows of a run that ought to answer to CL points, without those that make holes or lead to the first point."""
     rows = answers(run)
-    none = np.concatenate((hole_rows(made_in(run, wanted.holes)), levels(run), leaving(run)))
+    none = np.concatenate((hole_rows(made_in(run, wanted)), levels(run), leaving(run)))
     more = _taken_along(run, wanted)
     if not len(none) and not len(more):
         return rows
@@ -198,13 +198,14 @@ class _Matcher:
         self._run, self._wanted, self._bend = run, wanted, bend
         self._rows = points(run, wanted)
         self._tilt = Tilt.of(run.machine)
-        made = made_in(run, wanted.holes)
-        self._leads = leads(run, [hole.first - k for hole in made for k in (1, 2, 3)], made)
+        made = made_in(run, wanted)
+        limits = [part.allowed for part in wanted.parts]
+        before = [hole.first - k for hole in made for k in (1, 2, 3)]
+        self._leads = leads(run, before, made, max(each.tip for each in limits))
+        self._near = np.array([(each.tip * 1.001 + 1e-9, np.radians(2.0 * each.angle) + 2e-7) for each in limits])
         all_made = len(made) == len(wanted.holes)
         self._made = np.array([hole.first for hole in made] if all_made else [], np.int64)
         self._holes = np.array([hole.row for hole in wanted.holes] if all_made else [], np.int64)
-        limits = [part.allowed for part in wanted.parts]
-        self._near = np.array([(each.tip * 1.001 + 1e-9, np.radians(2.0 * each.angle) + 2e-7) for each in limits])
         self._n, self._m = len(self._rows), len(wanted)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []

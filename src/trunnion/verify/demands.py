@@ -10,7 +10,7 @@ from trunnion.toolpath import Kind
 from trunnion.verify.agreed import Believed, needless_feeds
 from trunnion.verify.arcs import arc_of
 from trunnion.verify.case import NAMED, Case, judged
-from trunnion.verify.cycles import leads, made_in
+from trunnion.verify.drilled import leads, made_in
 from trunnion.verify.model import Check, Place
 from trunnion.verify.retreats import retreats
 from trunnion.verify.wanted import Allowed
@@ -36,9 +36,10 @@ def order(case: Case) -> Check:
     places = [case.missing(cl, "no block goes to this CL point") for cl in pairs.missing[:NAMED]]
     told: list[Place] = []
     count = len(pairs.missing)
-    back = retreats(case.run, pairs.extra, max(part.allowed.tip for part in wanted.parts))
+    allowed = max(part.allowed.tip for part in wanted.parts)
+    back = retreats(case.run, pairs.extra, allowed)
     lawful = {row for retreat in back for row in range(retreat.first, retreat.end)}
-    lawful |= leads(case.run, pairs.extra, made_in(case.run, wanted.holes))
+    lawful |= leads(case.run, pairs.extra, made_in(case.run, wanted), allowed)
     for retreat in back:
         text = f"draws back {retreat.distance:.3f} mm along the tool axis, turns, and comes back"
         told.append(case.place(retreat.first, retreat.distance, text))

@@ -8,7 +8,7 @@ from typing import Final
 from trunnion.reader import Happening, Run
 from trunnion.toolpath import Dwell, Stop
 from trunnion.verify.case import NAMED, Case, judged
-from trunnion.verify.cycles import made_in
+from trunnion.verify.drilled import made_in
 from trunnion.verify.model import Check, Place
 
 _KINDS: Final = ("dwell", "stop", "optional_stop")
@@ -76,12 +76,11 @@ def _asked(event: Dwell | Stop, row: int, file: str) -> _Asked:
 
 
 def _outside_holes(case: Case) -> list[Happening]:
-    """What the program itself says of dwells and stops, without what its cycles do in a hole."""
-    assert case.wanted is not None
+    """What the program itself says of dwells and stops, without what is done in a hole."""
     events = [event for event in case.run.events if event.kind in _KINDS]
     if not events:
         return []
-    made = made_in(case.run, case.wanted.holes)
+    made = made_in(case.run, case.wanted)
     return [event for event in events if not any(hole.first < event.before_row < hole.end for hole in made)]
 
 

@@ -9,7 +9,7 @@ from trunnion.reader import Finding, Run, Written
 from trunnion.toolpath import Kind
 from trunnion.verify.align import CHUNK, PLACES
 from trunnion.verify.case import NAMED, Case, judged
-from trunnion.verify.cycles import hole_rows, leads, made_in
+from trunnion.verify.drilled import hole_rows, leads, made_in
 from trunnion.verify.model import Check, Place
 from trunnion.verify.rapids import levels
 
@@ -126,10 +126,12 @@ def _low_rapids(case: Case) -> list[Place]:
         assert case.wanted is not None
         for nc, cl in case.pairs.all_chunks():
             suspect[nc[case.wanted.kind(cl) == Kind.RAPID]] = False
-    made = made_in(run, () if case.wanted is None else case.wanted.holes)
+    made = made_in(run, case.wanted)
     suspect[hole_rows(made)] = False  # they have a check of their own
     if case.pairs is not None:
-        suspect[list(leads(run, case.pairs.extra, made))] = False
+        assert case.wanted is not None
+        allowed = max(part.allowed.tip for part in case.wanted.parts)
+        suspect[list(leads(run, case.pairs.extra, made, allowed))] = False
     suspect[levels(run)] = False  # as high as home is, which nobody chose
     if not suspect.any():
         return []

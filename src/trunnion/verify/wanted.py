@@ -53,6 +53,11 @@ class Agreed:
     slowed: Ints
     feed: Floats
 
+    def without(self, holes: Flags) -> "Agreed":
+        """The same where the rows that are holes (n,) are not counted, and nothing is agreed upon at them."""
+        place, lean, slow = np.cumsum(~holes) - 1, ~holes[self.leaned], ~holes[self.slowed]
+        return Agreed(self.lean, place[self.leaned[lean]], self.rotary[lean], place[self.slowed[slow]], self.feed[slow])
+
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
@@ -172,6 +177,8 @@ class Wanted:
             holes = holes_of(seen, rows, first, path.file, limit.tip, spindle)
             found += [replace(hole, tools=tools, lengths=call.lengths, digit=limit.feed) for hole in holes]
             spindle = spindle_at(seen, len(seen.moves), spindle)
+            if limit.agreed is not None and rows.any():
+                limit = replace(limit, agreed=limit.agreed.without(rows))
             parts.append(Part(path.file, operation, first, limit))
             first += len(operation.moves)
         self.parts: tuple[Part, ...] = tuple(parts)
