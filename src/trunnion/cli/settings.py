@@ -8,6 +8,7 @@ from typing import Any
 
 from trunnion.control import Control, Division
 from trunnion.control.check import why_unsaid
+from trunnion.control.definition import UNKNOWN_FEED
 from trunnion.control.subprograms import LEAST_SIZE
 from trunnion.errors import InputError, Problem
 from trunnion.files import Output
@@ -29,6 +30,12 @@ _CHOICES = {
     "lower_feed": ("no", "yes"),
     "cycles": ("on", "off"),
 }
+
+#: What makes a control say motion without TCP for which nobody has said what F counts.
+_SAY_FEED = (
+    'write feed_without_tcp = "all_axes" or "slides", what F counts while rotary axes turn, under [control] and under'
+    " [control.reading] of the machine's definition, if you know it; or post with TCP"
+)
 
 #: Settings that are numbers: their limits, and what to write.
 _NUMBERS = {
@@ -148,6 +155,7 @@ def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = Fal
         own_manner=own_manner,
         manners=control.manners(settings),
         level=_level(control),
+        cures={Manner.WITHOUT_TCP: _SAY_FEED} if control.feed_without_tcp == UNKNOWN_FEED else {},
         arcs_about_z=control.arcs_about_z,
         helices_by_angle="arc_angle" in control.family.WORDS,
         machine_x=control.plane_along_machine,

@@ -389,6 +389,7 @@ class Blocks:
             columns["feed_mode"][turning] = self.control.codes["feed_inverse_time"]
             columns[key] = rate
         else:
+            rate[turning & (rate == self.rapid_feed)] += 1  # lines at that feed stand for rapids
             columns[key][turning] = rate[turning]
         for key, which in self._rotary:
             jumps = slides.shortest[part, self._column[which]]

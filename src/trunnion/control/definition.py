@@ -70,9 +70,12 @@ AXIS_WORDS = ("X", "Y", "Z", "primary", "secondary")
 #: The format of words that print no number.
 _NO_NUMBER = NumberFormat(0)
 
-#: How feeds can be said where nobody holds the tip and rotary axes turn: as the time of each block; or as an F that
-#: counts the way of all axes together, a degree as a millimetre.
-FEEDS_WITHOUT_TCP = ("inverse_time", "all_axes")
+#: Nobody knows what F means where nobody holds the tip and rotary axes turn: then the control has no words for it.
+UNKNOWN_FEED = "unknown"
+
+#: How feeds can be said there: as the time of each block; as an F that counts the way of all axes together, a degree as
+#: a millimetre; or as one that counts the way of the slides alone, or the degrees where these rest.
+FEEDS_WITHOUT_TCP = ("inverse_time", "all_axes", "slides", UNKNOWN_FEED)
 
 #: From where a control goes to the next hole: the height of the last retract (whatever the next one needs above it is
 #: said before), or the retract height of the next hole itself; or it draws back to where the tool stood when the cycle
@@ -174,6 +177,8 @@ class Control:
         plane = settings.get("plane") or self.settings.get("plane") or next(iter(self.family.PLANES), "")
         names = {Manner.THREE_AXIS: "three_axis", Manner.TILTED: plane, Manner.WITHOUT_TCP: WITHOUT_TCP}
         name = names.get(manner, FIVE_AXIS if self.tcp else "")
+        if name == WITHOUT_TCP and self.feed_without_tcp == UNKNOWN_FEED:
+            return ""
         return name if f"approach_{name}" in self.templates else ""
 
     @property

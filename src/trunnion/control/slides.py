@@ -31,6 +31,7 @@ class Slides:
     motion    tips and centres of circles are positions of the slides X, Y and Z
     turns     (n,) bool     a rotary axis turns on the way to the row
     length    (n,) float64  of the way to the row that the feed means: mm of the tip, or degrees where it rests
+    alone     (n,) float64  of the way to the row of the slides X, Y and Z, mm, or degrees where they rest
     together  (n,) float64  of the way to the row with all axes as one, a degree as a millimetre
     shortest  (n, 2) bool   the rotary axis goes past the end of the turn that it displays
     """
@@ -38,12 +39,14 @@ class Slides:
     motion: Motion
     turns: Flags
     length: Floats
+    alone: Floats
     together: Floats
     shortest: Flags
 
     def at(self, rows: Ints | slice) -> "Slides":
         """Some rows, without their motion, which stays whole."""
-        return Slides(self.motion, self.turns[rows], self.length[rows], self.together[rows], self.shortest[rows])
+        lengths = self.length[rows], self.alone[rows], self.together[rows]
+        return Slides(self.motion, self.turns[rows], *lengths, self.shortest[rows])
 
 
 def slides_of(machine: Machine, motion: Motion, decimals: int) -> Slides:
@@ -69,13 +72,14 @@ def slides_of(machine: Machine, motion: Motion, decimals: int) -> Slides:
             steps[:, r] -= 360.0 * np.rint(steps[:, r] / 360.0)
     turned = np.abs(steps).max(axis=1)
     way = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
-    apart = np.hypot(np.linalg.norm(np.diff(slides, axis=0, prepend=slides[:1]), axis=1), np.linalg.norm(steps, axis=1))
+    apart = np.linalg.norm(np.diff(slides, axis=0, prepend=slides[:1]), axis=1)
     operation = replace(motion.operation, moves=replace(moves, tip=np.ascontiguousarray(slides)), arcs=arcs)
     return Slides(
         replace(motion, operation=operation, rotary=rotary),
         turned > 0.0,
         np.where(way < RESTS, turned, way),
-        apart,
+        np.where(apart < RESTS, turned, apart),
+        np.hypot(apart, np.linalg.norm(steps, axis=1)),
         jumps,
     )
 
@@ -133,6 +137,7 @@ def feeds(slides: Slides, feed: Floats, rule: str, form: NumberFormat) -> tuple[
         rows in which rotary axes turn mean anything.
     """
     ones = np.ones(len(feed))
-    counted: Floats = {"inverse_time": ones, "all_axes": slides.together, TIP: slides.length}[rule]
+    ways: dict[str, Floats] = {"all_axes": slides.together, "slides": slides.alone, TIP: slides.length}
+    counted = ways.get(rule, ones)
     rate = feed * counted / np.maximum(slides.length, 1e-12)
     return np.clip(rate, form.least, form.greatest), rate < form.least, rate > form.greatest

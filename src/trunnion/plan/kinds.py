@@ -67,18 +67,14 @@ def in_other_words(file: str, operation: Operation, manner: Manner, wishes: Wish
     return simultaneous if manner is Manner.TCP else manner, []
 
 
-def contradictions(
-    file: str,
-    operation: Operation,
-    manner: Manner,
-    manners: frozenset[Manner] = frozenset(Manner),
-    level: float = 0.0,
-) -> list[Problem]:
+def contradictions(file: str, operation: Operation, manner: Manner, wishes: Wishes) -> list[Problem]:
     """Why an operation cannot be made in a manner, be it the user's wish or the control's words."""
+    manners, level = wishes.manners, wishes.level
     axis, line = operation.moves.axis, operation.moves.line
     if manner not in manners:
         what = f"operation {operation.name}: the control has no words for {manner}"
-        return [Problem(file, operation.line, what, f"it has words for {', '.join(sorted(manners))}")]
+        cure = wishes.cures.get(manner, f"it has words for {', '.join(sorted(manners))}")
+        return [Problem(file, operation.line, what, cure)]
     if manner is Manner.THREE_AXIS:
         wanted, what = _UP, "the tool axis is not +Z of the program, and manner is three-axis"
     elif manner is Manner.TILTED:

@@ -75,7 +75,7 @@ def plan(toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float
         manner = manner_of(operation, wished.manner, wishes.level)
         manner, reworded = in_other_words(path.file, operation, manner, wished)
         said += reworded
-        contradicting = contradictions(path.file, operation, manner, wishes.manners, wishes.level)
+        contradicting = contradictions(path.file, operation, manner, wishes)
         against += contradicting
         if manner is Manner.THREE_AXIS and not contradicting:
             operation = uprighted(operation)

@@ -32,6 +32,7 @@ class Wishes:
     own_manner      the same for operations by their names; this is stronger
     manners         those that the control has words for
     level           sine of a tilt that the control's rotary words print as none
+    cures           what would give it words for one that it lacks
     arcs_about_z    the control knows arcs about Z only
     machine_x       X of a tilted plane is that of the machine once it has turned, unless the CL file has an own one
     pole            what is done near the pole where a rotary axis would have to be too fast
@@ -61,6 +62,7 @@ class Wishes:
     own_manner: Mapping[str, Manner | None] = field(default_factory=dict)
     manners: frozenset[Manner] = frozenset(Manner)
     level: float = 0.0
+    cures: Mapping[Manner, str] = field(default_factory=dict)
     arcs_about_z: bool = False
     helices_by_angle: bool = False
     machine_x: bool = False

@@ -8,13 +8,24 @@ from trunnion.machine import Axis, Machine, Output
 from trunnion.reader import tilt
 from trunnion.reader.columns import Changes
 from trunnion.reader.control import RAPID
+from trunnion.reader.feeds import FeedPath
 from trunnion.reader.frames import Frame
 from trunnion.reader.rows import Note
 from trunnion.reader.rs274.control import Rs274Control
 from trunnion.reader.run import Written
 from trunnion.reader.scan import letters
+from trunnion.reader.settings import reading_of
 from trunnion.reader.word import How, Word
 from trunnion.toolpath import Kind
+
+
+def feed_path_of(machine: Machine) -> FeedPath:
+    """What F counts where rotary axes turn without TCP: no source says so, but the machine's definition may."""
+    table = reading_of(machine)
+    counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
+    table.finish()
+    table.check()
+    return FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES
 
 
 class FidiaControl(Rs274Control):
@@ -25,6 +36,7 @@ class FidiaControl(Rs274Control):
     def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, file, shortest=shortest)
         self.table = letters((self.names[0], self.names[1]), gaps=True)
+        self.feed_path.set(0, int(feed_path_of(machine)))
 
     def shorter(self, axis: Axis) -> bool:
         """Always (unconfirmed); but for axes whose values are written as they wind."""
