@@ -1,23 +1,18 @@
 """LinuxCNC programs, block by block: what each one says goes to the virtual control, and where it goes on."""
 
 import re
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
-from trunnion.machine import Machine
-from trunnion.reader.control import RAPID
-from trunnion.reader.drilling import CycleError, Step
-from trunnion.reader.frames import turn
-from trunnion.reader.interpreter import STEPS
 from trunnion.reader.linuxcnc import cycles
-from trunnion.reader.linuxcnc.control import ORDER, LinuxcncControl, Offset
-from trunnion.reader.linuxcnc.flow import Activation, OWordInterpreter
+from trunnion.reader.linuxcnc.control import ORDER
+from trunnion.reader.linuxcnc.flow import Activation
+from trunnion.reader.linuxcnc.holes import HoleInterpreter
 from trunnion.reader.linuxcnc.parameters import ARITHMETIC
+from trunnion.reader.linuxcnc.places import SPECIAL, TAKE_AXES
 from trunnion.reader.linuxcnc.text import LinuxcncText
 from trunnion.reader.linuxcnc.words import (
     LENGTHS,
@@ -35,13 +30,11 @@ from trunnion.reader.linuxcnc.words import (
     USERS,
     WORDS,
 )
-from trunnion.reader.rows import FARTHEST
 from trunnion.reader.rs274.block import Block, block_reader, read_block
 from trunnion.reader.rs274.expressions import BlockError
 from trunnion.reader.rs274.interpreter import CANCEL, MOTIONS
 from trunnion.reader.text import Text
-from trunnion.reader.word import How, Word
-from trunnion.toolpath import Kind
+from trunnion.reader.word import How
 
 #: Comments that speak to whoever stands at the machine.
 _MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),(.*)", re.IGNORECASE | re.DOTALL)
@@ -49,46 +42,13 @@ _MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),(.*)", re.IGNORECASE | 
 #: M codes that act after the motion of their block.
 _LATE: Final = frozenset({0, 1, 2, 30, 60})
 
-#: G codes, in tenths, whose axis words are no goal of the motion in force.
-_DWELL: Final = 40
-_SETUP: Final = 100
-_HOMES: Final = {280: 281, 300: 301}
-_AXIS_OFFSETS: Final = frozenset({520, 920})
 
-
-class LinuxcncInterpreter(OWordInterpreter):
+class LinuxcncInterpreter(HoleInterpreter):
     """Runs one LinuxCNC program on one machine."""
 
     text_type = LinuxcncText
     semicolon = True
     motion = CANCEL
-
-    def __init__(
-        self,
-        path: Path,
-        machine: Machine,
-        *,
-        subprograms: Sequence[Path] = (),
-        step_limit: int = STEPS,
-        skip: bool = False,
-        shortest: bool | None = None,
-    ) -> None:
-        super().__init__(path, machine, subprograms=subprograms, step_limit=step_limit, skip=skip)
-        self._control = LinuxcncControl(machine, self._note, self._file, shortest=shortest)
-        self._to_initial = False
-        self._initial: float | None = None
-        self._sticky: dict[str, float] = {}
-        self._waited = 0.0
-        self._homes = {code: self._home_of(machine) for code in _HOMES}
-
-    @staticmethod
-    def _home_of(machine: Machine) -> dict[str, float]:
-        return {axis.name: float(axis.home) for axis in machine.axes}
-
-    @property
-    def control(self) -> LinuxcncControl:
-        """The virtual control."""
-        return self._control
 
     @property
     def _table(self) -> Codes:
@@ -177,7 +137,7 @@ class LinuxcncInterpreter(OWordInterpreter):
         for code in block.g:
             if code in MOTIONS or code in cycles.CYCLES or code in LINES or code in (CANCEL, RIGID_TAP):
                 explicit = code != CANCEL
-            if code in (_DWELL, _SETUP, *_HOMES, *_HOMES.values(), *_AXIS_OFFSETS, 921, 922, 923):
+            if code in SPECIAL:
                 special = code
             elif code == 530:
                 machine_frame = True
@@ -185,7 +145,7 @@ class LinuxcncInterpreter(OWordInterpreter):
                 continue
             else:
                 self._g(code, block)
-        takes_axes = special in (_SETUP, *_HOMES, *_AXIS_OFFSETS)
+        takes_axes = special in TAKE_AXES
         if takes_axes and explicit:
             raise BlockError("two G words want the axis words")
         self._special(special, block)
@@ -261,123 +221,7 @@ class LinuxcncInterpreter(OWordInterpreter):
         elif not self._m(code):
             self._note(f"unknown word M{code}", Severity.ERROR)
 
-    # What takes the axis words of its block
-
-    def _special(self, code: int, block: Block) -> None:
-        control = self._control
-        if code == _DWELL:
-            seconds = block.take("P")
-            if seconds is None:
-                self._note("G4 without a time P", Severity.ERROR)
-            else:
-                control.event("dwell", seconds)
-        elif code == _SETUP:
-            self._set_up(block)
-        elif code in _AXIS_OFFSETS:
-            self._axis_offset(code, block)
-        elif code in (921, 922, 923):
-            if code == 921:
-                control.shift = np.zeros(6)
-            control.shifted = code == 923
-            control.refresh()
-        elif code in _HOMES:
-            self._go_home(code, block)
-        elif code in _HOMES.values():
-            stored = control.machine_position()
-            kept = next(go for go, keep in _HOMES.items() if keep == code)
-            self._homes[kept] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
-
-    def _axis_offset(self, code: int, block: Block) -> None:
-        """G92: the present position gets new numbers; G52: the offset itself is said."""
-        control = self._control
-        position = control.position()
-        shift = control.shift.copy()
-        for axis, name in enumerate(ORDER):
-            value = self._scaled(block, name, axis)
-            if value is not None:
-                shift[axis] = value if code == 520 else shift[axis] * control.shifted + position[axis] - value
-            elif not control.shifted:
-                shift[axis] = 0.0
-        if float(np.abs(shift).max()) > FARTHEST:
-            raise BlockError("an offset is larger than any machine")
-        control.shift, control.shifted = shift, True
-        control.refresh()
-
-    def _set_up(self, block: Block) -> None:
-        """G10: a work offset, or a tool's data."""
-        control = self._control
-        kind = block.take("L")
-        system = block.take("P")
-        if kind in (0.0, 1.0, 10.0, 11.0):
-            for letter in "XYZABCUVWRIJQ":
-                block.take(letter)
-            return
-        if kind not in (2.0, 20.0) or system is None or system != int(system) or not 0 <= system <= 9:
-            raise BlockError("G10 needs L2 or L20, and P from 0 to 9")
-        number = int(system) or control.system
-        old = control.offset_of(number)
-        values, rotation = old.values.copy(), old.rotation
-        turned = block.take("R")
-        if turned is not None and kind == 2.0:
-            rotation = turned
-        elif turned is not None:
-            raise BlockError("G10 L20 takes no R")
-        point = control.without_length(control.machine_position())
-        shift = control.shift if control.shifted else np.zeros(6)
-        unturned = turn(2, -rotation)
-        inside = point - values
-        inside[:3] = unturned @ inside[:3]
-        inside -= shift
-        change = np.zeros(6)
-        for axis, name in enumerate(ORDER):
-            value = self._scaled(block, name, axis)
-            if value is None:
-                continue
-            if kind == 2.0:
-                values[axis] = value
-            else:
-                change[axis] = inside[axis] - value
-        change[:3] = turn(2, rotation) @ change[:3]
-        values = values + change
-        if float(np.abs(values).max()) > FARTHEST or abs(rotation) > FARTHEST:
-            raise BlockError("an offset is larger than any machine")
-        control.set_values(number, Offset(values, rotation))
-
-    def _scaled(self, block: Block, name: str, axis: int) -> float | None:
-        """Return the value of an axis word in mm or degrees."""
-        value = block.take(name)
-        if value is None:
-            return None
-        if axis > 2 and name not in self._control.names:
-            if value:
-                self._note(f"{name}: the machine has no such axis", Severity.ERROR)
-            return None
-        return value * self._control.lengths if axis < 3 else value
-
-    def _go_home(self, code: int, block: Block) -> None:
-        """G28 and G30: over the point that the block says to the stored one, all axes or those of the block."""
-        control = self._control
-        axes = self._programmed(self._axis_words(block))
-        kind, control.kind = control.kind, RAPID
-        self._count(1)
-        control.move(axes, None)
-        names = axes or dict.fromkeys((*"XYZ", *control.names))
-        stored = self._homes[code]
-        scale = control.lengths
-        goal: dict[str, Word] = {
-            name: (stored.get(name, 0.0) / (scale if name in "XYZ" else 1.0), How.ABSOLUTE) for name in names
-        }
-        control.machine_move(goal, feed_written=False)
-        control.kind = kind
-
     # Motion
-
-    def _programmed(self, axes: dict[str, Word]) -> dict[str, Word]:
-        """Axis words with the offsets of rotary axes in them."""
-        if not self._control.absolute:
-            return axes
-        turned = self._control.turned
-        return {name: (word[0] + turned.get(name, 0.0), word[1]) for name, word in axes.items()}
 
     def _drive(self, block: Block, begun: int | None, machine_frame: bool, explicit: bool) -> None:
         """Make the motion that the words of the block ask for."""
@@ -420,123 +264,6 @@ class LinuxcncInterpreter(OWordInterpreter):
             raise BlockError("P of a circle is the number of its turns")
         self._move(block, self._programmed(axes), turns=int(turns) - 1 if turns else 0)
         self.motion = here
-
-    def _tap(self, block: Block, axes: dict[str, Word]) -> None:
-        """G33.1: in by the pitch K a turn, and back to where it began, I times as fast."""
-        control = self._control
-        pitch, faster = block.take("K"), block.take("I")
-        if pitch is None:
-            raise BlockError("G33.1 has no K")
-        if "F" in block.words:
-            raise BlockError("G33.1 takes no F")
-        if not control.spindle.now or not control.rpm.now > 0.0:
-            raise BlockError("the spindle does not turn, and G33.1 follows it")
-        if set(axes) - set("XYZ"):
-            self._note("rotary words in a thread: they are not executed", Severity.ERROR)
-        start = control.place[:3] / control.lengths
-        end = start.copy()
-        for axis, name in enumerate("XYZ"):
-            if name in axes:
-                end[axis] = axes[name][0] if control.absolute else start[axis] + axes[name][0]
-        feed = self._by_pitch(abs(pitch) * control.lengths, float(np.linalg.norm(end - start)) * control.lengths)
-        first, second = (control.plane + 1) % 3, (control.plane + 2) % 3
-        aside = float(end[first] - start[first]), float(end[second] - start[second])
-        self._count(2)
-        control.drill(
-            [
-                Step(False, float(end[control.plane]), feed, aside=aside),
-                Step(False, float(start[control.plane]), feed * (faster or 1.0)),
-            ]
-        )
-
-    def _by_pitch(self, pitch: float, length: float) -> float:
-        """F, as it counts now, of a motion of so many mm with so many mm a turn of the spindle."""
-        control = self._control
-        if control.feed_mode.now == 95:
-            return pitch
-        rate = pitch * control.rpm.now
-        return rate / max(length, 1e-9) if control.feed_mode.now == 93 else rate
-
-    def _cycle(self, code: int, block: Block, axes: dict[str, Word]) -> None:
-        """Drill at the positions of a block."""
-        control = self._control
-        if set(axes) - set("XYZ"):
-            self._note("rotary words in a cycle: they are not executed", Severity.ERROR)
-        words = {letter: value for letter in cycles.STICKY if (value := block.take(letter)) is not None}
-        words |= {"Z": axes["XYZ"[control.plane]][0]} if "XYZ"[control.plane] in axes else {}
-        fresh = code != self.motion
-        self.motion = code
-        self._waited = words.get("P", self._waited)
-        held = ({"P": self._waited} if code in cycles.KEEP_P else {}) if fresh else self._sticky
-        needed = "ZR" + "Q" * (code in cycles.NEED_Q) + "P" * (code in cycles.NEED_P)
-        missing = [letter for letter in needed if letter not in words and letter not in held]
-        if missing:
-            raise BlockError(f"the cycle has no {missing[0]}")
-        self._sticky = held | words
-        repeats = block.take("L")
-        d = block.take("D")
-        times = 1 if repeats is None else int(repeats)
-        if not 1 <= times <= 10_000:
-            raise BlockError("L of a cycle is how often it drills")
-        self._check_cycle()
-        self._drill(code, axes, dict(self._sticky) | ({"D": d} if d is not None else {}), times)
-
-    def _check_cycle(self) -> None:
-        control = self._control
-        if control.feed_mode.now == 93:
-            raise BlockError("a cycle cannot be in inverse time")
-        if not control.place[3] > 0.0:
-            self._note("a cycle without a feed", Severity.ERROR)
-
-    def _drill(self, code: int, axes: dict[str, Word], words: dict[str, float], times: int) -> None:
-        """Drill so many times: at one place, or with G91 at places ever further on."""
-        control = self._control
-        normal = control.plane
-        scale = control.lengths
-        height = float(control.place[normal]) / scale
-        if self._initial is None:
-            self._initial = height * scale
-        old = self._initial / scale
-        retract, bottom = words["R"], words["Z"]
-        if not control.absolute:
-            retract += old
-            bottom += retract
-            if "K" in words:
-                words["K"] += bottom
-        if retract < bottom:
-            raise BlockError("R of the cycle lies below its depth")
-        still = [np.nan, np.nan]
-        if old < retract:
-            self._count(1)
-            control.drill([Step(True, retract)])
-            old = height = retract
-        hole = cycles.Hole(
-            retract, bottom, old if self._to_initial else retract, cycles.CLEARANCE * 25.4 / scale, words
-        )
-        made = self._motions(code, hole)
-        place = control.place[:3].copy()
-        bits = 0
-        for count in range(times):
-            for axis in range(3):
-                name = "XYZ"[axis]
-                if axis == normal or name not in axes:
-                    continue
-                value = axes[name][0] * scale
-                place[axis] = value if control.absolute else place[axis] + value
-                bits |= 1 << axis
-            first = height if count == 0 and height > retract else hole.clear
-            self._count(len(made) + 2)
-            place[normal] = first * scale
-            if not control.emit(Kind.RAPID, place, bits, still, 0, None):
-                return
-            control.drill([Step(True, retract), *made] if first > retract else made)
-
-    @staticmethod
-    def _motions(code: int, hole: cycles.Hole) -> list[Step]:
-        try:
-            return cycles.steps(code, hole)
-        except CycleError as error:
-            raise BlockError(f"the cycle {error}") from None
 
 
 def _offset_code(system: int) -> int:
