@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.control.test_holes import CLEAR, HEIGHTS
 from tests.control.test_linuxcnc import FOOT, Post
 from tests.control.test_linuxcnc import post as post
-from tests.reader.judge import canonical, needs_judge
+from tests.linuxcnc.interpreter import canonical, needs_linuxcnc
 from tests.reader.test_linuxcnc_judge import agree
 from trunnion.cl import read_cl
 from trunnion.cli.post import planned_program, write
@@ -141,7 +141,7 @@ def drilled(draw: st.DrawFn) -> str:
     return text + FOOT
 
 
-@needs_judge
+@needs_linuxcnc
 @settings(max_examples=80)
 @given(text=drilled())
 def test_holes_of_all_cycles_are_proven_and_linuxcnc_makes_them_as_our_reader_does(

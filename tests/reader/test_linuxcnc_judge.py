@@ -10,38 +10,38 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from tests.reader.judge import Canon, Refused, canonical, needs_judge
+from tests.linuxcnc.interpreter import Canon, RefusedByLinuxcncError, canonical, needs_linuxcnc
 from trunnion.machine import load_machine
 from trunnion.reader import Run, run_program
 from trunnion.toolpath import Kind
 
-pytestmark = needs_judge
+pytestmark = needs_linuxcnc
 
 FOLDER = Path(__file__).parents[3] / "shared" / "data" / "linuxcnc"
 MACHINE = load_machine("xyzac_trt")
 COLUMNS = [MACHINE.column(name) for name in "XYZAC"]
 
-KINDS = {"traverse": Kind.RAPID, "feed": Kind.LINEAR, "arc": Kind.ARC}
+KINDS = {"rapid": Kind.RAPID, "line": Kind.LINEAR, "arc": Kind.ARC}
 
 
 def agree(run: Run, canon: Canon) -> None:
     """The reader's rows are the judge's motions; LinuxCNC says motions that go nowhere where a G word stands alone."""
     assert [str(f) for f in run.errors] == []
-    wanted = canon.ends[:, [0, 1, 2, 3, 5]]
-    kinds = np.array([KINDS[kind] for kind in canon.kind])
+    wanted = np.array([move.machine for move in canon.moves]).reshape(-1, 6)[:, [0, 1, 2, 3, 5]]
+    kinds = np.array([KINDS[move.kind] for move in canon.moves])
     got = run.joints[:, COLUMNS]
     ours, theirs = moves(run.kind, got), moves(kinds, wanted)
     assert run.kind[ours].tolist() == kinds[theirs].tolist()
     # Offsets and their rotation are printed with four decimals too.
-    unit = np.array(canon.unit)[theirs]
+    unit = np.array([move.unit for move in canon.moves])[theirs]
     off = np.abs(got[ours] - wanted[theirs])
     assert (off <= 5e-4 * unit[:, None] + 1e-3).all(), off.max()
     cuts = run.kind[ours] != int(Kind.RAPID)
     plain = cuts & (run.feed_mode[ours] == 94)
-    np.testing.assert_allclose(run.feed[ours][plain], np.array(canon.feed)[theirs][plain], atol=0.05)
-    arcs = [row for row in range(len(kinds)) if kinds[row] == Kind.ARC]
-    assert [row for row, *_ in canon.arcs] == arcs
-    assert [turns + 1 for turns in run.arcs.turns.tolist()] == [abs(turns) for *_, turns in canon.arcs]
+    feeds = np.array([move.feed * move.unit for move in canon.moves])[theirs]
+    np.testing.assert_allclose(run.feed[ours][plain], feeds[plain], atol=0.05)
+    turns = [abs(move.turns) for move in canon.moves if move.kind == "arc"]
+    assert [more + 1 for more in run.arcs.turns.tolist()] == turns
     dwells = [event.value for event in run.events if event.kind == "dwell"]
     np.testing.assert_allclose([d for d in dwells if isinstance(d, float)], [d for d in canon.dwells if d], atol=1e-4)
     if not got[:, 3:].any():
@@ -50,12 +50,12 @@ def agree(run: Run, canon: Canon) -> None:
 
 def circles(run: Run, canon: Canon) -> None:
     """Centres and senses of circles are the judge's; only where the tip is where the slides are."""
-    for k, (row, first, second, turns) in enumerate(canon.arcs):
+    for k, move in enumerate(move for move in canon.moves if move.kind == "arc"):
         normal = run.arcs.normal[k]
         plane = int(np.argmax(np.abs(normal)))
         centre = run.arcs.centre[k][[(plane + 1) % 3, (plane + 2) % 3]]
-        np.testing.assert_allclose(centre, [first, second], atol=5e-4 * canon.unit[row] + 1e-3)
-        assert math.copysign(1.0, normal[plane]) == math.copysign(1.0, turns)
+        np.testing.assert_allclose(centre, move.middle, atol=5e-4 * move.unit + 1e-3)
+        assert math.copysign(1.0, normal[plane]) == math.copysign(1.0, move.turns)
 
 
 def moves(kind: np.ndarray, ends: np.ndarray) -> np.ndarray:
@@ -351,7 +351,7 @@ REFUSED = {
 def test_what_linuxcnc_refuses_is_named(text: str, tmp_path: Path) -> None:
     path = tmp_path / "part.ngc"
     path.write_text(text + "\nM2\n")
-    with pytest.raises(Refused):
+    with pytest.raises(RefusedByLinuxcncError):
         canonical(path)
     assert run_program(path, MACHINE).errors
 
