@@ -252,17 +252,22 @@ def test_holes_at_one_place_are_told_apart(tmp_path: Path) -> None:
             assert "holes" in failed(lines[:k] + lines[k + 1 :], cl, tmp_path), line
 
 
-def test_a_lean_near_the_pole_leaves_holes_alone(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("asked", "said"), [(("pole=lean", "pole_angle=2"), "leans by up to"), (("lower_feed=yes",), "lowered at 11 rows")]
+)
+def test_what_is_agreed_near_the_pole_leaves_holes_alone(
+    asked: tuple[str, ...], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """What is agreed upon is counted without the holes."""
     body = "RAPID\nGOTO/0,0,40,0,0,1\nCYCLE/DRILL,RAPTO,3,FEDTO,-12,MMPM,90\nGOTO/5,5,0\nGOTO/9,5,0\nCYCLE/OFF\n"
     body += "RAPID\nGOTO/0,-30,40\nFEDRAT/MMPM,3000\nGOTO/0,-30,0\n"
     for k in range(-20, 21):
         axis = np.array([0.0007, 0.002 * k, 1.0])
         body += f"GOTO/{words(np.array([0.0, 1.5 * k, 0.0]), axis / np.linalg.norm(axis))}\n"
-    text = operation("MIXED", body + "RAPID\nGOTO/0,30,40\n")
-    cl, program = made(text, tmp_path, "pole=lean", "pole_angle=2", "lower_feed=yes")
-    assert program.exists()
-    assert cl.exists()
+    made(operation("MIXED", body + "RAPID\nGOTO/0,30,40\n"), tmp_path, *asked)
+    err = capsys.readouterr().err
+    assert said in err
+    assert "2 holes, 2 of them by motion" in err
 
 
 @needs_linuxcnc
