@@ -244,7 +244,7 @@ def leads(run: Run, extra: Sequence[int], made: Sequence[Made], allowed: float) 
             leg = _leads_how(run, row, hole, approach, rounded)
             if leg:
                 lawful.add(row)
-            if leg not in ("down", "across"):
+            if leg not in ("down", "across", "turned", "nowhere"):
                 break
             row -= 1
     return lawful
@@ -265,12 +265,15 @@ def _leads_how(run: Run, row: int, hole: Made, approach: set[int], rounded: floa
         or bool(run.state.machine_frame[row - 1])
         or (int(run.programmed[row - 1]) & int(PLACES)) == 0
     )
+    turned = float(np.abs(poses.axis[0] - axis).max()) > _TURNED
+    if float(np.abs(way).max()) < near and not turned:
+        return "nowhere"  # where a program goes on in another file, it says again where the tool stands
     if straight and up > 0.0:
         return "up"
     if from_home and (float(np.abs(rest).max()) < level or (hole.by_motion and over)):
         return "from home"
     if straight and over:
         return "down"
-    if over and float(np.abs(poses.axis[0] - axis).max()) > _TURNED:
+    if over and turned:
         return "turned"
     return "across" if over and abs(up) < level else ""
