@@ -247,7 +247,7 @@ def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_fil
     try:
         run, claim = made(path, one, {}, folder / f"level{one.control.extension}")
     except InputError:
-        assume(False)  # LinuxCNC has no planes for holes
+        assume(False)  # no room, or no words
     curved = any(operation.moves.axis[0, 2] < 1.0 and len(operation.arcs.row) for operation in path.operations)
     for two in SITES.values():
         if curved and Manner.TILTED not in two.control.manners({}):
