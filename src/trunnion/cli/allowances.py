@@ -14,7 +14,7 @@ from trunnion.control.definition import SURFACE_NORMAL
 from trunnion.control.family import CENTRE_DIGITS
 from trunnion.control.standing import inside_limits
 from trunnion.plan import Manner, Motion
-from trunnion.plan.arcs import off_circle
+from trunnion.plan.arcs import flat_arcs, off_circle
 from trunnion.toolpath import CycleOn
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ def allowed_of(program: Program) -> "list[Allowed]":
                 tilt += 1.5 * 10.0**-turning
             tip, angle = _in_plane(motion, tip, tilt), math.sqrt(2.0) * tilt + 1e-8
             normal = math.sqrt(3.0) * (normal + math.radians(tilt))
+        tip += _flat_ends(motion)
         if "arc_angle" in half:
             tip += _by_angles(motion, half["X"], half["arc_angle"])
         if motion.manner is Manner.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
@@ -76,6 +77,20 @@ def allowed_of(program: Program) -> "list[Allowed]":
             )
         )
     return allowed
+
+
+def _flat_ends(motion: Motion) -> float:
+    """How much higher circles end than they begin that are written as flat ones, mm: less than anybody prints.
+
+    Such a circle stands across a tool axis that is off upright by what rotary words do not show, or rises by as little.
+    """
+    operation = motion.as_written()
+    arcs, tip = operation.arcs, operation.moves.tip
+    if not len(arcs.row):
+        return 0.0
+    way = np.abs(tip[arcs.row] - tip[arcs.row - 1])
+    rise = way[np.arange(len(way)), np.abs(arcs.normal).argmax(axis=1)]
+    return float(rise[flat_arcs(operation)].max(initial=0.0))
 
 
 def _by_angles(motion: Motion, half: float, angle: float) -> float:

@@ -95,6 +95,7 @@ class _Author:
         self._notices = [line for text in program.notices for line in self._family.comment(text)]
         self._held = Held()
         self._unskipped: float | None = None  # height before the blocks that may be skipped; None: home
+        self._skipped_from: tuple[int, dict[str, int]] = (0, {})  # how long the file was there, and what was in force
         self._said_tool = ""  # that this file has called
         self._speed: Value = None  # of the spindle, as a text said it last
         self._before: Motion | None = None
@@ -313,9 +314,10 @@ class _Author:
     def _skip(self, on: bool, row: int = 0) -> None:
         """Blocks from a row on have the block-skip sign, or no longer: what those with it said may not be in force."""
         blocks, writer = self._blocks, self._blocks.writer
+        written = writer.size, writer.in_force()
         if on and not writer.skips:
-            self._unskipped = blocks.height if row else None
-        elif writer.skips and not on:
+            self._unskipped, self._skipped_from = blocks.height if row else None, written
+        elif writer.skips and not on and written != self._skipped_from:
             writer.forget()
             blocks.highest = None if self._unskipped is None else max(self._unskipped, blocks.height)
         writer.skip_blocks(on)

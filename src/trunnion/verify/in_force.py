@@ -135,7 +135,9 @@ def tool(case: Case) -> Check:
 
 
 def _holds_another(run: Run, right: list[int], nc: Ints) -> Flags:
-    return ~np.isin(run.state.tool.at(nc), right)
+    wrong: Flags = np.ones(len(run.tools), np.bool_)
+    wrong[right] = False
+    return np.asarray(wrong[run.state.tool.at(nc)])
 
 
 def _edges(case: Case, pairs: Pairs, asked: int) -> list[Place]:
@@ -310,6 +312,8 @@ def offset(case: Case) -> Check:
     for start in range(0, len(rows), CHUNK):
         part = rows.part(start, start + CHUNK)
         here = used.at(part)
+        if (here == want).all():
+            continue
         wrong = (here != want) & ~((here == 0) & ~tcp.at(part) & (case.pairs is None))
         if wrong.any():
             bad = part[wrong]
