@@ -166,9 +166,10 @@ def feed(case: Case, believed: Believed) -> Check:
         mode = run.state.feed_mode.at(nc)
         near = np.abs(rate - asked) <= limits.feed + 1e-9
         _judge_times(case, nc, rate, asked, near, limits)
+        told = cuts & ~np.isnan(asked)
         wrong = cuts & ((mode == 95) != per_rev)
-        wrong |= cuts & ~near & ~np.isnan(asked)
-        known = asked[cuts & ~np.isnan(asked)]
+        wrong |= told & ~near
+        known = asked if told.all() else asked[told]
         if len(known):
             seen = min(seen[0], float(known.min())), max(seen[1], float(known.max()))
         if not wrong.any():
