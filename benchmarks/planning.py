@@ -16,14 +16,15 @@ from numpy.typing import NDArray
 
 from make_cls import path
 from trunnion.arrays import Codes
-from trunnion.machine import Machine, forward, load_machine
-from trunnion.plan import Manner, Motion, Pole, Wishes, plan, seconds
-from trunnion.plan.between import with_points
-from trunnion.plan.decisions import Planned, travel, turned_over
-from trunnion.plan.poses import choose, choose_nearest, take
-from trunnion.plan.speed import shares, wound
-from trunnion.plan.states import states_of
-from trunnion.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool, Toolpath
+from trunnion.machines import Machine, forward, load_machine
+from trunnion.model.motion import Manner, Motion, Pole
+from trunnion.model.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool, Toolpath
+from trunnion.planning import Wishes, plan, seconds
+from trunnion.planning.linearization.inserted_points import with_points
+from trunnion.planning.poses.decision_log import Planned, travel, turned_over
+from trunnion.planning.poses.selection import choose, choose_nearest, take
+from trunnion.planning.poses.states import states_of
+from trunnion.planning.speed.rotary_speed import shares, wound
 
 Floats = NDArray[np.float64]
 Choose = Callable[[Machine, Moves, bool], Codes]

@@ -62,16 +62,16 @@ class Watch:
 
 def stage_once(program: Path) -> dict[str, Any]:
     """Run a program once: for the time and memory of a whole process."""
-    from trunnion.machine import load_machine
-    from trunnion.reader import run_program
+    from trunnion.machines import load_machine
+    from trunnion.readers import run_program
 
     return {"rows": len(run_program(program, load_machine(MACHINE)))}
 
 
 def stage_read(small: Path, program: Path) -> dict[str, Any]:
     """Run a program in a warm process: without and with the tips and axes of all rows."""
-    from trunnion.machine import load_machine
-    from trunnion.reader import run_program
+    from trunnion.machines import load_machine
+    from trunnion.readers import run_program
 
     machine = load_machine(MACHINE)
     run_program(small, machine).axis.sum()
@@ -92,11 +92,13 @@ def stage_prove(small: Path, cls: Path, program: Path) -> dict[str, Any]:
 def post_and_prove(cls: Path, program: Path) -> dict[str, Any]:
     """Post a CL file and prove the program; processor seconds of each step."""
     from trunnion.cl import read_cl
-    from trunnion.control import Program, load_control, write_program
-    from trunnion.machine import load_machine
-    from trunnion.plan import plan
-    from trunnion.reader import run_program
-    from trunnion.verify import Allowed, Settings, verify
+    from trunnion.controls import load_control
+    from trunnion.machines import load_machine
+    from trunnion.output.program import Program
+    from trunnion.output.program_writer import write_program
+    from trunnion.planning import plan
+    from trunnion.readers import run_program
+    from trunnion.verification import Allowed, Settings, verify
 
     machine = load_machine(MACHINE)
     control = load_control(machine.control)
@@ -124,8 +126,8 @@ def post_and_prove(cls: Path, program: Path) -> dict[str, Any]:
 
 def stage_agree(program: Path, rows: Path) -> dict[str, Any]:
     """Compare the rows with TCP on with those of the naive reader."""
-    from trunnion.machine import load_machine
-    from trunnion.reader import run_program
+    from trunnion.machines import load_machine
+    from trunnion.readers import run_program
 
     ran = run_program(program, load_machine(MACHINE))
     naive = np.fromfile(rows).reshape(-1, 8)

@@ -13,17 +13,18 @@ from trunnion.cli import at_full_speed
 def main() -> None:
     """Run from the command line."""
     at_full_speed()
-    from trunnion.cli.reading import toolpaths
+    from trunnion.cli.cl_files import toolpaths
 
     source, name, target = sys.argv[1:]
     with ThreadPoolExecutor(1) as aside:
         coming = toolpaths([source], None, False, aside)
         # As the command does, all else is imported while the file is read.
         from trunnion.cli.post import planned_program
-        from trunnion.control import load_control, write_program
+        from trunnion.controls import load_control
         from trunnion.files import whole
-        from trunnion.machine import load_machine
-        from trunnion.plan import Wishes
+        from trunnion.machines import load_machine
+        from trunnion.output.program_writer import write_program
+        from trunnion.planning import Wishes
 
         machine = load_machine(name)
         control = load_control(machine.control)

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from trunnion.machine import Machine, load_machine
+from trunnion.machines import Machine, load_machine
 
 
 def at_zero(name: str) -> Machine:

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from trunnion.kernels import njit
+from trunnion.jit import njit
 
 
 @njit(cache=True)
@@ -64,7 +64,7 @@ def test_what_is_loaded_is_what_was_compiled_and_more_can_be_compiled_after_it(t
 AHEAD = """
 import numpy as np
 from some_kernels import doubled, length
-from trunnion.kernels import load
+from trunnion.jit import load
 
 load(doubled, length)
 print(len(doubled.signatures), sum(doubled.stats.cache_hits.values()), sum(doubled.stats.cache_misses.values()))

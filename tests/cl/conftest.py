@@ -7,7 +7,7 @@ import pytest
 
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Problem
-from trunnion.toolpath import Operation, Toolpath
+from trunnion.model.toolpath import Operation, Toolpath
 
 Read = Callable[..., Toolpath]
 Body = Callable[..., Operation]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.cl.conftest import Body, Fail, Read
-from trunnion.toolpath import Kind
+from trunnion.model.toolpath import Kind
 
 
 def test_an_arc_is_a_row_with_its_circle(body: Body) -> None:

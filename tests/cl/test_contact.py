@@ -13,7 +13,7 @@ from trunnion.arrays import Floats
 from trunnion.cl import contact, read_cl
 from trunnion.cl.contact import contact_points, with_normals
 from trunnion.errors import InputError, Severity
-from trunnion.toolpath import Toolpath
+from trunnion.model.toolpath import Toolpath
 
 HEAD = "TOOL PATH/OP,TOOL,T1\nTLDATA/MILL,{d},{r},75.0,{taper},0.0\n$$ centerline and contact point\n"
 FOOT = "END-OF-PATH\n"

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.cl.conftest import Read
-from trunnion.toolpath import Message
+from trunnion.model.toolpath import Message
 
 
 @pytest.mark.parametrize(

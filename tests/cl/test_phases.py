@@ -5,7 +5,7 @@ import pytest
 
 from tests.cl.conftest import Body, Read
 from trunnion.cl.assemble import fill_phases
-from trunnion.toolpath import Phase
+from trunnion.model.toolpath import Phase
 
 Q, R, A, E, C, S, X, D, T = (
     Phase.INITIAL,

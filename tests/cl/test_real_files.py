@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from trunnion.cl import read_cl
-from trunnion.toolpath import Kind, Phase
+from trunnion.model.toolpath import Kind, Phase
 
 SHARED = Path(__file__).parents[3] / "shared"
 FILES = sorted([*SHARED.glob("golden/*/*.cls"), *SHARED.glob("data/nx/*.cls")])

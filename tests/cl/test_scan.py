@@ -14,7 +14,7 @@ from trunnion.arrays import Floats, Lines
 from trunnion.cl.read import read_cl, read_in_chunks
 from trunnion.cl.scan import OPEN, ROW, SPAN, scan, settle_axes
 from trunnion.errors import InputError
-from trunnion.toolpath import Toolpath
+from trunnion.model.toolpath import Toolpath
 
 QUICK = settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 

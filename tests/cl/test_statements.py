@@ -7,7 +7,7 @@ import pytest
 
 from tests.cl.conftest import Body, Fail, Read
 from trunnion.cl.nx import RULES
-from trunnion.toolpath import (
+from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
     CutterComp,

@@ -15,7 +15,7 @@ from tests.paths import YL569
 from trunnion.cl import read_cl
 from trunnion.cl.write import write_cl
 from trunnion.errors import InputError
-from trunnion.toolpath import Event, From, Operation, Phase, Toolpath, Unknown
+from trunnion.model.toolpath import Event, From, Operation, Phase, Toolpath, Unknown
 
 GOLDEN = sorted(path.stem for path in YL569.glob("*.cls"))
 

@@ -10,7 +10,7 @@ import pytest
 
 from tests.paths import GOLDEN, YL569
 from trunnion.cli import main
-from trunnion.cli.reading import toolpaths
+from trunnion.cli.cl_files import toolpaths
 from trunnion.errors import InputError
 
 FILES = [str(YL569 / "2_hub_rough.cls"), str(YL569 / "3_blade_finish.cls"), str(GOLDEN / "dmu65" / "corner.cls")]

@@ -9,13 +9,15 @@ from tests.paths import GOLDEN, YL569
 from tests.reader.test_growing import facts
 from trunnion.cl import read_cl
 from trunnion.cli.post import Claim, planned_program, prove, running, write
-from trunnion.control import Program, load_control
+from trunnion.controls import load_control
 from trunnion.errors import Refused
 from trunnion.files import Output
-from trunnion.machine import load_machine
-from trunnion.plan import Wishes
-from trunnion.reader import Run, run_program
-from trunnion.toolpath import Toolpath
+from trunnion.machines import load_machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.output.program import Program
+from trunnion.planning import Wishes
+from trunnion.readers import run_program
 
 CASES = {
     "yl569": YL569 / "2_hub_rough.cls",

@@ -12,7 +12,7 @@ from tests.paths import HEADS, YL569
 from tests.verify.proven import unproven
 from trunnion.cl import read_cl
 from trunnion.cli import main
-from trunnion.machine import load_machine
+from trunnion.machines import load_machine
 
 Capture = pytest.CaptureFixture[str]
 
@@ -147,7 +147,7 @@ def test_a_machine_that_is_not_there_is_named_with_those_that_are(tmp_path: Path
 
 
 def test_a_machine_whose_control_cannot_be_written_says_so(tmp_path: Path, capfd: Capture) -> None:
-    text = files("trunnion.machine").joinpath("library", "ucp800.toml").read_text(encoding="utf-8")
+    text = files("trunnion.machines").joinpath("library", "ucp800.toml").read_text(encoding="utf-8")
     machine = tmp_path / "other.toml"
     machine.write_text(text.replace('extends = "heidenhain_itnc530"', 'family = "unheard_of"'), encoding="utf-8")
     err = failed(tmp_path, capfd, str(HUB), "--machine", "yl569", "--to-machine", str(machine))

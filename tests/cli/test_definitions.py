@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from trunnion.cli import main
-from trunnion.machine import shipped
+from trunnion.machines import shipped
 
 
 def test_the_list_names_every_shipped_machine(capfd: pytest.CaptureFixture[str]) -> None:

@@ -222,7 +222,7 @@ def test_a_machine_that_is_not_there_is_named_with_those_that_are(
 def test_a_machine_whose_control_cannot_be_written_yet_says_so(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    text = files("trunnion.machine").joinpath("library", "ucp800.toml").read_text(encoding="utf-8")
+    text = files("trunnion.machines").joinpath("library", "ucp800.toml").read_text(encoding="utf-8")
     machine = tmp_path / "other.toml"
     machine.write_text(text.replace('extends = "heidenhain_itnc530"', 'family = "unheard_of"'), encoding="utf-8")
     assert main(["post", str(YL569 / "2_hub_rough.cls"), "--machine", str(machine), "--output", "-"]) == 2

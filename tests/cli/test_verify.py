@@ -12,7 +12,9 @@ import pytest
 
 from tests.paths import YL569
 from trunnion.cli import main
-from trunnion.control import Division, Program, write_program
+from trunnion.output.program import Program
+from trunnion.output.program_writer import write_program
+from trunnion.output.subprograms import Division
 
 PROGRAM = YL569 / "3_blade_finish.expected.mpf"
 CL = YL569 / "3_blade_finish.cls"

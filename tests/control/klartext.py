@@ -15,11 +15,11 @@ from tests.verify.proven import unproven
 from trunnion.cli import main
 from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
-from trunnion.control import Control, load_control
-from trunnion.machine import Machine, load_machine, shipped
-from trunnion.reader import run_program
-from trunnion.toolpath import Arcs, LoadTool, Moves, SpindleOn, Toolpath
-from trunnion.verify import Verification, failures, verify
+from trunnion.controls import Control, load_control
+from trunnion.machines import Machine, load_machine, shipped
+from trunnion.model.toolpath import Arcs, LoadTool, Moves, SpindleOn, Toolpath
+from trunnion.readers import run_program
+from trunnion.verification import Verification, failures, verify
 
 DMU65 = GOLDEN / "dmu65"
 OWN = {name: load_machine(name) for name in ("dmu65", "mikron_600u", "ucp800")}

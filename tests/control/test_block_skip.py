@@ -7,9 +7,10 @@ import pytest
 
 from trunnion.arrays import Ints
 from trunnion.cli import main
-from trunnion.machine import load_machine
-from trunnion.reader import Run, Written, run_program
-from trunnion.toolpath import Kind
+from trunnion.machines import load_machine
+from trunnion.model.run import Run, Written
+from trunnion.model.toolpath import Kind
+from trunnion.readers import run_program
 
 MACHINES = ["yl569", "dmu65", "hs664rt", "matsuura_mx330", "xyzac_trt", "generic_head_head_ca"]
 

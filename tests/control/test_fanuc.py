@@ -20,16 +20,17 @@ from tests.plan.test_read_back import toolpath_of
 from trunnion.cl import read_cl
 from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
-from trunnion.control import load_control
-from trunnion.control.fanuc import comment, inside, wrong_settings
-from trunnion.control.turns import about_first_and_third
-from trunnion.convert import convert
+from trunnion.controls import load_control
+from trunnion.controls.words import BlockNumbers
+from trunnion.conversion import convert
 from trunnion.errors import InputError, Refused
-from trunnion.machine import Machine, load_machine
-from trunnion.nc import BlockNumbers
-from trunnion.reader import offset_name, run_program
-from trunnion.toolpath import LoadTool, Moves, Toolpath
-from trunnion.verify import Verification, failures, verify
+from trunnion.machines import Machine, load_machine
+from trunnion.model.run import offset_name
+from trunnion.model.toolpath import LoadTool, Moves, Toolpath
+from trunnion.output.euler_angles import about_first_and_third
+from trunnion.output.families.fanuc.writer import comment, inside, wrong_settings
+from trunnion.readers import run_program
+from trunnion.verification import Verification, failures, verify
 
 FANUC = load_machine("matsuura_mx330").control
 CONTROL = load_control(FANUC)

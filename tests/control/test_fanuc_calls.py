@@ -9,7 +9,7 @@ from tests.control.test_fanuc import LEANING
 from tests.control.test_fidia import END
 from tests.control.test_program import FOOT, HEAD
 from trunnion.cli import main
-from trunnion.control.fanuc import wrong_settings
+from trunnion.output.families.fanuc.writer import wrong_settings
 
 #: A three-axis operation and one with TCP.
 TWO = HEAD + FOOT + LEANING.replace("OP1", "OP2") + END

@@ -18,13 +18,15 @@ from tests.plan.test_read_back import toolpath_of
 from trunnion.arrays import Floats
 from trunnion.cli.post import planned_program
 from trunnion.cli.settings import wishes_of
-from trunnion.control import Program, check_program
-from trunnion.control.vectors import first_elsewhere, leads_by_one_axis, vectors_of
 from trunnion.errors import InputError, Refused, Severity
-from trunnion.machine import Carries, Machine, inverse, load_machine
-from trunnion.plan import Manner
-from trunnion.reader import Orientation, Written, run_program
-from trunnion.toolpath import Moves, Toolpath
+from trunnion.machines import Carries, Machine, inverse, load_machine
+from trunnion.model.motion import Manner
+from trunnion.model.run import Orientation, Written
+from trunnion.model.toolpath import Moves, Toolpath
+from trunnion.output.program import Program
+from trunnion.output.tool_vectors import first_elsewhere, leads_by_one_axis, vectors_of
+from trunnion.output.validation import check_program
+from trunnion.readers import run_program
 
 VECTORS = {"orientation": "vector"}
 

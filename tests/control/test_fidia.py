@@ -20,12 +20,12 @@ from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
-from trunnion.control import load_control
+from trunnion.controls import load_control
 from trunnion.errors import InputError, Refused
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import run_program
-from trunnion.toolpath import Moves, Toolpath
-from trunnion.verify import Settings, Verification, failures, verify
+from trunnion.machines import Machine, load_machine
+from trunnion.model.toolpath import Moves, Toolpath
+from trunnion.readers import run_program
+from trunnion.verification import Settings, Verification, failures, verify
 
 #: The program that ran writes the blank behind a block number or leaves it out at whim.
 NUMBER = re.compile(rb"^(N\d+) ", re.MULTILINE)

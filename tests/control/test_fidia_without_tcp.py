@@ -12,10 +12,11 @@ from tests.matrix.paths import CYCLES, off_the_pole, operation, reachable, squar
 from tests.matrix.test_matrix import FEW, Pair, check_proven, check_refused, pair_of, posted
 from trunnion.cl import read_cl
 from trunnion.cli.settings import set_up
-from trunnion.control import load_control
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import FeedPath, run_program
-from trunnion.verify import Settings, failures, verify
+from trunnion.controls import load_control
+from trunnion.machines import Machine, load_machine
+from trunnion.model.feed_path import FeedPath
+from trunnion.readers import run_program
+from trunnion.verification import Settings, failures, verify
 
 MACHINES = ("generic_head_table_bc", "hs664rt", "linuxcnc_5axis")
 RULES = {"slides": FeedPath.SLIDES, "all_axes": FeedPath.AXES}

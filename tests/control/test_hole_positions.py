@@ -14,10 +14,10 @@ from tests.control.test_program import FOOT, HEAD, Post
 from tests.control.test_program import post as post
 from trunnion.arrays import Floats
 from trunnion.cli import main
-from trunnion.control.hole_positions import _lowest
 from trunnion.errors import Severity
-from trunnion.machine import load_machine
-from trunnion.reader import run_program
+from trunnion.machines import load_machine
+from trunnion.output.hole_positions import _lowest
+from trunnion.readers import run_program
 
 CLEAR = HEAD.replace("FEDRAT/MMPM,500.0\nGOTO/10.0,0.0,5.0\n", "")
 DRILL = "DRILL,RAPTO,3,FEDTO,-12,RTRCTO,9,MMPM,90"

@@ -14,10 +14,10 @@ from tests.control.test_program import post as post
 from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.errors import Severity
-from trunnion.machine import load_machine
-from trunnion.plan.holes import Cycle, CycleError, Making, cycle_of
-from trunnion.reader import run_program
-from trunnion.toolpath import CycleOn, Kind
+from trunnion.machines import load_machine
+from trunnion.model.toolpath import CycleOn, Kind
+from trunnion.planning.holes.cycles import Cycle, CycleError, Making, cycle_of
+from trunnion.readers import run_program
 
 CLEAR = HEAD.replace("FEDRAT/MMPM,500.0\nGOTO/10.0,0.0,5.0\n", "")
 HEIGHTS = "RAPTO,3.0,FEDTO,-20.0,"

@@ -17,13 +17,13 @@ from tests.matrix.test_matrix import CONTROLS, check_proven, pair_of, posted, si
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
-from trunnion.machine import Machine, load_machine
-from trunnion.plan import seconds
-from trunnion.plan.planner import plan
-from trunnion.plan.wishes import Wishes
-from trunnion.reader import run_program
-from trunnion.toolpath import Kind
-from trunnion.verify import Settings, Verification, failures, verify
+from trunnion.machines import Machine, load_machine
+from trunnion.model.toolpath import Kind
+from trunnion.planning import seconds
+from trunnion.planning.options import Wishes
+from trunnion.planning.planner import plan
+from trunnion.readers import run_program
+from trunnion.verification import Settings, Verification, failures, verify
 
 MACHINE = load_machine("xyzac_trt")
 

@@ -13,10 +13,10 @@ from tests.control.klartext import CONTROLS, OWN, Post, motion, proven, toolpath
 from tests.control.test_program import FOOT, HEAD
 from tests.plan.naive import moves_of
 from trunnion.arrays import Floats
-from trunnion.control import Control, load_control
+from trunnion.controls import Control, load_control
 from trunnion.errors import InputError
-from trunnion.machine import load_machine
-from trunnion.toolpath import Arcs, Kind, Moves
+from trunnion.machines import load_machine
+from trunnion.model.toolpath import Arcs, Kind, Moves
 
 
 @pytest.fixture

@@ -16,8 +16,8 @@ from tests.plan.naive import moves_of
 from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.errors import InputError, Refused
-from trunnion.toolpath import Kind, Moves
-from trunnion.verify import Verification
+from trunnion.model.toolpath import Kind, Moves
+from trunnion.verification import Verification
 
 
 @pytest.fixture

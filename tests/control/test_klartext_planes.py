@@ -12,7 +12,7 @@ from tests.control.klartext import CONTROLS, DMU65, MACHINES, PATHS, SHARES, TCP
 from tests.control.test_planes import reachable, text_of
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Refused
-from trunnion.toolpath import Moves
+from trunnion.model.toolpath import Moves
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from tests.control.test_klartext_holes import MODES
 from tests.control.test_planes import reachable
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Refused
-from trunnion.machine import Machine
+from trunnion.machines import Machine
 
 START = """TOOL PATH/OP{n},TOOL,D{tool}
 TLDATA/MILL,10.0000,0.0000,75.0000,0.0000,0.0000

@@ -22,8 +22,8 @@ from tests.control.klartext import (
 )
 from tests.control.test_program import FOOT, HEAD
 from trunnion.errors import InputError, Refused
-from trunnion.machine import Output
-from trunnion.toolpath import Moves
+from trunnion.machines import Output
+from trunnion.model.toolpath import Moves
 
 
 @pytest.fixture

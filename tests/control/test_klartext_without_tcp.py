@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 from tests.control.klartext import CONTROLS, MACHINES, SIMULTANEOUS, Post, proven, toolpath_of
 from tests.plan.naive import moves_of
 from tests.plan.test_without_tcp import steps
-from trunnion.control.slides import TIP
-from trunnion.convert import convert
+from trunnion.conversion import convert
 from trunnion.errors import InputError, Refused
-from trunnion.machine import Machine
-from trunnion.reader import Run, run_program
-from trunnion.toolpath import Kind
-from trunnion.verify import Allowed, Settings, failures, verify
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.output.axis_coordinates import TIP
+from trunnion.readers import run_program
+from trunnion.verification import Allowed, Settings, failures, verify
 
 #: Tool axes by the pole as well; nearer than 2e-5 four decimals cannot tell.
 LEAN = st.one_of(st.floats(-0.6, 0.6), st.floats(-1e-3, 1e-3)).map(lambda v: v if abs(v) > 2e-5 else 0.0)

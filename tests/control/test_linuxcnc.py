@@ -7,7 +7,7 @@ import pytest
 from tests.control.test_program import HEAD
 from tests.verify.proven import unproven
 from trunnion.cli import main
-from trunnion.reader import families
+from trunnion.families import FAMILIES
 
 FOOT = "END-OF-PATH\n"
 LEANING = HEAD.replace("50.0,0.0,0.0,1.0", "50.0,0.0,0.5,0.8660254").replace("10.0,0.0,5.0", "10.0,0.0,5.0,0.0,0.6,0.8")
@@ -176,7 +176,7 @@ def test_what_was_written_is_posted_again_for_another_machine_and_control(post: 
 def test_a_program_that_nobody_can_read_back_is_written_by_force_only_and_says_so(
     post: Post, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.delitem(families.READERS, "linuxcnc")
+    monkeypatch.setitem(FAMILIES, "linuxcnc", FAMILIES["linuxcnc"]._replace(reader=None))
     code, lines, err = post.all(HEAD + FOOT)
     assert (code, lines) == (1, [])
     assert "xyzac_trt: error: programs for LinuxCNC cannot be read back yet: nothing proves this one" in err

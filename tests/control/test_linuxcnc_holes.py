@@ -14,11 +14,11 @@ from tests.reader.test_linuxcnc_judge import agree
 from trunnion.cl import read_cl
 from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
-from trunnion.control import load_control
+from trunnion.controls import load_control
 from trunnion.errors import InputError, Refused
-from trunnion.machine import load_machine
-from trunnion.reader import run_program
-from trunnion.verify import failures, verify
+from trunnion.machines import load_machine
+from trunnion.readers import run_program
+from trunnion.verification import failures, verify
 
 MACHINE = load_machine("xyzac_trt")
 CONTROL = load_control(MACHINE.control)

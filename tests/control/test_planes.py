@@ -13,13 +13,14 @@ from tests.control.test_program import post as post
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
-from trunnion.control import load_control, sinumerik
-from trunnion.control.sinumerik import sequence
-from trunnion.control.turns import about_three
+from trunnion.controls import load_control
 from trunnion.errors import InputError
-from trunnion.machine import Machine, load_machine, shipped
-from trunnion.reader import run_program
-from trunnion.verify import Settings, failures, verify
+from trunnion.machines import Machine, load_machine, shipped
+from trunnion.output.euler_angles import about_three
+from trunnion.output.families.sinumerik import writer as sinumerik
+from trunnion.output.families.sinumerik.writer import sequence
+from trunnion.readers import run_program
+from trunnion.verification import Settings, failures, verify
 
 OFF_AXIS = HEAD.replace("0.0,0.0,50.0,0.0,0.0,1.0", "0.0,0.0,50.0,0.5,0.0,0.866025403784")
 MODES = {57: "XYZ", 27: "ZYX", 39: "ZXY", 45: "XZY", 30: "YZX", 54: "YXZ"}
@@ -64,7 +65,7 @@ def sinumeriks() -> list[str]:
 
 def reachable(machine: Machine, share: tuple[float, float]) -> Floats:
     """The tool axis at two rotary positions, each a share of what the axis has."""
-    from trunnion.machine import forward
+    from trunnion.machines import forward
 
     joints = machine.home.copy()
     for part, column in zip(share, machine.rotary, strict=True):

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from tests.plan.naive import moves_of, operation_of
 from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
-from trunnion.control import load_control
-from trunnion.control.standing import inside_limits
-from trunnion.machine import Machine, forward, load_machine
-from trunnion.plan import plan
-from trunnion.reader import run_program
-from trunnion.toolpath import Frame, LoadTool, SpindleOn, Toolpath
-from trunnion.verify import failures, verify
+from trunnion.controls import load_control
+from trunnion.machines import Machine, forward, load_machine
+from trunnion.model.toolpath import Frame, LoadTool, SpindleOn, Toolpath
+from trunnion.output.plane_from_pose import inside_limits
+from trunnion.planning import plan
+from trunnion.readers import run_program
+from trunnion.verification import failures, verify
 
 NAMES = ("dmu65", "mikron_600u", "ucp800", "yl569")
 

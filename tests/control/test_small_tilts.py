@@ -12,13 +12,13 @@ from tests.plan.naive import moves_of, operation_of
 from trunnion.arrays import Floats
 from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
-from trunnion.control import load_control
+from trunnion.controls import load_control
 from trunnion.errors import InputError, Refused
-from trunnion.machine import load_machine, shipped
-from trunnion.plan import Manner
-from trunnion.reader import run_program
-from trunnion.toolpath import LoadTool, SpindleOn, Toolpath
-from trunnion.verify import Verification, verify
+from trunnion.machines import load_machine, shipped
+from trunnion.model.motion import Manner
+from trunnion.model.toolpath import LoadTool, SpindleOn, Toolpath
+from trunnion.readers import run_program
+from trunnion.verification import Verification, verify
 
 MACHINES = {name: load_machine(name) for name in shipped()}
 CONTROLS = {name: load_control(machine.control.fresh()) for name, machine in MACHINES.items()}

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.control import heidenhain, load_control, sinumerik
-from trunnion.control.turns import about_first_and_third
-from trunnion.machine import load_machine
-from trunnion.reader.families import READERS
+from trunnion.controls import load_control
+from trunnion.families import load_interpreter
+from trunnion.machines import load_machine
+from trunnion.output.euler_angles import about_first_and_third
+from trunnion.output.families.heidenhain import writer as heidenhain
+from trunnion.output.families.sinumerik import writer as sinumerik
 
 #: Whole thousandths of a degree: beside the place where two turns become one, their angles lose half of the digits.
 ANGLES = st.integers(-179999, 180000).map(lambda n: n / 1000)
@@ -44,8 +45,7 @@ def frame_of(text: str, family: str, folder: Path) -> tuple[Floats, Floats]:
     machine = {"fidia_nc15": HS664RT, "sinumerik_840d": YL569}.get(family, DMU65)
     path = folder / "PLANE.NC"
     path.write_text(text, encoding="utf-8")
-    module, name = READERS[family]
-    interpreter = getattr(import_module(module), name)(path, machine)
+    interpreter = load_interpreter(family)(path, machine)
     interpreter.run()
     frame = interpreter.control.frame
     return frame.linear.copy(), frame.shift.copy()

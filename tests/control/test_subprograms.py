@@ -16,14 +16,13 @@ from tests.paths import YL569
 from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.cli.settings import wishes_of
-from trunnion.control import Division, Program, check_program, load_control, write_program
-from trunnion.control.subprograms import LEAST_SIZE, ROOM_FOR_THE_END, Names, Naming
+from trunnion.controls import load_control
+from trunnion.controls.definition import Naming
 from trunnion.errors import InputError, Severity
 from trunnion.files import output
-from trunnion.machine import load_machine
-from trunnion.plan import plan
-from trunnion.reader import Run, run_program
-from trunnion.toolpath import (
+from trunnion.machines import load_machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import (
     Arcs,
     Coolant,
     CycleOff,
@@ -41,7 +40,13 @@ from trunnion.toolpath import (
     Tool,
     Toolpath,
 )
-from trunnion.verify import compare
+from trunnion.output.program import Program
+from trunnion.output.program_writer import write_program
+from trunnion.output.subprograms import LEAST_SIZE, ROOM_FOR_THE_END, Division, Names
+from trunnion.output.validation import check_program
+from trunnion.planning import plan
+from trunnion.readers import run_program
+from trunnion.verification import compare
 
 
 class Language(NamedTuple):

@@ -17,11 +17,12 @@ from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.cli.post import planned_program, write
 from trunnion.errors import InputError, Refused
-from trunnion.machine import Machine, Output
-from trunnion.plan import Wishes
-from trunnion.reader import Orientation, Run, Written, run_program
-from trunnion.toolpath import Moves, Toolpath
-from trunnion.verify import failures, verify
+from trunnion.machines import Machine, Output
+from trunnion.model.run import Orientation, Run, Written
+from trunnion.model.toolpath import Moves, Toolpath
+from trunnion.planning import Wishes
+from trunnion.readers import run_program
+from trunnion.verification import failures, verify
 
 #: A rotary word is half of this off, and so is what the vector comes to.
 DIGIT = 1e-5

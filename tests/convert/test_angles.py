@@ -9,8 +9,8 @@ import pytest
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cl.write import write_cl
-from trunnion.machine import forward, inverse, load_machine
-from trunnion.toolpath import Arcs, Frame, Moves, Operation, Tool, Toolpath
+from trunnion.machines import forward, inverse, load_machine
+from trunnion.model.toolpath import Arcs, Frame, Moves, Operation, Tool, Toolpath
 
 MACHINE = load_machine("yl569")
 B, C = MACHINE.column("B"), MACHINE.column("C")

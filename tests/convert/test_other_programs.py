@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from tests.paths import SHARED
-from trunnion.control import load_control
-from trunnion.convert import Converted, convert
-from trunnion.machine import load_machine
-from trunnion.reader import run_program
-from trunnion.toolpath import (
+from trunnion.controls import load_control
+from trunnion.conversion import Converted, convert
+from trunnion.machines import load_machine
+from trunnion.model.toolpath import (
     Coolant,
     CutterComp,
     Dwell,
@@ -26,6 +25,7 @@ from trunnion.toolpath import (
     SpindleOn,
     Stop,
 )
+from trunnion.readers import run_program
 
 MACHINE = load_machine("yl569")
 CONTROL = load_control(MACHINE.control)

@@ -12,14 +12,13 @@ from hypothesis import strategies as st
 from trunnion.arrays import Floats
 from trunnion.cli.post import Claim, planned_program, write
 from trunnion.cli.settings import wishes_of
-from trunnion.control import Control, load_control
-from trunnion.convert import carried_over, convert
+from trunnion.controls import Control, load_control
+from trunnion.conversion import carried_over, convert
 from trunnion.errors import InputError
-from trunnion.machine import Machine, load_machine, shipped
-from trunnion.plan import Manner
-from trunnion.reader import Run, Written, run_program
-from trunnion.reader.settings import family_of
-from trunnion.toolpath import (
+from trunnion.machines import Machine, load_machine, shipped
+from trunnion.model.motion import Manner
+from trunnion.model.run import Run, Written
+from trunnion.model.toolpath import (
     Arcs,
     Coolant,
     CycleOff,
@@ -37,7 +36,9 @@ from trunnion.toolpath import (
     Tool,
     Toolpath,
 )
-from trunnion.verify import Allowed, compare, failures, verify, with_rapids
+from trunnion.readers import run_program
+from trunnion.readers.common.settings import family_of
+from trunnion.verification import Allowed, compare, failures, verify, with_rapids
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,18 @@ from hypothesis import strategies as st
 from tests.convert.toolpaths import SAYABLE, sensible, toolpaths
 from trunnion.cl import read_cl
 from trunnion.cl.write import write_cl
-from trunnion.control import Program, check_program, load_control, write_program
-from trunnion.convert import convert
+from trunnion.controls import load_control
+from trunnion.conversion import convert
 from trunnion.errors import Severity
-from trunnion.machine import load_machine
-from trunnion.plan import Manner, Wishes, plan
-from trunnion.reader import run_program
-from trunnion.toolpath import Toolpath
-from trunnion.verify import compare
+from trunnion.machines import load_machine
+from trunnion.model.motion import Manner
+from trunnion.model.toolpath import Toolpath
+from trunnion.output.program import Program
+from trunnion.output.program_writer import write_program
+from trunnion.output.validation import check_program
+from trunnion.planning import Wishes, plan
+from trunnion.readers import run_program
+from trunnion.verification import compare
 
 MACHINE = load_machine("yl569")
 CONTROL = load_control(MACHINE.control)

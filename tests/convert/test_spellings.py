@@ -7,9 +7,9 @@ import pytest
 
 from tests.control.klartext import CONTROLS, SIMULTANEOUS, Post
 from trunnion.cli import main
-from trunnion.control import load_control
-from trunnion.convert.heads import match, patterns, spellings
-from trunnion.machine import load_machine, shipped
+from trunnion.controls import load_control
+from trunnion.conversion.template_matching import match, patterns, spellings
+from trunnion.machines import load_machine, shipped
 
 
 @pytest.fixture

@@ -7,9 +7,9 @@ import pytest
 
 from tests.paths import SHARED
 from trunnion.cli import main
-from trunnion.machine import load_machine
-from trunnion.reader import run_program
-from trunnion.verify import compare
+from trunnion.machines import load_machine
+from trunnion.readers import run_program
+from trunnion.verification import compare
 
 FOLDER = SHARED / "data" / "linuxcnc"
 IMPELLER = FOLDER / "impeller-7bl-xyzac.ngc"

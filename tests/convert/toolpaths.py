@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from trunnion.arrays import Codes, Floats
 from trunnion.cl.assemble import COLOURS, fill_phases
-from trunnion.toolpath import (
+from trunnion.model.toolpath import (
     Arcs,
     BlockSkip,
     Coolant,

@@ -55,7 +55,7 @@ def a_rs274(rng: random.Random) -> bytes:
 
 def a_definition(rng: random.Random) -> bytes:
     """Return the bytes of a definition."""
-    library = [entry.read_bytes() for entry in files("trunnion.machine").joinpath("library").iterdir()]
+    library = [entry.read_bytes() for entry in files("trunnion.machines").joinpath("library").iterdir()]
     return mangle(rng.choice(library), library, rng)
 
 

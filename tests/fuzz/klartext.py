@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Final
 
 from tests.fuzz import oracle, pieces
-from trunnion.reader.heidenhain import words
-from trunnion.reader.heidenhain.parameters import FUNCTIONS
+from trunnion.readers.families.heidenhain import words
+from trunnion.readers.families.heidenhain.parameters import FUNCTIONS
 
 #: Machines that the programs run on: two tables, two heads, a head at 45 degrees.
 MACHINES: Final = ("dmu65", "mikron_600u", "generic_head_head_ca", "generic_nutated_b45_c")

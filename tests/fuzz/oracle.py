@@ -12,10 +12,11 @@ import numpy as np
 from tests.fuzz.seeds import SUBPROGRAMS
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Refused, TrunnionError
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import Run, run_program
-from trunnion.reader.interpreter import MOST_FINDINGS
-from trunnion.toolpath import Kind, Toolpath
+from trunnion.machines import Machine, load_machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.readers import run_program
+from trunnion.readers.common.interpreter import MOST_FINDINGS
 
 #: Blocks that loops and calls may execute.
 LIMIT: Final = 1500

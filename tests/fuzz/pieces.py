@@ -8,9 +8,9 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
-from trunnion.reader.sinumerik import words
-from trunnion.reader.sinumerik.cycles import CYCLES
-from trunnion.reader.sinumerik.expressions import FUNCTIONS
+from trunnion.readers.families.sinumerik import words
+from trunnion.readers.families.sinumerik.cycles import CYCLES
+from trunnion.readers.families.sinumerik.expressions import FUNCTIONS
 
 #: Chooses one of several texts.
 Pick = Callable[[Sequence[str]], str]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from tests.fuzz import oracle, pieces
-from trunnion.reader import Run
+from trunnion.model.run import Run
 
 _NUMBERS: Final = (
     "1", "0", "-1", "12.5", "-.25", "+7.", "90.", "-360", "1000", "99999", "9999999", "123456789012345678", ".",

@@ -13,7 +13,7 @@ from tests.fuzz.mangle import mangle
 
 LIBRARY = tuple(
     entry.read_bytes()
-    for entry in sorted(files("trunnion.machine").joinpath("library").iterdir(), key=lambda entry: entry.name)
+    for entry in sorted(files("trunnion.machines").joinpath("library").iterdir(), key=lambda entry: entry.name)
     if entry.name.endswith(".toml")
 )
 

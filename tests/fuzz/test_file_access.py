@@ -21,8 +21,8 @@ WATCHER = """
 import json, sys
 from pathlib import Path
 from trunnion.errors import InputError
-from trunnion.machine import load_machine
-from trunnion.reader import run_program
+from trunnion.machines import load_machine
+from trunnion.readers import run_program
 
 folder = Path(sys.argv[1])
 machine = load_machine("yl569")

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from tests.fuzz import klartext
 from tests.fuzz.mangle import mangle
 from trunnion.errors import InputError
-from trunnion.machine import load_machine
-from trunnion.reader import run_program
+from trunnion.machines import load_machine
+from trunnion.readers import run_program
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,11 @@ from hypothesis import strategies as st
 from tests.fuzz import oracle, pieces, seeds
 from tests.fuzz.mangle import mangle
 from trunnion.errors import InputError
-from trunnion.reader import Run, interpreter, subdivide
-from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
-from trunnion.reader.sinumerik.text import SinumerikText
+from trunnion.model.run import Run
+from trunnion.model.subdivision import subdivide
+from trunnion.readers.common import interpreter
+from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
+from trunnion.readers.families.sinumerik.text import SinumerikText
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,9 @@ from tests.convert.toolpaths import SAYABLE, operations
 from tests.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
 from trunnion.arrays import Floats
 from trunnion.errors import Refused
-from trunnion.machine import Machine, forward, load_machine, slide_positions
-from trunnion.plan import Wishes, plan
-from trunnion.toolpath import Toolpath
+from trunnion.machines import Machine, forward, load_machine, slide_positions
+from trunnion.model.toolpath import Toolpath
+from trunnion.planning import Wishes, plan
 
 pytestmark = [needs_modules, needs_compiler]
 

@@ -20,11 +20,23 @@ from tests.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
 from tests.linuxcnc.test_kinematics import MODULES, theirs
 from tests.linuxcnc.test_kinematics import kinematics as kinematics
 from trunnion.arrays import Floats
-from trunnion.control import load_control
-from trunnion.machine import Machine, load_machine, slide_positions
-from trunnion.plan import plan
-from trunnion.reader import run_program
-from trunnion.toolpath import Arcs, Frame, Kind, LoadTool, Moves, Operation, Phase, Sense, SpindleOn, Tool, Toolpath
+from trunnion.controls import load_control
+from trunnion.machines import Machine, load_machine, slide_positions
+from trunnion.model.toolpath import (
+    Arcs,
+    Frame,
+    Kind,
+    LoadTool,
+    Moves,
+    Operation,
+    Phase,
+    Sense,
+    SpindleOn,
+    Tool,
+    Toolpath,
+)
+from trunnion.planning import plan
+from trunnion.readers import run_program
 
 pytestmark = [needs_linuxcnc, needs_modules, needs_compiler]
 

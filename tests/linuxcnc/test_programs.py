@@ -11,12 +11,11 @@ from hypothesis import strategies as st
 
 from tests.convert.toolpaths import SAYABLE, operations
 from tests.linuxcnc.interpreter import SUBROUTINES, Canon, Move, RefusedByLinuxcncError, interpret, needs_linuxcnc
-from trunnion.control import Division, Program, check_program, load_control, write_program
+from trunnion.controls import load_control
 from trunnion.errors import InputError, Refused, Severity
-from trunnion.machine import Machine, load_machine
-from trunnion.plan import Manner, Motion, Wishes, plan
-from trunnion.reader import run_program
-from trunnion.toolpath import (
+from trunnion.machines import Machine, load_machine
+from trunnion.model.motion import Manner, Motion
+from trunnion.model.toolpath import (
     Coolant,
     Dwell,
     Kind,
@@ -28,6 +27,12 @@ from trunnion.toolpath import (
     Stop,
     Toolpath,
 )
+from trunnion.output.program import Program
+from trunnion.output.program_writer import write_program
+from trunnion.output.subprograms import Division
+from trunnion.output.validation import check_program
+from trunnion.planning import Wishes, plan
+from trunnion.readers import run_program
 
 
 def roomy(machine: Machine) -> Machine:

@@ -7,7 +7,7 @@ import pytest
 
 from tests.linuxcnc.simulator import Bench, needs_simulator, rests, with_rests
 from trunnion.cli import main
-from trunnion.machine import load_machine, slide_positions
+from trunnion.machines import load_machine, slide_positions
 
 LENGTH = 80.0
 ZERO = (12.0, -7.5, -40.0)

@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from trunnion.machine import Axis, AxisKind, Carries, Machine, Positive
-from trunnion.machine.model import Vector
+from trunnion.machines import Axis, AxisKind, Carries, Machine, Positive
+from trunnion.machines.machine import Vector
 
 HALF = math.sqrt(0.5)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.machine import Machine
+from trunnion.machines import Machine
 
 
 def translation(offset: Floats) -> Floats:

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from tests.machine.machine_strategies import directions, joints, machines
 from tests.machine.naive_chain import naive_forward, rotation
 from trunnion.arrays import Floats
-from trunnion.machine import Machine, Packed, forward, inverse, load_machine, pack, shipped
-from trunnion.machine.inverse import POLE, STUCK, UNREACHABLE, solve_point, solve_slides
-from trunnion.machine.model import Vector
+from trunnion.machines import Machine, Packed, forward, inverse, load_machine, pack, shipped
+from trunnion.machines.inverse import POLE, STUCK, UNREACHABLE, solve_point, solve_slides
+from trunnion.machines.machine import Vector
 
 TIP_MM = 1e-9
 AXIS = 1e-12

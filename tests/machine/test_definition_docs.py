@@ -3,9 +3,9 @@
 import re
 from pathlib import Path
 
-from trunnion.definition import load_table
-from trunnion.machine import Machine, load_machine
-from trunnion.machine.load import library, read_machine
+from trunnion.definitions import load_table
+from trunnion.machines import Machine, load_machine
+from trunnion.machines.loading import library, read_machine
 
 DOCUMENT = (Path(__file__).parents[2] / "docs" / "definitions.md").read_text(encoding="utf-8")
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.definition import LARGEST_FILE, Table, extended, key_lines, load_table, names_in, unit_of
+from trunnion.definitions import LARGEST_FILE, Table, extended, key_lines, load_table, names_in, unit_of
 from trunnion.errors import InputError
-from trunnion.machine import load_machine
-from trunnion.machine.load import library
+from trunnion.machines import load_machine
+from trunnion.machines.loading import library
 
 TRICKY = '''\
 # a comment with = and [brackets]

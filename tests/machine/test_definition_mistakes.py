@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from trunnion.errors import InputError, Problem
-from trunnion.machine import load_machine
+from trunnion.machines import load_machine
 
 SOUND = """\
 schema = 1

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from trunnion.errors import InputError
-from trunnion.machine import Machine, forward, inverse, load_machine
+from trunnion.machines import Machine, forward, inverse, load_machine
 
 ROWS = {
     row["name"]: row for row in csv.DictReader((Path(__file__).parents[1] / "data" / "machines.csv").open(newline=""))

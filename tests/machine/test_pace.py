@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.machine import Machine, load_machine
-from trunnion.machine.pace import row_seconds
+from trunnion.machines import Machine, load_machine
+from trunnion.machines.motion_time import row_seconds
 
 BC = load_machine("generic_head_table_bc")
 X, Y = (next(k for k, axis in enumerate(BC.axes) if axis.name == name) for name in "XY")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trunnion.machine import Carries, Output, forward, inverse, load_machine, shipped
+from trunnion.machines import Carries, Output, forward, inverse, load_machine, shipped
 
 #: B, C, i, j, k as printed; the vectors are cut to four decimals, not rounded. The fourth row is left out of them: it
 #: repeats the vector of the first, and only to 1.5e-4 belongs to its own angles.

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.machine import Machine, forward
+from trunnion.machines import Machine, forward
 
 _START: Final = """TOOL PATH/{name},TOOL,D10
 TLDATA/MILL,10.0000,0.0000,75.0000,0.0000,0.0000

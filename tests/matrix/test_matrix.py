@@ -22,13 +22,15 @@ from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.cli.settings import set_up
-from trunnion.control import Control, load_control
-from trunnion.control.definition import library
-from trunnion.control.families import FAMILIES as CONTROL_FAMILIES
-from trunnion.machine import Machine, load_machine, shipped
-from trunnion.plan import Manner
-from trunnion.reader import Run, run_program
-from trunnion.toolpath import CycleOn
+from trunnion.controls import Control, load_control
+from trunnion.controls.definition import library
+from trunnion.families import FAMILIES as CONTROL_FAMILIES
+from trunnion.families import load_writer
+from trunnion.machines import Machine, load_machine, shipped
+from trunnion.model.motion import Manner
+from trunnion.model.run import Run
+from trunnion.model.toolpath import CycleOn
+from trunnion.readers import run_program
 
 CONTROLS = sorted(entry.name.removesuffix(".toml") for entry in library().iterdir() if entry.name.endswith(".toml"))
 
@@ -51,7 +53,7 @@ class Pair:
     @property
     def family(self) -> str:
         """Of controls, by the first of its names in definitions; one that refuses more than its family is its own."""
-        first = next(key for key, module in CONTROL_FAMILIES.items() if module is self.control.family)
+        first = next(key for key in CONTROL_FAMILIES if load_writer(key) is self.control.family)
         return self.name if self.name in REFUSED else first
 
     @property

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from trunnion.nc import ABSENT, NumberFormat, Word, counts
+from trunnion.controls.words import ABSENT, NumberFormat, Word, counts
 
 numbers = st.floats(-99999.0, 99999.0, allow_nan=False)
 

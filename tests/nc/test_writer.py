@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from trunnion.controls.words import ABSENT, BlockNumbers, NumberFormat, Word, counts
 from trunnion.errors import Refused
-from trunnion.nc import ABSENT, BlockNumbers, BlockWriter, NumberFormat, Word, counts
+from trunnion.output.block_writer import BlockWriter
 
 COORDINATE = NumberFormat(5, zero="0.0", least=-1e11, greatest=1e11)
 WORDS = [

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.machine import Machine, forward, inverse, slide_positions
-from trunnion.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool
+from trunnion.machines import Machine, forward, inverse, slide_positions
+from trunnion.model.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool
 
 State = tuple[int, int, int]
 

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.plan.arcs import arc_sweeps, lines_for_arcs, plain_arcs
-from trunnion.toolpath import Arcs, Dwell, Frame, Kind, Moves, Operation, Tool
+from trunnion.model.toolpath import Arcs, Dwell, Frame, Kind, Moves, Operation, Tool
+from trunnion.planning.linearization.arc_chords import arc_sweeps, lines_for_arcs, plain_arcs
 
 
 def arc_operation(

@@ -16,9 +16,9 @@ from tests.plan.test_optimum import directions
 from tests.plan.test_without_tcp import NAMES, machine, post, toolpath
 from trunnion.arrays import Floats
 from trunnion.errors import Refused, Severity
-from trunnion.machine import Machine, Output, inverse
-from trunnion.plan import Wishes
-from trunnion.toolpath import Moves
+from trunnion.machines import Machine, Output, inverse
+from trunnion.model.toolpath import Moves
+from trunnion.planning import Wishes
 
 #: How far rotary axes may be beyond a limit: half of what is printed, and what the planner takes for noise.
 HALF_DIGIT = 0.5e-5 + 1e-6

@@ -8,10 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.plan import Wishes
-from trunnion.plan.hole_rows import as_motion, strokes
-from trunnion.plan.holes import CycleError, Making, Turning, cycle_of, with_holes
-from trunnion.toolpath import (
+from trunnion.model.toolpath import (
     Arcs,
     CycleOff,
     CycleOn,
@@ -25,6 +22,9 @@ from trunnion.toolpath import (
     SpindleOn,
     Tool,
 )
+from trunnion.planning import Wishes
+from trunnion.planning.holes.cycles import CycleError, Making, Turning, cycle_of, with_holes
+from trunnion.planning.holes.hole_motion import as_motion, strokes
 
 SPINDLE = Turning(1200.0, Sense.CLW)
 LENGTH = st.integers(1, 900).map(lambda n: n / 100.0)

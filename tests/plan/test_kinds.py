@@ -8,11 +8,12 @@ from hypothesis import strategies as st
 from tests.plan.naive import moves_of, operation_of
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Refused
-from trunnion.machine import load_machine
-from trunnion.plan import Manner, Motion, Wishes, plan
-from trunnion.plan.frames import seen_from
-from trunnion.plan.kinds import plane_of
-from trunnion.toolpath import Arcs, Frame, Kind, Operation, Toolpath
+from trunnion.machines import load_machine
+from trunnion.model.frames import seen_from
+from trunnion.model.motion import Manner, Motion
+from trunnion.model.toolpath import Arcs, Frame, Kind, Operation, Toolpath
+from trunnion.planning import Wishes, plan
+from trunnion.planning.machining_mode import plane_of
 
 YL569 = load_machine("yl569")
 

@@ -14,10 +14,11 @@ from tests.plan.test_rewind import round_part
 from tests.plan.test_without_tcp import NAMES
 from tests.plan.test_without_tcp import machine as roomy
 from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.machine import Machine, inverse, load_machine
-from trunnion.plan import Clearance, Manner, Surface, Wishes, plan
-from trunnion.plan.ahead import out_of_reach_by
-from trunnion.toolpath import CutterComp, Moves, Operation, Toolpath
+from trunnion.machines import Machine, inverse, load_machine
+from trunnion.model.motion import Manner
+from trunnion.model.toolpath import CutterComp, Moves, Operation, Toolpath
+from trunnion.planning import Clearance, Surface, Wishes, plan
+from trunnion.planning.poses.limit_lookahead import out_of_reach_by
 
 NUTATED = load_machine("generic_nutated_b45_c")
 OFF = Wishes(tcp=False)

@@ -9,12 +9,21 @@ from hypothesis import strategies as st
 
 from tests.plan.naive import EveryWay, moves_of, nearest_neighbour, rapids_at
 from trunnion.arrays import Floats
-from trunnion.machine import Machine, forward, load_machine, shipped, slide_positions
-from trunnion.plan import poses
-from trunnion.plan.placing import REWIND
-from trunnion.plan.poses import Poses, choose, choose_nearest, follow, least_cost, settled, sides_travel_alike, take
-from trunnion.plan.states import MOST_TURNS, REWOUND, STATE, states_of
-from trunnion.toolpath import Moves
+from trunnion.machines import Machine, forward, load_machine, shipped, slide_positions
+from trunnion.model.toolpath import Moves
+from trunnion.planning.poses import selection as poses
+from trunnion.planning.poses.placement import REWIND
+from trunnion.planning.poses.selection import (
+    Poses,
+    choose,
+    choose_nearest,
+    follow,
+    least_cost,
+    settled,
+    sides_travel_alike,
+    take,
+)
+from trunnion.planning.poses.states import MOST_TURNS, REWOUND, STATE, states_of
 
 
 def with_limits(machine: Machine, **limits: tuple[float, float]) -> Machine:

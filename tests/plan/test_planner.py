@@ -7,10 +7,11 @@ from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
 from trunnion.errors import Refused, Severity
-from trunnion.machine import Machine, forward, load_machine, shipped, slide_positions
-from trunnion.plan import Plan, plan
-from trunnion.plan.frames import into_frame
-from trunnion.toolpath import Arcs, Frame, Moves, Operation, Tool, Toolpath
+from trunnion.machines import Machine, forward, load_machine, shipped, slide_positions
+from trunnion.model.frames import into_frame
+from trunnion.model.motion import Plan
+from trunnion.model.toolpath import Arcs, Frame, Moves, Operation, Tool, Toolpath
+from trunnion.planning import plan
 
 
 def operation(tip: Floats, axis: Floats, frame: Frame | None = None, rapid: bool = False) -> Operation:

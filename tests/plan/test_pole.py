@@ -11,14 +11,15 @@ from hypothesis import strategies as st
 
 from tests.plan.naive import moves_of, operation_of, rapids_at
 from trunnion.arrays import Flags, Floats
-from trunnion.machine import Machine, forward, inverse, load_machine, pack, shipped
-from trunnion.plan import Plan, Pole, Why, Wishes, plan
-from trunnion.plan.cone import leanest, nearest_second, off_pole
-from trunnion.plan.placing import REWIND
-from trunnion.plan.pole import Leaning, leaning
-from trunnion.plan.poses import follow
-from trunnion.plan.speed import RESTS, shares
-from trunnion.toolpath import Moves, Operation, Toolpath
+from trunnion.machines import Machine, forward, inverse, load_machine, pack, shipped
+from trunnion.model.motion import Plan, Pole, Why
+from trunnion.model.toolpath import Moves, Operation, Toolpath
+from trunnion.planning import Wishes, plan
+from trunnion.planning.pole.cone import leanest, nearest_second, off_pole
+from trunnion.planning.pole.pole import Leaning, leaning
+from trunnion.planning.poses.placement import REWIND
+from trunnion.planning.poses.selection import follow
+from trunnion.planning.speed.rotary_speed import RESTS, shares
 
 
 def quick(name: str) -> Machine:

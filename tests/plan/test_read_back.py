@@ -12,13 +12,13 @@ from tests.machines import at_zero
 from tests.plan.naive import operation_of
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
 from trunnion.cli.post import planned_program, write
-from trunnion.control import load_control
+from trunnion.controls import load_control
 from trunnion.errors import InputError, Refused, Severity
-from trunnion.machine import Machine, load_machine, shipped
-from trunnion.plan import Wishes, plan
-from trunnion.reader import run_program
-from trunnion.toolpath import LoadTool, Moves, SpindleOn, Toolpath
-from trunnion.verify import Verification, failures, verify
+from trunnion.machines import Machine, load_machine, shipped
+from trunnion.model.toolpath import LoadTool, Moves, SpindleOn, Toolpath
+from trunnion.planning import Wishes, plan
+from trunnion.readers import run_program
+from trunnion.verification import Verification, failures, verify
 
 SINUMERIK = load_machine("yl569").control
 CONTROL = load_control(SINUMERIK.fresh())

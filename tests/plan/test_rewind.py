@@ -15,10 +15,11 @@ from trunnion.arrays import Floats
 from trunnion.cl.write import write_cl
 from trunnion.cli import main
 from trunnion.errors import Severity
-from trunnion.machine import Machine, forward, slide_positions
-from trunnion.plan import Clearance, Motion, Plan, Surface, Why, Wishes, plan
-from trunnion.plan.clearance import LEAST
-from trunnion.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Moves, Operation, Phase, SpindleOn, Toolpath
+from trunnion.machines import Machine, forward, slide_positions
+from trunnion.model.motion import Motion, Plan, Why
+from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Moves, Operation, Phase, SpindleOn, Toolpath
+from trunnion.planning import Clearance, Surface, Wishes, plan
+from trunnion.planning.retracts.clearance import LEAST
 
 
 def planned(operation: Operation, machine: Machine = CA, wishes: Wishes | None = None) -> Plan:
@@ -280,7 +281,7 @@ def test_a_retreat_below_the_part_is_none(tmp_path: Path, capfd: pytest.CaptureF
 
 
 def test_over_travel_says_how_much_is_lacking_and_what_the_other_pose_would_do() -> None:
-    from trunnion.machine import load_machine
+    from trunnion.machines import load_machine
 
     axis: Floats = directions(np.array([110.0]), np.array([0.0]))
     (problem,) = planned(operation_of(moves_of(np.zeros((1, 3)), axis)), load_machine("yl569")).problems

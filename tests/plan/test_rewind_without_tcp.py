@@ -15,11 +15,12 @@ from tests.plan.test_rewind import round_part
 from tests.plan.test_without_tcp import NAMES, Posted, machine, post, toolpath, worst_off
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machine import Machine
-from trunnion.plan import Clearance, Wishes
-from trunnion.reader import run_program, subdivide
-from trunnion.toolpath import Kind, Message, Moves
-from trunnion.verify import verify
+from trunnion.machines import Machine
+from trunnion.model.subdivision import subdivide
+from trunnion.model.toolpath import Kind, Message, Moves
+from trunnion.planning import Clearance, Wishes
+from trunnion.readers import run_program
+from trunnion.verification import verify
 
 CA = machine("generic_head_head_ca")
 

@@ -9,8 +9,8 @@ from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.machine import Machine, forward, inverse, load_machine, shipped, slide_positions
-from trunnion.plan.spans import Spans, divide
+from trunnion.machines import Machine, forward, inverse, load_machine, shipped, slide_positions
+from trunnion.planning.linearization.linearization import Spans, divide
 
 NAMES = sorted(shipped())
 ZERO = (37.0, -21.0, 110.0)

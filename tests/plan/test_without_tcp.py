@@ -15,14 +15,19 @@ from tests.machines import at_zero
 from tests.plan.naive import moves_of, operation_of
 from trunnion.arrays import Codes, Floats
 from trunnion.cli.post import write
-from trunnion.control import Program, check_program, load_control
+from trunnion.controls import load_control
 from trunnion.errors import Severity
-from trunnion.machine import Machine, forward, load_machine, shipped
-from trunnion.plan import Plan, Wishes, plan
-from trunnion.plan.arcs import turned_evenly
-from trunnion.reader import Run, run_program, subdivide
-from trunnion.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Toolpath
-from trunnion.verify import Allowed, Settings, Verification, verify
+from trunnion.machines import Machine, forward, load_machine, shipped
+from trunnion.model.motion import Plan
+from trunnion.model.run import Run
+from trunnion.model.subdivision import subdivide
+from trunnion.model.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Toolpath
+from trunnion.output.program import Program
+from trunnion.output.validation import check_program
+from trunnion.planning import Wishes, plan
+from trunnion.planning.linearization.arc_chords import turned_evenly
+from trunnion.readers import run_program
+from trunnion.verification import Allowed, Settings, Verification, verify
 
 NAMES = sorted(shipped())
 SINUMERIK = load_machine("yl569").control

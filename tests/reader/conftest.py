@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from trunnion.arrays import Floats
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import Run, run_program
+from trunnion.machines import Machine, load_machine
+from trunnion.model.run import Run
+from trunnion.readers import run_program
 
 Runner = Callable[..., Run]
 

@@ -3,10 +3,10 @@
 import pytest
 
 from tests.reader.conftest import Runner, close
-from trunnion.reader import Run
-from trunnion.reader.drilling import CycleError
-from trunnion.reader.sinumerik.cycles import strokes
-from trunnion.toolpath import Kind
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.readers.common.drilling import CycleError
+from trunnion.readers.families.sinumerik.cycles import strokes
 
 
 def heights(result: Run, kind: Kind | None = None) -> list[float]:

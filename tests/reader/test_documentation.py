@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.reader import interpreter, text
-from trunnion.reader.sinumerik import cycles, expressions, flow, words
-from trunnion.reader.sinumerik.text import DEEPEST
+from trunnion.readers.common import interpreter, text
+from trunnion.readers.families.sinumerik import cycles, expressions, flow, words
+from trunnion.readers.families.sinumerik.text import DEEPEST
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reader.md").read_text(encoding="utf-8")
 

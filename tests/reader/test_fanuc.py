@@ -13,10 +13,11 @@ from tests.reader.conftest import Runner, close, slides
 from tests.reader.test_kernels import same
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem
-from trunnion.machine import load_machine
-from trunnion.reader import Run, run_program
-from trunnion.reader.fanuc.interpreter import FanucInterpreter
-from trunnion.toolpath import Kind
+from trunnion.machines import load_machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.readers import run_program
+from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
 
 CONTROL = {"family": "fanuc_30i"}
 MACHINE = load_machine("yl569", {"control": CONTROL})

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from tests.reader.conftest import Runner
 from tests.reader.klartext.conftest import dmu65, run
-from trunnion.machine import forward, load_machine
-from trunnion.reader import FeedPath, counted, ways
-from trunnion.verify import verify
+from trunnion.machines import forward, load_machine
+from trunnion.model.feed_path import FeedPath, counted, ways
+from trunnion.verification import verify
 
 __all__ = ["dmu65", "run"]
 

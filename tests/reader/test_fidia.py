@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 from tests.reader.conftest import Runner, close
 from tests.reader.test_kernels import same
 from trunnion.arrays import Floats
-from trunnion.machine import load_machine
-from trunnion.reader import Run, run_program
-from trunnion.reader.fidia.interpreter import FidiaInterpreter
-from trunnion.toolpath import Kind
+from trunnion.machines import load_machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.readers import run_program
+from trunnion.readers.families.fidia.interpreter import FidiaInterpreter
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "hs664rt"
 MACHINE = load_machine("hs664rt")

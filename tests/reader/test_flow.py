@@ -7,8 +7,9 @@ import pytest
 
 from tests.reader.conftest import Runner
 from trunnion.errors import InputError
-from trunnion.machine import Machine
-from trunnion.reader import Run, run_program
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.readers import run_program
 
 
 def xs(result: Run) -> list[float]:

@@ -7,7 +7,7 @@ import pytest
 
 from tests.reader.conftest import Runner, close
 from trunnion.arrays import Floats
-from trunnion.machine import load_machine
+from trunnion.machines import load_machine
 
 
 def vector(*numbers: float) -> Floats:

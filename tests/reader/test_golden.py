@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from trunnion.arrays import Floats
-from trunnion.machine import Machine
-from trunnion.reader import run_program
-from trunnion.toolpath import Kind
+from trunnion.machines import Machine
+from trunnion.model.toolpath import Kind
+from trunnion.readers import run_program
 
 FOLDER = Path(__file__).parents[1] / "golden" / "yl569"
 

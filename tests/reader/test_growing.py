@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from tests.paths import YL569
 from trunnion.errors import InputError
 from trunnion.files import Growing
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import Run, run_program
+from trunnion.machines import Machine, load_machine
+from trunnion.model.run import Run
+from trunnion.readers import run_program
 
 LOOP = b"R1=3\nAGAIN:\nG1 X=R1 F100\n;and again\nR1=R1-1\nIF R1>0 GOTOB AGAIN\nX9\nM30\n"
 

@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 
 from tests.reader import naive
 from trunnion.errors import InputError
-from trunnion.machine import forward, load_machine
-from trunnion.reader import Run, poses, run_program
-from trunnion.reader.sinumerik.interpreter import SinumerikInterpreter
-from trunnion.reader.subdivide import on_circle
+from trunnion.machines import forward, load_machine
+from trunnion.model import axis_positions as poses
+from trunnion.model.run import Run
+from trunnion.model.subdivision import on_circle
+from trunnion.readers import run_program
+from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 
 YL569 = load_machine("yl569")
 GOLDEN = sorted((Path(__file__).parents[1] / "golden" / "yl569").glob("*.mpf"))

@@ -14,10 +14,11 @@ from hypothesis import strategies as st
 from tests.reader.conftest import Runner, close
 from tests.reader.test_kernels import same
 from trunnion.errors import InputError, Problem
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import Run, run_program
-from trunnion.reader.linuxcnc.interpreter import LinuxcncInterpreter
-from trunnion.toolpath import Kind
+from trunnion.machines import Machine, load_machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.readers import run_program
+from trunnion.readers.families.linuxcnc.interpreter import LinuxcncInterpreter
 
 FOLDER = Path(__file__).parents[3] / "shared" / "data" / "linuxcnc"
 XYZAC = load_machine("xyzac_trt")

@@ -11,9 +11,10 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from tests.linuxcnc.interpreter import Canon, RefusedByLinuxcncError, canonical, needs_linuxcnc
-from trunnion.machine import load_machine
-from trunnion.reader import Run, run_program
-from trunnion.toolpath import Kind
+from trunnion.machines import load_machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.readers import run_program
 
 pytestmark = needs_linuxcnc
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from trunnion.arrays import Floats
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import run_program
+from trunnion.machines import Machine, load_machine
+from trunnion.readers import run_program
 
 FOLDER = Path(__file__).parents[3] / "shared" / "data" / "sinumerik"
 

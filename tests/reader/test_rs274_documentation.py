@@ -5,19 +5,19 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.reader.fanuc import cycles as fanuc_cycles
-from trunnion.reader.fanuc import text as fanuc_text
-from trunnion.reader.fanuc import variables
-from trunnion.reader.fanuc import words as fanuc
-from trunnion.reader.fidia import cycles as fidia_cycles
-from trunnion.reader.fidia import words as fidia
-from trunnion.reader.linuxcnc import cycles as linuxcnc_cycles
-from trunnion.reader.linuxcnc import parameters
-from trunnion.reader.linuxcnc import text as linuxcnc_text
-from trunnion.reader.linuxcnc import words as linuxcnc
-from trunnion.reader.rs274 import expressions
-from trunnion.reader.rs274.block import spelled
-from trunnion.reader.rs274.interpreter import ENDS, EVENTS, FEED_MODES, MOTIONS, PLANES
+from trunnion.readers.families.fanuc import cycles as fanuc_cycles
+from trunnion.readers.families.fanuc import text as fanuc_text
+from trunnion.readers.families.fanuc import variables
+from trunnion.readers.families.fanuc import words as fanuc
+from trunnion.readers.families.fidia import cycles as fidia_cycles
+from trunnion.readers.families.fidia import words as fidia
+from trunnion.readers.families.linuxcnc import cycles as linuxcnc_cycles
+from trunnion.readers.families.linuxcnc import parameters
+from trunnion.readers.families.linuxcnc import text as linuxcnc_text
+from trunnion.readers.families.linuxcnc import words as linuxcnc
+from trunnion.readers.rs274 import expressions
+from trunnion.readers.rs274.block import spelled
+from trunnion.readers.rs274.interpreter import ENDS, EVENTS, FEED_MODES, MOTIONS, PLANES
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = {name: (DOCS / f"reader-{name}.md").read_text(encoding="utf-8") for name in ("linuxcnc", "fanuc", "fidia")}

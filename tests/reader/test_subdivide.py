@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.reader.conftest import Runner, close
-from trunnion.machine import forward
-from trunnion.reader import subdivide
+from trunnion.machines import forward
+from trunnion.model.subdivision import subdivide
 
 
 def test_with_tcp_the_tip_goes_straight_and_the_angles_linearly(run: Runner) -> None:

@@ -5,9 +5,9 @@ import pytest
 
 from tests.reader.conftest import Runner, close, rotary, slides
 from trunnion.errors import InputError, Severity
-from trunnion.machine import load_machine
-from trunnion.reader import Orientation, Written
-from trunnion.toolpath import Kind
+from trunnion.machines import load_machine
+from trunnion.model.run import Orientation, Written
+from trunnion.model.toolpath import Kind
 
 
 @pytest.mark.parametrize(

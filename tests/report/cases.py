@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 
 from tests.paths import YL569
 from trunnion.arrays import Floats, Lines
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import Ramps, Run, State, Steps, run_program
-from trunnion.toolpath import Arcs
-from trunnion.verify.model import Check, Place, Verification
+from trunnion.machines import Machine, load_machine
+from trunnion.model.columns import Ramps, Steps
+from trunnion.model.run import Run, State
+from trunnion.model.toolpath import Arcs
+from trunnion.readers import run_program
+from trunnion.verification.results import Check, Place, Verification
 
 PLACES = tuple(
     Place(50 + k, 500 + 10 * k, 0.0004 - k * 1e-5, f"the tip is {k} off", "3_blade_finish.cls", 45 + k)

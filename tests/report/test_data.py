@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.report.cases import CHECKS, PLACES, blade, waves, with_columns
-from trunnion.report import data, write_report
-from trunnion.verify.model import Check, Verification
+from trunnion.reporting import data, write_report
+from trunnion.verification.results import Check, Verification
 
 
 def data_of(verification: Verification, folder: Path) -> Any:

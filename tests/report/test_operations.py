@@ -10,8 +10,8 @@ import pytest
 from tests.paths import YL569
 from tests.report.cases import Page, blade
 from trunnion.cli import main
-from trunnion.report import Decided, write_report
-from trunnion.verify import Share
+from trunnion.reporting import Decided, write_report
+from trunnion.verification import Share
 
 DECIDED = [
     Decided("BLADE", "blade.cls", 12, "start", "starts at C 1.000 B 2.000"),

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from tests.report.cases import CHECKS, PLACES, Page, blade, waves, with_columns, with_seconds
-from trunnion.machine.pace import clock
-from trunnion.reader import Steps
-from trunnion.report import write_report
-from trunnion.report.pack import unpack
-from trunnion.report.page import short
-from trunnion.verify.model import Check, Verification
+from trunnion.machines.motion_time import clock
+from trunnion.model.columns import Steps
+from trunnion.reporting import write_report
+from trunnion.reporting.pack import unpack
+from trunnion.reporting.page import short
+from trunnion.verification.results import Check, Verification
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'--><!--&amp;"
 

@@ -5,8 +5,8 @@ from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from tests.report.cases import blade, waves
-from trunnion.report.pack import pack, unpack
-from trunnion.report.series import DIRECT, IN_VIEW, bucket_of, kept, levels, rows_of, series
+from trunnion.reporting.pack import pack, unpack
+from trunnion.reporting.series import DIRECT, IN_VIEW, bucket_of, kept, levels, rows_of, series
 
 SINGLES = st.floats(-1e6, 1e6, width=32)
 

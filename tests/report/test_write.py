@@ -9,7 +9,7 @@ import pytest
 
 from tests.report.cases import blade, waves
 from trunnion.errors import InputError
-from trunnion.report import write, write_report
+from trunnion.reporting import write, write_report
 
 
 @pytest.mark.parametrize("name", ["report.pdf", "report", "report.html.txt"])
@@ -57,7 +57,7 @@ def test_a_million_motions_take_bounded_memory_and_a_file_that_can_be_sent(tmp_p
 
 
 def test_the_plot_library_is_the_one_that_its_note_names() -> None:
-    vendor = files("trunnion.report").joinpath("vendor")
+    vendor = files("trunnion.reporting").joinpath("vendor")
     sums = re.findall(r"`([\w.]+)` \| `([0-9a-f]{64})`", vendor.joinpath("README.md").read_text(encoding="utf-8"))
     assert len(sums) == 2
     for name, wanted in sums:

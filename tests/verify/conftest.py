@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 
 from trunnion.cl import read_cl
-from trunnion.machine import Machine, load_machine
-from trunnion.reader import Run, run_program
-from trunnion.verify import Check, Verification, verify
+from trunnion.machines import Machine, load_machine
+from trunnion.model.run import Run
+from trunnion.readers import run_program
+from trunnion.verification import Check, Verification, verify
 
 Verifier = Callable[..., Verification]
 

@@ -26,11 +26,12 @@ from tests.paths import YL569
 from trunnion.arrays import Flags, Floats
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Severity
-from trunnion.machine import load_machine
-from trunnion.reader import Run, run_program
-from trunnion.reader.sinumerik import words
-from trunnion.toolpath import Kind, Toolpath
-from trunnion.verify import Allowed, Check, Settings, Verification, verify
+from trunnion.machines import load_machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.readers import run_program
+from trunnion.readers.families.sinumerik import words
+from trunnion.verification import Allowed, Check, Settings, Verification, verify
 
 CASES = ("1_contour_rough", "2_hub_rough", "3_blade_finish")
 HALF_DIGIT = {"1_contour_rough": 5e-4, "2_hub_rough": 5e-6, "3_blade_finish": 5e-6}

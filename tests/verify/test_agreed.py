@@ -10,13 +10,13 @@ from tests.plan.test_pole import around_pole
 from tests.verify.conftest import CL_FOOT, CL_HEAD, check
 from trunnion.cl import read_cl
 from trunnion.cli.post import Claim, planned_program, write
-from trunnion.control import load_control
-from trunnion.machine import Machine, load_machine
-from trunnion.plan import Wishes
-from trunnion.plan.motion import Pole
-from trunnion.reader import run_program
-from trunnion.toolpath import Toolpath
-from trunnion.verify import Agreed, Verification, verify
+from trunnion.controls import load_control
+from trunnion.machines import Machine, load_machine
+from trunnion.model.motion import Pole
+from trunnion.model.toolpath import Toolpath
+from trunnion.planning import Wishes
+from trunnion.readers import run_program
+from trunnion.verification import Agreed, Verification, verify
 
 ROWS = 81
 

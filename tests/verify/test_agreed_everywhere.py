@@ -11,15 +11,16 @@ from hypothesis import strategies as st
 from tests.plan.naive import moves_of, operation_of
 from tests.plan.test_pole import MACHINES, around_pole, passes
 from trunnion.cli.post import planned_program, write
-from trunnion.control import load_control
+from trunnion.controls import load_control
 from trunnion.errors import Refused
-from trunnion.machine import Machine
-from trunnion.plan import Pole, Wishes
-from trunnion.plan.arcs import lines_for_arcs, plain_arcs
-from trunnion.plan.departures import source_rows
-from trunnion.reader import run_program
-from trunnion.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Tool, Toolpath
-from trunnion.verify import Verification, verify
+from trunnion.machines import Machine
+from trunnion.model.motion import Pole
+from trunnion.model.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Tool, Toolpath
+from trunnion.planning import Wishes
+from trunnion.planning.linearization.arc_chords import lines_for_arcs, plain_arcs
+from trunnion.planning.pole.deviations import source_rows
+from trunnion.readers import run_program
+from trunnion.verification import Verification, verify
 
 NAMES = ("yl569", "generic_head_table_bc", "generic_head_head_ca", "generic_nutated_b45_c")
 

@@ -15,12 +15,12 @@ from tests.plan.test_without_tcp import machine, post, toolpath
 from trunnion.cl import read_cl
 from trunnion.cli.post import planned_program, write
 from trunnion.cli.settings import wishes_of
-from trunnion.control import load_control
-from trunnion.machine import load_machine
-from trunnion.plan import Wishes
-from trunnion.reader import run_program
-from trunnion.toolpath import Kind
-from trunnion.verify import Check, failures, verify
+from trunnion.controls import load_control
+from trunnion.machines import load_machine
+from trunnion.model.toolpath import Kind
+from trunnion.planning import Wishes
+from trunnion.readers import run_program
+from trunnion.verification import Check, failures, verify
 
 START = HEAD.partition("RAPID")[0]
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.verify.conftest import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier, check
-from trunnion.machine import Machine
-from trunnion.verify import Allowed, Settings
+from trunnion.machines import Machine
+from trunnion.verification import Allowed, Settings
 
 CUT = "G0 X0 Y0 Z50\nG1 X10 Z5 F500\nX20\n"
 CL = CL_HEAD + "GOTO/10,0,5\nGOTO/20,0,5\n" + CL_FOOT

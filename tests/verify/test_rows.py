@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.verify.rows import Rows
+from trunnion.verification.matching.row_ranges import Rows
 
 FLAGS = st.lists(st.booleans(), max_size=40)
 

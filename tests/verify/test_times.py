@@ -12,13 +12,14 @@ from tests.paths import YL569
 from tests.plan.naive import moves_of, operation_of, rapids_at
 from tests.plan.test_pole import around_pole
 from trunnion.cl import read_cl
-from trunnion.machine import Machine, load_machine, slide_positions
-from trunnion.plan import Manner, Motion, Wishes, plan, seconds
-from trunnion.plan.duration import row_times
-from trunnion.plan.speed import wound
-from trunnion.reader import run_program
-from trunnion.toolpath import Dwell, Operation, Toolpath
-from trunnion.verify import Verification, time_lines, verify
+from trunnion.machines import Machine, load_machine, slide_positions
+from trunnion.model.motion import Manner, Motion
+from trunnion.model.toolpath import Dwell, Operation, Toolpath
+from trunnion.planning import Wishes, plan, seconds
+from trunnion.planning.speed.operation_time import row_times
+from trunnion.planning.speed.rotary_speed import wound
+from trunnion.readers import run_program
+from trunnion.verification import Verification, time_lines, verify
 
 BC = load_machine("generic_head_table_bc")
 

@@ -1,4 +1,4 @@
-"""Readers of cutter-location files: an NX CLSF becomes a ``trunnion.toolpath.Toolpath``."""
+"""Readers of cutter-location files: an NX CLSF becomes a ``trunnion.model.toolpath.Toolpath``."""
 
 from trunnion.cl.read import read_cl
 

@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
-from trunnion.cl.draft import Circle, Columns, Draft, Feed, Start, SurfaceSpeed
-from trunnion.cl.findings import MOST, Findings
+from trunnion.cl.builder import Circle, Columns, Draft, Feed, Start, SurfaceSpeed
+from trunnion.cl.diagnostics import MOST, Findings
 from trunnion.cl.scan import settle_axes
-from trunnion.toolpath import Arcs, CycleOn, Event, Frame, From, Kind, Moves, Operation, Phase, SpindleOn, Tool
+from trunnion.model.toolpath import Arcs, CycleOn, Event, Frame, From, Kind, Moves, Operation, Phase, SpindleOn, Tool
 
 #: Start and end of an arc may be so far off its radius, mm: coordinates are printed with three or four decimals.
 RADIUS_TOLERANCE = 0.02

@@ -19,8 +19,8 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Floats, Ints, Lines
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.kernels import njit
-from trunnion.toolpath import Moves, Operation, Tool, Toolpath
+from trunnion.jit import njit
+from trunnion.model.toolpath import Moves, Operation, Tool, Toolpath
 
 #: Bytes read at a time.
 _CHUNK: Final = 4 << 20

@@ -9,10 +9,10 @@ Words are told apart by what they are, never by their place: systems differ in `
 from dataclasses import replace
 
 from trunnion.cl.assemble import CYCLE_LENGTHS
-from trunnion.cl.draft import Draft, Feed, SurfaceSpeed
-from trunnion.cl.findings import Findings, Wrong
+from trunnion.cl.builder import Draft, Feed, SurfaceSpeed
+from trunnion.cl.diagnostics import Findings, Wrong
 from trunnion.cl.statement import Statement, is_whole, numbers
-from trunnion.toolpath import (
+from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
     CutterComp,

@@ -11,12 +11,12 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from trunnion.cl.draft import Circle, Columns, Draft, Start
+from trunnion.cl.builder import Circle, Columns, Draft, Start
+from trunnion.cl.diagnostics import Findings, Wrong
 from trunnion.cl.events import MM_PER_INCH, EventStatements, whole
-from trunnion.cl.findings import Findings, Wrong
 from trunnion.cl.scan import ROW
 from trunnion.cl.statement import Statement, is_whole, numbers, parse
-from trunnion.toolpath import Frame, GoHome, Tool
+from trunnion.model.toolpath import Frame, GoHome, Tool
 
 _LENGTHS = {"MM": 1.0, "INCHES": MM_PER_INCH, "INCH": MM_PER_INCH, "IN": MM_PER_INCH}
 

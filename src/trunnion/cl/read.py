@@ -13,12 +13,12 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.cl.assemble import operation
-from trunnion.cl.draft import Columns
+from trunnion.cl.builder import Columns
+from trunnion.cl.diagnostics import Findings
 from trunnion.cl.encoding import Guess
-from trunnion.cl.findings import Findings
 from trunnion.cl.nx import Interpreter
 from trunnion.cl.scan import ENDLESS, LONGEST, OPEN, SPAN, scan
-from trunnion.toolpath import Toolpath
+from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time.
 CHUNK = 4 << 20

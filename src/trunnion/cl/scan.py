@@ -10,7 +10,7 @@ The kernels check nothing but syntax: what a statement means is the business of 
 import numpy as np
 
 from trunnion.arrays import Bytes, Floats, Ints, Lines
-from trunnion.kernels import ONE, njit, signed, unsigned
+from trunnion.jit import ONE, njit, signed, unsigned
 
 #: A statement longer than this is no CL statement; it bounds the memory that one statement can take.
 LONGEST = 1 << 20

@@ -4,7 +4,7 @@ import re
 from math import isfinite
 from typing import NamedTuple
 
-from trunnion.cl.findings import Wrong
+from trunnion.cl.diagnostics import Wrong
 
 _TEXT = re.compile(
     rb"(?:(TOOL[ \t]*PATH|PPRINT|INSERT|DISPLA?Y|PARTNO|TPRINT)|(STOP|OPSTOP)(?=[ \t]*(?:/|\Z)))[ \t]*(/?)(.*)",

@@ -18,8 +18,8 @@ from trunnion.arrays import Bytes, Floats
 from trunnion.cl.assemble import COLOURS, RADIUS_TOLERANCE, fill_phases
 from trunnion.cl.encoding import Guess
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.kernels import njit
-from trunnion.toolpath import (
+from trunnion.jit import njit
+from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
     CutterComp,

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from trunnion.cli.post import planned_program, prove, running, say, write
 from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
-from trunnion.control import Control, load_control
+from trunnion.controls import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import output
-from trunnion.machine import Machine, load_machine
+from trunnion.machines import Machine, load_machine
 
 if TYPE_CHECKING:
-    from trunnion.convert import Converted
+    from trunnion.conversion import Converted
 
 #: Warnings that are printed one by one.
 _PRINTED = 20
@@ -75,9 +75,9 @@ def _check_settings(settings: Mapping[str, str], control: Control, to_cl: bool) 
 
 def _read(arguments: argparse.Namespace, machine: Machine, control: Control) -> "Converted":
     """The program as a toolpath; refuses one that was not understood."""
-    from trunnion.convert import convert
-    from trunnion.convert.said import COMPENSATION
-    from trunnion.reader import run_program
+    from trunnion.conversion import convert
+    from trunnion.conversion.program_events import COMPENSATION
+    from trunnion.readers import run_program
 
     file = arguments.file
     run = run_program(Path(file), machine, subprograms=[Path(each) for each in arguments.subprograms])
@@ -96,7 +96,7 @@ def _read(arguments: argparse.Namespace, machine: Machine, control: Control) -> 
 
 def _carried(settings: Mapping[str, str], control: Control, target: Control, file: str) -> dict[str, str]:
     """The program's settings that mean the same on the other control; the others are named."""
-    from trunnion.convert import carried_over
+    from trunnion.conversion import carried_over
 
     carried = carried_over(settings, control, target)
     for key in sorted(settings.keys() - carried.keys()):

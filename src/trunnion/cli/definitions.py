@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
-from trunnion.control import load_control
-from trunnion.definition import load_table
+from trunnion.controls import load_control
+from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
-from trunnion.machine import load_machine, shipped
-from trunnion.machine.load import library
+from trunnion.machines import load_machine, shipped
+from trunnion.machines.loading import library
 
 
 def machines(arguments: argparse.Namespace) -> int:

@@ -3,14 +3,14 @@
 import argparse
 from pathlib import Path
 
-from trunnion.machine import load_machine
+from trunnion.machines import load_machine
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compare two programs; 0 if they do the same, 1 if not."""
     from trunnion.cli.verify import rapid_feed
-    from trunnion.reader import reader_of, run_program
-    from trunnion.verify import compare, with_rapids
+    from trunnion.readers import reader_of, run_program
+    from trunnion.verification import compare, with_rapids
 
     first = load_machine(arguments.machine)
     second = load_machine(arguments.to_machine) if arguments.to_machine else first

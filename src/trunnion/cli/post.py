@@ -13,24 +13,31 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from trunnion import reader
-from trunnion.cli.allowances import allowed_of
+from trunnion import readers
+from trunnion.cli.output_tolerances import allowed_of
 from trunnion.cli.progress import progress
 from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
 from trunnion.cli.verify import check_report
 from trunnion.cli.verify import report as write_report
-from trunnion.control import Control, Division, Program, check_program, load_control, write_program
+from trunnion.controls import Control, load_control
 from trunnion.errors import InputError, Problem, Refused, Severity
 from trunnion.files import Growing, Output, output
-from trunnion.kernels import load
-from trunnion.machine import Machine, load_machine
-from trunnion.nc import KERNELS as WRITING
-from trunnion.plan import KERNELS as PLANNING
-from trunnion.plan import Decision, Manner, Wishes, plan
-from trunnion.toolpath import Toolpath
+from trunnion.jit import load
+from trunnion.machines import Machine, load_machine
+from trunnion.model.motion import Decision, Manner
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.output import KERNELS as WRITING
+from trunnion.output.program import Program
+from trunnion.output.program_writer import write_program
+from trunnion.output.subprograms import Division
+from trunnion.output.validation import check_program
+from trunnion.planning import KERNELS as PLANNING
+from trunnion.planning import Wishes, plan
+from trunnion.readers import run_program
 
 if TYPE_CHECKING:
-    from trunnion.verify import Allowed, Settings, Verification
+    from trunnion.verification import Allowed, Settings, Verification
 
 
 def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
@@ -48,7 +55,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     wishes = wishes_of(settings, control, arguments.explain or bool(arguments.report))
     targets = _targets(arguments, control)
     load(*PLANNING, *WRITING)
-    import trunnion.verify  # noqa: F401 - wanted for the proof; while the first CL file is read it takes no time
+    import trunnion.verification  # noqa: F401 - wanted for the proof; while the first CL file is read it takes no time
 
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
@@ -120,7 +127,7 @@ def planned_program(
 
 def _unprovable(machine: Machine, control: Control) -> list[Problem]:
     """Why a program of this machine can be written but not read back; empty where it can."""
-    if reader.can_read(machine):
+    if readers.can_read(machine):
         return []
     what = f"programs for {control.name} cannot be read back yet: nothing proves this one"
     return [Problem(machine.key, 0, what)]
@@ -147,7 +154,7 @@ class Claim:
 @contextmanager
 def running(
     made: Output, machine: Machine, division: Division | None
-) -> "Iterator[tuple[Growing, Future[reader.Run | None]]]":
+) -> "Iterator[tuple[Growing, Future[Run | None]]]":
     """Run a program while it is being written, and get ready for that before: what runs it is imported meanwhile.
 
     Gives who wants to know how far the program is written, and the run, complete when the block has ended; None where
@@ -164,15 +171,15 @@ def running(
             growing.end()
 
 
-def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> reader.Run | None:
-    from trunnion import verify
+def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> Run | None:
+    from trunnion import verification
 
-    if not reader.can_read(machine):
+    if not readers.can_read(machine):
         return None
-    load(*reader.KERNELS, *verify.KERNELS)
+    load(*readers.KERNELS, *verification.KERNELS)
     if division is not None:
         growing.wait()
-    return reader.run_program(made.path, machine, subprograms=made.others, growing=growing)
+    return run_program(made.path, machine, subprograms=made.others, growing=growing)
 
 
 def write(
@@ -205,7 +212,7 @@ def write(
 
 def prove(
     claim: Claim,
-    run: reader.Run | None,
+    run: Run | None,
     paths: Sequence[Toolpath],
     made: Output,
     target: str,
@@ -239,7 +246,7 @@ def prove(
     Refused
         When a check fails and there is no program to write again.
     """
-    from trunnion.verify import check_lines, failures, place_lines, time_lines, verify
+    from trunnion.verification import check_lines, failures, place_lines, time_lines, verify
 
     if run is None:
         what = "it is written by --force, and nothing has been checked" + (": there is no report" if report else "")
@@ -274,7 +281,7 @@ def _too_fast(found: "Verification") -> bool:
 
 def _asked(program: Program, wishes: Wishes) -> "Settings":
     """What the settings of the run say that the CL files do not."""
-    from trunnion.verify import Settings
+    from trunnion.verification import Settings
 
     led = any(motion.manner is Manner.WITHOUT_TCP for motion in program.motions)
     axis = wishes.axis_between if led or math.isfinite(wishes.axis_between) else None

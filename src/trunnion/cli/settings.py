@@ -6,14 +6,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from trunnion.control import Control, Division
-from trunnion.control.check import why_unsaid
-from trunnion.control.definition import UNKNOWN_FEED
-from trunnion.control.subprograms import LEAST_SIZE
+from trunnion.controls import Control
+from trunnion.controls.definition import UNKNOWN_FEED
 from trunnion.errors import InputError, Problem
 from trunnion.files import Output
-from trunnion.machine import Machine
-from trunnion.plan import Clearance, Manner, Pole, Surface, Wishes
+from trunnion.machines import Machine
+from trunnion.model.motion import Manner, Pole
+from trunnion.output.subprograms import LEAST_SIZE, Division
+from trunnion.output.validation import why_unsaid
+from trunnion.planning import Clearance, Surface, Wishes
 
 #: What the setting ``manner`` may say.
 _MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}

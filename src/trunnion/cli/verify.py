@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.control import load_control
+from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
-from trunnion.machine import Machine, load_machine
-from trunnion.plan import Decision
+from trunnion.machines import Machine, load_machine
+from trunnion.model.motion import Decision
 
 if TYPE_CHECKING:
-    from trunnion.verify import Verification
+    from trunnion.verification import Verification
 
 #: What a report's name may end in.
 _REPORTS = (".html", ".json")
@@ -21,8 +21,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
     from trunnion.cli.settings import set_up
-    from trunnion.reader import reader_of, run_program
-    from trunnion.verify import Allowed, Settings, check_lines, place_lines, time_lines, verify
+    from trunnion.readers import reader_of, run_program
+    from trunnion.verification import Allowed, Settings, check_lines, place_lines, time_lines, verify
 
     if arguments.report:
         check_report(arguments.report)
@@ -66,7 +66,7 @@ def check_report(file: str) -> None:
 
 def report(found: "Verification", file: str, decisions: Sequence[Decision] = ()) -> None:
     """Write the report of a verification, with what the planner decided."""
-    from trunnion.report import Decided, write_report
+    from trunnion.reporting import Decided, write_report
 
     write_report(found, Path(file), decisions=[Decided(d.operation, d.file, d.line, d.why, d.text) for d in decisions])
 

@@ -6,8 +6,9 @@ import pytest
 
 from tests.machines import at_zero
 from tests.reader.conftest import Runner
-from trunnion.machine import Machine
-from trunnion.reader import Run, run_program
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.readers import run_program
 
 
 @pytest.fixture(scope="session")

@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 
 from tests.reader.conftest import Runner, close
 from trunnion.errors import Severity
-from trunnion.reader import Run
-from trunnion.reader.drilling import CycleError
-from trunnion.reader.heidenhain.cycles import infeeds
-from trunnion.toolpath import Kind
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.readers.common.drilling import CycleError
+from trunnion.readers.families.heidenhain.cycles import infeeds
 
 BEFORE = "TOOL CALL 1 Z S1000\nL X+3 Y+4 Z+100 R0 FMAX M3\n"
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.reader import families
-from trunnion.reader.heidenhain import cycles, functions, interpreter, parameters, words
+from trunnion.families import FAMILIES
+from trunnion.readers.families.heidenhain import cycles, functions, interpreter, parameters, words
 
 DOCS = Path(__file__).parents[3] / "docs"
 PAGE = (DOCS / "reader-klartext.md").read_text(encoding="utf-8")
@@ -53,4 +53,4 @@ def test_limits_are_those_of_the_page() -> None:
 
 
 def test_every_family_is_in_the_page_about_readers() -> None:
-    assert all(f"`{name}`" in READER for name in families.READERS)
+    assert all(f"`{name}`" in READER for name in FAMILIES)

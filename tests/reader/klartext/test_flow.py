@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from tests.reader.conftest import Runner
 from trunnion.errors import InputError
-from trunnion.machine import load_machine
-from trunnion.reader import Run, run_program
-from trunnion.reader.heidenhain.parameters import KlartextError, Parameters, formula
+from trunnion.machines import load_machine
+from trunnion.model.run import Run
+from trunnion.readers import run_program
+from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, formula
 
 
 def xs(run: Run) -> list[float]:

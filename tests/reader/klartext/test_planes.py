@@ -13,8 +13,9 @@ from tests.reader.conftest import Runner, close, slides
 from tests.reader.klartext.naive import matrix
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
-from trunnion.machine import load_machine
-from trunnion.reader import Run, run_program
+from trunnion.machines import load_machine
+from trunnion.model.run import Run
+from trunnion.readers import run_program
 
 DMU65 = load_machine("dmu65")
 GOLDEN = Path(__file__).parents[2] / "golden" / "dmu65"

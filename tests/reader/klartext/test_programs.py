@@ -12,9 +12,10 @@ from tests.machines import at_zero
 from tests.reader import naive as angles
 from tests.reader.conftest import close
 from tests.reader.klartext import naive
-from trunnion.reader import Run, run_program
-from trunnion.reader.heidenhain.interpreter import HeidenhainInterpreter
-from trunnion.toolpath import Kind
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.readers import run_program
+from trunnion.readers.families.heidenhain.interpreter import HeidenhainInterpreter
 
 DMU65 = at_zero("dmu65")
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tests.reader.conftest import close
-from trunnion.machine import load_machine
-from trunnion.reader import run_program
+from trunnion.machines import load_machine
+from trunnion.readers import run_program
 
 FOLDER = Path(__file__).parents[4] / "shared" / "data" / "heidenhain"
 

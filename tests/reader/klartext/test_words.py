@@ -8,8 +8,8 @@ import pytest
 from tests.machines import at_zero
 from tests.reader.conftest import Runner, close, slides
 from trunnion.errors import Severity
-from trunnion.reader import Orientation, Written
-from trunnion.toolpath import Kind
+from trunnion.model.run import Orientation, Written
+from trunnion.model.toolpath import Kind
 
 # Form
 

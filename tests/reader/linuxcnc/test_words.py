@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.reader.conftest import Runner, close
-from trunnion.toolpath import Kind
+from trunnion.model.toolpath import Kind
 
 
 def test_form(run: Runner) -> None:

@@ -1,0 +1,44 @@
+"""Reading CL files for a command, with a progress bar."""
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from pathlib import Path
+from threading import Event
+
+from trunnion.cl import read_cl
+from trunnion.cli.progress import progress
+from trunnion.model.toolpath import Toolpath
+
+
+def toolpaths(files: Sequence[str], units: str | None, strict: bool, aside: Executor) -> Iterator[Toolpath]:
+    """Toolpaths of CL files, one after the other; units and ``strict`` as ``trunnion.cl.read_cl`` has them.
+
+    The first one is read from now on, ``aside``, and the others when they are asked for: none is kept. Comes back when
+    reading needs the interpreter no longer, or is done: who imports meanwhile would only be in its way.
+    """
+    under_way = Event()
+    begun = [aside.submit(_read, files[0], units, strict, under_way)]
+    begun[0].add_done_callback(lambda _: under_way.set())
+    under_way.wait()
+
+    def one_by_one() -> Iterator[Toolpath]:
+        yield begun.pop().result()
+        for file in files[1:]:
+            yield _read(file, units, strict, Event())
+
+    return one_by_one()
+
+
+def _read(file: str, units: str | None, strict: bool, under_way: Event) -> Toolpath:
+    path = Path(file)
+    size = path.stat().st_size if path.is_file() else 0
+    with progress(path.name, size, "B") as advance:
+        done = 0
+
+        def so_far(read: int) -> None:
+            nonlocal done
+            advance(read - done)
+            done = read
+            under_way.set()
+
+        return read_cl(path, units=units, strict=strict, progress=so_far)

@@ -1,0 +1,19 @@
+"""``trunnion post``, begun before all of it is imported: the first CL file is read meanwhile, beside it.
+
+What reads CL files is imported first, which is half of all. The kernel that goes over the file needs no interpreter, so
+that importing the other half takes no time of its own.
+"""
+
+import argparse
+from concurrent.futures import ThreadPoolExecutor
+
+from trunnion.cli.cl_files import toolpaths
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Post every CL file."""
+    with ThreadPoolExecutor(1) as aside:
+        coming = toolpaths(arguments.files, dict(arguments.settings).get("units"), arguments.strict, aside)
+        from trunnion.cli.post import post
+
+        return post(arguments, coming)

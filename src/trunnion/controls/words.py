@@ -1,0 +1,158 @@
+"""Number formats and words.
+
+A number is rounded once, to a whole count of its last printed digit, and from there on it is an integer: what is
+compared for modality is what is printed, and -0.0004 with three decimals is simply 0.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.jit import njit
+
+#: The count that stands for "this word is not in this block".
+ABSENT = np.iinfo(np.int64).min
+
+#: Beyond this count doubles no longer hold every last digit.
+LARGEST_COUNT = 2**53
+
+
+@dataclass(frozen=True, slots=True)
+class NumberFormat:
+    """How a number is printed.
+
+    decimals        digits after the point; the number is rounded to them, half to even on the exact binary value
+    point           whether a decimal point is printed (``20.``); without decimals there is none
+    leading_zero    ``0.5`` rather than ``.5``
+    trailing_zeros  ``20.000`` rather than ``20.``
+    plus            ``+20.`` rather than ``20.``
+    zero            what stands for zero, such as ``0.0``; empty: as the other rules have it
+    least, greatest limits of the value; beyond them the word is refused
+    """
+
+    decimals: int
+    point: bool = True
+    leading_zero: bool = False
+    trailing_zeros: bool = False
+    plus: bool = False
+    zero: str = ""
+    least: float = -99999999.0
+    greatest: float = 99999999.0
+
+    def text(self, value: float) -> str:
+        """``value`` as it is printed."""
+        return self.of_count(int(counts(np.array([value]), self.decimals)[0]))
+
+    def of_count(self, count: int) -> str:
+        """The printed form of a whole count of last digits. The slow twin of the block kernel's digits."""
+        if count == 0 and self.zero:
+            return self.zero
+        sign = "-" if count < 0 else "+" if self.plus else ""
+        whole, rest = divmod(abs(count), 10**self.decimals)
+        decimals = str(rest).rjust(self.decimals, "0") if self.decimals else ""
+        if not self.trailing_zeros:
+            decimals = decimals.rstrip("0")
+        point = "." if self.decimals and (self.point or decimals) else ""
+        integer = "" if whole == 0 and decimals and not self.leading_zero else str(whole)
+        return f"{sign}{integer}{point}{decimals}"
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """An address and its number: ``key`` names it in definitions, ``letter`` is what is printed before the number.
+
+    A modal word is left out of a block when it would print as it last did. ``closing`` is what stands behind the
+    number, one character or none. A bare word is letters without a number, such as ``FMAX``: it stands wherever its
+    column has any count, is never modal, and makes no block by itself.
+    """
+
+    key: str
+    letter: str
+    format: NumberFormat
+    modal: bool = True
+    closing: str = ""
+    bare: bool = False
+
+    def text(self, value: float) -> str:
+        """The whole word, such as ``X-.31289``."""
+        return self.letter if self.bare else self.letter + self.format.text(value) + self.closing
+
+
+@njit(cache=True, nogil=True)
+def count_column(value: Floats, scale: float, out: Ints) -> None:
+    """Round ``value * scale`` to whole numbers as if the product were exact.
+
+    The product of two doubles is hi + lo with lo no more than half a last place of hi, so hi alone decides unless its
+    fraction is exactly one half; then the sign of lo does (Dekker, A floating-point technique for extending the
+    available precision, 1971). NaN becomes ABSENT.
+    """
+    splitter = 134217729.0  # 2**27 + 1
+    scale_high = splitter * scale - (splitter * scale - scale)
+    scale_low = scale - scale_high
+    for row in range(value.shape[0]):
+        v = value[row]
+        if np.isnan(v):
+            out[row] = ABSENT
+            continue
+        product = v * scale
+        floor = np.floor(product)
+        fraction = product - floor
+        count = np.int64(floor)
+        if fraction > 0.5:
+            count += 1
+        elif fraction == 0.5:
+            v_high = splitter * v - (splitter * v - v)
+            v_low = v - v_high
+            low = ((v_high * scale_high - product) + v_high * scale_low + v_low * scale_high) + v_low * scale_low
+            if low > 0.0 or (low == 0.0 and count % 2 != 0):
+                count += 1
+        out[row] = count
+
+
+def counts(value: Floats, decimals: int, out: Ints | None = None) -> Ints:
+    """Values as whole counts of the last printed digit, rounded as ``f"{value:.{decimals}f}"`` rounds.
+
+    Parameters
+    ----------
+    value : (n,) float64
+        NaN stands for an absent word.
+    decimals
+        Digits after the point, at most 9.
+    out : (n,) int64, optional
+        Where to put the counts.
+
+    Returns
+    -------
+    (n,) int64
+        ``ABSENT`` where ``value`` is NaN.
+
+    Raises
+    ------
+    OverflowError
+        When a count would not fit the digits of a double.
+    """
+    if out is None:
+        out = np.empty(len(value), np.int64)
+    scale = float(10**decimals)
+    if len(value):
+        widest = max(abs(float(np.fmax.reduce(value))), abs(float(np.fmin.reduce(value))))
+        if widest * scale > LARGEST_COUNT:  # False for NaN: a column without a number
+            raise OverflowError(f"{widest:g} with {decimals} decimals has more digits than a control can read")
+    count_column(value, scale, out)
+    return out
+
+
+@dataclass(frozen=True, slots=True)
+class BlockNumbers:
+    """Block numbers: letter (may be empty), first number, step, the highest before they start again; or none.
+
+    Lines of text that begin with one of the characters ``unnumbered`` have neither a number nor a skip sign.
+    """
+
+    letter: str = "N"
+    start: int = 10
+    step: int = 10
+    highest: int = 99999999
+    numbered: bool = True
+    unnumbered: str = ""

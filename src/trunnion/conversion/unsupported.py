@@ -1,0 +1,176 @@
+"""What a program says about the machine and a toolpath has no place for: each becomes a remark."""
+
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+
+import numpy as np
+
+from trunnion.arrays import Ints
+from trunnion.conversion.program_text import Source
+from trunnion.errors import Problem, Severity
+from trunnion.model.run import Orientation, Run, Written
+from trunnion.model.toolpath import Kind, Moves
+from trunnion.planning.poses.selection import follow
+from trunnion.readers.families.fanuc import words as fanuc
+from trunnion.readers.families.fidia import words as fidia
+from trunnion.readers.families.heidenhain import words as heidenhain
+from trunnion.readers.families.linuxcnc import words as linuxcnc
+from trunnion.readers.families.sinumerik import words as sinumerik
+
+#: Remarks of one kind that are made one by one.
+_NAMED = 5
+
+#: Words that every operation's head says, or that are said by other means.
+_SAID_ANYHOW = frozenset({"G40", "G60", "G601", "FNORM", "COMPOF", "EXTERN", "G49", "G80", "G90", "G94", "G8", "G97"})
+_SURFACE_SPEED = frozenset({"G96", "G961", "G962"})
+_TOOL_LENGTHS = frozenset({"G43", "G43.1", "G43.2", "G44"})
+_CANCELS = frozenset({"G15", "G50", "G50.1", "G13.1", "G22", "G23", "G91.1", "G90.1"})
+
+
+def _codes(tenths: Iterable[int]) -> frozenset[str]:
+    return frozenset(f"G{code / 10:g}" for code in tenths)
+
+
+#: Words of each family that drive the machine and have no effect on the path.
+_DRIVES: Mapping[str, frozenset[str]] = {
+    "sinumerik_840d": frozenset(
+        {*sinumerik.SILENT, *sinumerik.SILENT_VALUES, *sinumerik.SILENT_CALLS}
+        | {f"G{code}" for code in sinumerik.G_SILENT}
+    ),
+    "linuxcnc": _codes(linuxcnc.SILENT) | {f"M{code}" for code in linuxcnc.SILENT_M},
+    "fanuc_30i": _codes(fanuc.SILENT),
+    "fidia_nc15": _codes(fidia.SILENT),
+    "heidenhain_itnc530": frozenset(f"M{code}" for code in heidenhain.M_SILENT),
+    "heidenhain_tnc640": frozenset(f"M{code}" for code in heidenhain.M_SILENT),
+}
+
+#: Rotary axes stand where they stood within this, degrees; programs have at most five decimals.
+_SAME_ANGLE = 1e-4
+_SAME_POSITION = 1e-3
+
+#: G05.1 is G5.1.
+_ZEROS = re.compile(r"^([GM])0+(?=\d)")
+
+
+class Remarks:
+    """Takes what does not survive the way back, each with its line; file as in ``Run.file``."""
+
+    def __init__(self, files: Sequence[str]) -> None:
+        self._files = files
+        self._found: list[Problem] = []
+
+    def __call__(self, line: int, what: str, cure: str = "", file: int = 0) -> None:
+        """Take one."""
+        self._found.append(Problem(self._files[file], line, what, cure, Severity.WARNING))
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """All of them."""
+        return tuple(self._found)
+
+
+def remark_words(sources: Sequence[Source], family: str, known: Collection[int], remark: Remarks) -> None:
+    """Say which words only drive the machine.
+
+    Parameters
+    ----------
+    sources
+        The program, and its subprograms.
+    family
+        Of the control, whose words they are.
+    known
+        Lines of the program that are lines of templates.
+    """
+    told = 0
+    lost_words = (_DRIVES[family] | _SURFACE_SPEED) - _SAID_ANYHOW - _TOOL_LENGTHS - _CANCELS
+    said = ((file, *line) for file, source in enumerate(sources) for line in source.words())
+    for file, line, words in said:
+        lost = [word for word in words if _ZEROS.sub(r"\1", word) in lost_words]
+        if not lost or (file == 0 and line in known):
+            continue
+        told += 1
+        if told <= _NAMED:
+            what = f"{' '.join(lost)} is not carried over"
+            speed = _SURFACE_SPEED.intersection(lost)
+            remark(line, what, "S is taken as rev/min" if speed else "say it in a template of the control", file)
+    if told > _NAMED:
+        remark(0, f"and {told - _NAMED} more lines with words that are not carried over")
+
+
+def remark_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], remark: Remarks) -> None:
+    """Say where the rotary axes stand otherwise than posting from the tool axis alone will place them.
+
+    operations   the rows (n,) of each operation, and what became of them
+    """
+    machine = run.machine
+    whole = np.array([np.isfinite(machine.axes[column].display_low) for column in machine.rotary])
+    for rows, moves in operations:
+        expected = follow(machine, moves, keep_slides=machine.workpiece_zero is not None).rotary
+        off = run.joints[rows][:, list(machine.rotary)] - expected
+        off = np.where(whole, (off + 180.0) % 360.0 - 180.0, off)
+        places, columns = np.nonzero(np.abs(off) > _SAME_ANGLE)
+        if len(places):
+            name = machine.axes[machine.rotary[int(columns[0])]].name
+            many = len(np.unique(places))
+            what = f"{many} points place the rotary axes otherwise than their tool axis says, the first by {name}"
+            _at(run, rows[places], what, "only the tool axis is carried over", remark)
+
+
+def remark_ways(run: Run, operations: Iterable[Ints], by_vectors: bool, remark: Remarks) -> None:
+    """Say where the tool turns between two points in another way than a program of ours lets it turn.
+
+    operations   the rows (n,) of each operation
+    by_vectors   orientations will be said by vectors: these turn the tool on great circles
+    """
+    for rows in operations:
+        turned = np.abs(np.diff(run.axis[rows], axis=0, prepend=run.axis[rows[:1]])).max(axis=1) > 1e-9
+        turned &= run.kind[rows] != Kind.RAPID
+        circle = turned & run.tcp[rows] & (run.orientation[rows] == Orientation.GREAT_CIRCLE)
+        circle &= not by_vectors
+        free = turned & ~run.tcp[rows]
+        for there, what in ((circle, "turn the tool on a great circle"), (free, "turn the tool without TCP")):
+            places = np.flatnonzero(there)
+            if len(places):
+                cure = "between points it goes as the control's templates say"
+                _at(run, rows[places], f"{len(places)} points {what}, which is not carried over", cure, remark)
+
+
+def remark_registers(run: Run, operations: Iterable[Ints], offset: str, remark: Remarks) -> None:
+    """Say where work offset or edge change on the way; an edge that comes on after the first motions does not.
+
+    operations   the rows (n,) of each operation
+    offset       what stands before the number of a work offset
+    """
+    for rows in operations:
+        said = rows[np.argmax(run.edge[rows] >= 0) :]
+        for column, letter, there in ((run.offset, offset, rows), (run.edge, "D", said)):
+            others = there[column[there] != column[there[0]]]
+            if len(others):
+                what = f"{letter}{column[others[0]]} within an operation is not carried over"
+                _at(run, others, what, f"{letter}{column[there[0]]} holds for all of it", remark)
+
+
+def remark_homes(run: Run, remark: Remarks) -> None:
+    """Say which slides park elsewhere than at their home; one that is drawn back to its end is not parked."""
+    names = run.machine.names
+    drawn_back = [event.before_row for event in run.events if event.kind == "retract"]
+    for word in (word for word in (Written.X, Written.Y, Written.Z) if word.name in names):
+        axis = run.machine.axes[names.index(str(word.name))]
+        placed = np.setdiff1d(np.flatnonzero(run.machine_frame & ((run.programmed & word) != 0)), drawn_back)
+        places = run.joints[placed, names.index(axis.name)]
+        away = np.flatnonzero(np.abs(places - axis.home) > _SAME_POSITION)
+        if len(away):
+            what = f"{axis.name} goes to the machine position {places[away[0]]:g}, which is not carried over"
+            _at(run, placed[away], what, "the control's templates say where to park", remark)
+
+
+def remark_normals(run: Run, remark: Remarks) -> None:
+    """Say that normals of surfaces stay behind."""
+    if len(run.normals):
+        what = f"{len(run.normals)} blocks say the surface's normal, which is not carried over"
+        _at(run, run.normals.row, what, "a CL file has contact points of the CAM in its place", remark)
+
+
+def _at(run: Run, rows: Ints, what: str, cure: str, remark: Remarks) -> None:
+    """A remark about rows, at the first of them."""
+    remark(int(run.block[rows[0]]), what, cure, int(run.file[rows[0]]))

@@ -1,0 +1,440 @@
+"""A table of a definition, with a typed getter for each kind of value, and account of the keys that were asked for."""
+
+import difflib
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final, overload
+
+from trunnion.definitions.source_lines import Entry
+from trunnion.errors import InputError, Problem
+
+#: The end of a key says its unit; the longest one that fits counts.
+UNITS: Final[Mapping[str, str]] = {
+    "_mm_min": "millimetres per minute",
+    "_deg_min": "degrees per minute",
+    "_mm_s2": "millimetres per second squared",
+    "_deg_s2": "degrees per second squared",
+    "_mm_s": "millimetres per second",
+    "_deg_s": "degrees per second",
+    "_mm": "millimetres",
+    "_deg": "degrees",
+    "_s": "seconds",
+    "_rpm": "revolutions per minute",
+    "_kw": "kilowatts",
+    "_nm": "newton metres",
+    "_kg": "kilograms",
+}
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
+
+
+class Required:
+    """The type of ``REQUIRED``: there is no default, a missing key is a mistake."""
+
+
+REQUIRED: Final = Required()
+
+
+def unit_of(key: str) -> str:
+    """Unit that the end of a key names, in words; empty if it names none.
+
+    >>> unit_of("rapid_deg_min")
+    'degrees per minute'
+    """
+    return next((unit for end, unit in UNITS.items() if key.endswith(end)), "")
+
+
+def _stem(key: str) -> str:
+    return next((key.removesuffix(end) for end in UNITS if key.endswith(end)), key)
+
+
+def shown(value: object) -> str:
+    """Show a value as it could stand in the file, cut short."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        text = '"' + value + '"'
+    elif isinstance(value, dict):
+        return "a table"
+    elif isinstance(value, list):
+        text = "an array of tables" if value and isinstance(value[0], Entry) else str(value).replace("'", '"')
+    else:
+        text = str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def meant(word: str, known: Iterator[str] | Sequence[str]) -> str:
+    """Ask whether the known word next to an unknown one was meant; empty where none is near."""
+    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    return f'did you mean "{near[0]}"?' if near else ""
+
+
+@dataclass(eq=False)
+class Table:
+    """A TOML table that keeps account of the keys that were asked for.
+
+    A getter that finds a mistake adds a ``Problem`` to the shared list and returns the default, or an empty value of
+    its type, so that reading goes on to the next mistake. ``check`` raises them all.
+    """
+
+    entry: Entry
+    path: str = ""
+    problems: list[Problem] = field(default_factory=list)
+    asked: dict[str, None] = field(default_factory=dict)
+    below: list["Table"] = field(default_factory=list)
+
+    # Where things stand
+
+    @property
+    def file(self) -> str:
+        """File of the table, or of its last change."""
+        return self.entry.file
+
+    @property
+    def line(self) -> int:
+        """Line of the table's header in ``file``."""
+        return self.entry.line
+
+    def origin(self, key: str) -> tuple[str, int]:
+        """File and line of a key; those of the table if the key is not there."""
+        entry = self._cells.get(key, self.entry)
+        return entry.file, entry.line
+
+    def dotted(self, key: str) -> str:
+        """Path of a key from the root of the definition, such as ``axis[1].limits_deg``."""
+        return f"{self.path}.{key}" if self.path else key
+
+    def keys(self) -> list[str]:
+        """Every key of the table, in order, read or not."""
+        return list(self._cells)
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._cells
+
+    def raw(self) -> dict[str, object]:
+        """Everything the table holds, as plain dicts, lists and scalars. Counts as reading nothing."""
+        plain = _plain(self.entry)
+        assert isinstance(plain, dict)
+        return plain
+
+    def fresh(self) -> "Table":
+        """The same table with nothing read yet and no problems noted."""
+        return Table(self.entry, self.path)
+
+    def files(self) -> list[str]:
+        """Every file that a value of this table came from, sorted."""
+        return sorted(set(_files(self.entry)))
+
+    @property
+    def _cells(self) -> dict[str, Entry]:
+        return self.entry.value if isinstance(self.entry.value, dict) else {}
+
+    # Problems
+
+    def problem(self, key: str, what: str, cure: str = "") -> None:
+        """Note that the value of a key will not do; an empty key means the table itself."""
+        file, line = self.origin(key)
+        name = self.dotted(key) if key else self.path or "definition"
+        self.problems.append(Problem(file, line, f"{name} {what}", cure))
+
+    def check(self) -> None:
+        """Raise every problem noted so far, in the order of files and lines, if there is one."""
+        if self.problems:
+            unique = dict.fromkeys(self.problems)
+            raise InputError(sorted(unique, key=lambda problem: (problem.file, problem.line)))
+
+    def finish(self) -> None:
+        """Note each key that nobody asked for; call it when the table has been read."""
+        for key in self._cells:
+            if key in self.asked:
+                continue
+            kin = next((known for known in self.asked if _stem(known) == _stem(key) and unit_of(known)), "")
+            if kin and unit_of(key) != unit_of(kin):
+                self.problem(key, "has a unit that does not fit here", f"write {kin}, in {unit_of(kin)}")
+            else:
+                cure = meant(key, list(self.asked)) or "known here: " + ", ".join(sorted(self.asked))
+                self.problem(key, "is not a key that is known here", cure)
+
+    def skip(self, *keys: str) -> None:
+        """Count keys as read without looking at them."""
+        self.asked.update(dict.fromkeys(keys))
+
+    def every_key(self) -> set[str]:
+        """Every key that was asked for here and below, with indices left out: ``axis.limits_deg``."""
+        found = {re.sub(r"\[\d+\]", "", self.dotted(key)) for key in self.asked}
+        return found.union(*(table.every_key() for table in self.below))
+
+    # Getters
+
+    def _get(self, key: str, required: bool, cure: str) -> object | None:
+        self.asked[key] = None
+        entry = self._cells.get(key)
+        if entry is None:
+            if required:
+                self.problem(key, "is missing", cure)
+            return None
+        return entry.value
+
+    @overload
+    def text(self, key: str, default: Required = ..., *, one_of: Sequence[str] = ...) -> str: ...
+    @overload
+    def text(self, key: str, default: str, *, one_of: Sequence[str] = ...) -> str: ...
+    @overload
+    def text(self, key: str, default: None, *, one_of: Sequence[str] = ...) -> str | None: ...
+    def text(self, key: str, default: str | Required | None = REQUIRED, *, one_of: Sequence[str] = ()) -> str | None:
+        """Return a text; with ``one_of``, one of these words."""
+        spare = "" if isinstance(default, Required) else default
+        words = ", ".join(f'"{word}"' for word in one_of)
+        cure = f"write one of {words}" if one_of else "write a text in quotes"
+        value = self._get(key, isinstance(default, Required), cure)
+        if value is None:
+            return spare
+        if not isinstance(value, str) or (one_of and value not in one_of):
+            near = meant(value, list(one_of)) if isinstance(value, str) else ""
+            self.problem(key, f"is {shown(value)}", near + " " + cure if near else cure)
+            return spare
+        return value
+
+    @overload
+    def number(
+        self,
+        key: str,
+        default: Required = ...,
+        *,
+        above: float | None = ...,
+        at_least: float | None = ...,
+        at_most: float | None = ...,
+    ) -> float: ...
+    @overload
+    def number(
+        self,
+        key: str,
+        default: float,
+        *,
+        above: float | None = ...,
+        at_least: float | None = ...,
+        at_most: float | None = ...,
+    ) -> float: ...
+    @overload
+    def number(
+        self,
+        key: str,
+        default: None,
+        *,
+        above: float | None = ...,
+        at_least: float | None = ...,
+        at_most: float | None = ...,
+    ) -> float | None: ...
+    def number(
+        self,
+        key: str,
+        default: float | Required | None = REQUIRED,
+        *,
+        above: float | None = None,
+        at_least: float | None = None,
+        at_most: float | None = None,
+    ) -> float | None:
+        """Return a finite number, in the unit that the key names."""
+        spare = 0.0 if isinstance(default, Required) else default
+        cure = f"write {_a_number(key)}{_bounds(above, at_least, at_most)}"
+        value = self._get(key, isinstance(default, Required), cure)
+        if value is None:
+            return spare
+        number = _finite(value)
+        if number is None:
+            self.problem(key, f"is {shown(value)}", cure + _hint(key, value))
+            return spare
+        if not _within(number, above, at_least, at_most):
+            self.problem(key, f"is {shown(value)}", cure)
+            return spare
+        return number
+
+    @overload
+    def integer(
+        self, key: str, default: Required = ..., *, at_least: int | None = ..., at_most: int | None = ...
+    ) -> int: ...
+    @overload
+    def integer(self, key: str, default: int, *, at_least: int | None = ..., at_most: int | None = ...) -> int: ...
+    @overload
+    def integer(
+        self, key: str, default: None, *, at_least: int | None = ..., at_most: int | None = ...
+    ) -> int | None: ...
+    def integer(
+        self,
+        key: str,
+        default: int | Required | None = REQUIRED,
+        *,
+        at_least: int | None = None,
+        at_most: int | None = None,
+    ) -> int | None:
+        """Return a whole number."""
+        spare = 0 if isinstance(default, Required) else default
+        cure = f"write a whole number{_bounds(None, at_least, at_most)}"
+        value = self._get(key, isinstance(default, Required), cure)
+        if value is None:
+            return spare
+        if not isinstance(value, int) or isinstance(value, bool) or not _within(value, None, at_least, at_most):
+            self.problem(key, f"is {shown(value)}", cure)
+            return spare
+        return value
+
+    @overload
+    def flag(self, key: str, default: bool | Required = ...) -> bool: ...
+    @overload
+    def flag(self, key: str, default: None) -> bool | None: ...
+    def flag(self, key: str, default: bool | Required | None = REQUIRED) -> bool | None:
+        """Return true or false."""
+        spare = False if isinstance(default, Required) else default
+        value = self._get(key, isinstance(default, Required), "write true or false")
+        if value is None:
+            return spare
+        if not isinstance(value, bool):
+            self.problem(key, f"is {shown(value)}", "write true or false, without quotes")
+            return spare
+        return value
+
+    @overload
+    def vector(self, key: str, n: int, default: Sequence[float] | Required = ...) -> tuple[float, ...]: ...
+    @overload
+    def vector(self, key: str, n: int, default: None) -> tuple[float, ...] | None: ...
+    def vector(
+        self, key: str, n: int, default: Sequence[float] | Required | None = REQUIRED
+    ) -> tuple[float, ...] | None:
+        """Return n finite numbers, in the unit that the key names."""
+        spare = (0.0,) * n if isinstance(default, Required) else None if default is None else tuple(default)
+        unit = f" in {unit_of(key)}" if unit_of(key) else ""
+        cure = f"write [{', '.join('abcdefgh'[:n])}] with {n} numbers{unit}"
+        value = self._get(key, isinstance(default, Required), cure)
+        if value is None:
+            return spare
+        numbers = [_finite(item) for item in value] if isinstance(value, list) else []
+        good = [number for number in numbers if number is not None]
+        if len(numbers) != n or len(good) != n:
+            self.problem(key, f"is {shown(value)}", cure)
+            return spare
+        return tuple(good)
+
+    @overload
+    def interval(self, key: str, default: tuple[float, float] | Required = ...) -> tuple[float, float]: ...
+    @overload
+    def interval(self, key: str, default: None) -> tuple[float, float] | None: ...
+    def interval(
+        self, key: str, default: tuple[float, float] | Required | None = REQUIRED
+    ) -> tuple[float, float] | None:
+        """Return [low, high] with low < high, in the unit that the key names."""
+        spare = (-math.inf, math.inf) if isinstance(default, Required) else default
+        unit = f", in {unit_of(key)}" if unit_of(key) else ""
+        cure = f"write [low, high] with low < high{unit}"
+        value = self._get(key, isinstance(default, Required), cure)
+        if value is None:
+            return spare
+        numbers = [_finite(item) for item in value] if isinstance(value, list) else []
+        if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
+            self.problem(key, f"is {shown(value)}", cure)
+            return spare
+        if numbers[0] >= numbers[1]:
+            swapped = f": [{numbers[1]:g}, {numbers[0]:g}]?" if numbers[0] > numbers[1] else ""
+            self.problem(key, f"is {shown(value)}", cure + swapped)
+            return spare
+        return numbers[0], numbers[1]
+
+    @overload
+    def texts(self, key: str, default: Sequence[str] | Required = ...) -> tuple[str, ...]: ...
+    @overload
+    def texts(self, key: str, default: None) -> tuple[str, ...] | None: ...
+    def texts(self, key: str, default: Sequence[str] | Required | None = REQUIRED) -> tuple[str, ...] | None:
+        """Return a list of texts."""
+        spare = () if isinstance(default, Required) else None if default is None else tuple(default)
+        cure = 'write ["one", "two"]'
+        value = self._get(key, isinstance(default, Required), cure)
+        if value is None:
+            return spare
+        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+            self.problem(key, f"is {shown(value)}", cure)
+            return spare
+        return tuple(str(item) for item in value)
+
+    def table(self, key: str, *, required: bool = False) -> "Table":
+        """Return the table under a key; an empty one if there is none."""
+        value = self._get(key, required, f"write a table [{self.dotted(key)}]")
+        if isinstance(value, dict):
+            child = Table(self._cells[key], self.dotted(key), self.problems)
+        else:
+            if value is not None:
+                self.problem(key, f"is {shown(value)}", f"write a table [{self.dotted(key)}]")
+            child = Table(Entry({}, self.file, self.line), self.dotted(key), self.problems)
+        self.below.append(child)
+        return child
+
+    def tables(self, key: str, *, required: bool = False) -> "list[Table]":
+        """Return the array of tables under a key; an empty list if there is none."""
+        value = self._get(key, required, f"write tables [[{self.dotted(key)}]]")
+        if value is None or value == []:
+            return []
+        if not isinstance(value, list) or not isinstance(value[0], Entry):
+            self.problem(key, f"is {shown(value)}", f"write tables [[{self.dotted(key)}]]")
+            return []
+        children = [Table(item, f"{self.dotted(key)}[{i}]", self.problems) for i, item in enumerate(value)]
+        self.below.extend(children)
+        return children
+
+
+def _plain(entry: Entry) -> object:
+    if isinstance(entry.value, dict):
+        return {key: _plain(item) for key, item in entry.value.items()}
+    if isinstance(entry.value, list):
+        return [_plain(item) if isinstance(item, Entry) else item for item in entry.value]
+    return entry.value
+
+
+def _files(entry: Entry) -> Iterator[str]:
+    yield entry.file
+    if isinstance(entry.value, dict):
+        for item in entry.value.values():
+            yield from _files(item)
+    elif isinstance(entry.value, list):
+        for item in entry.value:
+            if isinstance(item, Entry):
+                yield from _files(item)
+
+
+def _finite(value: object) -> float | None:
+    """Return the number that a TOML value is, or None; true and false are no numbers here."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
+
+
+def _within(number: float, above: float | None, at_least: float | None, at_most: float | None) -> bool:
+    return (
+        (above is None or number > above)
+        and (at_least is None or number >= at_least)
+        and (at_most is None or number <= at_most)
+    )
+
+
+def _a_number(key: str) -> str:
+    unit = unit_of(key)
+    return f"a number in {unit}" if unit else "a number"
+
+
+def _bounds(above: float | None, at_least: float | None, at_most: float | None) -> str:
+    parts = [
+        f"above {above:g}" if above is not None else "",
+        f"of at least {at_least:g}" if at_least is not None else "",
+        f"of at most {at_most:g}" if at_most is not None else "",
+    ]
+    text = " and ".join(part for part in parts if part)
+    return f" {text}" if text else ""
+
+
+def _hint(key: str, value: object) -> str:
+    """Say what a number in quotes would look like without them."""
+    found = _NUMBER.match(value.strip()) if isinstance(value, str) else None
+    return f", without quotes and unit: {key} = {found.group()}" if found else ""

@@ -1,0 +1,206 @@
+"""A machine tool as data: five axes in the order in which they stand on each other, and a spindle.
+
+Everything is expressed in ONE machine frame, with all axes at zero. Order: from the workpiece to the tool.
+Units: mm and degrees; rapids in mm/min and deg/min, accelerations in mm/s^2 and deg/s^2, as the definition keys say.
+Limits, home and every axis value are what the control displays and the program says.
+"""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.definitions import Entry, Table
+
+Vector = tuple[float, float, float]
+
+
+class AxisKind(StrEnum):
+    """How a joint moves."""
+
+    LINEAR = "linear"
+    ROTARY = "rotary"
+
+
+class Carries(StrEnum):
+    """What a joint moves: the part (a table) or the tool (a head, a ram)."""
+
+    PART = "part"
+    TOOL = "tool"
+
+
+class Positive(StrEnum):
+    """Which way a displayed value grows.
+
+    STANDARD is ISO 841: growing values move the TOOL, as seen from the workpiece, along or right-handed about
+    ``direction``, no matter which of the two really moves. REVERSED is the other way.
+    """
+
+    STANDARD = "standard"
+    REVERSED = "reversed"
+
+
+class Prefer(StrEnum):
+    """The sign of a rotary axis in the pose that a machine usually works in."""
+
+    POSITIVE = "positive"
+    NEGATIVE = "negative"
+    EITHER = "either"
+
+
+class Output(StrEnum):
+    """How the values of an endless axis are written: folded into one turn, or as they wind (NONE)."""
+
+    POSITIVE = "0..360"
+    SYMMETRIC = "-180..180"
+    NONE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One joint.
+
+    direction       unit vector, machine frame, all axes at zero
+    point           a point on the axis of a rotary joint, mm, machine frame, all axes at zero; unused for slides
+    low, high       travel in displayed values, mm or deg; -inf and inf where endless or not stated
+    rapid           mm/min or deg/min; None where not stated
+    acceleration    mm/s^2 or deg/s^2; None where not stated
+    home            displayed value, mm or deg
+    """
+
+    name: str
+    kind: AxisKind
+    carries: Carries
+    direction: Vector
+    point: Vector = (0.0, 0.0, 0.0)
+    low: float = -np.inf
+    high: float = np.inf
+    endless: bool = False
+    output: Output = Output.NONE
+    rapid: float | None = None
+    acceleration: float | None = None
+    home: float = 0.0
+    positive: Positive = Positive.STANDARD
+    prefer: Prefer = Prefer.EITHER
+
+    @property
+    def is_rotary(self) -> bool:
+        """Whether the joint turns."""
+        return self.kind is AxisKind.ROTARY
+
+    @property
+    def sense(self) -> float:
+        """1.0 for standard, -1.0 for reversed."""
+        return 1.0 if self.positive is Positive.STANDARD else -1.0
+
+    @property
+    def preferred_sign(self) -> float:
+        """1.0 or -1.0: the sign of the axis in the preferred pose; 0.0 for either."""
+        return {Prefer.POSITIVE: 1.0, Prefer.NEGATIVE: -1.0, Prefer.EITHER: 0.0}[self.prefer]
+
+    @property
+    def display_low(self) -> float:
+        """Lower end of the 360 degrees that the axis displays; NaN where it displays its turns."""
+        return {Output.POSITIVE: 0.0, Output.SYMMETRIC: -180.0, Output.NONE: np.nan}[self.output]
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What is known of a machine besides its motion; None where not stated."""
+
+    spindle_min_rpm: float | None = None
+    spindle_power_kw: float | None = None
+    spindle_torque_nm: float | None = None
+    tool_holder: str | None = None
+    tool_pockets: int | None = None
+    table_size_mm: tuple[float, float] | None = None
+    table_diameter_mm: float | None = None
+    table_load_kg: float | None = None
+
+
+def _no_control() -> Table:
+    return Table(Entry({}, "", 0), "control")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Machine:
+    """A five-axis machine: three slides and two rotary axes, FROM THE WORKPIECE TO THE TOOL.
+
+    spindle_direction   unit vector from tool tip to holder, all axes at zero
+    spindle_point       gauge point (where tool lengths begin), mm, all axes at zero
+    workpiece_zero      workpiece zero in the machine frame, all axes at zero, mm; None where nobody said it
+    tool_length         of the tool in the spindle, gauge point to tip, mm; None where nobody said it: it counts as 0
+    control             the ``[control]`` table of the definition, unread
+    files               definition files that the machine came from
+    """
+
+    key: str
+    name: str
+    axes: tuple[Axis, ...]
+    spindle_direction: Vector = (0.0, 0.0, 1.0)
+    spindle_point: Vector = (0.0, 0.0, 0.0)
+    workpiece_zero: Vector | None = None
+    tool_length: float | None = None
+    spindle_max_rpm: float | None = None
+    description: str = ""
+    facts: Facts = Facts()
+    control: Table = field(default_factory=_no_control)
+    files: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the axes, in chain order: the columns of every joint array."""
+        return tuple(axis.name for axis in self.axes)
+
+    @property
+    def rotary(self) -> tuple[int, int]:
+        """Columns of the two rotary axes; the first is the one next to the workpiece."""
+        first, second = (k for k, axis in enumerate(self.axes) if axis.is_rotary)
+        return first, second
+
+    @property
+    def linear(self) -> tuple[int, int, int]:
+        """Columns of the three slides, in chain order."""
+        first, second, third = (k for k, axis in enumerate(self.axes) if not axis.is_rotary)
+        return first, second, third
+
+    @property
+    def primary(self) -> int:
+        """Column of the primary rotary axis (the fourth): the one on the base, or of the head on mixed machines."""
+        first, second = self.rotary
+        both_in_table = self.axes[second].carries is Carries.PART
+        mixed = self.axes[first].carries is Carries.PART and self.axes[second].carries is Carries.TOOL
+        return second if both_in_table or mixed else first
+
+    @property
+    def secondary(self) -> int:
+        """Column of the secondary rotary axis (the fifth): the one that the primary carries."""
+        first, second = self.rotary
+        return first if self.primary == second else second
+
+    @property
+    def turns_tool(self) -> bool:
+        """Whether a rotary axis stands between the bed and the tool: then lengths of tools move the tip aside."""
+        return any(axis.is_rotary and axis.carries is Carries.TOOL for axis in self.axes)
+
+    @property
+    def limits(self) -> Floats:
+        """Lowest and highest displayed values, (5, 2) float64, mm or deg, infinite where endless or not stated."""
+        return np.array([(axis.low, axis.high) for axis in self.axes])
+
+    @property
+    def home(self) -> Floats:
+        """Home position, (5,) float64, mm or deg."""
+        return np.array([axis.home for axis in self.axes])
+
+    def column(self, name: str) -> int:
+        """Column of the axis of this name; KeyError if there is none."""
+        try:
+            return self.names.index(name)
+        except ValueError:
+            raise KeyError(name) from None
+
+    def axis(self, name: str) -> Axis:
+        """Return the axis of this name; KeyError if there is none."""
+        return self.axes[self.column(name)]

@@ -1,0 +1,247 @@
+"""Columns that grow, and values that change seldom, kept by the rows at which they change."""
+
+from array import array
+from dataclasses import dataclass
+from typing import Any, Final, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.arrays import Floats, Ints
+
+T = TypeVar("T", int, float, bool)
+
+#: Rows that may wait: what only they need is held for so many.
+PENDING: Final = 16384
+
+
+class Columns:
+    """The dense columns of a run while it is being made; ``n`` rows are in use, the first ``settled`` for good.
+
+    ``place`` is the tool tip or the values of the slides, as ``Run.place``. The rotary columns of rows that are not
+    settled hold the programmed values or NaN. Some columns have only the rows from ``base`` on, that of row
+    ``base + k`` at k: line and number of the block, its programmed vector (or NaN) in ``vector``, and in ``way`` how
+    its rotary words want to be reached (see ``trunnion.model.axis_positions``). When they are full, ``clear`` takes
+    them away.
+    """
+
+    def __init__(self, capacity: int = 4096) -> None:
+        self.n = 0
+        self.settled = 0
+        self.base = 0
+        self.kind = np.empty(capacity, np.uint8)
+        self.programmed = np.empty(capacity, np.uint8)
+        self.place = np.empty((capacity, 3))
+        self.rotary = np.empty((capacity, 2))
+        self.block = np.empty(PENDING, np.int64)
+        self.number = np.empty(PENDING, np.int64)
+        self.vector = np.empty((PENDING, 3))
+        self.way = np.empty(PENDING, np.uint8)
+        self.blocks = Climb()
+        self.numbers = Climb()
+
+    _GROWING = ("kind", "programmed", "place", "rotary")
+
+    @property
+    def capacity(self) -> int:
+        """Rows there is room for."""
+        return len(self.kind)
+
+    @property
+    def full(self) -> bool:
+        """Whether there is room for no more rows before ``clear``."""
+        return self.n - self.base == PENDING
+
+    def clear(self) -> None:
+        """Keep lines and numbers in another form, and begin anew; the rows must be settled."""
+        self.blocks.extend(self.block[: self.n - self.base])
+        self.numbers.extend(self.number[: self.n - self.base])
+        self.base = self.n
+
+    def reserve(self, rows: int, expected: int = 0) -> None:
+        """Make room for this many rows more, or for ``expected`` rows in all if that is more.
+
+        Room that nobody writes to costs nothing, rows that are copied do: who knows how long the program is says so.
+        One column goes after another, so that little is held twice.
+        """
+        wanted = self.n + rows
+        if wanted <= self.capacity:
+            return
+        size = max(wanted, expected, self.capacity + self.capacity // 2)
+        for name in self._GROWING:
+            old = getattr(self, name)
+            new = np.empty((size, *old.shape[1:]), old.dtype)
+            new[: self.n] = old[: self.n]
+            setattr(self, name, new)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Steps:
+    """A column of n rows that changes seldom: ``values[k]`` holds from row ``rows[k]`` on.
+
+    rows     (m,) int64, growing; the first is 0, and some may be n or more
+    values   (m,)
+    """
+
+    n: int
+    rows: Ints
+    values: NDArray[Any]
+
+    @staticmethod
+    def always(n: int, value: float, dtype: type[np.generic]) -> "Steps":
+        """A column that never changes."""
+        return Steps(n, np.zeros(1, np.int64), np.array([value], dtype))
+
+    def __len__(self) -> int:
+        return self.n
+
+    def __getitem__(self, row: int) -> Any:
+        """The value of one row, counted from the end if negative."""
+        row = row if row >= 0 else self.n + row
+        if not 0 <= row < self.n:
+            raise IndexError(row)
+        return self.values[np.searchsorted(self.rows, row, "right") - 1].item()
+
+    def at(self, rows: Ints) -> NDArray[Any]:
+        """Values of rows, (k,), in any order."""
+        if not len(rows):
+            return self.values[:0].copy()
+        low, high = np.searchsorted(self.rows, (rows.min(), rows.max()), "right").tolist()
+        if low == high:  # no change lies between them
+            return np.full(len(rows), self.values[low - 1])
+        return np.asarray(self.values[np.searchsorted(self.rows, rows, "right") - 1])
+
+    def part(self, first: int, end: int) -> NDArray[Any]:
+        """Values of consecutive rows, (end - first,)."""
+        low = int(self.rows.searchsorted(first, "right")) - 1
+        high = max(int(self.rows.searchsorted(end)), low + 1)
+        if high == low + 1:
+            return np.full(end - first, self.values[low])
+        bounds = np.append(self.rows[low:high], end)
+        bounds[0] = first
+        return np.repeat(self.values[low:high], np.diff(bounds))
+
+    def column(self) -> NDArray[Any]:
+        """All values, (n,), read-only."""
+        whole = self.part(0, self.n)
+        whole.setflags(write=False)
+        return whole
+
+    def used(self) -> NDArray[Any]:
+        """The values that rows have, each once, growing."""
+        return np.unique(self.values[: np.searchsorted(self.rows, self.n)])
+
+    def begins(self, value: float) -> list[int]:
+        """Rows from which on a value holds that did not hold in the row before."""
+        return [int(self.rows[k]) for k in np.flatnonzero(self.values == value) if self.rows[k] < self.n]
+
+    def where(self, value: float) -> Ints:
+        """Rows that have a value, growing."""
+        ends = np.minimum(np.append(self.rows[1:], self.n), self.n)
+        found = [np.arange(self.rows[k], ends[k]) for k in np.flatnonzero(self.values == value).tolist()]
+        return np.concatenate((np.zeros(0, np.int64), *found))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ramps:
+    """A column of n whole numbers that grow evenly most of the time, as lines and block numbers do.
+
+    From row ``rows[k]`` on it is ``values[k]``, and ``steps[k]`` more with every row; all (m,) int64.
+    """
+
+    n: int
+    rows: Ints
+    values: Ints
+    steps: Ints
+
+    def __len__(self) -> int:
+        return self.n
+
+    def __getitem__(self, row: int) -> int:
+        row = row if row >= 0 else self.n + row
+        if not 0 <= row < self.n:
+            raise IndexError(row)
+        k = int(np.searchsorted(self.rows, row, "right")) - 1
+        return int(self.values[k] + self.steps[k] * (row - self.rows[k]))
+
+    def column(self, dtype: type[np.generic]) -> NDArray[Any]:
+        """All values, (n,), read-only."""
+        length = np.diff(self.rows, append=self.n)
+        column = np.repeat(self.steps, length)
+        column *= np.arange(self.n) - np.repeat(self.rows, length)
+        column += np.repeat(self.values, length)
+        whole = column.astype(dtype, copy=False)
+        whole.setflags(write=False)
+        return whole
+
+
+class Climb:
+    """A column of ``Ramps`` while it is being made."""
+
+    def __init__(self) -> None:
+        self._n = 0
+        self._ramps: list[Ints] = []
+
+    def extend(self, values: Ints) -> None:
+        """Add rows."""
+        if not len(values):
+            return
+        step = np.diff(values)
+        # A row that does not go on evenly begins a ramp; the row after it says how steep that is, whatever it is.
+        uneven = np.flatnonzero(np.diff(step)) + 2
+        place = np.arange(len(uneven))
+        lead = np.maximum.accumulate(np.where(np.diff(uneven, prepend=-1) > 1, place, 0))
+        begin = np.concatenate(([0], uneven[(place - lead) % 2 == 0]))
+        self._ramps.append(np.stack((self._n + begin, values[begin], np.append(step, 0)[begin])))
+        self._n += len(values)
+
+    def ramps(self) -> Ramps:
+        """The column, with as many rows as were added."""
+        return Ramps(self._n, *np.concatenate((np.zeros((3, 0), np.int64), *self._ramps), axis=1))
+
+
+class Changes(Generic[T]):
+    """A column of ``Steps`` while it is being made."""
+
+    def __init__(self, value: T) -> None:
+        self._rows = array("q", [0])
+        self._values: array[Any] = array("d" if isinstance(value, float) else "q", [value])
+
+    @property
+    def now(self) -> T:
+        """The value in force."""
+        now: T = self._values[-1]
+        return now
+
+    def set(self, row: int, value: T) -> None:
+        """Let ``value`` hold from ``row`` on."""
+        if _same(value, self._values[-1]):
+            return
+        if self._rows[-1] == row:
+            self._values[-1] = value
+            if len(self._values) > 1 and _same(self._values[-2], value):
+                self._rows.pop()
+                self._values.pop()
+            return
+        self._rows.append(row)
+        self._values.append(value)
+
+    def extend(self, rows: Ints, values: Floats) -> None:
+        """Add changes at growing rows, all beyond the last one; each value another one than that before it."""
+        self._rows.frombytes(rows.tobytes())
+        self._values.frombytes(values.tobytes())
+
+    def steps(self, n: int, dtype: type[np.generic]) -> Steps:
+        """The column, when it has n rows; nothing may be added afterwards."""
+        values: NDArray[Any] = np.frombuffer(self._values, self._values.typecode)
+        return Steps(n, np.frombuffer(self._rows, np.int64), values.astype(dtype, copy=False))
+
+
+def _same(one: float, two: float) -> bool:
+    """Whether two values are the same; not known (NaN) is the same as not known."""
+    return one == two or (one != one and two != two)
+
+
+def affine(linear: Floats, shift: Floats) -> Floats:
+    """(3, 4) float64 from (3, 3) and (3,): applied as ``m[:, :3] @ p + m[:, 3]``."""
+    return np.ascontiguousarray(np.column_stack((linear, shift)))

@@ -1,0 +1,57 @@
+"""Operations carried over from one coordinate system to another."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.model.toolpath import Frame, From, Operation
+
+
+def into_frame(operation: Operation, frame: Frame) -> Operation:
+    """The operation as seen from another coordinate system; itself when it is the same one.
+
+    With M the matrix and o the origin of a frame in the CAM's absolute system, a point is
+    M_to^T (M_from p + o_from - o_to) and a direction M_to^T M_from u.
+    """
+    if operation.frame == frame:
+        return operation
+    turn = frame.matrix().T @ operation.frame.matrix()
+    shift = frame.matrix().T @ (np.array(operation.frame.origin) - np.array(frame.origin))
+    return replace(_carried(operation, turn, shift), frame=frame)
+
+
+def into_plane(operation: Operation, plane: Frame) -> Operation:
+    """The operation as seen from a plane that is itself given in the operation's frame; its ``frame`` stays."""
+    turn = plane.matrix().T
+    return _carried(operation, turn, -turn @ np.array(plane.origin))
+
+
+def seen_from(own: Frame, frame: Frame) -> Frame:
+    """``own`` as seen from ``frame``, both given in the CAM's absolute system."""
+    turn = frame.matrix().T
+    origin = turn @ (np.array(own.origin) - np.array(frame.origin))
+    return frame_of(origin, turn @ np.array(own.x), turn @ np.array(own.y))
+
+
+def frame_of(origin: Floats, x: Floats, y: Floats) -> Frame:
+    """A frame from arrays of three numbers."""
+    columns = [(float(v[0]), float(v[1]), float(v[2])) for v in (origin, x, y)]
+    return Frame(*columns)
+
+
+def _carried(operation: Operation, turn: Floats, shift: Floats) -> Operation:
+    """All places p of an operation become turn p + shift, all directions u turn u."""
+    moves, arcs = operation.moves, operation.arcs
+    normal = None if moves.normal is None else moves.normal @ turn.T
+    return replace(
+        operation,
+        moves=replace(moves, tip=moves.tip @ turn.T + shift, axis=moves.axis @ turn.T, normal=normal),
+        arcs=replace(arcs, centre=arcs.centre @ turn.T + shift, normal=arcs.normal @ turn.T),
+        events=tuple(
+            replace(event, tip=tuple(turn @ event.tip + shift), axis=tuple(turn @ event.axis))
+            if isinstance(event, From)
+            else event
+            for event in operation.events
+        ),
+    )

@@ -1,0 +1,140 @@
+"""What the planner hands on."""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.errors import Problem
+from trunnion.model.frames import into_plane
+from trunnion.model.toolpath import Frame, Operation
+
+
+class Pole(StrEnum):
+    """What is done near the pole where a rotary axis would have to be too fast (``trunnion.planning.pole.pole``)."""
+
+    OFF = "off"
+    HOLD = "hold"
+    SPREAD = "spread"
+    LEAN = "lean"
+
+
+class Manner(StrEnum):
+    """How the machine makes an operation."""
+
+    THREE_AXIS = "three-axis"
+    TILTED = "tilted plane"
+    TCP = "TCP"
+    WITHOUT_TCP = "without TCP"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Departures:
+    """Where an operation is not made as its CL file has it; rows are those of the CL file, growing.
+
+    lean    degrees by which the tool axis may lean at the rows ``leaned``
+    leaned  (k,) int64
+    rotary  (k, 2) float64  positions of the rotary axes there, as ``Motion`` has them
+    slowed  (m,) int64      rows with another feed
+    feed    (m,) float64    that feed, in the unit of the CL file's
+    """
+
+    lean: float
+    leaned: Ints
+    rotary: Floats
+    slowed: Ints
+    feed: Floats
+
+    @staticmethod
+    def none() -> "Departures":
+        """Everything as it is in the CL file."""
+        return Departures(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
+
+    def __len__(self) -> int:
+        return len(self.leaned) + len(self.slowed)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """One operation on the machine.
+
+    operation    the operation in the program's coordinate system (workpiece frame), with arcs that the control is not
+                 to be given as arcs turned into lines
+    rotary       (n, 2) float64   positions of the rotary axes, degrees, in the order of ``machine.rotary`` and in the
+                 range that each displays. The slides follow from them and the tip:
+                 ``trunnion.machines.slide_positions``
+    manner       three-axis: the tool axis is +Z of the program's coordinate system throughout
+    plane        the tilted plane as seen from the program's coordinate system, for that manner only. Its Z is the tool
+                 axis
+    departures   where it is not made as its CL file has it
+    begins       False: it goes on with the operation of the motion before it, in another plane or from home
+    in_hole      its last row is that of a hole: the tool is drawn back no farther than its cycle says
+    """
+
+    operation: Operation
+    rotary: Floats
+    manner: Manner
+    plane: Frame | None = None
+    departures: Departures = field(default_factory=Departures.none)
+    begins: bool = True
+    in_hole: bool = False
+
+    def __post_init__(self) -> None:
+        self.rotary.setflags(write=False)
+
+    @property
+    def three_axis(self) -> bool:
+        """Whether the rotary axes stand still at the program's own coordinate system."""
+        return self.manner is Manner.THREE_AXIS
+
+    def as_written(self) -> Operation:
+        """The operation in the coordinates of its blocks: those of the tilted plane, or else the program's."""
+        return self.operation if self.plane is None else into_plane(self.operation, self.plane)
+
+
+class Why(StrEnum):
+    """What a decision was about."""
+
+    START = "start"
+    POLE = "pole"
+    CHANGE = "change"
+    REWIND = "rewind"
+    SPEED = "speed"
+    FEED = "feed"
+    MORE = "more"
+    POINTS = "points"
+    HOLES = "holes"
+    NEAREST = "nearest"
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What was decided before a row, and the reason for it, in words.
+
+    row   row of the operation as the CL file has it, arcs that became lines counted; -1: about all of it
+    line  line of the CL file
+    """
+
+    file: str
+    operation: str
+    line: int
+    row: int
+    why: Why
+    text: str
+
+    def __str__(self) -> str:
+        """Return ``file:line: operation: text``."""
+        return f"{self.file}:{self.line}: {self.operation}: {self.text}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """All operations of one program, what speaks against running them, and why they are planned as they are.
+
+    ``problems`` with severity error mean that the program must not run as it is.
+    """
+
+    motions: tuple[Motion, ...]
+    problems: tuple[Problem, ...]
+    decisions: tuple[Decision, ...] = ()

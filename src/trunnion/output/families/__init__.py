@@ -1,0 +1,1 @@
+"""The writers of the families of controls, a folder each."""

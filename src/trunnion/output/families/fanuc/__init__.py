@@ -1,0 +1,1 @@
+"""Writer of Fanuc 30i and 31i."""

@@ -1,0 +1,1 @@
+"""Writer of Fidia NC15."""

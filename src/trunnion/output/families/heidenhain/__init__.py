@@ -1,0 +1,1 @@
+"""Writer of Heidenhain iTNC 530 and TNC 640."""

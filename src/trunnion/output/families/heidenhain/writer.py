@@ -1,0 +1,226 @@
+"""What the Klartext of iTNC 530 and TNC 640 says that words and templates alone cannot.
+
+Circles about a centre, helices, dwells, comments, the angles of a plane. Facts: the manuals of both controls;
+docs/controls/heidenhain.md has them one by one.
+"""
+
+import re
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.controls.family import BY_RADIUS, ArcWords, Codes, Formats, UnsayableError, WordEvent
+from trunnion.controls.template import Value
+from trunnion.controls.words import ABSENT
+from trunnion.model.motion import Motion
+from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
+from trunnion.output.euler_angles import about_three
+from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
+from trunnion.output.families.heidenhain.cycles import cycle_lines
+from trunnion.planning.holes.cycles import Cycle, Turning
+
+WORDS: tuple[str, ...] = (
+    "line", "vector_line", "surface_x", "surface_y", "surface_z", "axis_x", "axis_y", "axis_z", "arc", *BY_RADIUS,
+    "helix", "arc_angle", "arc_rise",
+    "counterclockwise", "clockwise", "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant",
+    "feed_mode", "call",
+)  # fmt: skip
+
+CODES: tuple[str, ...] = (
+    "feed_per_minute", "feed_per_revolution", "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop",
+    "optional_stop", "call",
+)  # fmt: skip
+
+PLANES: tuple[str, ...] = ("spatial", "vector", "cycle19")
+
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "plane": PLANES,
+    "plane_move": ("turn", "move", "stay"),
+    "plane_solution": ("SEQ", "SYM"),
+    "tcpm": ("m128", "function"),
+    "rotary_feed": ("degrees", "tip"),
+    "retract": ("home", "m140"),
+    "orientation": ("angles", "vector"),
+    "normals": ("off", "contact"),
+}
+
+_VECTOR: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
+
+FIELDS: frozenset[str] = frozenset(
+    {
+        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "spatial_a", "spatial_b",
+        "spatial_c", *_VECTOR, "blank_low", "blank_high",
+    }
+)  # fmt: skip
+
+#: Bytes of a comment in one line.
+_ROOM: Final = 100
+
+_TCPM: Final = {
+    "m128": ("M128", "M129"),
+    "function": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "FUNCTION RESET TCPM"),
+}
+_POSITIONING: Final = {"turn": "TURN FMAX", "move": "MOVE ABST0 FMAX", "stay": "STAY"}
+_COMP: Final = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
+
+
+def comment(text: str) -> list[str]:
+    """A semicolon begins a comment; a long one goes on in the next line."""
+    pieces = [""]
+    for character in inside(text):
+        if len((pieces[-1] + character).encode()) > _ROOM:
+            pieces.append("")
+        pieces[-1] += character
+    return [f"; {piece}" for piece in pieces]
+
+
+def inside(text: str) -> str:
+    """A tilde at the end of a line would take the next one into the block."""
+    return text.replace("~", "-")
+
+
+def tool_call(number: int, name: str, by_name: bool) -> str:
+    """What stands after ``TOOL CALL``: a number, or a name in quotation marks, in which none can stand."""
+    if by_name and '"' in name:
+        raise UnsayableError(f"the tool name {name} has a quotation mark in it", "write --set tool=NUMBER")
+    return f'"{name}"' if by_name else str(number)
+
+
+def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
+    """Cycle 9 waits seconds; turns of the spindle become the seconds that they take."""
+    amount = event.amount
+    if event.revolutions:
+        if rpm is None or not rpm > 0.0:
+            raise UnsayableError("a dwell in spindle revolutions while the spindle stands", "put SPINDL before it")
+        amount = 60.0 * amount / rpm
+    form = formats["dwell"]
+    if not form.least <= amount <= form.greatest:
+        what = f"a dwell of {amount:g} s, and the control waits {form.least:g} to {form.greatest:g} s"
+        raise UnsayableError(what, "write a dwell within that")
+    return ["CYCL DEF 9.0 DWELL TIME", f"CYCL DEF 9.1 DWELL {form.text(amount)}"]
+
+
+def stop(event: Stop, codes: Codes) -> list[str]:
+    """M0 or M1, after the text that the operator is to see."""
+    code = codes["optional_stop" if event.optional else "stop"]
+    return [*(comment(event.text) if event.text else ()), f"M{code}"]
+
+
+def message(event: Message) -> list[str]:
+    """A comment, which the operator sees as it runs by; one to be displayed as a structure line."""
+    lines = comment(event.text)
+    return [f"* - {line[2:]}" for line in lines] if event.display else lines
+
+
+def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
+    """M for coolant, R0, RL or RR for the radius compensation; the spindle has blocks of its own."""
+    if isinstance(event, Coolant):
+        return {"coolant": coolant[event.kind]}
+    if isinstance(event, CutterComp):
+        return {_COMP[event.side]: 1} if event.side in _COMP else {}
+    return {"spindle": codes["spindle_off"]}
+
+
+def first_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
+    """None."""
+    return {}
+
+
+def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
+    """Radius compensation in another plane than that of the tool axis."""
+    return [
+        (event.line, UnsayableError(f"radius compensation in the plane {event.plane}", "write XYPLAN, or no CUTCOM"))
+        for event in operation.events
+        if isinstance(event, CutterComp) and event.plane not in ("", "XYPLAN")
+    ]
+
+
+def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+    """A program name that no file of the control has, a block form that is none."""
+    wrong = []
+    name, blank = settings.get("program", ""), settings.get("blank", "")
+    if name and not re.fullmatch(r"[A-Za-z0-9_#$%&-]{1,24}", name):
+        wrong.append(("program", "write up to 24 letters, digits and _ # $ % & -"))
+    if not settings.get("work_offset", "1").isdigit():
+        wrong.append(("work_offset", "write the number of the preset, such as 1"))
+    if settings.get("disengage", "") not in ("", "1", "2", "3", "4"):
+        wrong.append(("disengage", "write 1 for -X, 2 for -Y, 3 for +X or 4 for +Y"))
+    distance = settings.get("retract_distance", "")
+    if distance and not (re.fullmatch(r"[0-9]{1,5}(\.[0-9]{1,4})?", distance) and float(distance) > 0.0):
+        cure = "write how far the tool goes back along its axis, mm, such as 50; or nothing"
+        wrong.append(("retract_distance", cure))
+    if blank not in ("", "extents") and _corners(blank) is None:
+        cure = (
+            "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first; or extents, for all that is cut"
+        )
+        wrong.append(("blank", cure))
+    return wrong
+
+
+def hole_call(
+    cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
+) -> list[str]:
+    """The definition of the cycle; ``M99`` calls it at each hole."""
+    return cycle_lines(cycle, top, turning, formats, settings.get("disengage", ""))
+
+
+def hole_end() -> list[str]:
+    """Nothing: a cycle is called hole by hole."""
+    return []
+
+
+def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
+    """``L``, ``FMAX`` in rapids, and what F means wherever there is one."""
+    mode = np.where(per_rev, codes["feed_per_revolution"], codes["feed_per_minute"])
+    return {
+        "line": np.ones(len(rapid), np.int64),
+        "rapid": np.where(rapid, 1, ABSENT).astype(np.int64),
+        "feed_mode": np.where(rapid, ABSENT, mode).astype(np.int64),
+    }
+
+
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
+    """``CC`` and ``C``, ``CP`` for what rises, ``CR`` where a circle is said by its radius."""
+    return heidenhain_arcs.arc_words(arcs, tip, rows, formats, by_radius)
+
+
+def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
+    """TCP on and off as ``tcpm`` says it, the words and angles of a plane, the corners of the block form.
+
+    SPA, SPB and SPC turn about fixed axes X, then Y, then Z: the same as about Z, the new Y and the newest X.
+    """
+    on, off = _TCPM[str(settings["tcpm"])]
+    if settings["orientation"] == "vector":
+        on = on.replace("PATHCTRL AXIS", "PATHCTRL VECTOR")
+    low, high = _corners(str(settings.get("blank") or "")) or (None, None)
+    found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
+    at_tip = settings["rotary_feed"] == "tip"
+    found |= {"feed_at_tip": "M116" if at_tip else None, "feed_in_degrees": "M117" if at_tip else None}
+    distance = str(settings.get("retract_distance") or " MAX")
+    found["retract_along"] = f"L M140 MB{distance}" if settings["retract"] == "m140" else None
+    found["positioning"] = _POSITIONING[str(settings["plane_move"])]
+    spatial = "spatial_c", "spatial_b", "spatial_a"
+    if plane is None:
+        return {**found, **dict.fromkeys((*spatial, *_VECTOR))}
+    turns = [180.0 if angle < -179.99999999 else angle for angle in about_three(plane, (2, 1, 0))]
+    angles = dict(zip(spatial, turns, strict=True))
+    return {**found, **angles, **dict(zip(_VECTOR, [*plane[:, 0].tolist(), *plane[:, 2].tolist()], strict=True))}
+
+
+def _corners(blank: str) -> tuple[str, str] | None:
+    """The two corners of the block form as words, None where the text is none."""
+    try:
+        numbers = [float(part) for part in blank.split(",")]
+    except ValueError:
+        return None
+    if len(numbers) != 6 or any(
+        not a < b or not abs(a) + abs(b) < 1e5 for a, b in zip(numbers, numbers[3:], strict=False)
+    ):
+        return None
+    texts = [f"{number:+.4f}".rstrip("0").rstrip(".") for number in numbers]
+    low, high = (
+        " ".join(f"{axis}{text}" for axis, text in zip("XYZ", part, strict=True)) for part in (texts[:3], texts[3:])
+    )
+    return low, high

@@ -1,0 +1,85 @@
+"""What the families of ISO 6983 (G and M words) have in common: motion codes, arcs by a relative centre, M words."""
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.controls.family import ArcWords, Codes, Formats, UnsayableError, WordEvent
+from trunnion.controls.words import ABSENT, counts
+from trunnion.model.toolpath import Arcs, Coolant, Kind, Operation, Sense, SpindleOff, SpindleOn
+
+WORDS: tuple[str, ...] = (
+    "cutter_comp", "feed_mode", "plane", "motion", "I", "J", "K", "turns", "speed", "spindle", "coolant", "feed",
+    "inverse_feed",
+)  # fmt: skip
+
+CODES: tuple[str, ...] = (
+    "rapid", "linear", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz",
+    "feed_per_minute", "feed_per_revolution", "feed_inverse_time", "comp_off", "comp_left", "comp_right",
+    "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop", "optional_stop",
+)  # fmt: skip
+
+_PLANES = ("plane_yz", "plane_zx", "plane_xy")
+_CENTRE_WORDS = (("J", "K"), ("K", "I"), ("I", "J"))
+_END_WORDS = (("Y", "Z"), ("Z", "X"), ("X", "Y"))
+_COMP = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
+_COMP_PLANE = {"XYPLAN": "plane_xy", "ZXPLAN": "plane_zx", "YZPLAN": "plane_yz"}
+
+
+def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
+    """S and M for the spindle, M for coolant, G for cutter radius compensation and its plane."""
+    if isinstance(event, SpindleOn):
+        turn = "spindle_clockwise" if event.sense is Sense.CLW else "spindle_counterclockwise"
+        return {"speed": event.rpm, "spindle": codes[turn]}
+    if isinstance(event, SpindleOff):
+        return {"spindle": codes["spindle_off"]}
+    if isinstance(event, Coolant):
+        return {"coolant": coolant[event.kind]}
+    words: dict[str, float] = {"cutter_comp": codes[_COMP[event.side]]} if event.side in _COMP else {}
+    if event.plane in _COMP_PLANE:
+        words["plane"] = codes[_COMP_PLANE[event.plane]]
+    return words
+
+
+def too_early_per_turn(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
+    """A feed per revolution before the spindle has a speed; as ``FamilyWriter.refused``."""
+    rows = [event.row for event in operation.events if isinstance(event, SpindleOn)]
+    moves = operation.moves
+    first = 0 if spindle_known else min(rows, default=len(moves))
+    early = np.flatnonzero(moves.per_rev[:first] & (moves.kind[:first] != Kind.RAPID))
+    if not len(early):
+        return []
+    why = UnsayableError("a feed per revolution before the spindle has a speed", "put SPINDL before it")
+    return [(int(moves.line[early[0]]), why)]
+
+
+def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
+    """G0 or G1, and what F means wherever there is one."""
+    mode = np.where(per_rev, codes["feed_per_revolution"], codes["feed_per_minute"])
+    return {
+        "motion": np.where(rapid, codes["rapid"], codes["linear"]).astype(np.int64),
+        "feed_mode": np.where(rapid, ABSENT, mode).astype(np.int64),
+    }
+
+
+def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
+    """G2 or G3 in G17, G18 or G19 with the centre relative to the start; arguments as ``FamilyWriter`` has them.
+
+    G2 is clockwise seen against the plane's normal. In the plane ZX the normal is +Y, in YZ +X: I K and J K are the
+    centre's words there. ``turns`` counts whole turns besides the arc.
+    """
+    normal = arcs.normal[rows]
+    along = np.argmax(np.abs(normal), axis=1)
+    positive = normal[np.arange(len(rows)), along] > 0
+    columns = {
+        "motion": np.where(positive, codes["arc_counterclockwise"], codes["arc_clockwise"]).astype(np.int64),
+        "plane": np.array([codes[p] for p in _PLANES], np.int64)[along],
+        "turns": np.where(arcs.turns[rows] > 0, arcs.turns[rows], ABSENT),
+    }
+    offset = arcs.centre[rows] - tip[arcs.row[rows] - 1]
+    decimals = formats["I"].decimals
+    forced: dict[str, Ints] = {}
+    for c, letter in enumerate("IJK"):
+        wanted = np.array([letter in _CENTRE_WORDS[a] for a in range(3)])[along]
+        columns[letter] = np.where(wanted, counts(np.ascontiguousarray(offset[:, c]), decimals), ABSENT)
+        forced["XYZ"[c]] = np.array(["XYZ"[c] in _END_WORDS[a] for a in range(3)], np.int64)[along]
+    return ArcWords(columns, forced)

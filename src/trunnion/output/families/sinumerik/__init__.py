@@ -1,0 +1,1 @@
+"""Writer of Sinumerik 840D sl."""

@@ -1,0 +1,18 @@
+"""The planner: how the machine makes the motion that a toolpath asks for.
+
+In:     operations in the CAM's coordinate systems, and a machine.
+Out:    ``Motion``: the same operations in the program's coordinate system, with five axis positions a row, and what
+        was found wrong on the way.
+Knows nothing of text, neither of CL files nor of NC programs.
+"""
+
+from trunnion.planning.options import Wishes
+from trunnion.planning.planner import plan
+from trunnion.planning.poses.placement import lean, straight_on
+from trunnion.planning.retracts.clearance import Clearance, Surface
+from trunnion.planning.speed.operation_time import seconds
+
+#: Kernels that most programs need.
+KERNELS = (lean, straight_on)
+
+__all__ = ["KERNELS", "Clearance", "Surface", "Wishes", "plan", "seconds"]

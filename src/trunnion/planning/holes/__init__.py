@@ -1,0 +1,1 @@
+"""Hole-making cycles: what they ask for, and holes as motion."""

@@ -1,0 +1,1 @@
+"""Points between CL points, and arcs as chords."""

@@ -1,0 +1,160 @@
+"""Arcs into lines, where the control is not to be given an arc.
+
+A control turns the tool tip about X, Y or Z of its coordinate system. An arc about any other direction, or one on
+which the tool axis changes, becomes lines that leave the arc by no more than a chord error.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.model.toolpath import Arcs, Kind, Operation
+from trunnion.planning.linearization.row_insertion import with_copies
+
+#: Directions are taken as along a coordinate axis within this sine; seven printed decimals give 1e-7.
+_ALONG = 1e-6
+
+#: Start and end of an arc that lie nearer to each other than this, mm, could print as the same point.
+_CLEAR = 0.005
+
+#: What four decimals of start, end and centre come to in the radius of an arc, mm.
+_ROUNDED = 3e-4
+
+#: An arc that rises by less than this, mm, is flat: nobody prints so many digits.
+_LEVEL = 1e-5
+
+
+def arc_sweeps(operation: Operation) -> Floats:
+    """Angle that the tip turns through on each arc.
+
+    Returns
+    -------
+    (m,) float64
+        Radians, always positive; a full circle is 2 pi, and whole turns count.
+    """
+    arcs, tip = operation.arcs, operation.moves.tip
+    start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
+    across = np.einsum("ij,ij->i", np.cross(start, end), arcs.normal)
+    start_in_plane = start - np.einsum("ij,ij->i", start, arcs.normal)[:, None] * arcs.normal
+    along = np.einsum("ij,ij->i", start_in_plane, end)
+    angle = np.mod(np.arctan2(across, along), 2.0 * np.pi)
+    # start = end in the plane is a full circle; rounding of the file may put the end a hair before or after it
+    closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < 1e-4
+    return np.asarray(np.where(closed, 2.0 * np.pi, angle) + 2.0 * np.pi * arcs.turns)
+
+
+def off_circle(operation: Operation) -> Floats:
+    """(m,) float64: how much farther from the axis of its arc an arc ends than it starts, mm."""
+    arcs, tip = operation.arcs, operation.moves.tip
+    start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
+    away = [np.linalg.norm(np.cross(arcs.normal, point), axis=1) for point in (start, end)]
+    return np.asarray(away[1] - away[0])
+
+
+def plain_arcs(operation: Operation, only_about_z: bool = False, by_angle: bool = False) -> Flags:
+    """(m,) bool: the arc may be left to a control.
+
+    It turns about X, Y or Z, and the tool axis is the same at its start and its end. It also ends clear of its start,
+    or right at it: a control takes an arc whose end prints as its start for a full circle, be it a tiny one in truth.
+    Where a control is told a helix by its angle (``by_angle``), that leads to the end only if start and end are as far
+    from the centre. ``only_about_z``: it knows no others.
+    """
+    arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
+    aside = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
+    about_axis = (aside if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _ALONG
+    steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _ALONG
+    if by_angle:
+        rises = (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.0) | (arcs.turns > 0)
+        steady &= ~rises | (np.abs(off_circle(operation)) < _ROUNDED)
+    apart = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
+    in_plane = np.linalg.norm(np.cross(tip[arcs.row] - tip[arcs.row - 1], arcs.normal), axis=1)
+    return np.asarray(
+        about_axis & steady & ((in_plane > _CLEAR) | (apart == 0.0) | ((in_plane == 0.0) & (apart > _CLEAR)))
+    )
+
+
+def flat_arcs(operation: Operation) -> Flags:
+    """(m,) bool: the arc ends at the height of its start along its normal, and makes no whole turns besides."""
+    arcs, tip = operation.arcs, operation.moves.tip
+    rise = np.einsum("ij,ij->i", tip[arcs.row] - tip[arcs.row - 1], arcs.normal)
+    return np.asarray((np.abs(rise) < _LEVEL) & (arcs.turns == 0))
+
+
+def arcs_about_tool(operation: Operation) -> Flags:
+    """(m,) bool: the arc turns about the tool axis at its end."""
+    arcs = operation.arcs
+    across = np.cross(arcs.normal, operation.moves.axis[arcs.row])
+    return np.asarray(np.linalg.norm(across, axis=1) < _ALONG)
+
+
+def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:
+    """Replace the arcs that are not kept by lines.
+
+    Parameters
+    ----------
+    operation
+        Its arcs' rows have a row before them, which is where the arc starts.
+    keep : (m,) bool
+        Arcs that stay arcs.
+    chord_tolerance
+        Largest distance between arc and line, mm.
+
+    Returns
+    -------
+    Operation
+        The tool axis turns evenly along the arc's length; added rows carry the line of the arc's end point.
+    """
+    if bool(keep.all()):
+        return operation
+    moves, arcs = operation.moves, operation.arcs
+    sweep = arc_sweeps(operation)
+    copies = arc_pieces(operation, keep, chord_tolerance)
+    source = np.repeat(np.arange(len(moves)), copies)
+    new_row = np.cumsum(copies) - 1  # where each old row ends up: the last of its copies
+    tip, axis = moves.tip[source], moves.axis[source]
+    kind = moves.kind[source]
+    for m in np.flatnonzero(~keep):
+        row = arcs.row[m]
+        part = slice(new_row[row] - copies[row] + 1, new_row[row] + 1)
+        tip[part], axis[part] = _points_on_arc(operation, int(m), float(sweep[m]), int(copies[row]))
+        kind[part] = Kind.LINEAR
+    kept = Arcs(arcs.row[keep], arcs.centre[keep], arcs.normal[keep], arcs.radius[keep], arcs.turns[keep])
+    return with_copies(replace(operation, arcs=kept), copies, tip, axis, kind)
+
+
+def arc_pieces(operation: Operation, keep: Flags, chord_tolerance: float) -> Ints:
+    """(n,) int64: into how many lines the move to each row is cut; 1 for all but the arcs that are not kept."""
+    arcs = operation.arcs
+    half = np.sqrt(np.minimum(chord_tolerance / (2.0 * np.maximum(arcs.radius, chord_tolerance)), 0.25))
+    pieces = np.where(keep, 1, np.ceil(arc_sweeps(operation) / (4.0 * np.arcsin(half)))).astype(np.int64)
+    copies = np.ones(len(operation.moves), np.int64)
+    copies[arcs.row] = np.maximum(pieces, 1)
+    return copies
+
+
+def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> tuple[Floats, Floats]:
+    """``pieces`` points on arc ``m``, the start left out and the end exact, and the tool axes there."""
+    moves, arcs = operation.moves, operation.arcs
+    row, centre, normal = int(arcs.row[m]), arcs.centre[m], arcs.normal[m]
+    part = np.arange(1, pieces + 1) / pieces
+    start, end = moves.tip[row - 1] - centre, moves.tip[row] - centre
+    rise_start, rise_end = float(start @ normal), float(end @ normal)
+    radial = start - rise_start * normal
+    angle = (part * sweep)[:, None]
+    tip = centre + np.cos(angle) * radial + np.sin(angle) * np.cross(normal, radial)
+    tip = tip + (rise_start + part * (rise_end - rise_start))[:, None] * normal
+    # the file rounds centre and end: spread what is missing at the end over the arc, so that the end is met
+    tip += part[:, None] * (moves.tip[row] - tip[-1])
+    tip[-1] = moves.tip[row]  # to the last digit, too
+    return tip, turned_evenly(moves.axis[row - 1], moves.axis[row], part)
+
+
+def turned_evenly(first: Floats, last: Floats, part: Floats) -> Floats:
+    """Great-circle turn from ``first`` to ``last`` (unit vectors), at the fractions ``part``."""
+    angle = float(np.arctan2(np.linalg.norm(np.cross(first, last)), first @ last))
+    if angle < 1e-12:
+        return np.repeat(last[None, :], len(part), axis=0)
+    weight = np.sin(np.outer(np.column_stack((1.0 - part, part)), angle).reshape(-1, 2)) / np.sin(angle)
+    turned = weight[:, :1] * first + weight[:, 1:] * last
+    return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))

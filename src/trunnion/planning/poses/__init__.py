@@ -1,0 +1,1 @@
+"""Poses for a whole operation: states, dynamic programming, positions, and the decision log."""

@@ -1,0 +1,1 @@
+"""Retracts: how far the tool draws back, and rewinds of rotary axes."""

@@ -1,0 +1,203 @@
+"""How fast the rotary axes would have to turn at the programmed feed, and the feed at which they can.
+
+The feed holds for the tip, so a row takes its tip's way over the feed, however far the rotary axes turn meanwhile.
+Where the tip rests, the feed is taken for degrees a minute of the axis that turns farthest. Rapids take what they need.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.jit import njit
+from trunnion.machines import Machine
+from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
+
+#: Share of an axis' rapid speed that is planned for: printed numbers are rounded, and steps may be small.
+USED: Final = 0.99
+
+#: No feed is lowered below this, mm/min: what is printed of it must not become 0.
+_LEAST_FEED: Final = 0.1
+
+#: A tip that moves by less than this, mm, rests.
+RESTS: Final = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Fastest:
+    """The row that asks most of a rotary axis' rapid speed, and how many rows ask for more than all of it.
+
+    share  1: all of it
+    axis   0 or 1, the first or the second rotary axis
+    """
+
+    share: float
+    row: int
+    axis: int
+    count: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loose:
+    """Growing rows before which the axes turn off the part, row (k,) int64, and where they stand then, after (k, 2)."""
+
+    row: Ints
+    after: Floats
+
+
+#: No such rows.
+TIED: Final = Loose(np.zeros(0, np.int64), np.zeros((0, 2)))
+
+
+def rates(operation: Operation) -> Floats:
+    """(n,) float64: programmed speed of the tip, mm/min, whatever its unit is; NaN where nobody says it."""
+    moves = operation.moves
+    if not moves.per_rev.any():
+        return moves.feed
+    rpm = np.full(len(moves), np.nan)
+    for event in operation.events:
+        if isinstance(event, SpindleOn):
+            rpm[event.row :] = event.rpm
+    return np.asarray(np.where(moves.per_rev, moves.feed * rpm, moves.feed))
+
+
+def fastest(machine: Machine, operation: Operation, rotary: Floats, loose: Loose) -> Fastest:
+    """Where the rotary axes would have to be fastest.
+
+    Parameters
+    ----------
+    operation
+        In the program's coordinate system.
+    rotary : (n, 2) float64
+        Degrees, as the axes display them.
+    loose
+        Rows before which the axes turn off the part.
+    """
+    share = np.empty((0, 2))
+    return Fastest(*_scan(*_columns(machine, operation, rotary), loose.row, loose.after, share))
+
+
+def shares(machine: Machine, operation: Operation, rotary: Floats, loose: Loose = TIED) -> Floats:
+    """(n, 2) float64: share of each rotary axis' rapid speed that each row asks for; arguments as for ``fastest``."""
+    share = np.zeros((len(rotary), 2))
+    _scan(*_columns(machine, operation, rotary), loose.row, loose.after, share)
+    return share
+
+
+def reach(machine: Machine, operation: Operation) -> tuple[Floats, Flags]:
+    """How far each rotary axis gets in each row, degrees, (n, 2); and which rows no feed binds, (n,) bool.
+
+    The latter are rapids, rows in which the tip rests, and the first one, to which the axes are brought beforehand.
+    """
+    moves = operation.moves
+    way = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
+    rate = rates(operation)
+    bound = (moves.kind != Kind.RAPID) & (way >= RESTS) & (rate > 0.0)
+    bound[0] = False
+    far = np.full((len(moves), 2), np.inf)
+    for r, column in enumerate(machine.rotary):
+        axis = machine.axes[column]
+        far[bound, r] = USED * (math.inf if axis.rapid is None else axis.rapid) * way[bound] / rate[bound]
+    return far, ~bound
+
+
+def lowered(machine: Machine, operation: Operation, rotary: Floats, loose: Loose, together: Ints) -> tuple[Moves, Ints]:
+    """The moves with feeds at which no rotary axis exceeds its rapid speed, and the rows whose feed is lower now.
+
+    together : (n,) int64
+        Rows with the same growing number are pieces of one arc, and get one feed.
+    """
+    moves = operation.moves
+    share = shares(machine, operation, rotary, loose).max(axis=1)
+    rate = rates(operation)
+    factor = np.where(share > 1.0, USED / np.maximum(share, 1.0), 1.0)
+    with np.errstate(invalid="ignore"):
+        factor = np.where(factor < 1.0, np.minimum(np.maximum(factor, _LEAST_FEED / rate), 1.0), 1.0)
+    first = np.flatnonzero(np.diff(together, prepend=together[:1] - 1))
+    factor = np.repeat(np.minimum.reduceat(factor, first), np.diff(first, append=len(factor)))
+    factor[(moves.kind == Kind.RAPID) | np.isnan(factor)] = 1.0
+    return replace(moves, feed=np.where(factor < 1.0, moves.feed * factor, moves.feed)), np.flatnonzero(factor < 1.0)
+
+
+def wound(machine: Machine, rotary: Floats) -> Floats:
+    """(n, 2) float64: displayed positions as the axes wind: endless ones go the shorter way, the others stay."""
+    turning = np.array(rotary)
+    for r, free in enumerate(turns_freely(machine)):
+        if free:
+            turning[1:, r] -= 360.0 * np.cumsum(np.rint(np.diff(rotary[:, r]) / 360.0))
+    return turning
+
+
+def displayed(machine: Machine, turning: Floats) -> Floats:
+    """(n, 2) float64: positions as the axes display them."""
+    shown = np.array(turning)
+    for r, column in enumerate(machine.rotary):
+        low = machine.axes[column].display_low
+        if not np.isnan(low):
+            shown[:, r] -= 360.0 * np.floor((shown[:, r] - low) / 360.0)
+    return shown
+
+
+def turns_freely(machine: Machine) -> tuple[bool, bool]:
+    """Which rotary axes have no limits, and so go the shorter way."""
+    first, second = (not np.isfinite(machine.limits[column]).any() for column in machine.rotary)
+    return bool(first), bool(second)
+
+
+def _columns(
+    machine: Machine, operation: Operation, rotary: Floats
+) -> tuple[Floats, Codes, Floats, Floats, Flags, Floats]:
+    """What the kernel takes."""
+    moves = operation.moves
+    rapid = [machine.axes[column].rapid for column in machine.rotary]
+    speeds = np.array([math.inf if speed is None else speed for speed in rapid])
+    return moves.tip, moves.kind, rates(operation), rotary, np.array(turns_freely(machine)), speeds
+
+
+@njit(cache=True)
+def _scan(
+    tip: Floats,
+    kind: Codes,
+    rate: Floats,
+    rotary: Floats,
+    free: Flags,
+    rapid: Floats,
+    loose: Ints,
+    after: Floats,
+    share: Floats,
+) -> tuple[float, int, int, int]:
+    """Most share, its row and axis, and how many rows ask for more than all; all shares too if there is room."""
+    most, where, which, count = 0.0, -1, 0, 0
+    skip = 0
+    for row in range(1, tip.shape[0]):
+        while skip < len(loose) and loose[skip] < row:
+            skip += 1
+        if kind[row] == 0 or not rate[row] > 0.0:
+            continue
+        one, two = rotary[row, 0] - rotary[row - 1, 0], rotary[row, 1] - rotary[row - 1, 1]
+        if skip < len(loose) and loose[skip] == row:
+            one, two = rotary[row, 0] - after[skip, 0], rotary[row, 1] - after[skip, 1]
+        if one == 0.0 and two == 0.0:
+            continue
+        if free[0]:
+            one -= 360.0 * math.floor(one / 360.0 + 0.5)
+        if free[1]:
+            two -= 360.0 * math.floor(two / 360.0 + 0.5)
+        one, two = abs(one), abs(two)
+        x, y, z = tip[row, 0] - tip[row - 1, 0], tip[row, 1] - tip[row - 1, 1], tip[row, 2] - tip[row - 1, 2]
+        way = math.sqrt(x * x + y * y + z * z)
+        if way < RESTS:
+            way = max(one, two)
+            if way < RESTS:
+                continue
+        minutes = way / rate[row]
+        one, two = one / minutes / rapid[0], two / minutes / rapid[1]
+        if len(share):
+            share[row, 0], share[row, 1] = one, two
+        if one > 1.0 or two > 1.0:
+            count += 1
+        if max(one, two) > most:
+            most, where, which = max(one, two), row, 0 if one >= two else 1
+    return most, where, which, count

@@ -1,0 +1,1 @@
+"""The readers of the families of controls, a folder each."""

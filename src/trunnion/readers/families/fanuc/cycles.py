@@ -1,0 +1,111 @@
+"""Canned cycles of a Fanuc as the motions that they make at one hole.
+
+Heights are positions along the axis on the working plane, in the units of the program.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.readers.common.drilling import MOST_PECKS, CycleError, Step
+
+#: Canned cycles, by their G code in tenths.
+CYCLES: Final = frozenset({730, 740, 760, 810, 820, 830, 840, 850, 860, 870, 880, 890})
+
+#: Those that need Q.
+NEED_Q: Final = frozenset({730, 830})
+
+#: Words of cycles that hold until they end.
+STICKY: Final = "RZPQIJ"
+
+#: How far G73 backs off and how far above the last depth G83 goes back at rapid, mm: parameters of the control.
+CHIP_BREAK: Final = 1.0
+ABOVE: Final = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Hole:
+    """What a cycle knows at a hole.
+
+    initial   height before the cycles began
+    back      whether it ends there (G98), else at R
+    aside     shift of boring tools in the two axes of the plane
+    units     the program's units in a millimetre
+    dwell     seconds
+    """
+
+    retract: float
+    bottom: float
+    initial: float
+    back: bool
+    stroke: float
+    aside: tuple[float, float]
+    dwell: float
+    units: float
+
+
+def steps(code: int, hole: Hole) -> list[Step]:
+    """Return the motions of a cycle from the hole's position on."""
+    into = Step(False, hole.bottom)
+    stay = Step(False, hole.bottom, dwell=hole.dwell)
+    out = Step(True, hole.retract)
+    back = [Step(True, hole.initial)] if hole.back and hole.initial != hole.retract else []
+    start = [Step(True, hole.retract)]
+    match code:
+        case 810:
+            return [*start, into, *(back or [out])]
+        case 820:
+            return [*start, stay, *(back or [out])]
+        case 730 | 830:
+            return [*start, *_peck(hole, full=code == 830), *(back or [out])]
+        case 740 | 840 | 890:
+            return [*start, stay, Step(False, hole.retract), *back]
+        case 850:
+            return [*start, into, Step(False, hole.retract), *back]
+        case 860:
+            return [*start, into, *(back or [out])]
+        case 880:
+            return [*start, stay, out, *back]
+        case 760:
+            end = hole.initial if back else hole.retract
+            aside = hole.aside
+            return [*start, stay, Step(True, hole.bottom, aside=aside), Step(True, end, aside=aside), Step(True, end)]
+        case _:
+            assert code == 870
+            return _back_bore(hole)
+
+
+def _peck(hole: Hole, full: bool) -> list[Step]:
+    if hole.stroke <= 0.0:
+        raise CycleError("has a Q that is not above 0")
+    total = abs(hole.retract - hole.bottom)
+    if total / hole.stroke > MOST_PECKS:
+        raise CycleError(f"would peck more than {MOST_PECKS} times")
+    down = -1.0 if hole.bottom < hole.retract else 1.0
+    made: list[Step] = []
+    depth = hole.stroke
+    while depth < total - 1e-9:
+        made.append(Step(False, hole.retract + down * depth))
+        if full:
+            made.append(Step(True, hole.retract))
+            if depth > ABOVE * hole.units:
+                made.append(Step(True, hole.retract + down * (depth - ABOVE * hole.units)))
+        else:
+            made.append(Step(True, hole.retract + down * max(depth - CHIP_BREAK * hole.units, 0.0)))
+        depth += hole.stroke
+    return [*made, Step(False, hole.bottom)]
+
+
+def _back_bore(hole: Hole) -> list[Step]:
+    """G87: beside the hole down to R, over to it, up to Z and a little back, out beside it."""
+    if not hole.back:
+        raise CycleError("G87 needs G98")
+    aside = hole.aside
+    return [
+        Step(True, hole.initial, aside=aside),
+        Step(True, hole.retract, aside=aside),
+        Step(True, hole.retract),
+        Step(False, hole.bottom, dwell=hole.dwell),
+        Step(True, hole.bottom, aside=aside),
+        Step(True, hole.initial, aside=aside),
+        Step(True, hole.initial),
+    ]

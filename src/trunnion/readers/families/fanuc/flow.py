@@ -1,0 +1,139 @@
+"""Where a Fanuc program goes on: conditions, jumps and loops of macros."""
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.readers.common.rows import Note
+from trunnion.readers.families.fanuc.text import FanucText
+from trunnion.readers.families.fanuc.variables import Variables
+from trunnion.readers.rs274 import interpreter
+from trunnion.readers.rs274.block import Block
+from trunnion.readers.rs274.expressions import BlockError, Reader
+
+_WORD = re.compile(r"IF|GOTO|WHILE|DO|END(?=[0-9#\[])")
+
+#: The highest block number and loop number.
+_HIGHEST: Final = 10**9
+
+
+@dataclass(slots=True)
+class Activation(interpreter.Activation):
+    """A program or subprogram being executed.
+
+    line    where it began, for repetitions
+    begun   its O number has gone by
+    macro   it has local variables of its own
+    modal   the macro that G66 has called for every motion of it
+    """
+
+    text: FanucText
+    line: int = 1
+    begun: bool = False
+    macro: bool = False
+    modal: "ModalMacro | None" = None
+
+
+@dataclass(frozen=True, slots=True)
+class ModalMacro:
+    """A macro of G66: its number, how often it is called, and its arguments."""
+
+    number: int
+    times: int
+    arguments: dict[int, float]
+
+
+class Flow:
+    """Executes the words of flow; the text is behind the block when they are."""
+
+    def __init__(self, note: Note, variables: Variables) -> None:
+        self._note = note
+        self._variables = variables
+
+    def takes(self, call: Activation, line: int, reader: Reader) -> bool:
+        """Execute a word of flow if one comes next."""
+        match = _WORD.match(reader.text, reader.at)
+        if match is None:
+            return False
+        reader.at = match.end()
+        {"IF": self._if, "GOTO": self._goto, "WHILE": self._while, "DO": self._do, "END": self._end}[match.group()](
+            call, line, reader
+        )
+        if not reader.ended:
+            raise BlockError(f"something stands behind {match.group()}: {reader.rest!r}")
+        return True
+
+    def _holds(self, reader: Reader) -> bool:
+        """Return a condition; one that cannot be worked out does not hold."""
+        begin = reader.at
+        try:
+            return bool(reader.sum())
+        except BlockError as error:
+            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR)
+            reader.at = _behind_bracket(reader.text, begin)
+            return False
+
+    def _if(self, call: Activation, line: int, reader: Reader) -> None:
+        holds = self._holds(reader)
+        if reader.takes("GOTO"):
+            if holds:
+                self._goto(call, line, reader)
+            reader.at = len(reader.text)
+            return
+        reader.expect("THEN")
+        if not holds:
+            reader.at = len(reader.text)
+            return
+        reader.expect("#")
+        key = reader.key()
+        self._variables.set(key, reader.assigned())
+
+    def _goto(self, call: Activation, line: int, reader: Reader) -> None:
+        self.jump(call, line, _whole(reader.real()[0]))
+
+    @staticmethod
+    def jump(call: Activation, line: int, number: int) -> None:
+        """Go on at a block number."""
+        target = call.text.number(number, line)
+        if target is None:
+            raise BlockError(f"there is no block N{number} to go to")
+        call.text.jump(target)
+
+    def _while(self, call: Activation, line: int, reader: Reader) -> None:
+        holds = self._holds(reader)
+        reader.expect("DO")
+        _whole(reader.real()[0])
+        end = call.text.partner(line)
+        if not holds:
+            call.text.jump(end + 1)
+
+    def _do(self, call: Activation, line: int, reader: Reader) -> None:
+        _whole(reader.real()[0])
+        call.text.partner(line)
+
+    def _end(self, call: Activation, line: int, reader: Reader) -> None:
+        _whole(reader.real()[0])
+        call.text.jump(call.text.partner(line))
+
+
+def _whole(value: float | None) -> int:
+    if value is None or abs(value - round(value)) > 1e-6 or not 0 <= value < _HIGHEST:
+        raise BlockError("a whole number is missing")
+    return round(value)
+
+
+def _behind_bracket(text: str, at: int) -> int:
+    """Place behind the bracket that begins at a place."""
+    depth = 0
+    for place in range(at, len(text)):
+        depth += {"[": 1, "]": -1}.get(text[place], 0)
+        if depth == 0:
+            return place + 1
+    return len(text)
+
+
+def assign(variables: Variables, block: Block) -> None:
+    """Give variables the values that a block says."""
+    for key, value in block.settings:
+        variables.set(key, value)

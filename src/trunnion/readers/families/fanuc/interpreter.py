@@ -1,0 +1,355 @@
+"""Fanuc programs, block by block: what each one says goes to the virtual control, and where it goes on."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Codes, Floats
+from trunnion.errors import Severity
+from trunnion.machines import Carries, Machine
+from trunnion.model.run import Orientation
+from trunnion.readers.common.drilling import CycleError, Step
+from trunnion.readers.common.interpreter import STEPS, End
+from trunnion.readers.common.rows import FARTHEST
+from trunnion.readers.common.text import Text
+from trunnion.readers.common.virtual_control import RAPID
+from trunnion.readers.common.word import How, Word
+from trunnion.readers.families.fanuc import cycles, words
+from trunnion.readers.families.fanuc.control import FanucControl
+from trunnion.readers.families.fanuc.flow import Activation, assign
+from trunnion.readers.families.fanuc.offsets_and_frames import PlaceInterpreter
+from trunnion.readers.families.fanuc.text import FanucText
+from trunnion.readers.families.fanuc.variables import ARITHMETIC
+from trunnion.readers.rs274.block import Block, block_reader, read_block
+from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
+
+#: More holes at one place than a program means.
+_MOST_HOLES: Final = 10_000
+
+
+class FanucInterpreter(PlaceInterpreter):
+    """Runs one Fanuc program on one machine."""
+
+    text_type = FanucText
+
+    def __init__(
+        self,
+        path: Path,
+        machine: Machine,
+        *,
+        subprograms: Sequence[Path] = (),
+        step_limit: int = STEPS,
+        skip: bool = False,
+        shortest: bool | None = None,
+    ) -> None:
+        super().__init__(path, machine, subprograms=subprograms, step_limit=step_limit, skip=skip)
+        self._control = FanucControl(
+            machine, self._note, self._file, shortest=shortest, calculator=self._settings.calculator
+        )
+        self._to_initial = True
+        self._initial: float | None = None
+        self._sticky: dict[str, float] = {}
+        self._length_number = -1
+
+    @property
+    def control(self) -> FanucControl:
+        """The virtual control."""
+        return self._control
+
+    @property
+    def _table(self) -> Codes:
+        return self._control.plain_table
+
+    def _first(self, text: Text) -> Activation:
+        assert isinstance(text, FanucText)
+        return Activation(text, 0)
+
+    def _may_be_plain(self, text: Text) -> bool:
+        return self._stack[-1].modal is None and super()._may_be_plain(text)
+
+    def _system(self, key: int) -> float | None:
+        control = self._control
+        axes = {0: "X", 1: "Y", 2: "Z", **{3 + k: name for k, name in enumerate(control.names)}}
+        if 5001 <= key <= 5005 or 5041 <= key <= 5045:
+            axis = (key - 1) % 20
+            if axis < 3:
+                return float(control.place[axis]) / control.lengths
+            control.settle()
+            return float(control.held[control.machine.column(axes[axis])])
+        if 5021 <= key <= 5025:
+            control.settle()
+            value = float(control.held[control.machine.column(axes[key - 5021])])
+            return value / control.lengths if key <= 5023 else value
+        return None
+
+    # Blocks
+
+    def _text(self, call: Activation, line: int, text: str) -> None:
+        if text[0] in "O:":
+            self._program_number(call, line, text)
+            return
+        reader = block_reader(text, ARITHMETIC, self._variables)
+        if self._flow.takes(call, line, reader):
+            return
+        self._carry_out(call, line, read_block(reader, self._twice))
+
+    def _program_number(self, call: Activation, line: int, text: str) -> None:
+        """An O number begins a program; where another one runs into it, that one has ended."""
+        digits = text[1:]
+        if not digits.isdigit() or len(digits) > 8:
+            raise BlockError(f"no program number: {text[:40]!r}")
+        if call.begun and call.line != line:
+            self._note("the program runs into the next one: it ends here", Severity.ERROR)
+            self._end_of_file(call)
+        call.begun = True
+
+    def _end_of_file(self, call: Activation) -> None:
+        if len(self._stack) < 2:
+            raise End
+        self._leave()
+
+    def _carry_out(self, call: Activation, line: int, block: Block) -> None:
+        control = self._control
+        if words.MACRO in block.g or words.MODAL_MACRO in block.g:
+            self._macro(call, block)
+            assign(self._variables, block)
+            return
+        for code in block.g:
+            if code in (200, 210, 930, 940, 950):
+                self._modal(code)
+        tilts = words.TILT in block.g
+        if words.DWELL not in block.g:
+            self._settings.scale(block, control.feed_mode.now, control.lengths != 1.0, angles="IJKR" if tilts else "")
+        self._feed_and_speed(block)
+        tool = block.take("T")
+        if tool is not None:
+            control.choose(f"{tool:g}")
+        for code in block.m:
+            if code not in words.LATE:
+                self._m_word(code)
+        special, machine_frame = self._codes(block)
+        number = block.take("H")
+        if number is not None and 0 <= number < 1e6:
+            self._length_number = int(number)
+        # The control keeps H after G49, but no length is in force.
+        control.edge.set(control.row, self._length_number if control.lengthened else -1)
+        block.take("D")
+        if special in words.TAKES_AXES:
+            self._special(special, block)
+        elif not any(code in words.NO_MOTION for code in block.g):
+            self._drive(call, block, machine_frame)
+        if words.TOOL_UPRIGHT in block.g:
+            self._stand(block)
+        assign(self._variables, block)
+        late = [code for code in block.m if code in words.LATE]
+        for code in late:
+            self._late(call, line, code, block)
+        self._name_unused(block)
+
+    def _codes(self, block: Block) -> tuple[int, bool]:
+        """Set what G codes set; returns the one that takes the axis words (-1: none), and whether G53 is there."""
+        special = -1
+        machine_frame = False
+        for code in block.g:
+            if code in words.TAKES_AXES:
+                if special >= 0:
+                    raise BlockError("two G words want the words of the block")
+                special = code
+            elif code == words.MACHINE:
+                machine_frame = True
+            elif code in MOTIONS or code in cycles.CYCLES or code == CANCEL:
+                self._begin(code)
+            elif code not in (200, 210, 930, 940, 950):
+                self._g(code, block)
+        return special, machine_frame
+
+    def _begin(self, code: int) -> None:
+        """Take up a motion or a cycle."""
+        control = self._control
+        if code in cycles.CYCLES:
+            if self._initial is None:
+                self._initial = float(control.place[control.plane])
+                self._sticky = {}
+            self.motion = code
+            return
+        self._initial = None
+        self.motion = control.kind * 10 if code == CANCEL else code
+        if code in MOTIONS:
+            control.kind = MOTIONS[code]
+
+    def _g(self, code: int, block: Block) -> None:
+        control = self._control
+        for letter in words.WORDS.get(code, ""):
+            block.take(letter)
+        if code in words.OFFSETS or code == words.MORE_OFFSETS:
+            self._offset(code, block)
+        elif code in (words.TCP, words.TCP_VECTOR):
+            self._tcp(code, block)
+        elif code in (words.LENGTH_OFF, 430, 440):
+            block.take("H")
+            control.vectors = False
+            control.set_tcp(False)
+            control.set_length(code != words.LENGTH_OFF)
+            if code == 440:
+                self._note("G44: taken as G43, the length with the other sign is not simulated", Severity.WARNING)
+        elif code == words.UPRIGHT_OFF:
+            control.upright()
+        elif code in (980, 990):
+            self._to_initial = code == 980
+        elif code == words.MODAL_MACRO_OFF:
+            self._stack[-1].modal = None
+        elif code in words.LINES:
+            self._name_code(code, words.NAMED, words.SILENT)
+            self._begin(10)
+        elif code == 960:
+            control.feed_mode.set(control.row, 95)
+            self._name_code(code, words.NAMED, words.SILENT)
+        elif code != words.TOOL_UPRIGHT and not self._modal(code):
+            self._name_code(code, words.NAMED, words.SILENT)
+
+    def _tcp(self, code: int, block: Block) -> None:
+        """G43.4 and G43.5; P says how the tool axis moves from block to block."""
+        control = self._control
+        block.take("H")
+        posture = block.take("P")
+        if posture not in (None, 0.0, 1.0):
+            self._note(f"P{posture:g} of G43.4 and G43.5 is not known", Severity.ERROR)
+        vectors = code == words.TCP_VECTOR
+        if control.tcp and control.vectors != vectors:
+            self._note("G43.4 and G43.5 change without G49 between them: taken as if it were there", Severity.WARNING)
+        if vectors and any(letter in block.words for letter in "IJK") and not self._in_head:
+            self._note("I J K in the block of G43.5: an alarm where a table turns (PS5421)", Severity.ERROR)
+        control.set_tcp(True)
+        control.set_length(True)
+        control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
+        control.vectors = vectors
+
+    @property
+    def _in_head(self) -> bool:
+        """Whether both rotary axes turn the tool."""
+        machine = self._control.machine
+        return all(machine.axes[column].carries is Carries.TOOL for column in machine.rotary)
+
+    def _m_word(self, code: int) -> None:
+        if not self._m(code):
+            self._control.event("m", float(code))
+
+    def _late(self, call: Activation, line: int, code: int, block: Block) -> None:
+        if code == words.CALL:
+            self._call(block)
+        elif code == words.RETURN:
+            self._return(call, line, block)
+        elif code == words.CALL_FILE:
+            for letter in "PL":
+                block.take(letter)
+            self._note("M198: programs of other folders are not called", Severity.ERROR)
+        else:
+            self._m_word(code)
+
+    # Motion
+
+    def _drive(self, call: Activation, block: Block, machine_frame: bool) -> None:
+        """Make the motion that the words of the block ask for."""
+        control = self._control
+        axes = self._axis_words(block)
+        vector = self._vector(block) if control.vectors and self.motion in (0, 10) else None
+        if self.motion in cycles.CYCLES:
+            self._cycle(block, axes)
+            if axes:
+                self._call_modal(call)
+            return
+        circle = self.motion in (20, 30) and any(letter in block.words for letter in "IJKR")
+        if not axes and vector is None and not circle:
+            return
+        if machine_frame:
+            if not control.absolute:
+                raise BlockError("G53 needs G90")
+            control.kind = MOTIONS[self.motion]
+            self._check_feed("F" in block.words)
+            control.move(
+                {name: (word[0], How.ABSOLUTE) for name, word in axes.items()},
+                None,
+                machine_frame=True,
+                feed_written="F" in block.words,
+            )
+        elif vector is not None:
+            control.kind = MOTIONS[self.motion]
+            self._check_feed("F" in block.words)
+            control.move(axes, vector, feed_written="F" in block.words)
+        else:
+            self._move(block, axes)
+        self._call_modal(call)
+
+    def _vector(self, block: Block) -> Floats | None:
+        """G43.5: I J K are the tool axis; those that are not written are 0 where one is."""
+        values = [block.take(letter) for letter in "IJK"]
+        incline = block.take("Q")
+        if incline:
+            self._note("the inclination Q of G43.5 is not simulated", Severity.ERROR)
+        if all(value is None for value in values):
+            return None
+        vector = np.array([value or 0.0 for value in values])
+        if not 1e-12 < float(np.linalg.norm(vector)) < FARTHEST:
+            raise BlockError("the tool axis has no direction")
+        return vector
+
+    # Cycles
+
+    def _cycle(self, block: Block, axes: dict[str, Word]) -> None:
+        """Drill at the position of a block."""
+        control = self._control
+        along = "XYZ"[control.plane]
+        given = {
+            letter: value for letter in cycles.STICKY if letter != "Z" and (value := block.take(letter)) is not None
+        }
+        if along in axes:
+            given["Z"] = axes[along][0]
+        self._sticky |= given
+        repeats = block.take("K")
+        block.take("L")
+        if not axes and not ({"R", "Z"} & given.keys()):
+            return
+        if set(axes) - set("XYZ"):
+            self._note("rotary words in a cycle: they are not executed", Severity.ERROR)
+        missing = [letter for letter in "ZR" + "Q" * (self.motion in cycles.NEED_Q) if letter not in self._sticky]
+        if missing:
+            raise BlockError(f"the cycle has no {missing[0]}")
+        times = 1 if repeats is None else int(repeats)
+        if not 0 <= times <= _MOST_HOLES:
+            raise BlockError("K of a cycle is how often it drills")
+        if not control.place[3] > 0.0:
+            self._note("a cycle without a feed", Severity.ERROR)
+        made = self._motions(self._hole())
+        plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
+        kind = control.kind
+        for _ in range(times):
+            self._count(len(made) + 1)
+            control.kind = RAPID
+            control.move(plane, None)
+            control.drill(made)
+        control.kind = kind
+
+    def _hole(self) -> cycles.Hole:
+        control = self._control
+        scale = control.lengths
+        now = self._sticky
+        assert self._initial is not None
+        initial = self._initial / scale
+        retract, bottom = now["R"], now["Z"]
+        if not control.absolute:
+            retract += initial
+            bottom += retract
+        stroke = abs(now.get("Q", 0.0))
+        aside = (now["I"], now.get("J", 0.0)) if "I" in now else (0.0, now["J"]) if "J" in now else (stroke, 0.0)
+        return cycles.Hole(
+            retract, bottom, initial, self._to_initial, stroke, aside, max(now.get("P", 0.0), 0.0) / 1000.0, 1.0 / scale
+        )
+
+    def _motions(self, hole: cycles.Hole) -> list[Step]:
+        try:
+            return cycles.steps(self.motion, hole)
+        except CycleError as error:
+            raise BlockError(f"the cycle {error}") from None

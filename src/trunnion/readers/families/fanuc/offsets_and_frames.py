@@ -1,0 +1,185 @@
+"""What takes the words of its block on a Fanuc: work offsets, shifts, turned frames, planes, the way home, dwells."""
+
+from abc import abstractmethod
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import Severity
+from trunnion.readers.common.rows import FARTHEST
+from trunnion.readers.common.virtual_control import RAPID
+from trunnion.readers.common.word import Word
+from trunnion.readers.families.fanuc import words
+from trunnion.readers.families.fanuc.calls import CallInterpreter
+from trunnion.readers.families.fanuc.control import FanucControl
+from trunnion.readers.rs274.block import Block
+from trunnion.readers.rs274.expressions import BlockError
+
+
+class PlaceInterpreter(CallInterpreter):
+    """Blocks whose words are no motion to where they say; motions are for the class below."""
+
+    @property
+    @abstractmethod
+    def control(self) -> FanucControl:
+        """The virtual control."""
+
+    def _offset(self, code: int, block: Block) -> None:
+        control = self.control
+        system = words.OFFSETS.index(code) + 1 if code in words.OFFSETS else 1
+        more = block.take("P") if code in (540, words.MORE_OFFSETS) else None
+        if code == words.MORE_OFFSETS and more is None:
+            raise BlockError("G54.1 needs P")
+        if more is not None:
+            if more != int(more) or not 1 <= more <= 300:
+                raise BlockError("P of G54.1 is not from 1 to 300")
+            system = 6 + int(more)
+        control.system = system
+        name = f"G{53 + system}" if system <= 6 else f"G54.1 P{system - 6}"
+        control.set_offset(53 + system if system <= 6 else 594 + system, name)
+        control.refresh()
+
+    def _special(self, code: int, block: Block) -> None:
+        control = self.control
+        if control.tilted and code in (words.LOCAL, words.PRESET):
+            self._note("shifts in a tilted plane are not simulated", Severity.ERROR)
+        match code:
+            case words.DWELL:
+                self._dwell(block)
+            case words.SET_DATA:
+                self._set_data(block)
+            case words.HOME | words.OTHER_HOME:
+                self._go_home(code, block)
+            case words.LOCAL:
+                values = self._point(block)
+                control.local = np.array(
+                    [old if new is None else new for old, new in zip(control.local, values, strict=True)]
+                )
+                control.refresh()
+            case words.PRESET:
+                for axis, value in enumerate(self._point(block)):
+                    if value is not None:
+                        control.preset[axis] += float(control.place[axis]) - value
+                if control.tilted or not control.rotation.rigid or self._turned():
+                    self._note("G92 in a turned frame is not simulated", Severity.ERROR)
+                control.refresh()
+            case words.ROTATE:
+                self._rotate(block)
+            case _:
+                assert code == words.TILT
+                self._tilt(block)
+
+    def _turned(self) -> bool:
+        return not np.allclose(self.control.rotation.linear, np.eye(3))
+
+    def _dwell(self, block: Block) -> None:
+        number = block.words.get("X") or block.words.get("U")
+        for letter in "XU":
+            block.take(letter)
+        milliseconds = block.take("P")
+        if number is not None:
+            self.control.event("dwell", number.value * (self._settings.seconds if number.whole else 1.0))
+        elif milliseconds is not None:
+            self.control.event("dwell", milliseconds / 1000.0)
+        else:
+            self._note("G4 without a time", Severity.WARNING)
+
+    def _point(self, block: Block) -> list[float | None]:
+        """X, Y and Z of a block in mm; words of rotary axes must be 0 where they would shift."""
+        for name in self.control.names:
+            if block.take(name):
+                self._note(f"a shift of {name} is not simulated", Severity.ERROR)
+        values = [block.take(name) for name in "XYZ"]
+        scaled = [None if value is None else value * self.control.lengths for value in values]
+        if any(value is not None and abs(value) > FARTHEST for value in scaled):
+            raise BlockError("a shift is larger than any machine")
+        return scaled
+
+    def _set_data(self, block: Block) -> None:
+        """G10: a work offset, or data of tools."""
+        control = self.control
+        kind, number = block.take("L"), block.take("P")
+        if kind in (10.0, 11.0, 12.0, 13.0, 1.0, 3.0):
+            for letter in "RXYZQDH":
+                block.take(letter)
+            return
+        if kind not in (2.0, 20.0) or number is None or number != int(number) or not 0 <= number <= 300:
+            for letter in "RXYZ":
+                block.take(letter)
+            raise BlockError("G10 with this L and P is not simulated")
+        values = self._point(block)
+        if kind == 2.0 and not 1 <= number <= 6:
+            raise BlockError("G10 L2 with this P is not simulated")
+        system = int(number) if kind == 2.0 else 6 + int(number)
+        old = control.offset_of(system)
+        base = np.zeros(3) if control.absolute else old
+        control.set_values(
+            system, np.array([o if v is None else b + v for o, b, v in zip(old, base, values, strict=True)])
+        )
+
+    def _go_home(self, code: int, block: Block) -> None:
+        """G28 and G30: over the point that the block says to the reference position."""
+        control = self.control
+        axes = self._axis_words(block)
+        if not axes:
+            raise BlockError("G28 and G30 need the axes that go home")
+        if code == words.OTHER_HOME:
+            which = block.take("P")
+            self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING)
+        self._count(1)
+        kind, control.kind = control.kind, RAPID
+        before = control.place[:3].copy()
+        moving = {name: word for name, word in axes.items() if not (not control.absolute and word[0] == 0.0)}
+        if moving and (set(moving) - set("XYZ") or not np.array_equal(before, self._goal(moving))):
+            control.move(moving, None)
+        control.go_to_machine({name: float(control.machine.axis(name).home) for name in axes})
+        control.kind = kind
+
+    def _goal(self, axes: dict[str, Word]) -> Floats:
+        control = self.control
+        goal = control.place[:3].copy()
+        for axis, name in enumerate("XYZ"):
+            if name in axes:
+                value = axes[name][0] * control.lengths
+                goal[axis] = value if control.absolute else goal[axis] + value
+        return np.asarray(goal)
+
+    def _rotate(self, block: Block) -> None:
+        """G68: in the working plane, or with I J K in space."""
+        control = self.control
+        angle = block.take("R")
+        point = self._point(block)
+        centre = np.array(
+            [now if value is None else value for now, value in zip(control.place[:3], point, strict=True)]
+        )
+        direction = [block.take(letter) for letter in "IJK"]
+        axis = np.zeros(3)
+        if any(value is not None for value in direction):
+            axis[:] = [value or 0.0 for value in direction]
+        else:
+            axis[control.plane] = 1.0
+        length = float(np.linalg.norm(axis))
+        if angle is None or not 1e-12 < length < FARTHEST or not abs(angle) < FARTHEST:
+            raise BlockError("G68 needs an angle R, and an axis that has a direction")
+        control.rotate(centre, axis / length, angle)
+
+    def _tilt(self, block: Block) -> None:
+        """G68.2: the plane by its origin and Euler angles."""
+        control = self.control
+        way = block.take("P")
+        block.take("R")
+        origin = np.array([value or 0.0 for value in self._point(block)])
+        angles = [block.take(letter) or 0.0 for letter in "IJK"]
+        order = block.take("Q")
+        if way or (order is not None and order != 313):
+            raise BlockError("G68.2 with P or Q is not simulated: only Euler angles are")
+        if any(not abs(angle) < FARTHEST for angle in angles):
+            raise BlockError("an angle is none that a plane has")
+        control.tilt(origin, (angles[0], angles[1], angles[2]))
+
+    def _stand(self, block: Block) -> None:
+        way = block.take("P")
+        if way:
+            self._note(f"G53.1 P{way:g}: taken as G53.1, the way on which the axes turn least", Severity.WARNING)
+        self._count(1)
+        self.control.stand_on_plane()

@@ -1,0 +1,76 @@
+"""What may be set differently on a Fanuc, and how numbers without a point count."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.machines import Machine
+from trunnion.readers.common.settings import reading_of
+from trunnion.readers.rs274.block import Block, Number
+
+#: Letters whose whole numbers are counted in least increments: lengths, and angles.
+LENGTHS: Final = "XYZUVWIJKRQ"
+ANGLES: Final = "ABC"
+
+#: Least increments of inches, of feeds in inch/min, mm/rev and inch/rev, and seconds of a dwell.
+_INCH_PART: Final = 0.1
+_FEEDS: Final = {(94, False): 1.0, (94, True): 0.01, (95, False): 0.01, (95, True): 0.0001}
+_SECONDS: Final = 0.001
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How a control is set.
+
+    calculator   numbers without a point are whole millimetres, inches and degrees, not least increments
+    increment    the least increment, mm and degrees; of inches a tenth of it
+    """
+
+    calculator: bool = False
+    increment: float = 0.001
+
+    def length(self, inches: bool) -> float:
+        """Return what a whole number of a length counts, in mm or inches."""
+        if self.calculator:
+            return 1.0
+        return self.increment * _INCH_PART if inches else self.increment
+
+    @property
+    def angle(self) -> float:
+        """What a whole number of degrees counts."""
+        return 1.0 if self.calculator else self.increment
+
+    @property
+    def seconds(self) -> float:
+        """What a whole number of seconds counts."""
+        return 1.0 if self.calculator else _SECONDS
+
+    def feed(self, mode: int, inches: bool) -> float:
+        """What a whole number behind F counts; of inverse time as it stands."""
+        return 1.0 if self.calculator else _FEEDS.get((mode, inches), 1.0)
+
+    def scale(self, block: Block, mode: int, inches: bool, *, angles: str = "") -> None:
+        """Count the whole numbers of a block; the letters ``angles`` are angles in it besides A, B and C."""
+        if self.calculator:
+            return
+        for letter, number in block.words.items():
+            if not number.whole:
+                continue
+            if letter in ANGLES or letter in angles:
+                factor = self.angle
+            elif letter in LENGTHS:
+                factor = self.length(inches)
+            elif letter == "F":
+                factor = self.feed(mode, inches)
+            else:
+                continue
+            block.words[letter] = Number(number.value * factor)
+
+
+def settings_of(machine: Machine) -> Settings:
+    """Read the settings of a machine's control; InputError if they are wrong."""
+    table = reading_of(machine)
+    numbers = table.text("whole_numbers", "increments", one_of=("increments", "calculator"))
+    increment = table.number("least_increment_mm", 0.001, above=0.0)
+    table.finish()
+    table.check()
+    return Settings(numbers == "calculator", increment)

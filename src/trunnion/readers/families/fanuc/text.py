@@ -1,0 +1,98 @@
+"""Where jumps and calls of a Fanuc program lead: its O numbers, block numbers and loops."""
+
+import re
+from bisect import bisect_right
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from trunnion.readers.common.text import Text
+
+#: How names of programs end.
+SUFFIXES: Final = (".NC", ".CNC", ".TAP", ".PRG", ".TXT", "")
+
+#: How deep loops may stand inside each other; the control itself has 3 levels.
+DEEPEST: Final = 64
+
+_START: Final = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?"
+_O_NUMBER = re.compile(rb"^[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9])", re.IGNORECASE | re.MULTILINE)
+_N_NUMBER = re.compile(rb"^[ \t]*(?:/[0-9]?[ \t]*)?N[ \t]*([0-9]{1,15})", re.IGNORECASE | re.MULTILINE)
+_LOOP = re.compile(
+    _START + rb"(?:WHILE[ \t]*\[[^\n(]*\][ \t]*)?(DO|END)[ \t]*([0-9]{1,3})[ \t]*(?=[\r\n(;]|$)",
+    re.IGNORECASE | re.MULTILINE,
+)
+
+
+@dataclass(slots=True)
+class _Places:
+    """Lines of O numbers, of block numbers, and of the other half of each loop; None before they are asked for."""
+
+    programs: dict[int, int] | None = None
+    numbers: dict[int, list[int]] | None = None
+    loops: dict[int, int] | None = None
+
+
+class FanucText(Text):
+    """A program file with the places where its jumps lead."""
+
+    def __init__(self, path: Path, *, whole: bool = False) -> None:
+        # Shared by all that run the same text: see ``again``.
+        self._places = _Places()
+        super().__init__(path, whole=whole)
+
+    def program(self, number: int) -> int | None:
+        """Line of an O number, None if this file has none like it."""
+        return self._programs().get(number)
+
+    def _programs(self) -> dict[int, int]:
+        if self._places.programs is None:
+            found: dict[int, int] = {}
+            for match in _O_NUMBER.finditer(self.all()):
+                found.setdefault(int(match.group(1)), self.line_of(match.start(1)))
+            self._places.programs = found
+        return self._places.programs
+
+    def _part(self, line: int) -> tuple[int, int]:
+        """First line of the O program that a line belongs to, and the line after its last."""
+        begins = sorted(self._programs().values())
+        at = bisect_right(begins, line)
+        return begins[at - 1] if at else 1, begins[at] if at < len(begins) else self.lines + 1
+
+    def number(self, number: int, here: int) -> int | None:
+        """Line of a block number: the next one after ``here``, else the first of the program."""
+        if self._places.numbers is None:
+            numbers: dict[int, list[int]] = {}
+            for match in _N_NUMBER.finditer(self.all()):
+                numbers.setdefault(int(match.group(1)), []).append(self.line_of(match.start(1)))
+            self._places.numbers = numbers
+        first, end = self._part(here)
+        lines = [line for line in self._places.numbers.get(number, []) if first <= line < end]
+        return next((line for line in lines if line > here), lines[0] if lines else None)
+
+    def partner(self, line: int) -> int:
+        """Return the line of END for a DO, of DO for an END."""
+        if self._places.loops is None:
+            self._places.loops = self._match_loops()
+        try:
+            return self._places.loops[line]
+        except KeyError:
+            raise self.problem(line, "has a DO or END that begins or ends nothing") from None
+
+    def _match_loops(self) -> dict[int, int]:
+        partners: dict[int, int] = {}
+        open_: list[tuple[int, int]] = []
+        for match in _LOOP.finditer(self.all()):
+            line = self.line_of(match.start(1))
+            number = int(match.group(2))
+            if match.group(1).upper() == b"DO":
+                open_.append((number, line))
+                if len(open_) > DEEPEST:
+                    raise self.problem(line, f"nests loops deeper than {DEEPEST} levels")
+            elif not open_ or open_[-1][0] != number:
+                raise self.problem(line, f"has END{number} without its DO{number}")
+            else:
+                begin = open_.pop()[1]
+                partners[begin], partners[line] = line, begin
+        if open_:
+            raise self.problem(open_[-1][1], f"begins DO{open_[-1][0]}, which never ends")
+        return partners

@@ -1,0 +1,432 @@
+"""Klartext programs, block by block: what each one says goes to the virtual control, and where it goes on."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.machines import Machine
+from trunnion.readers.common import interpreter
+from trunnion.readers.common.drilling import CycleError
+from trunnion.readers.common.interpreter import STEPS, End, Interpreter
+from trunnion.readers.common.text import Subprograms, Text
+from trunnion.readers.common.virtual_control import INCH, LINEAR, RAPID
+from trunnion.readers.common.word import How
+from trunnion.readers.families.heidenhain import scan
+from trunnion.readers.families.heidenhain.blocks import LONGEST, Line, split_line, words
+from trunnion.readers.families.heidenhain.control import HeidenhainControl
+from trunnion.readers.families.heidenhain.definitions import Definitions
+from trunnion.readers.families.heidenhain.functions import ASSIGNED, assign, execute
+from trunnion.readers.families.heidenhain.machine import Functions, tool_block
+from trunnion.readers.families.heidenhain.motion import Block, circle_of, polar_end, read_block
+from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
+from trunnion.readers.families.heidenhain.text import SUFFIXES, KlartextText
+from trunnion.readers.families.heidenhain.tilting import plane_block, tcpm_block
+from trunnion.readers.families.heidenhain.words import BLOCKS_NAMED, M_CALL, M_MACHINE, M_SECOND_MACHINE, PATHS
+
+#: Subprograms by label inside each other.
+DEEPEST_LABEL: Final = 20
+
+#: Feeds of inch programs count tenths of an inch.
+_TENTH: Final = 0.1 * INCH
+
+#: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
+_PLAIN = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][Nn]?[ \t])")
+_LOOK: Final = 32
+
+#: Radius compensation: left of the path, right of it, off.
+_SIDES: Final = {"R0": 0, "RL": 1, "RR": -1}
+
+_LABEL = re.compile(r"(Q[LR]?[0-9]{1,4})|([0-9]{1,5})")
+_CYCLE = re.compile(r"[ \t]*(DEF|CALL)(?![A-Z])")
+_CALL = re.compile(r"[ \t]*(LBL|PGM)(?![A-Z])")
+_HEAD = re.compile(r"([A-Z]+)")
+_PATH = re.compile(rf"({'|'.join(sorted(PATHS, key=len, reverse=True))})(?=[ \t]|$)")
+
+
+@dataclass(slots=True)
+class Activation(interpreter.Activation):
+    """A program being executed.
+
+    returns   lines after the calls of its labels
+    left      repeats that are left, by the line of the call
+    """
+
+    text: KlartextText
+    parameters: Parameters = field(default_factory=Parameters)
+    returns: list[int] = field(default_factory=list)
+    left: dict[int, int] = field(default_factory=dict)
+
+
+class HeidenhainInterpreter(Interpreter[Activation]):
+    """Runs one Klartext program on one machine."""
+
+    text_type = KlartextText
+
+    def __init__(
+        self,
+        path: Path,
+        machine: Machine,
+        *,
+        subprograms: Sequence[Path] = (),
+        step_limit: int = STEPS,
+        skip: bool = False,
+        shortest: bool | None = None,
+    ) -> None:
+        super().__init__(path, machine, Subprograms(subprograms, SUFFIXES), step_limit=step_limit, skip=skip)
+        self._control = HeidenhainControl(machine, self._note, self._file, shortest=shortest)
+        self._definitions = Definitions(self._control, self._note)
+        #: Parts of a block that goes on over several lines.
+        self._begun: list[str] = []
+        self._began = 0, -1
+        self._functions = Functions(self._control, self._note)
+        self._tool_feed: float | None = None
+        self._heads: dict[str, Callable[[Activation, str], None]] = {
+            "BEGIN": self._begin,
+            "END": self._end,
+            "BLK": self._nothing,
+            "TOOL": self._tool,
+            "CYCL": self._cycle,
+            "CYCLE": self._cycle,
+            "CALL": self._call,
+            "LBL": self._label,
+            "FN": self._function,
+            "PLANE": self._plane,
+            "FUNCTION": self._special,
+            "CC": self._pole,
+            "STOP": self._stop,
+        }
+
+    @property
+    def control(self) -> HeidenhainControl:
+        """The virtual control."""
+        return self._control
+
+    def _first(self, text: Text) -> Activation:
+        assert isinstance(text, KlartextText)
+        return Activation(text, 0)
+
+    def _may_be_plain(self, text: Text) -> bool:
+        if self._begun or self._functions.modal_call or self._control.compensation.now:
+            return False
+        return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
+
+    def _kernel(self, text: Text) -> None:
+        control = self._control
+        scan.scan(
+            text.buffer,
+            len(text.buffer),
+            control.table,
+            control.tips,
+            control.lengths,
+            control.feeds,
+            control.default_way,
+            control.map,
+            control.turn,
+            control.counts,
+            control.place,
+            control.target(),
+            control.notes,
+        )
+
+    # Lines and blocks
+
+    def _line(self, call: Activation, line: int, raw: str) -> None:
+        if len(raw) > LONGEST:
+            self._begun.clear()
+            self._note(f"the line is longer than {LONGEST} characters: it is not executed", Severity.ERROR)
+            return
+        parts = split_line(raw)
+        if self._begun and parts.number >= 0 and not ASSIGNED.match(parts.statement):
+            self._note("the block before it goes on (~), and a new one begins", Severity.ERROR)
+            self._finish(call)
+            self._control.line = line
+        if parts.skipped and self._skip:
+            parts = Line(parts.number, True, "", parts.comment, False)
+        if not self._begun:
+            self._began = line, parts.number
+        if parts.statement:
+            self._begun.append(parts.statement)
+        try:
+            if not (parts.goes_on and self._begun):
+                self._finish(call)
+            elif sum(map(len, self._begun)) > LONGEST:
+                self._begun.clear()
+                self._note(f"the block is longer than {LONGEST} characters: it is not executed", Severity.ERROR)
+        finally:
+            self._comment(line, parts.comment)
+
+    def _finish(self, call: Activation) -> None:
+        """Execute the block whose parts have come together."""
+        statement = " ".join(self._begun)
+        self._begun.clear()
+        if not statement:
+            return
+        self._control.line, self._control.block_number = self._began
+        try:
+            self._statement(call, statement)
+        except KlartextError as error:
+            self._note(f"not understood: {statement[:80]}: {error}: the block is not executed", Severity.ERROR)
+
+    def _leave(self) -> None:
+        if self._begun:
+            # The last block said that it goes on, and nothing came.
+            self._finish(self._stack[-1])
+            return
+        super()._leave()
+
+    def _statement(self, call: Activation, statement: str) -> None:
+        path, assigned = _PATH.match(statement), ASSIGNED.match(statement)
+        if path is not None:
+            self._motion(call, path[0], statement[path.end() :])
+            return
+        if assigned is not None:
+            assign(assigned[1], statement[assigned.end() :], call.parameters)
+            return
+        head = _HEAD.match(statement)
+        word = "" if head is None else head[0]
+        if word in self._heads:
+            self._heads[word](call, statement[len(word) :])
+        elif word in BLOCKS_NAMED:
+            self._note(f"{word} {BLOCKS_NAMED[word]}", Severity.ERROR)
+        else:
+            # A block of M words, or one axis on its own, needs no head.
+            self._motion(call, "L", statement)
+
+    def _nothing(self, call: Activation, rest: str) -> None:
+        pass
+
+    def _begin(self, call: Activation, rest: str) -> None:
+        if not rest.split()[:1] == ["PGM"]:
+            raise KlartextError("BEGIN needs PGM")
+        unit = rest.split()[-1]
+        if unit not in ("MM", "INCH"):
+            self._note("BEGIN PGM without MM or INCH: taken as millimetres", Severity.WARNING)
+        self._control.set_units(unit == "INCH", False)
+        self._control.feeds = _TENTH if unit == "INCH" else 1.0
+
+    def _end(self, call: Activation, rest: str) -> None:
+        self._begun.clear()
+        self._leave()
+
+    def _stop(self, call: Activation, rest: str) -> None:
+        block = read_block(words(rest), call.parameters)
+        self._functions.early(block)
+        self._control.event("stop")
+        self._functions.late(block)
+
+    # Motion
+
+    def _motion(self, call: Activation, head: str, rest: str) -> None:
+        control = self._control
+        block = read_block(words(rest), call.parameters)
+        machine = {M_MACHINE, M_SECOND_MACHINE} & {code for code, _ in block.m}
+        self._check_axes(block)
+        axes = block.axes
+        if head in ("LP", "CP", "CTP"):
+            axes = polar_end(control, block, circle=head == "CP")
+        elif block.polar:
+            raise KlartextError(f"{head} has no polar coordinates")
+        if block.radius is not None and head != "CR":
+            raise KlartextError(f"{head} has no radius")
+        circle = circle_of(control, head, block) if head[0] == "C" else None
+        vector = block.tool_axis
+        feed = self._feed(block)
+        self._functions.early(block)
+        if feed is not None:
+            control.place[3] = feed
+        control.kind = RAPID if block.rapid else LINEAR
+        if block.side:
+            control.compensation.set(control.row, _SIDES[block.side])
+        if block.side in ("RL", "RR"):
+            text = "radius compensation is not simulated: the path is that of the tool centre as programmed"
+            self._note(f"{block.side}: {text}", Severity.WARNING)
+        if M_SECOND_MACHINE in machine:
+            self._note("M92: where it counts from is set in the machine, taken as M91", Severity.WARNING)
+        if vector is not None and not control.tips:
+            self._note("TX TY TZ need M128: the vector is taken as the tool axis", Severity.WARNING)
+        moves, row = bool(axes) or vector is not None or circle is not None, control.row
+        if moves:
+            control.move(
+                axes,
+                vector,
+                circle=circle,
+                machine_frame=bool(machine),
+                feed_written=block.feed is not None and not block.rapid,
+            )
+            if block.normal is not None and control.row > row:
+                control.touch(block.normal)
+        calls = any(code == M_CALL for code, _ in block.m)
+        if calls or (self._functions.modal_call and moves and not machine):
+            self._drill(call)
+        if calls:
+            self._functions.modal_call = False
+        self._functions.late(block)
+
+    def _check_axes(self, block: Block) -> None:
+        """Say which axes the machine does not have, and take them out."""
+        known = {"X", "Y", "Z", *self._control.names} | ({"A", "B", "C"} if self._control.by_angles else set())
+        for name in sorted(block.axes.keys() - known):
+            self._note(f"the machine has no axis {name}: its word is not executed", Severity.ERROR)
+            del block.axes[name]
+
+    def _feed(self, block: Block) -> float | None:
+        """Feed of a block in mm/min, None if it has none."""
+        if block.feed is not None:
+            return block.feed * self._control.feeds
+        if block.feed_of_tool and self._tool_feed is None:
+            raise KlartextError("F AUTO, and TOOL CALL has no F")
+        return self._tool_feed if block.feed_of_tool else None
+
+    def _pole(self, call: Activation, rest: str) -> None:
+        control = self._control
+        # A pole that is not understood leaves none.
+        control.pole = None
+        block = read_block(words(rest), call.parameters)
+        pole = control.place[:3].copy()
+        for name, (value, how) in block.axes.items():
+            if name not in ("X", "Y", "Z"):
+                raise KlartextError(f"CC takes no {name}")
+            axis = "XYZ".index(name)
+            pole[axis] = value * control.lengths + (pole[axis] if how is How.INCREMENTAL else 0.0)
+        control.pole = pole
+
+    def _drill(self, call: Activation) -> None:
+        try:
+            made = self._definitions.called(call.parameters)
+        except CycleError as error:
+            self._note(f"the cycle {error}: it is not executed", Severity.ERROR)
+            return
+        self._count(len(made))
+        self._control.drill(made)
+
+    # Tools and cycles
+
+    def _tool(self, call: Activation, rest: str) -> None:
+        feed = tool_block(self._control, rest, call.parameters)
+        if feed is not None:
+            self._tool_feed = feed
+
+    def _cycle(self, call: Activation, rest: str) -> None:
+        match = _CYCLE.match(rest)
+        if match is None:
+            raise KlartextError("CYCL needs DEF or CALL")
+        rest = rest[match.end() :]
+        if match[1] == "DEF":
+            self._definitions.define(rest, call.parameters)
+            return
+        said = words(rest)
+        first = said[0].name if said else ""
+        if first == "PAT":
+            self._note("CYCL CALL PAT: point patterns are not simulated", Severity.ERROR)
+            return
+        position = first == "POS"
+        block = read_block(said[1:] if position else said, call.parameters)
+        if block.axes and not position:
+            raise KlartextError("CYCL CALL takes no positions")
+        self._functions.early(block)
+        if block.feed is not None:
+            self._control.place[3] = block.feed * self._control.feeds
+        if position:
+            self._control.kind = LINEAR if block.feed is not None and not block.rapid else RAPID
+            self._control.move(block.axes, None, feed_written=block.feed is not None)
+        self._drill(call)
+        self._functions.late(block)
+
+    # Planes
+
+    def _plane(self, call: Activation, rest: str) -> None:
+        self._control.event("plane", rest.strip())
+        plane_block(self._control, words(rest), call.parameters, self._note)
+
+    def _special(self, call: Activation, rest: str) -> None:
+        match rest.split():
+            case ["TCPM", *_]:
+                tcpm_block(self._control, words(rest.replace("TCPM", "", 1)), self._note)
+            case ["RESET", "TCPM"]:
+                self._control.by_angles = False
+                self._control.set_tcp(False)
+            case ["MODE", "MILL"]:
+                pass
+            case _:
+                self._note(f"FUNCTION{rest[:60]} is not simulated", Severity.ERROR)
+
+    # Flow
+
+    def _label(self, call: Activation, rest: str) -> None:
+        if _target(rest, call.parameters) == "0" and call.returns:
+            call.text.jump(call.returns.pop())
+
+    def _call(self, call: Activation, rest: str) -> None:
+        match = _CALL.match(rest)
+        if match is None:
+            raise KlartextError("CALL needs LBL or PGM")
+        rest = rest[match.end() :].strip()
+        if match[1] == "PGM":
+            self._enter(rest.strip('"'))
+            return
+        where, _, again = rest.partition("REP")
+        call.text.load()
+        here = call.text.line
+        target = self._line_of(call, where)
+        if again:
+            self._repeat(call, here, target, int(_target(again.split("/")[0], call.parameters)))
+            return
+        if len(call.returns) >= DEEPEST_LABEL:
+            line = self._control.line
+            what = f"calls labels deeper than {DEEPEST_LABEL} levels"
+            raise call.text.problem(line, what, "does one call itself?")
+        call.returns.append(here)
+        call.text.jump(target)
+
+    def _repeat(self, call: Activation, here: int, target: int, times: int) -> None:
+        left = call.left.setdefault(here, times)
+        if left > 0:
+            call.left[here] = left - 1
+            call.text.jump(target)
+        else:
+            del call.left[here]
+
+    def _line_of(self, call: Activation, where: str) -> int:
+        name = _target(where, call.parameters)
+        found = call.text.label(name)
+        if found is None:
+            self._note(f"the label {name[:60]} is missing: the program ends here", Severity.ERROR)
+            raise End
+        return found
+
+    def _enter(self, name: str) -> None:
+        """Call a program, one of the files that were named."""
+        path = self._named.find(name)
+        if path is None:
+            self._note(f"missing program {name[:80]}: it is not executed; name its file", Severity.ERROR)
+            return
+        self._check_depth()
+        parameters = Parameters(self._stack[-1].parameters)
+        text, file = self._open(path)
+        assert isinstance(text, KlartextText)
+        self._stack.append(Activation(text, file, parameters=parameters))
+
+    # Parameters
+
+    def _function(self, call: Activation, rest: str) -> None:
+        where = execute(rest, call.parameters, self._note)
+        if where is not None:
+            call.text.load()
+            call.text.jump(self._line_of(call, where))
+
+
+def _target(text: str, parameters: Parameters) -> str:
+    """Name of a label: its number, or its name in capitals."""
+    text = text.strip()
+    if text[:1] == '"':
+        return text.strip('"').upper()
+    match = _LABEL.fullmatch(text)
+    if match is None:
+        raise KlartextError("a label has a number or a name in quotes")
+    number = parameters[canonical(match[1])] if match[1] else float(match[2])
+    if number != int(number) or number < 0.0:
+        raise KlartextError(f"{number:g} is no label")
+    return str(int(number))

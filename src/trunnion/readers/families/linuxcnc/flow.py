@@ -1,0 +1,210 @@
+"""Where a LinuxCNC program goes on: its O words."""
+
+import re
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from trunnion.errors import Severity
+from trunnion.machines import Machine
+from trunnion.readers.common.text import Subprograms
+from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC, LOCAL, Parameters
+from trunnion.readers.families.linuxcnc.text import SUFFIXES, LinuxcncText
+from trunnion.readers.rs274 import interpreter
+from trunnion.readers.rs274.block import block_reader, split
+from trunnion.readers.rs274.expressions import BlockError, Reader
+from trunnion.readers.rs274.interpreter import Rs274Interpreter
+
+_KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE|CALL|RETURN")
+
+
+@dataclass(slots=True)
+class Activation(interpreter.Activation):
+    """A program or subprogram being executed, and how often its REPEAT loops have still to run, by line."""
+
+    text: LinuxcncText
+    counters: dict[int, int] = field(default_factory=dict)
+
+
+class OWordInterpreter(Rs274Interpreter[Activation]):
+    """Branches, loops and subprograms; what blocks say besides is for the class below."""
+
+    def __init__(
+        self, path: Path, machine: Machine, *, subprograms: Sequence[Path], step_limit: int, skip: bool
+    ) -> None:
+        named = Subprograms(subprograms, SUFFIXES)
+        super().__init__(path, machine, named, step_limit=step_limit, skip=skip)
+        self._parameters = Parameters(self._system)
+        self._returned: float | None = None
+
+    @abstractmethod
+    def _system(self, key: int | str) -> float | None:
+        """Return what the control itself puts behind a number or name; None if it is none of its own."""
+
+    def _o_word(self, call: Activation, line: int, reader: Reader) -> None:
+        label = self._label(reader)
+        match = _KEYWORD.match(reader.text, reader.at)
+        if match is None:
+            if not reader.ended:
+                raise BlockError(f"no O word: {reader.rest!r}")
+            return
+        # The longest word that fits: the text goes on with a bracket or not at all.
+        word = re.match("[A-Z]+", reader.text[reader.at :])
+        assert word is not None
+        name = word.group()
+        reader.at += len(name)
+        handler = {
+            "SUB": self._skip_sub,
+            "ENDSUB": self._return,
+            "RETURN": self._return,
+            "CALL": self._call,
+            "IF": self._if,
+            "ELSEIF": self._past_branches,
+            "ELSE": self._past_branches,
+            "ENDIF": self._nothing,
+            "WHILE": self._while,
+            "ENDWHILE": self._again,
+            "DO": self._nothing,
+            "REPEAT": self._repeat,
+            "ENDREPEAT": self._end_repeat,
+            "BREAK": self._break,
+            "CONTINUE": self._continue,
+        }.get(name)
+        if handler is None:
+            raise BlockError(f"no O word: {name[:40]}")
+        handler(call, line, reader, label)
+        if not reader.ended:
+            self._note(f"not understood behind {name}: {reader.rest!r}", Severity.ERROR)
+
+    @staticmethod
+    def _label(reader: Reader) -> str:
+        begin = reader.at
+        if reader.takes("<"):
+            end = reader.text.find(">", begin)
+            if end < 0:
+                raise BlockError("the name of an O word does not end")
+            reader.at = end + 1
+            return reader.text[begin : end + 1]
+        value, _ = reader.real()
+        if value is None or value != int(value) or not 0 <= value < 1e9:
+            raise BlockError("an O word needs a whole number or a name")
+        return str(int(value))
+
+    def _nothing(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        call.text.structure(line)
+
+    def _skip_sub(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        call.text.jump(call.text.structure(line).end + 1)
+
+    def _return(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        if len(self._stack) < 2:
+            raise BlockError("the end of a subprogram outside one")
+        self._returned = None
+        if not reader.ended:
+            self._returned = reader.sum()
+        self._leave()
+
+    def _leave(self) -> None:
+        deep = len(self._stack)
+        super()._leave()
+        if len(self._stack) < deep:
+            self._parameters.leave()
+
+    def _call(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        arguments: list[float] = []
+        while not reader.ended and len(arguments) < LOCAL:
+            arguments.append(reader.sum())
+        self._check_depth()
+        here = call.text.subprogram(label)
+        if here is not None:
+            self._file.set(self.control.row, call.file)
+            entered = Activation(call.text.again(), call.file)
+            begin = here.begin
+        else:
+            path = self._named.find(label.strip("<>"))
+            if path is None:
+                raise BlockError(f"missing subprogram O{label[:80]}; name its file")
+            text, file = self._open(path)
+            assert isinstance(text, LinuxcncText)
+            found = text.subprogram(label)
+            if found is None:
+                self._file.set(self.control.row, call.file)
+                raise BlockError(f"{path.name} holds no O{label[:80]} SUB")
+            entered, begin = Activation(text, file), found.begin
+        entered.row = self.control.row
+        entered.text.jump(begin + 1)
+        self._parameters.enter(arguments)
+        self._stack.append(entered)
+
+    def _if(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        structure = call.text.structure(line)
+        if self._holds(reader):
+            return
+        for branch in structure.branches:
+            head = self._head(call, branch)
+            if head is None or (head.takes("ELSEIF") and self._holds(head)):
+                call.text.jump(branch + 1)
+                return
+
+    def _head(self, call: Activation, line: int) -> Reader | None:
+        """Return a reader at the ELSEIF of a line; None at an ELSE or at the end."""
+        here = call.text.line
+        call.text.jump(line)
+        text = split(call.text.next_line(), semicolon=True).text
+        call.text.jump(here)
+        reader = block_reader(text, ARITHMETIC, self._parameters)
+        reader.expect("O")
+        self._label(reader)
+        return reader if reader.text.startswith("ELSEIF", reader.at) else None
+
+    def _holds(self, reader: Reader) -> bool:
+        """Return a condition; one that cannot be worked out does not hold."""
+        try:
+            return bool(reader.sum())
+        except BlockError as error:
+            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR)
+            reader.at = len(reader.text)
+            return False
+
+    def _past_branches(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        """A branch that was executed ends here."""
+        reader.at = len(reader.text)
+        call.text.jump(call.text.structure(line).end + 1)
+
+    def _while(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        structure = call.text.structure(line)
+        holds = self._holds(reader)
+        if structure.word == "DO":
+            if holds:
+                call.text.jump(structure.begin + 1)
+        elif not holds:
+            call.text.jump(structure.end + 1)
+
+    def _again(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        call.text.jump(call.text.structure(line).begin)
+
+    def _repeat(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        structure = call.text.structure(line)
+        times = 0
+        try:
+            times = int(min(max(reader.sum(), 0.0), 1e12))
+        except BlockError as error:
+            self._note(f"not understood: {error}: not repeated", Severity.ERROR)
+            reader.at = len(reader.text)
+        if times < 1:
+            call.text.jump(structure.end + 1)
+        call.counters[line] = times
+
+    def _end_repeat(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        begin = call.text.structure(line).begin
+        call.counters[begin] = call.counters.get(begin, 0) - 1
+        if call.counters[begin] > 0:
+            call.text.jump(begin + 1)
+
+    def _break(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        call.text.jump(call.text.structure(line).end + 1)
+
+    def _continue(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+        structure = call.text.structure(line)
+        call.text.jump(structure.begin if structure.word == "WHILE" else structure.end)

@@ -1,0 +1,271 @@
+"""LinuxCNC programs, block by block: what each one says goes to the virtual control, and where it goes on."""
+
+import re
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Codes
+from trunnion.errors import Severity
+from trunnion.readers.common.text import Text
+from trunnion.readers.common.word import How
+from trunnion.readers.families.linuxcnc import cycles
+from trunnion.readers.families.linuxcnc.control import ORDER
+from trunnion.readers.families.linuxcnc.flow import Activation
+from trunnion.readers.families.linuxcnc.holes import HoleInterpreter
+from trunnion.readers.families.linuxcnc.offsets_and_frames import SPECIAL, TAKE_AXES
+from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC
+from trunnion.readers.families.linuxcnc.text import LinuxcncText
+from trunnion.readers.families.linuxcnc.words import (
+    LENGTHS,
+    LINES,
+    NAMED,
+    NAMED_M,
+    NO_MOTION,
+    OFFSETS,
+    RIGID_TAP,
+    SILENT,
+    SILENT_M,
+    TCP_OFF,
+    TCP_ON,
+    TCP_USER,
+    USERS,
+    WORDS,
+)
+from trunnion.readers.rs274.block import Block, block_reader, read_block
+from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
+
+#: Comments that speak to whoever stands at the machine.
+_MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),(.*)", re.IGNORECASE | re.DOTALL)
+
+#: M codes that act after the motion of their block.
+_LATE: Final = frozenset({0, 1, 2, 30, 60})
+
+
+class LinuxcncInterpreter(HoleInterpreter):
+    """Runs one LinuxCNC program on one machine."""
+
+    text_type = LinuxcncText
+    semicolon = True
+    motion = CANCEL
+
+    @property
+    def _table(self) -> Codes:
+        return self._control.plain_table
+
+    def _first(self, text: Text) -> Activation:
+        assert isinstance(text, LinuxcncText)
+        return Activation(text, 0)
+
+    def _may_be_plain(self, text: Text) -> bool:
+        return super()._may_be_plain(text) and not any(self._control.turned.values())
+
+    # Parameters
+
+    def _system(self, key: int | str) -> float | None:
+        """Return what the control itself puts behind a number or name; None if it is none of its own."""
+        control = self._control
+        if isinstance(key, int):
+            if 5420 <= key < 5426:
+                return self._position(key - 5420)
+            if 5210 < key <= 5216:
+                value = float(control.shift[key - 5211])
+                return value / control.lengths if key <= 5213 else value
+            return {5210: float(control.shifted), 5220: float(control.system)}.get(key)
+        if len(key) == 2 and key[0] == "_" and key[1] in ORDER:
+            return self._position(ORDER.index(key[1]))
+        feed = float(control.place[3])
+        found: dict[str, float | None] = {
+            "_VALUE": self._returned or 0.0,
+            "_VALUE_RETURNED": float(self._returned is not None),
+            "_LINE": float(control.line),
+            "_FEED": 0.0 if np.isnan(feed) else feed / control.feeds,
+            "_RPM": float(control.rpm.now),
+            "_METRIC": float(control.lengths == 1.0),
+            "_IMPERIAL": float(control.lengths != 1.0),
+            "_ABSOLUTE": float(control.absolute),
+            "_INCREMENTAL": float(not control.absolute),
+            "_MOTION_MODE": float(self.motion),
+            "_PLANE": {2: 170.0, 1: 180.0, 0: 190.0}[control.plane],
+            "_COORD_SYSTEM": float(OFFSETS[control.system - 1]),
+        }
+        return found.get(key)
+
+    def _position(self, axis: int) -> float:
+        value = float(self._control.position()[axis])
+        return value / self._control.lengths if axis < 3 else value
+
+    # Blocks
+
+    def _twice(self, letter: str) -> None:
+        raise BlockError(f"{letter} is written twice")
+
+    def _said(self, comment: str) -> None:
+        match = _MESSAGE.match(comment)
+        if match is not None:
+            self._control.event("message", match.group(1))
+
+    def _text(self, call: Activation, line: int, text: str) -> None:
+        reader = block_reader(text, ARITHMETIC, self._parameters)
+        if reader.takes("O"):
+            self._o_word(call, line, reader)
+            return
+        block = read_block(reader, self._twice)
+        self._carry_out(block)
+        for key, value in block.settings:
+            self._parameters.set(key, value or 0.0)
+
+    def _carry_out(self, block: Block) -> None:
+        control = self._control
+        for code in block.g:
+            if code in (930, 940, 950):
+                self._modal(code)
+                if code != 930:
+                    # LinuxCNC forgets the feed, even where the mode stays what it was.
+                    control.place[3] = np.nan
+        self._feed_and_speed(block)
+        tool = block.take("T")
+        if tool is not None:
+            control.choose(f"{tool:g}")
+        for code in block.m:
+            if code not in _LATE:
+                self._m_word(code, block)
+        special = -1
+        machine_frame = False
+        explicit = False
+        for code in block.g:
+            if code in MOTIONS or code in cycles.CYCLES or code in LINES or code in (CANCEL, RIGID_TAP):
+                explicit = code != CANCEL
+            if code in SPECIAL:
+                special = code
+            elif code == 530:
+                machine_frame = True
+            elif code in cycles.CYCLES or code in (CANCEL, 930, 940, 950):
+                continue
+            else:
+                self._g(code, block)
+        takes_axes = special in TAKE_AXES
+        if takes_axes and explicit:
+            raise BlockError("two G words want the axis words")
+        self._special(special, block)
+        begun = [code for code in block.g if code in cycles.CYCLES or code == CANCEL]
+        if takes_axes or any(code in NO_MOTION for code in block.g):
+            self.motion = CANCEL if CANCEL in begun else self.motion
+        else:
+            self._drive(block, begun[-1] if begun else None, machine_frame, explicit)
+        late = [code for code in block.m if code in _LATE]
+        self._name_unused(block)
+        for code in late:
+            self._m_word(code, block)
+
+    def _g(self, code: int, block: Block) -> None:
+        control = self._control
+        for letter in WORDS.get(code, ""):
+            block.take(letter)
+        if code in OFFSETS:
+            control.system = OFFSETS.index(code) + 1
+            control.set_offset(_offset_code(control.system), f"G{code / 10:g}")
+            control.refresh()
+        elif code in (980, 990):
+            self._to_initial = code == 980
+        elif code in LENGTHS:
+            control.set_length(LENGTHS[code])
+            control.edge.set(control.row, self._length_number(block) if LENGTHS[code] else -1)
+        elif code in (901, 911):
+            control.relative_centres = code == 911
+        elif code in LINES:
+            self._name_code(code, NAMED, SILENT)
+            self.motion = code
+        elif code == RIGID_TAP:
+            self.motion = code
+        elif code == 960:
+            control.feed_mode.set(control.row, 95)
+            self._name_code(code, NAMED, SILENT)
+        elif not self._modal(code):
+            self._name_code(code, NAMED, SILENT)
+
+    def _length_number(self, block: Block) -> int:
+        """Which length G43 takes: that of H, or of the tool in the spindle; 0 where nobody knows its number."""
+        if "H" in block.words:
+            return int(block.words["H"].value)
+        name = self._control.tool_in_spindle
+        return int(name) if name.isdigit() else 0
+
+    def _m_word(self, code: int, block: Block) -> None:
+        control = self._control
+        if code in (TCP_ON, TCP_OFF):
+            control.set_tcp(code == TCP_ON)
+        elif code in SILENT_M:
+            for letter in SILENT_M[code]:
+                block.take(letter)
+        elif code == 61:
+            tool = block.take("Q")
+            control.choose(f"{tool or 0:g}")
+            control.change_tool()
+        elif code == 60:
+            control.event("stop", "pallet")
+        elif code == 19:
+            for letter in "RQP":
+                block.take(letter)
+            self._m(code)
+        elif code in USERS:
+            for letter in "PQ":
+                block.take(letter)
+            control.event("m", float(code))
+            self._note(f"M{code} belongs to the machine: what it does is not known", Severity.WARNING)
+        elif code in NAMED_M:
+            self._note(f"M{code}: {NAMED_M[code]}", Severity.ERROR)
+        elif code == TCP_USER:
+            self._note("M430: kinematics of the user are not known", Severity.ERROR)
+        elif not self._m(code):
+            self._note(f"unknown word M{code}", Severity.ERROR)
+
+    # Motion
+
+    def _drive(self, block: Block, begun: int | None, machine_frame: bool, explicit: bool) -> None:
+        """Make the motion that the words of the block ask for."""
+        control = self._control
+        if begun == CANCEL:
+            self.motion, self._initial = CANCEL, None
+        code = begun if begun is not None else self.motion
+        if code != CANCEL and code not in cycles.CYCLES:
+            self._initial = None
+        axes = self._axis_words(block)
+        centre = "I" in block.words or "J" in block.words or "K" in block.words or "R" in block.words
+        if not axes and not (code in (20, 30) and (centre or explicit)):
+            if explicit and code in cycles.CYCLES:
+                self._note("a cycle without a position", Severity.ERROR)
+                self.motion = code
+            return
+        if code == CANCEL:
+            self._initial = None
+            self._note("a position without a G word that goes there: the block is not executed", Severity.ERROR)
+            return
+        if code in cycles.CYCLES:
+            self._cycle(code, block, axes)
+            return
+        if code == RIGID_TAP:
+            self._tap(block, axes)
+            return
+        turns = block.take("P") if code in (20, 30) else None
+        if machine_frame:
+            if code not in (0, 10) or not control.absolute:
+                raise BlockError("G53 needs G0 or G1, and G90")
+            control.kind = MOTIONS[code]
+            written = "F" in block.words
+            self._check_feed(written)
+            control.machine_move({name: (word[0], How.ABSOLUTE) for name, word in axes.items()}, feed_written=written)
+            return
+        here = self.motion
+        if code in LINES:
+            self.motion = 10
+        if turns is not None and not 1 <= turns == int(turns):
+            raise BlockError("P of a circle is the number of its turns")
+        self._move(block, self._programmed(axes), turns=int(turns) - 1 if turns else 0)
+        self.motion = here
+
+
+def _offset_code(system: int) -> int:
+    """Column ``offset`` of the work offsets: 54 to 59, and 591 to 593 for G59.1 to G59.3."""
+    return 53 + system if system <= 6 else 584 + system

@@ -1,0 +1,115 @@
+"""Where the O words of a LinuxCNC program lead: its subprograms, branches and loops."""
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from trunnion.readers.common.text import Text
+
+#: How names of programs end.
+SUFFIXES: Final = (".NGC", ".NC", "")
+
+#: How deep control structures may stand inside each other.
+DEEPEST: Final = 64
+
+_O_WORD = re.compile(
+    rb"^[ \t]*(?:/[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?O[ \t]*(<[^<>\n]{1,100}>|[0-9]{1,9})[ \t]*"
+    rb"(SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE)(?![A-Z0-9_])",
+    re.IGNORECASE | re.MULTILINE,
+)
+
+_LOOPS: Final = ("WHILE", "DO", "REPEAT")
+
+
+@dataclass(slots=True)
+class Structure:
+    """Lines that belong together.
+
+    begin, end   first and last line
+    branches     lines of ELSEIF and ELSE, and of the end
+    word         what begins it
+    """
+
+    word: str
+    begin: int
+    end: int = 0
+    branches: list[int] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Places:
+    """Subprograms by label and structures by the lines of their words; None before they are first asked for."""
+
+    found: tuple[dict[str, Structure], dict[int, Structure]] | None = None
+
+
+def label_of(text: str) -> str:
+    """Return a label as names are compared: a number without leading zeros, or a name."""
+    plain = "".join(text.split()).upper()
+    return plain if plain.startswith("<") else str(int(plain))
+
+
+class LinuxcncText(Text):
+    """A program file with the places where its O words lead."""
+
+    def __init__(self, path: Path, *, whole: bool = False) -> None:
+        # Shared by all that run the same text: see ``again``.
+        self._places = _Places()
+        super().__init__(path, whole=whole)
+
+    def subprogram(self, label: str) -> Structure | None:
+        """Return the lines of a subprogram, None if this file has none of the name."""
+        return self._structures()[0].get(label)
+
+    def structure(self, line: int) -> Structure:
+        """Return what the O word of a line belongs to."""
+        try:
+            return self._structures()[1][line]
+        except KeyError:
+            raise self.problem(line, "has an O word that begins or ends nothing") from None
+
+    def _structures(self) -> tuple[dict[str, Structure], dict[int, Structure]]:
+        if self._places.found is None:
+            self._places.found = self._match()
+        return self._places.found
+
+    def _match(self) -> tuple[dict[str, Structure], dict[int, Structure]]:
+        subprograms: dict[str, Structure] = {}
+        by_line: dict[int, Structure] = {}
+        open_: list[tuple[str, Structure]] = []
+        for match in _O_WORD.finditer(self.all()):
+            label = label_of(match.group(1).decode("latin-1"))
+            word = match.group(2).decode().upper()
+            line = self.line_of(match.start(1))
+            top = open_[-1] if open_ and open_[-1][0] == label else None
+            if word in ("BREAK", "CONTINUE"):
+                inside = [kept for name, kept in open_ if name == label and kept.word in _LOOPS]
+                if not inside:
+                    raise self.problem(line, f"has {word} outside a loop of its label")
+                by_line[line] = inside[-1]
+            elif word in ("ELSEIF", "ELSE"):
+                if top is None or top[1].word != "IF":
+                    raise self.problem(line, f"has {word} without its IF")
+                top[1].branches.append(line)
+                by_line[line] = top[1]
+            elif word.startswith("END") or (word == "WHILE" and top is not None and top[1].word == "DO"):
+                wanted = word.removeprefix("END") if word.startswith("END") else "DO"
+                if top is None or top[1].word != wanted:
+                    raise self.problem(line, f"has {word} without its beginning")
+                structure = open_.pop()[1]
+                structure.end = line
+                structure.branches.append(line)
+                by_line[line] = structure
+            else:
+                structure = Structure(word, line)
+                if word == "SUB":
+                    subprograms[label] = structure
+                by_line[line] = structure
+                open_.append((label, structure))
+                if len(open_) > DEEPEST:
+                    raise self.problem(line, f"nests control structures deeper than {DEEPEST} levels")
+        if open_:
+            structure = open_[-1][1]
+            raise self.problem(structure.begin, f"begins {structure.word}, which never ends")
+        return subprograms, by_line

@@ -1,0 +1,336 @@
+"""A block, read: its words by what they address. Reading assigns variables; everything else is for the interpreter."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import Severity
+from trunnion.readers.common.rows import Note
+from trunnion.readers.common.word import How, Word
+from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, Reader, Value, whole
+from trunnion.readers.families.sinumerik.tokens import Sort, Token
+from trunnion.readers.families.sinumerik.variables import Variables
+from trunnion.readers.families.sinumerik.words import (
+    ACTIVE,
+    FLOW,
+    FRAMES,
+    NAMED,
+    ORIENTATION,
+    SILENT,
+    SILENT_CALLS,
+    SILENT_VALUES,
+    TOOL_FRAMES,
+    TYPES,
+    WAYS,
+)
+
+#: Larger feeds, in any unit, are slips of the program.
+FASTEST: Final = 1e9
+
+#: Names that stand alone and are handed to the interpreter.
+_MODES: Final = FRAMES | ORIENTATION | SILENT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "TRAFOOF", "TRAORI"})
+
+#: Names with a value that belong to circles and frames.
+_PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
+
+
+@dataclass(slots=True)
+class Call:
+    """A cycle, message or subprogram with its arguments; texts of arguments that are single names are kept as names."""
+
+    name: str
+    arguments: list[Value | None] = field(default_factory=list)
+    written: list[str] = field(default_factory=list)
+    repeats: int = 1
+
+
+@dataclass(slots=True)
+class Block:
+    """The words of a block.
+
+    axes     X, Y, Z and rotary axes with their values and how they were said
+    vector   A3, B3, C3 by letter
+    params   I, J, K, I1, J1, K1, CR, AR, TURN, RPL
+    """
+
+    axes: dict[str, Word] = field(default_factory=dict)
+    vector: dict[str, float] = field(default_factory=dict)
+    params: dict[str, Word] = field(default_factory=dict)
+    g: list[int] = field(default_factory=list)
+    words: list[str] = field(default_factory=list)
+    m: list[int] = field(default_factory=list)
+    h: list[float] = field(default_factory=list)
+    calls: list[Call] = field(default_factory=list)
+    feed: float | None = None
+    speed: float | None = None
+    tool: str | None = None
+    edge: int | None = None
+    traori: float = 1.0
+
+    @property
+    def tool_axis(self) -> Floats | None:
+        """The vector, (3,); components that are not written are 0."""
+        return np.array([self.vector.get(letter, 0.0) for letter in "ABC"]) if self.vector else None
+
+
+class BlockReader:
+    """Reads the words of one block after another."""
+
+    def __init__(self, rotary: tuple[str, ...], note: Note) -> None:
+        self._axes = frozenset({"X", "Y", "Z", *rotary})
+        self._note = note
+
+    def read(self, tokens: tuple[Token, ...], at: int, variables: Variables) -> Block:
+        """Read from a token on; what is not understood is noted, and the rest of the block is left."""
+        block = Block()
+        reader = Reader(tokens, variables, at)
+        while (token := reader.token) is not None:
+            before = reader.at
+            try:
+                if token.sort is Sort.LETTER:
+                    self._letter(reader, block, variables)
+                elif token.sort is Sort.NAME:
+                    self._name(reader, block, variables)
+                else:
+                    raise ExpressionError(f"{token.text} stands alone")
+            except ExpressionError as error:
+                self._note(f"not understood: {_text(tokens, before)}: {error}", Severity.ERROR)
+                break
+        return block
+
+    # Letters
+
+    def _letter(self, reader: Reader, block: Block, variables: Variables) -> None:
+        letter = reader.peek()
+        start = reader.at
+        reader.at += 1
+        extension = self._extension(reader)
+        if letter == "R" and (extension or reader.peek() == "["):
+            reader.at = start + 1
+            self._parameter(reader, variables)
+            return
+        name = letter + extension
+        value, how = self._value(reader)
+        if name in self._axes:
+            self._axis(block, name, _number(value), how)
+        elif isinstance(value, str) and name != "T":
+            raise ExpressionError(f"{name} takes a number, not a text")
+        else:
+            self._address(reader, block, letter, extension, value, how)
+
+    def _extension(self, reader: Reader) -> str:
+        """Digits between a letter and an equals sign, as in A3= or S2=."""
+        token = reader.token
+        if (
+            token is not None
+            and token.sort is Sort.NUMBER
+            and token.text.isdigit()
+            and len(token.text) <= 5
+            and reader.peek(1) == "="
+        ):
+            reader.at += 1
+            return token.text
+        return ""
+
+    def _parameter(self, reader: Reader, variables: Variables) -> None:
+        if reader.peek() == "[":
+            index = reader.index()
+            if len(index) != 1:
+                raise ExpressionError("R needs a number")
+            number = index[0]
+        else:
+            token = reader.token
+            assert token is not None
+            number = whole(token.value)
+            reader.at += 1
+        reader.expect("=")
+        variables.set_parameter(number, reader.number())
+
+    def _value(self, reader: Reader) -> tuple[Value, How]:
+        """Read what follows an address: a number, or = and an expression, maybe inside AC() or its kin."""
+        if reader.takes("="):
+            how = reader.peek()
+            if how in WAYS and reader.peek(1) == "(":
+                reader.at += 2
+                value = reader.number()
+                reader.expect(")")
+                return value, How(how)
+            return reader.value(), How.AS_SET
+        sign = 1.0
+        if reader.peek() in ("+", "-"):
+            sign = -1.0 if reader.peek() == "-" else 1.0
+            reader.at += 1
+        token = reader.token
+        if token is None or token.sort is not Sort.NUMBER:
+            raise ExpressionError("a number is missing")
+        reader.at += 1
+        return sign * token.value, How.AS_SET
+
+    def _axis(self, block: Block, name: str, value: float, how: How) -> None:
+        if name in block.axes:
+            self._note(f"{name} is written twice: the last one counts", Severity.WARNING)
+        block.axes[name] = value, how
+
+    def _address(self, reader: Reader, block: Block, letter: str, extension: str, value: Value, how: How) -> None:
+        if letter == "T" and extension in ("", "0", "1"):
+            block.tool = value if isinstance(value, str) else f"{value:.10g}"
+            return
+        number = _number(value)
+        match letter, extension:
+            case "G", "":
+                block.g.append(_code(number, "G"))
+            case "M", _:
+                # M2=3 speaks to spindle 2; only the master spindle is followed.
+                code = _code(number, "M")
+                if extension in ("", "0", "1"):
+                    block.m.append(code)
+                else:
+                    self._note(f"M{extension}={code} speaks to another spindle: not followed", Severity.WARNING)
+            case "S", _:
+                if extension in ("", "0", "1"):
+                    block.speed = number
+                else:
+                    self._note(f"S{extension}= speaks to another spindle: not followed", Severity.WARNING)
+            case "F", "":
+                if not 0.0 <= number <= FASTEST:
+                    raise ExpressionError(f"a feed is not from 0 to {FASTEST:g}")
+                block.feed = number
+            case "D", "":
+                block.edge = _code(number, "D")
+            case "H", _:
+                block.h.append(number)
+            case (("I" | "J" | "K"), ("" | "1")):
+                block.params[letter + extension] = number, how
+            case (("A" | "B" | "C"), "3"):
+                block.vector[letter] = number
+            case (("A" | "B" | "C"), ("4" | "5")):
+                pass  # Surface normals serve the radius compensation, which is not simulated.
+            case "L", "":
+                digits = reader.tokens[reader.at - 1].text
+                if not digits.isdigit():
+                    raise ExpressionError("a subprogram has a whole number")
+                block.calls.append(Call(f"L{digits}"))
+            case "P", "":
+                if not block.calls:
+                    raise ExpressionError("P counts nothing here")
+                block.calls[-1].repeats = _code(number, "P")
+            case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), ""):
+                self._note(f"the machine has no axis {letter}: {letter}{number:g} is not executed", Severity.ERROR)
+            case _:
+                self._note(f"unknown word {letter}{extension}={number:g}", Severity.ERROR)
+
+    # Names
+
+    def _name(self, reader: Reader, block: Block, variables: Variables) -> None:
+        name = reader.peek()
+        follows = reader.peek(1)
+        reader.at += 1
+        if name in self._axes and follows == "=":
+            value, how = self._value(reader)
+            self._axis(block, name, _number(value), how)
+        elif name in _PARAMS and follows == "=":
+            value, how = self._value(reader)
+            block.params[name] = _number(value), how
+        elif name in SILENT_VALUES and follows in ("=", "["):
+            if follows == "[":
+                _skip(reader, "[", "]")
+            if reader.takes("="):
+                self._value(reader)
+        elif name == "SPOS" and follows in ("=", "["):
+            if follows == "[":
+                _skip(reader, "[", "]")
+            reader.expect("=")
+            value, _ = self._value(reader)
+            block.words.append("SPOS")
+        elif name in NAMED:
+            self._named(reader, name)
+        elif follows in ("=", "["):
+            self._assignment(reader, name, variables)
+        elif name == "TRAORI":
+            block.words.append(name)
+            if follows == "(":
+                numbers = reader.arguments()
+                block.traori = _number(numbers[0]) if numbers and numbers[0] is not None else 1.0
+        elif name in SILENT_CALLS and follows == "(":
+            _skip(reader, "(", ")")
+        elif name in _MODES:
+            block.words.append(name)
+        elif name in FLOW or name in TYPES or name in OPERATORS or name in WAYS:
+            raise ExpressionError(f"{name} cannot stand here")
+        elif name in ACTIVE and name not in ("MSG", "SETAL"):
+            raise ExpressionError(f"{name} needs a value")
+        else:
+            block.calls.append(read_call(reader, name))
+
+    def _named(self, reader: Reader, name: str) -> None:
+        """Read a word that is known but not simulated, with all that belongs to it."""
+        start = reader.at - 1
+        if reader.peek() == "(":
+            _skip(reader, "(", ")")
+        elif reader.peek() == "[":
+            _skip(reader, "[", "]")
+        value = self._value(reader)[0] if reader.peek() == "=" else None
+        if name == "TCARR" and value == 0.0:
+            return
+        self._note(f"{_text(reader.tokens, start, reader.at)} is known but not simulated", Severity.ERROR)
+
+    def _assignment(self, reader: Reader, name: str, variables: Variables) -> None:
+        if name.startswith("$"):
+            raise ExpressionError(f"{name} is a system variable, which is not simulated")
+        index = reader.index()
+        reader.expect("=")
+        if not variables.assign(name, index, reader.value()):
+            self._note(f"{name} is not defined in the program: taken as a global variable", Severity.WARNING)
+
+
+def read_call(reader: Reader, name: str) -> Call:
+    """Read the arguments of a call whose name was just read."""
+    if reader.peek() != "(":
+        return Call(name)
+    call = Call(name)
+    reader.at += 1
+    if reader.takes(")"):
+        return call
+    while True:
+        start = reader.at
+        if reader.peek() in (",", ")"):
+            call.arguments.append(None)
+        else:
+            call.arguments.append(reader.value())
+        call.written.append(_text(reader.tokens, start, reader.at))
+        if reader.takes(")"):
+            return call
+        reader.expect(",")
+
+
+def _skip(reader: Reader, opening: str, closing: str) -> None:
+    """Step over brackets and all they hold."""
+    reader.expect(opening)
+    depth = 1
+    while depth:
+        if reader.token is None:
+            raise ExpressionError(f"{closing} is missing")
+        depth += {opening: 1, closing: -1}.get(reader.peek(), 0)
+        reader.at += 1
+
+
+def _number(value: Value) -> float:
+    if isinstance(value, str):
+        raise ExpressionError(f'"{value[:40]}" is a text where a number must stand')
+    return value
+
+
+def _code(number: float, letter: str) -> int:
+    if number != int(number) or not 0 <= number < 1e9:
+        raise ExpressionError(f"{letter} takes a whole number")
+    return int(number)
+
+
+def _text(tokens: Sequence[Token], start: int, end: int | None = None) -> str:
+    """Return tokens as they might have been written, shortened."""
+    parts = [f'"{t.text}"' if t.sort is Sort.TEXT else t.text for t in tokens[start:end]]
+    text = " ".join(parts) if len(parts) < 20 else " ".join(parts[:20]) + " ..."
+    return text[:200]

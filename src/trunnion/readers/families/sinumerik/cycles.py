@@ -1,0 +1,244 @@
+"""Drilling cycles as the motions that they make at one hole.
+
+Heights are positions along the drilling axis, mm, in the frame of the program. The classic parameter lists are read;
+what newer controls append to them (``_GMODE``, ``_DMODE``, ``_AMODE``) is not needed for the motion.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.readers.common.drilling import FASTEST, MOST_PECKS, CycleError, Step
+
+#: How far a chip-breaking peck backs off where the program does not say it, mm.
+CHIP_BREAK: Final = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Heights:
+    """What all drilling cycles share: return, reference and start plane, and depth."""
+
+    retract: float
+    reference: float
+    start: float
+    depth: float
+
+    @property
+    def sign(self) -> float:
+        """-1 if drilling goes to lower values."""
+        return -1.0 if self.depth < self.reference else 1.0
+
+
+Arguments = Sequence[float | None]
+
+
+def steps(name: str, arguments: Arguments, rpm: float) -> list[Step]:
+    """Return the motions of a cycle at one hole.
+
+    Parameters
+    ----------
+    name
+        ``CYCLE81`` and its kin; a key of ``CYCLES``.
+    arguments
+        As written, None where left out.
+    rpm
+        Spindle speed in force, for taps that do not state their own.
+    """
+    heights = _heights(arguments)
+    made = CYCLES[name](arguments, heights, rpm)
+    if any(step.feed is not None and abs(step.feed) > FASTEST for step in made):
+        raise CycleError("has a feed that no machine has")
+    return [Step(True, heights.start), *made, Step(True, heights.retract)]
+
+
+def _get(arguments: Arguments, place: int) -> float | None:
+    """Argument by its place in the list, from 1."""
+    return arguments[place - 1] if place <= len(arguments) else None
+
+
+def _or(arguments: Arguments, place: int, default: float = 0.0) -> float:
+    value = _get(arguments, place)
+    return default if value is None else value
+
+
+def _heights(arguments: Arguments) -> Heights:
+    retract, depth, deep = _get(arguments, 1), _get(arguments, 4), _get(arguments, 5)
+    reference = _or(arguments, 2)
+    if retract is None:
+        raise CycleError("has no retract plane")
+    if depth is None and deep is None:
+        raise CycleError("has no depth")
+    down = -1.0 if retract >= reference else 1.0
+    # Where both are given, the one relative to the reference plane counts.
+    if deep:
+        depth = reference + down * abs(deep)
+    elif depth is None:
+        raise CycleError("has no depth")
+    sign = -1.0 if depth < reference else 1.0
+    if depth == reference or sign * (retract - reference) > 0.0:
+        raise CycleError("has a retract plane below the reference plane")
+    return Heights(retract, reference, reference - sign * abs(_or(arguments, 3)), depth)
+
+
+def _drill(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    return [Step(False, heights.depth, dwell=_or(arguments, 6))]
+
+
+def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    """CYCLE83: strokes that get shorter, with full retraction (VARI 1) or chip breaking (0)."""
+    first, deep = _get(arguments, 6), _get(arguments, 7)
+    sign = heights.sign
+    total = abs(heights.depth - heights.reference)
+    if deep:
+        stroke = abs(deep)
+    elif first is not None:
+        stroke = sign * (first - heights.reference)
+    else:
+        stroke = total
+    dwell, again = _or(arguments, 9), _or(arguments, 10)
+    full = _or(arguments, 12) == 1.0
+    back = _or(arguments, 15) or CHIP_BREAK
+    entry = _or(arguments, 17) or _entry_gap(total)
+    made: list[Step] = []
+    depths = strokes(total, stroke, _or(arguments, 8), _or(arguments, 14))
+    factor = _or(arguments, 11, 1.0)
+    for count, depth in enumerate(depths):
+        height = heights.reference + sign * depth
+        last = count == len(depths) - 1
+        if count and full:
+            made.append(Step(True, heights.start, dwell=again))
+            above = max(depths[count - 1] - entry, 0.0)
+            made.append(Step(True, heights.reference + sign * above))
+        elif count:
+            made.append(Step(False, heights.reference + sign * max(depths[count - 1] - back, 0.0)))
+        slow = -factor if count == 0 and 0.0 < factor < 1.0 else None
+        wait = (_or(arguments, 16) or dwell) if last else dwell
+        made.append(Step(False, height, feed=slow, dwell=wait))
+    return made
+
+
+def strokes(total: float, first: float, less: float, least: float) -> list[float]:
+    """Depths, mm below the reference plane, that CYCLE83 drills to one after another.
+
+    Each stroke is shorter by ``less`` (a factor if negative) but not shorter than ``less`` or ``least``; the last two
+    share what is left in equal parts if they would otherwise leave a thin rest.
+    """
+    if first <= 0.0:
+        raise CycleError("has a first depth above the reference plane")
+    depths = [min(first, total)]
+    stroke = first
+    floor = max(abs(least), less if less > 0.0 else 0.0)
+    while total - depths[-1] > 1e-9:
+        left = total - depths[-1]
+        if less < 0.0:
+            stroke = max(stroke * abs(less), floor)
+        elif less > 0.0:
+            stroke = max(stroke - less, floor)
+        if stroke <= 0.0 or len(depths) >= MOST_PECKS:
+            raise CycleError(f"would peck more than {MOST_PECKS} times")
+        if left <= stroke:
+            step = left
+        elif left < 2.0 * floor:
+            step = 0.5 * left
+            depths.append(depths[-1] + step)
+            step = total - depths[-1]
+        else:
+            step = stroke
+        depths.append(depths[-1] + step)
+    depths[-1] = total
+    return depths
+
+
+def _entry_gap(total: float) -> float:
+    """How far above the last depth the control goes back at rapid, where the program does not say it."""
+    return 0.6 if total <= 30.0 else min(total / 50.0, 7.0)
+
+
+#: Pitches of M3 to M48, mm.
+PITCHES: Final = {
+    3: 0.5, 4: 0.7, 5: 0.8, 6: 1.0, 8: 1.25, 10: 1.5, 12: 1.75, 14: 2.0, 16: 2.0, 18: 2.5, 20: 2.5, 22: 2.5, 24: 3.0,
+    27: 3.0, 30: 3.5, 33: 3.5, 36: 4.0, 39: 4.0, 42: 4.5, 45: 4.5, 48: 5.0,
+}  # fmt: skip
+
+
+def _pitch(size: float | None, pitch: float | None, unit: float) -> float:
+    if pitch:
+        value = abs(pitch)
+        if unit == 2.0:
+            return 25.4 / value
+        return 25.4 * value if unit == 3.0 else value
+    if size and abs(size) in PITCHES:
+        return PITCHES[int(abs(size))]
+    raise CycleError("has no pitch")
+
+
+def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    """CYCLE84, without a compensating chuck; pecks if VARI and DAM say so."""
+    pitch = _pitch(_get(arguments, 8), _get(arguments, 9), _or(arguments, 14))
+    down = (_or(arguments, 11) or rpm) * pitch
+    up = (_or(arguments, 12) or _or(arguments, 11) or rpm) * pitch
+    variant, stroke = _or(arguments, 16), abs(_or(arguments, 17))
+    total = abs(heights.depth - heights.reference)
+    depths = strokes(total, stroke, 0.0, 0.0) if variant and stroke else [total]
+    made: list[Step] = []
+    for count, depth in enumerate(depths):
+        if count:
+            above = depths[count - 1] - (_or(arguments, 18) or CHIP_BREAK)
+            back = heights.start if variant == 2.0 else heights.reference + heights.sign * max(above, 0.0)
+            made.append(Step(False, back, feed=up))
+        last = count == len(depths) - 1
+        wait = _or(arguments, 6) if last else 0.0
+        made.append(Step(False, heights.reference + heights.sign * depth, feed=down, dwell=wait))
+    return [*made, Step(False, heights.start, feed=up)]
+
+
+def _tap_chuck(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    """CYCLE840, with a compensating chuck: the feed follows from pitch and spindle, or is the one in force."""
+    size, pitch = _get(arguments, 10), _get(arguments, 11)
+    feed = rpm * _pitch(size, pitch, _or(arguments, 13)) if size or pitch else None
+    return [Step(False, heights.depth, feed=feed, dwell=_or(arguments, 6)), Step(False, heights.start, feed=feed)]
+
+
+def _ream(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    """CYCLE85: in at FFR, out at RFF."""
+    down, up = _get(arguments, 7), _get(arguments, 8)
+    return [
+        Step(False, heights.depth, feed=down or None, dwell=_or(arguments, 6)),
+        Step(False, heights.start, feed=up or None),
+    ]
+
+
+def _bore(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    """CYCLE86: spindle oriented at depth, lift-off by RPA, RPO, RPAP, out at rapid, back over the hole."""
+    aside = (_or(arguments, 8), _or(arguments, 9))
+    lifted = heights.depth + _or(arguments, 10)
+    return [
+        Step(False, heights.depth, dwell=_or(arguments, 6)),
+        Step(True, lifted, aside=aside),
+        Step(True, heights.start, aside=aside),
+    ]
+
+
+def _bore_out(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    """CYCLE89: out at the feed that went in."""
+    return [Step(False, heights.depth, dwell=_or(arguments, 6)), Step(False, heights.start)]
+
+
+def _stop_and_out(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+    """CYCLE87: spindle and program stop at depth; what stands in the dwell's place is the spindle's sense."""
+    return [Step(False, heights.depth)]
+
+
+#: Cycles by name.
+CYCLES: Final[dict[str, Callable[[Arguments, Heights, float], list[Step]]]] = {
+    "CYCLE81": _drill,
+    "CYCLE82": _drill,
+    "CYCLE83": _peck,
+    "CYCLE84": _tap,
+    "CYCLE840": _tap_chuck,
+    "CYCLE85": _ream,
+    "CYCLE86": _bore,
+    "CYCLE87": _stop_and_out,
+    "CYCLE88": _drill,
+    "CYCLE89": _bore_out,
+}

@@ -1,0 +1,306 @@
+"""Arithmetic of the control: numbers, texts, comparisons, functions, R parameters and variables.
+
+Expressions are worked out while they are read, by recursive descent. How deep they may nest is limited, so that no
+program can exhaust the stack of its reader. The order of operations is the control's: comparisons bind least of all.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Final, Protocol
+
+from trunnion.readers.families.sinumerik.tokens import Sort, Token
+
+Value = float | str
+
+#: How deep parentheses and signs may nest.
+DEEPEST: Final = 40
+
+#: The longest text that concatenation may make.
+LONGEST_TEXT: Final = 1000
+
+#: Larger numbers are none that a machine could mean.
+LARGEST: Final = 1e300
+
+
+class ExpressionError(Exception):
+    """What is wrong with an expression, in words."""
+
+
+class Names(Protocol):
+    """Where an expression finds its variables."""
+
+    def variable(self, name: str, index: tuple[int, ...]) -> Value:
+        """Return the value of a variable, or raise ExpressionError."""
+        ...
+
+    def parameter(self, number: int) -> float:
+        """Return the value of an R parameter."""
+        ...
+
+
+#: Binary operators by how tightly they bind, loosest first.
+_LEVELS: Final[tuple[frozenset[str], ...]] = (
+    frozenset({"==", "<>", "<", ">", "<=", ">="}),
+    frozenset({"<<"}),
+    frozenset({"OR"}),
+    frozenset({"XOR"}),
+    frozenset({"AND"}),
+    frozenset({"B_OR"}),
+    frozenset({"B_XOR"}),
+    frozenset({"B_AND"}),
+    frozenset({"+", "-"}),
+    frozenset({"*", "/", "DIV", "MOD"}),
+)
+
+#: Names that are operators and so never variables.
+OPERATORS: Final = frozenset({"DIV", "MOD", "AND", "OR", "XOR", "NOT", "B_AND", "B_OR", "B_XOR", "B_NOT"})
+
+
+def _round(value: float) -> float:
+    """Round halves away from zero, as the control does."""
+    return math.copysign(math.floor(abs(value) + 0.5), value)
+
+
+def _atan2(y: float, x: float) -> float:
+    return math.degrees(math.atan2(y, x))
+
+
+#: Functions by name: how many numbers they take, and what they do. Angles in degrees.
+FUNCTIONS: Final[dict[str, tuple[int, Callable[..., float]]]] = {
+    "SIN": (1, lambda a: math.sin(math.radians(a))),
+    "COS": (1, lambda a: math.cos(math.radians(a))),
+    "TAN": (1, lambda a: math.tan(math.radians(a))),
+    "ASIN": (1, lambda a: math.degrees(math.asin(a))),
+    "ACOS": (1, lambda a: math.degrees(math.acos(a))),
+    "ATAN2": (2, _atan2),
+    "SQRT": (1, math.sqrt),
+    "ABS": (1, abs),
+    "POT": (1, lambda a: a * a),
+    "TRUNC": (1, math.trunc),
+    "ROUND": (1, _round),
+    "ROUNDUP": (1, math.ceil),
+    "LN": (1, math.log),
+    "EXP": (1, math.exp),
+    "MINVAL": (2, min),
+    "MAXVAL": (2, max),
+    "BOUND": (3, lambda low, high, value: min(max(value, low), high)),
+}
+
+
+class Reader:
+    """A place in a list of tokens, and how to go on from there."""
+
+    def __init__(self, tokens: Sequence[Token], names: Names, at: int = 0) -> None:
+        self.tokens = tokens
+        self.names = names
+        self.at = at
+        self._depth = 0
+
+    @property
+    def token(self) -> Token | None:
+        """The token that comes next, None at the end."""
+        return self.tokens[self.at] if self.at < len(self.tokens) else None
+
+    def peek(self, ahead: int = 0) -> str:
+        """Text of a sign, name or letter ahead; empty for anything else."""
+        at = self.at + ahead
+        if at < len(self.tokens) and self.tokens[at].sort in (Sort.SIGN, Sort.NAME, Sort.LETTER):
+            return self.tokens[at].text
+        return ""
+
+    def takes(self, text: str) -> bool:
+        """Step over a sign or name if it comes next."""
+        if self.peek() == text:
+            self.at += 1
+            return True
+        return False
+
+    def expect(self, text: str) -> None:
+        """Step over a sign that must come next."""
+        if not self.takes(text):
+            found = self.token
+            raise ExpressionError(f"expected {text}, found {found.text if found else 'the end of the block'}")
+
+    def number(self) -> float:
+        """Read an expression that must be a number."""
+        value = self.value()
+        if isinstance(value, str):
+            raise ExpressionError(f'"{value[:40]}" is a text where a number must stand')
+        return value
+
+    def integer(self) -> int:
+        """Read an expression that must be a whole number of a sensible size."""
+        return whole(self.number())
+
+    def value(self) -> Value:
+        """Read an expression."""
+        return self._binary(0)
+
+    def arguments(self) -> list[Value | None]:
+        """Read ``(a, , b)``; values left out are None."""
+        values: list[Value | None] = []
+        self.expect("(")
+        if self.takes(")"):
+            return values
+        while True:
+            values.append(None if self.peek() in (",", ")") else self.value())
+            if self.takes(")"):
+                return values
+            self.expect(",")
+
+    def index(self) -> tuple[int, ...]:
+        """Read ``[i]`` or ``[i, j]`` if it comes next."""
+        if not self.takes("["):
+            return ()
+        found = [self.integer()]
+        while self.takes(","):
+            found.append(self.integer())
+        self.expect("]")
+        return tuple(found)
+
+    def _binary(self, level: int) -> Value:
+        if level == len(_LEVELS):
+            return self._unary()
+        left = self._binary(level + 1)
+        while self.peek() in _LEVELS[level]:
+            operator = self.peek()
+            self.at += 1
+            left = _apply(operator, left, self._binary(level + 1))
+        return left
+
+    def _unary(self) -> Value:
+        self._depth += 1
+        if self._depth > DEEPEST:
+            raise ExpressionError(f"nests deeper than {DEEPEST} levels")
+        try:
+            return self._primary()
+        finally:
+            self._depth -= 1
+
+    def _primary(self) -> Value:
+        token = self.token
+        if token is None:
+            raise ExpressionError("a value is missing at the end of the block")
+        self.at += 1
+        match token.sort, token.text:
+            case Sort.NUMBER, _:
+                return token.value
+            case Sort.TEXT, text:
+                return text
+            case Sort.SIGN, "(":
+                value = self._binary(0)
+                self.expect(")")
+                return value
+            case Sort.SIGN, "-":
+                return -_numeric(self._unary())
+            case Sort.SIGN, "+":
+                return _numeric(self._unary())
+            case Sort.NAME, "NOT":
+                return float(not _numeric(self._unary()))
+            case Sort.NAME, "B_NOT":
+                return float(~whole(_numeric(self._unary())))
+            case Sort.LETTER, "R":
+                return self._parameter()
+            case ((Sort.NAME | Sort.LETTER), name):
+                if name in FUNCTIONS and self.peek() == "(":
+                    return self._function(name)
+                return self.names.variable(name, self.index())
+        raise ExpressionError(f"{token.text} is no value")
+
+    def _parameter(self) -> float:
+        token = self.token
+        if token is not None and token.sort is Sort.NUMBER:
+            self.at += 1
+            return self.names.parameter(whole(token.value))
+        index = self.index()
+        if len(index) != 1:
+            raise ExpressionError("R needs a number")
+        return self.names.parameter(index[0])
+
+    def _function(self, name: str) -> float:
+        count, function = FUNCTIONS[name]
+        arguments = [_numeric(value) for value in self.arguments() if value is not None]
+        if len(arguments) != count:
+            raise ExpressionError(f"{name} takes {count} numbers, not {len(arguments)}")
+        try:
+            return _sound(float(function(*arguments)))
+        except (ValueError, OverflowError, ZeroDivisionError):
+            raise ExpressionError(f"{name} has no value here") from None
+
+
+def whole(value: float) -> int:
+    """Return a number as a whole one, as indices and counters need it."""
+    if not abs(value) < 1e15:
+        raise ExpressionError(f"{value:g} is no sensible whole number")
+    return int(value)
+
+
+def _numeric(value: Value) -> float:
+    if isinstance(value, str):
+        raise ExpressionError(f'"{value[:40]}" is a text where a number must stand')
+    return value
+
+
+def _sound(value: float) -> float:
+    if not abs(value) < LARGEST:
+        raise ExpressionError("has no finite value")
+    return value
+
+
+def _apply(operator: str, left: Value, right: Value) -> Value:
+    if operator == "<<":
+        text = _text(left) + _text(right)
+        if len(text) > LONGEST_TEXT:
+            raise ExpressionError("makes too long a text")
+        return text
+    if operator in ("==", "<>") and isinstance(left, str) and isinstance(right, str):
+        return float((left == right) == (operator == "=="))
+    return _sound(_arithmetic(operator, _numeric(left), _numeric(right)))
+
+
+def _text(value: Value) -> str:
+    return value if isinstance(value, str) else f"{value:.10g}"
+
+
+def _arithmetic(operator: str, a: float, b: float) -> float:
+    match operator:
+        case "+":
+            return a + b
+        case "-":
+            return a - b
+        case "*":
+            return a * b
+        case "/" | "DIV" | "MOD":
+            return _divide(operator, a, b)
+        case "==":
+            return float(a == b)
+        case "<>":
+            return float(a != b)
+        case "<":
+            return float(a < b)
+        case ">":
+            return float(a > b)
+        case "<=":
+            return float(a <= b)
+        case ">=":
+            return float(a >= b)
+        case "AND":
+            return float(bool(a) and bool(b))
+        case "OR":
+            return float(bool(a) or bool(b))
+        case "XOR":
+            return float(bool(a) != bool(b))
+        case "B_AND":
+            return float(whole(a) & whole(b))
+        case "B_OR":
+            return float(whole(a) | whole(b))
+        case _:
+            return float(whole(a) ^ whole(b))
+
+
+def _divide(operator: str, a: float, b: float) -> float:
+    if b == 0.0:
+        raise ExpressionError("divides by zero")
+    if operator == "/":
+        return a / b
+    return float(math.trunc(_sound(a / b))) if operator == "DIV" else math.fmod(a, b)

@@ -1,0 +1,303 @@
+"""Where a program goes on: conditions, loops, jumps, and the definitions that stand between them.
+
+Nothing is kept of a loop but its lines: an end goes back to its beginning, a condition is worked out again each time.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from trunnion.errors import Severity
+from trunnion.readers.common import interpreter
+from trunnion.readers.common.interpreter import End
+from trunnion.readers.common.rows import Note
+from trunnion.readers.families.sinumerik.block import Call
+from trunnion.readers.families.sinumerik.expressions import ExpressionError, Reader
+from trunnion.readers.families.sinumerik.text import SinumerikText
+from trunnion.readers.families.sinumerik.tokens import Sort, split_comment, tokenize
+from trunnion.readers.families.sinumerik.variables import Variables
+from trunnion.readers.families.sinumerik.words import TYPES
+
+
+@dataclass(slots=True)
+class Activation(interpreter.Activation):
+    """A program or subprogram being executed, and the cycle that is modal in it."""
+
+    text: SinumerikText
+    variables: Variables = field(default_factory=Variables)
+    modal: Call | None = None
+
+
+Handler = Callable[[Reader, Activation, int], None]
+
+
+class Flow:
+    """Executes the words of flow; each handler stands behind its word, at the line that it is given."""
+
+    def __init__(self, note: Note) -> None:
+        self._note = note
+        self.handlers: dict[str, Handler] = {
+            "IF": self._if,
+            "ELSE": self._else,
+            "ENDIF": self._paired,
+            "FOR": self._for,
+            "ENDFOR": self._end_for,
+            "WHILE": self._while,
+            "ENDWHILE": self._end_while,
+            "LOOP": self._paired,
+            "ENDLOOP": self._end_loop,
+            "REPEAT": self._repeat,
+            "UNTIL": self._until,
+            "CASE": self._case,
+            "DEF": self._def,
+            "PROC": self._proc,
+            "ENDPROC": self._ignore,
+            "EXTERN": self._ignore,
+            **dict.fromkeys(("GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS"), self._goto),
+        }
+
+    def _paired(self, reader: Reader, call: Activation, line: int) -> None:
+        """See that the word has its other half, and go on."""
+        call.text.partner(line)
+
+    def _ignore(self, reader: Reader, call: Activation, line: int) -> None:
+        pass
+
+    def _if(self, reader: Reader, call: Activation, line: int) -> None:
+        try:
+            holds = bool(reader.number())
+        except ExpressionError as error:
+            self._note(f"not understood: IF: {error}: taken as not fulfilled", Severity.ERROR)
+            while reader.token is not None and not reader.peek().startswith("GOTO"):
+                reader.at += 1
+            holds = False
+        if reader.token is not None:
+            word = reader.peek()
+            if not word.startswith("GOTO"):
+                raise ExpressionError("a jump must follow the condition")
+            if holds:
+                self._goto_from(reader, call, line)
+            return
+        middle, end = call.text.partner(line)
+        if not holds:
+            call.text.jump((middle or end) + 1)
+
+    def _else(self, reader: Reader, call: Activation, line: int) -> None:
+        call.text.jump(call.text.partner(line)[1] + 1)
+
+    def _while(self, reader: Reader, call: Activation, line: int) -> None:
+        end = call.text.partner(line)[1]
+        try:
+            holds = bool(reader.number())
+        except ExpressionError:
+            call.text.jump(end + 1)
+            raise
+        if not holds:
+            call.text.jump(end + 1)
+
+    def _end_while(self, reader: Reader, call: Activation, line: int) -> None:
+        call.text.jump(call.text.partner(line)[1])
+
+    def _end_loop(self, reader: Reader, call: Activation, line: int) -> None:
+        call.text.jump(call.text.partner(line)[1] + 1)
+
+    def _repeat(self, reader: Reader, call: Activation, line: int) -> None:
+        if reader.token is not None:
+            raise ExpressionError("repeating a part of the program by its labels is not simulated")
+        call.text.partner(line)
+
+    def _until(self, reader: Reader, call: Activation, line: int) -> None:
+        begin = call.text.partner(line)[1]
+        if not reader.number():
+            call.text.jump(begin + 1)
+
+    def _for(self, reader: Reader, call: Activation, line: int) -> None:
+        end = call.text.partner(line)[1]
+        try:
+            name, index = self._loop_variable(reader)
+            reader.expect("=")
+            value = reader.number()
+            reader.expect("TO")
+            last = reader.number()
+        except ExpressionError:
+            call.text.jump(end + 1)
+            raise
+        self._set(call, name, index, value)
+        if value > last:
+            call.text.jump(end + 1)
+
+    def _end_for(self, reader: Reader, call: Activation, line: int) -> None:
+        begin = call.text.partner(line)[1]
+        head = self._loop_head(call, begin)
+        name, index = self._loop_variable(head)
+        head.expect("=")
+        head.number()
+        head.expect("TO")
+        last = head.number()
+        value = self._get(call, name, index) + 1.0
+        self._set(call, name, index, value)
+        call.text.jump(begin + 1 if value <= last else line + 1)
+
+    def _loop_head(self, call: Activation, begin: int) -> Reader:
+        """Return a reader at the variable of the FOR block at a line."""
+        here = call.text.line
+        call.text.jump(begin)
+        statement_, _ = split_comment(call.text.next_line())
+        call.text.jump(here)
+        tokens = tokenize(statement_)
+        at = next((k for k, token in enumerate(tokens) if token.text == "FOR"), len(tokens))
+        return Reader(tokens, call.variables, at + 1)
+
+    def _loop_variable(self, reader: Reader) -> tuple[str, tuple[int, ...]]:
+        name = reader.peek()
+        if not name or name == "=":
+            raise ExpressionError("FOR needs a variable")
+        reader.at += 1
+        token = reader.token
+        if name == "R" and token is not None and token.sort is Sort.NUMBER:
+            reader.at += 1
+            return name, (int(min(token.value, 1e6)),)
+        index = reader.index()
+        if name == "R" and len(index) != 1:
+            raise ExpressionError("R needs a number")
+        return name, index
+
+    def _get(self, call: Activation, name: str, index: tuple[int, ...]) -> float:
+        if name == "R":
+            return call.variables.parameter(index[0])
+        value = call.variables.variable(name, index)
+        if isinstance(value, str):
+            raise ExpressionError(f"{name} is a text")
+        return value
+
+    def _set(self, call: Activation, name: str, index: tuple[int, ...], value: float) -> None:
+        if name == "R":
+            call.variables.set_parameter(index[0], value)
+        elif not call.variables.assign(name, index, value):
+            self._note(f"{name} is not defined in the program: taken as a global variable", Severity.WARNING)
+
+    def _goto(self, reader: Reader, call: Activation, line: int) -> None:
+        reader.at -= 1
+        self._goto_from(reader, call, line)
+
+    def _goto_from(self, reader: Reader, call: Activation, line: int) -> None:
+        """Jump as the word says that comes next."""
+        word = reader.peek()
+        reader.at += 1
+        call.text.load()
+        if word == "GOTOS":
+            call.text.jump(1)
+            return
+        forward, backward = word in ("GOTO", "GOTOF", "GOTOC"), word in ("GOTO", "GOTOB", "GOTOC")
+        target, found = self._target(reader, call, line, forward=forward, backward=backward)
+        if found is not None:
+            call.text.jump(found)
+        elif word != "GOTOC":
+            self._note(f"the target {target} of {word} is missing: the program ends here", Severity.ERROR)
+            raise End
+
+    def _target(
+        self, reader: Reader, call: Activation, line: int, *, forward: bool, backward: bool
+    ) -> tuple[str, int | None]:
+        token = reader.token
+        if token is None:
+            return "", None
+        reader.at += 1
+        following = reader.token
+        if token.text == "N" and following is not None and following.text.isdigit():
+            reader.at += 1
+            number = int(min(following.value, 1e15))
+            return f"N{number}", call.text.number(number, line, forward=forward, backward=backward)
+        name = token.text.upper()
+        if token.sort is Sort.NAME and token.text in call.variables:
+            name = (call.variables.text(token.text) or "").upper()
+        elif token.sort is Sort.NUMBER and token.text.isdigit():
+            number = int(min(token.value, 1e15))
+            return name, call.text.number(number, line, forward=forward, backward=backward)
+        if re.fullmatch(r"N[0-9]{1,9}", name):
+            return name, call.text.number(int(name[1:]), line, forward=forward, backward=backward)
+        return name[:80], call.text.label(name, line, forward=forward, backward=backward)
+
+    def _case(self, reader: Reader, call: Activation, line: int) -> None:
+        value = reader.number()
+        reader.expect("OF")
+        while reader.token is not None:
+            taken = reader.takes("DEFAULT") or reader.number() == value
+            if not reader.peek().startswith("GOTO"):
+                raise ExpressionError("a jump must follow the value")
+            if taken:
+                self._goto_from(reader, call, line)
+                return
+            reader.at += 1
+            numbered = reader.peek() == "N"
+            reader.at += 2 if numbered else 1
+
+    def _def(self, reader: Reader, call: Activation, line: int) -> None:
+        kind = reader.peek()
+        while kind and kind not in TYPES:
+            reader.at += 1
+            kind = reader.peek()
+        if not kind:
+            raise ExpressionError("DEF needs a type")
+        reader.at += 1
+        if kind == "STRING":
+            reader.index()
+        while True:
+            self._define(reader, call, kind)
+            if reader.token is None:
+                return
+            reader.expect(",")
+
+    def _define(self, reader: Reader, call: Activation, kind: str) -> None:
+        name = reader.peek()
+        token = reader.token
+        if token is None or token.sort not in (Sort.NAME, Sort.LETTER):
+            raise ExpressionError("DEF needs a name")
+        reader.at += 1
+        number = reader.token
+        if name == "R" and number is not None and number.sort is Sort.NUMBER:
+            # Some programs declare R parameters, which need none.
+            reader.at += 1
+            value = reader.number() if reader.takes("=") else 0.0
+            call.variables.set_parameter(int(min(number.value, 1e6)), value)
+            return
+        if token.sort is not Sort.NAME:
+            raise ExpressionError(f"{name} is no name for a variable")
+        size = reader.index()
+        call.variables.define(kind, name)
+        if not reader.takes("="):
+            return
+        if reader.takes("SET"):
+            for index, element in enumerate(reader.arguments()):
+                if element is not None:
+                    call.variables.assign(name, (index,), element)
+        else:
+            given = reader.value()
+            if size:
+                self._note(f"{name}: a field takes SET(...)", Severity.ERROR)
+            else:
+                call.variables.assign(name, (), given)
+
+    def _proc(self, reader: Reader, call: Activation, line: int) -> None:
+        """Give the arguments of the call to the names of the PROC line."""
+        handed = call.variables.handed
+        reader.at += 1
+        if not reader.takes("("):
+            return
+        place = 0
+        while not reader.takes(")"):
+            reader.takes("VAR")
+            kind = reader.peek()
+            reader.at += 1
+            if kind == "STRING":
+                reader.index()
+            name = reader.peek()
+            if kind not in TYPES or not name:
+                raise ExpressionError("a parameter has a type and a name")
+            reader.at += 1
+            reader.index()
+            default = reader.value() if reader.takes("=") else None
+            given = handed[place] if place < len(handed) else None
+            call.variables.define(kind, name, default if given is None else given)
+            place += 1
+            reader.takes(",")

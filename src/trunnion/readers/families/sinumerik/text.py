@@ -1,0 +1,116 @@
+"""Where the jumps of a Sinumerik program lead: its labels, block numbers and control structures."""
+
+import re
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from trunnion.readers.common.text import Text
+
+# Blanks are matched in one place each: two runs of them side by side would take quadratic time on a line of blanks.
+_START = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[0-9]+[ \t]*)?"
+_LABEL = re.compile(_START + rb"([A-Z_][A-Z_][A-Z0-9_]*)[ \t]*:(?!=)", re.IGNORECASE | re.MULTILINE)
+_NUMBER = re.compile(rb"^[ \t]*(?:/[0-9]?[ \t]*)?N([0-9]{1,15})", re.IGNORECASE | re.MULTILINE)
+_STRUCTURE = re.compile(
+    _START + rb"(?:[A-Z_][A-Z_][A-Z0-9_]*[ \t]*:[ \t]*)?"
+    rb"(IF|ELSE|ENDIF|FOR|ENDFOR|WHILE|ENDWHILE|LOOP|ENDLOOP|REPEAT|UNTIL)(?![A-Z0-9_])([^\n;]*)",
+    re.IGNORECASE | re.MULTILINE,
+)
+_JUMPS = re.compile(rb"(?<![A-Z0-9_])GOTO[FBCS]?(?![A-Z0-9_])", re.IGNORECASE)
+
+#: The word that ends what another one began.
+_ENDS: Final = {"ENDIF": "IF", "ENDFOR": "FOR", "ENDWHILE": "WHILE", "ENDLOOP": "LOOP", "UNTIL": "REPEAT"}
+
+#: How deep control structures may stand inside each other.
+DEEPEST: Final = 64
+
+
+#: How names of programs end; a subprogram goes before a main program.
+SUFFIXES: Final = (".SPF", "_SPF", ".MPF", "_MPF", "")
+
+
+@dataclass(slots=True)
+class _Places:
+    """Where the labels, block numbers and control words of a text stand, each found out when it is first asked for."""
+
+    labels: dict[str, list[int]] | None = None
+    numbers: dict[int, list[int]] | None = None
+    partners: dict[int, tuple[int, int]] | None = None
+
+
+class SinumerikText(Text):
+    """A program file with the places where its jumps lead."""
+
+    def __init__(self, path: Path, *, whole: bool = False) -> None:
+        # Shared by all that run the same text: see ``again``.
+        self._places = _Places()
+        super().__init__(path, whole=whole)
+
+    def label(self, name: str, here: int, *, forward: bool, backward: bool) -> int | None:
+        """Line of a label: the next one after ``here`` if ``forward``, else the last one before it."""
+        labels = self._places.labels
+        if labels is None:
+            labels = self._places.labels = {}
+            for match in _LABEL.finditer(self.all()):
+                labels.setdefault(match.group(1).decode().upper(), []).append(self.line_of(match.start(1)))
+        return _pick(labels.get(name, []), here, forward=forward, backward=backward)
+
+    def number(self, number: int, here: int, *, forward: bool, backward: bool) -> int | None:
+        """Line of a block number, found like a label."""
+        numbers = self._places.numbers
+        if numbers is None:
+            numbers = self._places.numbers = {}
+            for match in _NUMBER.finditer(self.all()):
+                numbers.setdefault(int(match.group(1)), []).append(self.line_of(match.start(1)))
+        return _pick(numbers.get(number, []), here, forward=forward, backward=backward)
+
+    def partner(self, line: int) -> tuple[int, int]:
+        """Return the lines that belong to a control word: (ELSE or 0, end) of a beginning, (0, beginning) of an end."""
+        if self._places.partners is None:
+            self._places.partners = self._match_structures()
+        try:
+            return self._places.partners[line]
+        except KeyError:
+            raise self.problem(line, "has a control word that begins or ends nothing") from None
+
+    def _match_structures(self) -> dict[int, tuple[int, int]]:
+        partners: dict[int, tuple[int, int]] = {}
+        open_: list[tuple[str, int, int]] = []
+        for match in _STRUCTURE.finditer(self.all()):
+            word = match.group(1).decode().upper()
+            rest = match.group(2)
+            line = self.line_of(match.start(1))
+            if (word == "IF" and _JUMPS.search(rest)) or (word == "REPEAT" and rest.strip()):
+                continue
+            if word == "ELSE":
+                if not open_ or open_[-1][0] != "IF" or open_[-1][2]:
+                    raise self.problem(line, "has an ELSE without its IF")
+                open_[-1] = ("IF", open_[-1][1], line)
+            elif word in _ENDS:
+                if not open_ or open_[-1][0] != _ENDS[word]:
+                    raise self.problem(line, f"has {word} without its {_ENDS[word]}")
+                _, begin, middle = open_.pop()
+                partners[begin] = (middle, line)
+                partners[line] = (0, begin)
+                if middle:
+                    partners[middle] = (0, line)
+            else:
+                open_.append((word, line, 0))
+                if len(open_) > DEEPEST:
+                    raise self.problem(line, f"nests control structures deeper than {DEEPEST} levels")
+        if open_:
+            raise self.problem(open_[-1][1], f"begins {open_[-1][0]}, which never ends")
+        return partners
+
+
+def _pick(lines: list[int], here: int, *, forward: bool, backward: bool) -> int | None:
+    if forward:
+        at = bisect_right(lines, here)
+        if at < len(lines):
+            return lines[at]
+    if backward:
+        at = bisect_left(lines, here + 1)
+        if at > 0:
+            return lines[at - 1]
+    return None

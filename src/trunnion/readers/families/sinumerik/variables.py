@@ -1,0 +1,104 @@
+"""Variables of a program: R parameters, DEF variables and names that the control predefines."""
+
+import math
+from typing import Final
+
+from trunnion.readers.families.sinumerik.expressions import ExpressionError, Value, whole
+from trunnion.readers.families.sinumerik.words import CONSTANTS
+
+#: The elements of a variable by index; one that is no field has the index ().
+Elements = dict[tuple[int, ...], Value]
+
+#: The highest R parameter and array index.
+HIGHEST: Final = 32767
+
+#: Assignments after which variables are counted; half as many a program may have.
+MOST: Final = 100_000
+
+
+class Variables:
+    """What a running program or subprogram can name; subprograms share R parameters and globals."""
+
+    def __init__(self, shared: "Variables | None" = None) -> None:
+        self._local: dict[str, Elements] = {}
+        self._types: dict[str, str] = {}
+        self._parameters: dict[int, float] = {} if shared is None else shared._parameters
+        self._global: dict[str, Elements] = {} if shared is None else shared._global
+        self._count: list[int] = [0] if shared is None else shared._count
+        self.handed: list[Value | None] = []
+
+    def hand(self, arguments: list[Value | None]) -> None:
+        """Keep the arguments of a call for the PROC line."""
+        self.handed = arguments
+
+    def parameter(self, number: int) -> float:
+        """Return an R parameter; one that nobody set is 0."""
+        self._check_index(number)
+        return self._parameters.get(number, 0.0)
+
+    def set_parameter(self, number: int, value: float) -> None:
+        """Set an R parameter."""
+        self._check_index(number)
+        self._parameters[number] = value
+
+    def define(self, kind: str, name: str, value: Value | None = None) -> None:
+        """DEF: a variable of this program."""
+        self._types[name] = kind
+        self._local[name] = {}
+        self.assign(name, (), value if value is not None else ("" if kind in ("STRING", "AXIS") else 0.0))
+
+    def __contains__(self, name: str) -> bool:
+        """Whether this program defined the name."""
+        return name in self._types
+
+    def text(self, name: str) -> str | None:
+        """Return the text of a STRING variable, None if there is none of this name."""
+        value = self._local.get(name, {}).get(())
+        return value if isinstance(value, str) else None
+
+    def assign(self, name: str, index: tuple[int, ...], value: Value) -> bool:
+        """Set a variable; False if nobody defined it, and it is now a global one."""
+        for number in index:
+            self._check_index(number)
+        kind = self._types.get(name)
+        if kind in ("INT", "BOOL", "CHAR", "REAL") and isinstance(value, str) and kind != "CHAR":
+            raise ExpressionError(f"{name} takes a number, not a text")
+        if kind == "INT" and isinstance(value, float):
+            value = float(whole(math.copysign(math.floor(abs(value) + 0.5), value)))
+        if kind == "BOOL" and isinstance(value, float):
+            value = float(bool(value))
+        self._count[0] += 1
+        if self._count[0] > MOST:
+            self._recount()
+        if kind is not None:
+            self._local[name][index] = value
+            return True
+        known = name in self._global
+        self._global.setdefault(name, {})[index] = value
+        return known
+
+    def _recount(self) -> None:
+        """Count variables exactly, as seldom as assignments can have made many."""
+        held = sum(map(len, self._local.values())) + sum(map(len, self._global.values()))
+        if held > MOST // 2:
+            raise ExpressionError(f"the program has more than {MOST // 2} variables")
+        self._count[0] = held
+
+    def variable(self, name: str, index: tuple[int, ...]) -> Value:
+        """Return the value of a variable or predefined name."""
+        for table in (self._local, self._global):
+            elements = table.get(name)
+            if elements is not None and index in elements:
+                return elements[index]
+        if name in self._types and index:
+            return "" if self._types[name] == "STRING" else 0.0
+        if name in CONSTANTS and not index:
+            return float(CONSTANTS[name])
+        if name.startswith("$"):
+            raise ExpressionError(f"{name} is a system variable, which only the control knows")
+        raise ExpressionError(f"{name} has no value")
+
+    @staticmethod
+    def _check_index(number: int) -> None:
+        if not 0 <= number <= HIGHEST:
+            raise ExpressionError(f"{number} is not from 0 to {HIGHEST}")

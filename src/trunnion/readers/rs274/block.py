@@ -1,0 +1,153 @@
+"""Blocks of languages of the RS274 kind: letters with numbers, in any order and with blanks anywhere."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Final
+
+from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Parameters, Reader, Value
+
+#: Longer blocks are no blocks.
+LONGEST: Final = 8192
+
+#: Larger codes are none that a control has.
+_LARGEST_CODE: Final = 100_000
+
+_NUMBERED = re.compile(r"N([0-9]{1,15})(?:\.[0-9]*)?")
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """The value of a word; ``whole``: written as digits without a point."""
+
+    value: float
+    whole: bool = False
+
+
+@dataclass(slots=True)
+class Block:
+    """What a block says.
+
+    words      by letter, other than N, G and M
+    g          G codes in the order of the block, in tenths: G54.1 is 541
+    m          M codes
+    settings   parameters that get values, which count from the next block on
+    used       letters that something in the block has made use of
+    """
+
+    words: dict[str, Number] = field(default_factory=dict)
+    g: list[int] = field(default_factory=list)
+    m: list[int] = field(default_factory=list)
+    settings: list[tuple[int | str, Value]] = field(default_factory=list)
+    used: set[str] = field(default_factory=set)
+
+    def take(self, letter: str) -> float | None:
+        """Return the value of a word, which has now found its use; None if there is no such word."""
+        number = self.words.get(letter)
+        if number is None:
+            return None
+        self.used.add(letter)
+        return number.value
+
+    def unused(self) -> list[str]:
+        """Letters that nothing in the block made use of."""
+        return [letter for letter in self.words if letter not in self.used]
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line without its comments: what is left, in capitals and without blanks.
+
+    number     N number, -1 where it has none
+    skipped    the line begins with a slash; ``level`` is its digit or 0
+    comments   as they stand, without their brackets
+    """
+
+    text: str
+    number: int = -1
+    skipped: bool = False
+    comments: tuple[str, ...] = ()
+
+
+def split(raw: str, *, semicolon: bool) -> Line:
+    """Take a line apart; BlockError if a comment does not end.
+
+    semicolon   a semicolon begins a comment, else it ends the block
+    """
+    parts: list[str] = []
+    comments: list[str] = []
+    at = 0
+    while at < len(raw):
+        begin = re.compile(r"[(;]").search(raw, at)
+        if begin is None:
+            parts.append(raw[at:])
+            break
+        parts.append(raw[at : begin.start()])
+        if begin.group() == ";":
+            rest = raw[begin.end() :]
+            if semicolon:
+                comments.append(rest)
+            elif rest.strip():
+                raise BlockError("something stands behind the end of the block")
+            break
+        end = raw.find(")", begin.end())
+        if end < 0:
+            raise BlockError("a comment does not end")
+        comments.append(raw[begin.end() : end])
+        at = end + 1
+    text = "".join("".join(parts).split()).upper()
+    skipped = text.startswith("/")
+    if skipped:
+        text = text[2:] if text[1:2].isdigit() else text[1:]
+    number = -1
+    match = _NUMBERED.match(text)
+    if match is not None:
+        number = int(match.group(1))
+        text = text[match.end() :]
+    return Line(text, number, skipped, tuple(comments))
+
+
+def read_block(reader: Reader, twice: Callable[[str], None]) -> Block:
+    """Read the rest of a block; ``twice`` is told of words that stand in it more than once."""
+    block = Block()
+    while not reader.ended:
+        letter = reader.letter()
+        if letter == "#":
+            key = reader.key()
+            block.settings.append((key, reader.assigned()))
+            continue
+        if not "A" <= letter <= "Z":
+            raise BlockError(f"{letter!r} is no word")
+        value, whole = reader.real()
+        if value is None:
+            # A word with a value that nobody set is as good as not written.
+            continue
+        if letter == "G":
+            block.g.append(_code(value, letter, 10))
+        elif letter == "M":
+            block.m.append(_code(value, letter, 1))
+        else:
+            if letter in block.words:
+                twice(letter)
+            block.words[letter] = Number(value, whole)
+    return block
+
+
+def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> Reader:
+    """Return a reader at the beginning of a block."""
+    if len(text) > LONGEST:
+        raise BlockError(f"the block is longer than {LONGEST} characters")
+    return Reader(text, arithmetic, parameters)
+
+
+def _code(value: float, letter: str, parts: int) -> int:
+    code = round(value * parts)
+    if abs(value * parts - code) > 1e-3 or not 0 <= code < _LARGEST_CODE:
+        raise BlockError(f"{letter} takes a whole number" + (", or one with a tenth" if parts > 1 else ""))
+    return code
+
+
+def spelled(code: int) -> str:
+    """A G code as it is written: 541 is G54.1."""
+    whole, tenth = divmod(code, 10)
+    return f"G{whole}.{tenth}" if tenth else f"G{whole}"

@@ -1,0 +1,287 @@
+"""Programs of the RS274 kind, block by block: what their families have in common."""
+
+import math
+import re
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
+import numpy as np
+
+from trunnion.arrays import Codes
+from trunnion.errors import Severity
+from trunnion.model.run import Written
+from trunnion.readers.common import interpreter
+from trunnion.readers.common.interpreter import End, Interpreter
+from trunnion.readers.common.scan import scan
+from trunnion.readers.common.scan_buffers import FEEDS, ROW
+from trunnion.readers.common.text import Text
+from trunnion.readers.common.virtual_control import LINEAR, RAPID
+from trunnion.readers.common.word import How, Word
+from trunnion.readers.rs274.block import Block, spelled, split
+from trunnion.readers.rs274.control import CLOCKWISE, COUNTER, Rs274Control
+from trunnion.readers.rs274.expressions import BlockError
+
+#: G codes, in tenths, and what they set.
+MOTIONS: Final = {0: RAPID, 10: LINEAR, 20: CLOCKWISE, 30: COUNTER}
+PLANES: Final = {170: 2, 180: 1, 190: 0}
+FEED_MODES: Final = {930: 93, 940: 94, 950: 95}
+
+#: Radius compensation: left of the path, right of it, off.
+SIDES: Final = {400: 0, 410: 1, 411: 1, 412: 1, 420: -1, 421: -1, 422: -1}
+CANCEL: Final = 800
+
+#: M codes that are events as they are: kind and value.
+EVENTS: Final = {
+    0: ("stop", None),
+    1: ("optional_stop", None),
+    3: ("spindle", "clockwise"),
+    4: ("spindle", "counter-clockwise"),
+    5: ("spindle", "off"),
+    7: ("coolant", "mist"),
+    8: ("coolant", "flood"),
+    9: ("coolant", "off"),
+    19: ("spindle", "oriented"),
+}
+SPINDLE: Final = {3: 1, 4: -1, 5: 0}
+CHANGE: Final = 6
+ENDS: Final = frozenset({2, 30})
+
+#: Letters of axes; a machine has five of them.
+AXES: Final = "XYZABCUVW"
+
+#: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
+_PLAIN = re.compile(
+    rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[\r\n]|G[ \t]*0?[01](?![0-9.])|[A-FXYZ][ \t]*[-+.0-9])", re.IGNORECASE
+)
+_LOOK: Final = 48
+
+
+@dataclass(slots=True)
+class Activation(interpreter.Activation):
+    """A program or subprogram being executed.
+
+    row        the row at which it began
+    percents   lines with a percent sign so far
+    """
+
+    row: int = 0
+    percents: int = 0
+
+
+A = TypeVar("A", bound=Activation)
+
+
+class Rs274Interpreter(Interpreter[A]):
+    """Runs one program of this kind; families say what their blocks mean.
+
+    ``motion`` is the G code in tenths that blocks without one of their own carry on, -1 for none.
+    """
+
+    #: Whether a semicolon begins a comment.
+    semicolon = False
+
+    motion = 0
+
+    @property
+    @abstractmethod
+    def control(self) -> Rs274Control:
+        """The virtual control."""
+
+    @abstractmethod
+    def _text(self, call: A, line: int, text: str) -> None:
+        """Execute a block without its comments; BlockError says why it cannot be done."""
+
+    # Lines
+
+    def _line(self, call: A, line: int, raw: str) -> None:
+        try:
+            parts = split(raw, semicolon=self.semicolon)
+        except BlockError as error:
+            self._note(f"not understood: {error}: the block is not executed", Severity.ERROR)
+            return
+        self.control.block_number = parts.number
+        try:
+            if parts.text.startswith("%"):
+                self._percent(call)
+            elif parts.text and not (parts.skipped and self._skip):
+                self._text(call, line, parts.text)
+        except BlockError as error:
+            self._note(f"not understood: {error}: the block is not executed", Severity.ERROR)
+        finally:
+            for comment in parts.comments:
+                self._comment(line, comment)
+                self._said(comment)
+
+    def _said(self, comment: str) -> None:
+        """Look at what a comment says, where that is more than a comment."""
+
+    def _percent(self, call: A) -> None:
+        """Begin or end what is transferred."""
+        call.percents += 1
+        if call.percents > 1 or self.control.row > call.row:
+            self._end_of_file(call)
+
+    def _end_of_file(self, call: A) -> None:
+        """End at a percent sign."""
+        raise End
+
+    # Plain blocks
+
+    def _may_be_plain(self, text: Text) -> bool:
+        control = self.control
+        if self.motion not in (0, 10) or not control.absolute:
+            return False
+        return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
+
+    @property
+    @abstractmethod
+    def _table(self) -> Codes:
+        """What bytes mean to the kernel now."""
+
+    def _kernel(self, text: Text) -> None:
+        control = self.control
+        first = control.columns.n
+        inverse = control.feed_mode.now == 93
+        before = float(control.place[3])
+        control.kind = MOTIONS[self.motion]
+        scan(
+            text.buffer,
+            len(text.buffer),
+            self._table,
+            False,
+            control.lengths,
+            1.0 if inverse else control.feeds,
+            control.default_way,
+            control.map,
+            control.turn,
+            control.counts,
+            control.place,
+            control.target(),
+            control.notes,
+        )
+        self.motion = 10 * control.kind
+        self._check_feeds(first, before, inverse)
+
+    def _check_feeds(self, first: int, before: float, inverse: bool) -> None:
+        """Say where the kernel made lines without a feed."""
+        control = self.control
+        c, target = control.columns, control.target()
+        rows = slice(first, int(control.counts[ROW]))
+        lines = target.kind[rows] != 0
+        if inverse:
+            lines &= (target.programmed[rows] & int(Written.FEED)) == 0
+            missing = np.flatnonzero(lines) + first
+        else:
+            noted = int(control.counts[FEEDS])
+            feeds = np.append(before, control.notes.feeds[:noted])
+            if (feeds > 0.0).all():
+                return
+            begins = np.append(first, control.notes.feed_rows[:noted])
+            held = feeds[np.searchsorted(begins, np.arange(rows.start, rows.stop), "right") - 1]
+            missing = np.flatnonzero(lines & ~(held > 0.0)) + first
+        here = control.line
+        for row in missing.tolist():
+            control.line = int(c.block[row - c.base])
+            self._note("a line without a feed", Severity.ERROR)
+        control.line = here
+
+    # Words
+
+    def _twice(self, letter: str) -> None:
+        self._note(f"{letter} is written twice: the last one counts", Severity.ERROR)
+
+    def _modal(self, code: int) -> bool:
+        """Carry out a G code that all of them have; False if it is another one."""
+        control = self.control
+        if code in MOTIONS:
+            self.motion = code
+        elif code in PLANES:
+            control.plane = PLANES[code]
+        elif code in (200, 210):
+            control.set_units(code == 200, True)
+        elif code in (900, 910):
+            control.absolute = code == 900
+        elif code in FEED_MODES:
+            control.feed_mode.set(control.row, FEED_MODES[code])
+        else:
+            return False
+        return True
+
+    def _name_code(self, code: int, named: dict[int, tuple[str, bool]], silent: frozenset[int]) -> None:
+        """Say that a G code is known and not simulated, or not known."""
+        if code in SIDES:
+            self.control.compensation.set(self.control.row, SIDES[code])
+        if code in named:
+            text, grave = named[code]
+            self._note(f"{spelled(code)}: {text}", Severity.ERROR if grave else Severity.WARNING)
+        elif code not in silent:
+            self._note(f"unknown word {spelled(code)}", Severity.ERROR)
+
+    def _axis_words(self, block: Block) -> dict[str, Word]:
+        """Words of the machine's axes; those of others are findings."""
+        axes: dict[str, Word] = {}
+        for letter in AXES:
+            value = block.take(letter)
+            if value is None:
+                continue
+            if letter in "XYZ" or letter in self.control.names:
+                axes[letter] = value, How.AS_SET
+            else:
+                self._note(f"{letter}: the machine has no such axis", Severity.ERROR)
+        return axes
+
+    def _feed_and_speed(self, block: Block) -> None:
+        control = self.control
+        feed = block.take("F")
+        if feed is not None:
+            if feed < 0.0:
+                raise BlockError("a feed below zero")
+            control.place[3] = feed if control.feed_mode.now == 93 else feed * control.feeds
+        speed = block.take("S")
+        if speed is not None:
+            control.rpm.set(control.row, abs(speed))
+            control.event("speed", abs(speed))
+
+    def _move(self, block: Block, axes: dict[str, Word], *, turns: int = 0, machine_frame: bool = False) -> None:
+        """Make the motion in force: a line or a circle."""
+        control = self.control
+        control.kind = MOTIONS[self.motion]
+        params: dict[str, float] = {}
+        if control.kind > LINEAR:
+            params = {letter: value for letter in "IJKR" if (value := block.take(letter)) is not None}
+        written = "F" in block.words
+        self._check_feed(written)
+        control.move(
+            axes, None, circle=control.circle(params, turns), machine_frame=machine_frame, feed_written=written
+        )
+
+    def _check_feed(self, written: bool) -> None:
+        control = self.control
+        if control.kind == RAPID:
+            return
+        feed = float(control.place[3])
+        missing = math.isnan(feed) or feed <= 0.0 or (control.feed_mode.now == 93 and not written)
+        if missing:
+            self._note("a line without a feed" if control.kind == LINEAR else "a circle without a feed", Severity.ERROR)
+
+    def _m(self, code: int) -> bool:
+        """Carry out an M code that all of them have; False if it is another one."""
+        control = self.control
+        if code in SPINDLE:
+            control.spindle.set(control.row, SPINDLE[code])
+        if code in EVENTS:
+            control.event(*EVENTS[code])
+        elif code == CHANGE:
+            control.change_tool()
+        elif code in ENDS:
+            control.event("end", f"M{code}")
+            raise End
+        else:
+            return False
+        return True
+
+    def _name_unused(self, block: Block) -> None:
+        """Say which words had no use."""
+        for letter in block.unused():
+            self._note(f"{letter} has no use in this block", Severity.ERROR)

@@ -1,0 +1,1 @@
+"""What the axes and the tool do in a run: positions, deviations, speeds, times."""

@@ -1,0 +1,47 @@
+"""A verification as lines for a terminal."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.machines.motion_time import clock
+from trunnion.model.toolpath import Kind
+from trunnion.verification.results import Check, Place, Verification
+
+
+def check_lines(verification: Verification) -> Iterator[str]:
+    """One line a check."""
+    width = max(len(check.key) for check in verification.checks)
+    for check in verification.checks:
+        yield f"{check.key:<{width}}  {'ok  ' if check.passed else 'FAIL'}  {check.summary}"
+
+
+def place_lines(verification: Verification, *, failed_only: bool = False, most: int = 5) -> Iterator[str]:
+    """The worst places of each check, those of failed checks first: ``nc:line (N…), cl:line: text``."""
+    for check in sorted(verification.checks, key=lambda check: check.passed):
+        if check.passed and failed_only:
+            continue
+        for place in check.places[:most]:
+            yield f"{place_line(verification.program, place)} [{check.key}]"
+
+
+def place_line(program: str, place: Place) -> str:
+    """One place, in the form that editors know how to jump to."""
+    number = f" (N{place.number})" if place.number >= 0 else ""
+    cl = f", {place.cl_file}:{place.cl_line}" if place.cl_line else ""
+    return f"{program}:{place.nc_line}{number}{cl}: {place.text}"
+
+
+def time_lines(verification: Verification) -> Iterator[str]:
+    """What the program and each of its operations take, as far as times were asked for."""
+    seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
+    if len(seconds):
+        cuts = verification.run.kind != Kind.RAPID
+        yield f"time: {clock(float(seconds.sum()))}, {clock(float(seconds[cuts].sum()))} of it in cuts"
+        for share in verification.operations:
+            yield f"time: {clock(float(seconds[share.first : share.end].sum()))} for {share.name}"
+
+
+def failures(verification: Verification) -> list[Check]:
+    """The checks that were not passed."""
+    return [check for check in verification.checks if not check.passed]
