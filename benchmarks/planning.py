@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 from make_cls import path
 from trunnion.arrays import Codes
 from trunnion.machines import Machine, forward, load_machine
-from trunnion.model.motion import Manner, Motion, Pole
+from trunnion.model.motion import MachiningMode, Motion, PoleStrategy
 from trunnion.model.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool, Toolpath
-from trunnion.planning import Wishes, plan, seconds
-from trunnion.planning.linearization.inserted_points import with_points
-from trunnion.planning.poses.decision_log import Planned, travel, turned_over
-from trunnion.planning.poses.selection import choose, choose_nearest, take
+from trunnion.planning import PlanOptions, operation_seconds, plan
+from trunnion.planning.linearization.point_insertion import linearize
+from trunnion.planning.poses.decision_log import PlannedOperation, rewind_rows, rotary_travel
+from trunnion.planning.poses.selection import choose_nearest_states, choose_states, poses_of_states
 from trunnion.planning.poses.states import states_of
-from trunnion.planning.speed.rotary_speed import shares, wound
+from trunnion.planning.speed.rotary_speed import continuous_positions, speed_shares
 
 Floats = NDArray[np.float64]
 Choose = Callable[[Machine, Moves, bool], Codes]
@@ -120,7 +120,7 @@ EIGHTHS = np.arange(1, 8) / 8.0
 
 def off_between(machine: Machine, motion: Motion) -> float:
     """How far the tool axis is off the great circle in cuts, degrees, where the rotary axes turn evenly."""
-    moves, rotary = motion.operation.moves, wound(machine, motion.rotary)
+    moves, rotary = motion.operation.moves, continuous_positions(machine, motion.rotary)
     cuts = np.flatnonzero(moves.kind[1:] != Kind.RAPID)
     begin, end = moves.axis[cuts], moves.axis[cuts + 1]
     angle = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(end - begin, axis=1), 1.0))[:, None]
@@ -141,22 +141,22 @@ def measured(machine: Machine, moves: Moves, choice: Choose) -> str:
     for _ in range(3):
         begin = time.process_time()
         state = choice(machine, moves, False)
-        poses = take(machine, moves, state, False)
+        poses = poses_of_states(machine, moves, state, False)
         took.append(time.process_time() - begin)
-    operation = Operation("", Tool(), Frame(), moves, Arcs.none(), (), 1)
-    planned = Planned(machine, "", operation, poses.rotary, state, False)
+    operation = Operation("", Tool(), Frame(), moves, Arcs.empty(), (), 1)
+    planned = PlannedOperation(machine, "", operation, poses.rotary, state, False)
     beyond = int(((poses.outcome > 0) & (poses.outcome <= 5)).sum())
     note = f" and {beyond} over-travels" if beyond else ""
-    over = turned_over(planned)
+    over = rewind_rows(planned)
     kind = moves.kind.copy()
     kind[over] = Kind.RAPID  # a rewind leads there
-    motion = Motion(replace(operation, moves=replace(moves, kind=kind)), poses.rotary, Manner.TCP)
-    led = with_points("", motion, machine, Wishes(axis_tolerance=BETWEEN), 0.001)
+    motion = Motion(replace(operation, moves=replace(moves, kind=kind)), poses.rotary, MachiningMode.TCP)
+    led = linearize("", motion, machine, PlanOptions(axis_tolerance=BETWEEN), 0.001)
     added = len(led.motion.operation.moves) - len(moves)
     held = "refused" if led.problems else f"{off_between(machine, led.motion):.4f}"
     errors = f"{off_between(machine, motion):.4f} / {held}"
-    cells = f"{len(over)}{note} | {travel(machine, poses.rotary):.0f} | {added} | {errors}"
-    return f"{cells} | {seconds(machine, motion):.0f} | {1e3 * min(took):.1f}"
+    cells = f"{len(over)}{note} | {rotary_travel(machine, poses.rotary):.0f} | {added} | {errors}"
+    return f"{cells} | {operation_seconds(machine, motion):.0f} | {1e3 * min(took):.1f}"
 
 
 def straight_past() -> Moves:
@@ -172,30 +172,30 @@ def straight_past() -> Moves:
 
 #: How the pole is looked after, by the settings that ask for it.
 POLES = {
-    "off": Wishes(),
-    "hold, 0.5": Wishes(pole=Pole.HOLD, pole_angle=0.5),
-    "spread, 0.5": Wishes(pole=Pole.SPREAD, pole_angle=0.5),
-    "lean, 0.5": Wishes(pole=Pole.LEAN, pole_angle=0.5),
-    "lower_feed": Wishes(lower_feed=True),
+    "off": PlanOptions(),
+    "hold, 0.5": PlanOptions(pole_strategy=PoleStrategy.HOLD, pole_angle=0.5),
+    "spread, 0.5": PlanOptions(pole_strategy=PoleStrategy.SPREAD, pole_angle=0.5),
+    "lean, 0.5": PlanOptions(pole_strategy=PoleStrategy.LEAN, pole_angle=0.5),
+    "lower_feed": PlanOptions(lower_feed=True),
 }
 
 
-def at_pole(machine: Machine, moves: Moves, wishes: Wishes) -> str:
+def at_pole(machine: Machine, moves: Moves, options: PlanOptions) -> str:
     """Cells of the table: share of the rapid speed, rows too fast, lean, time on the machine, milliseconds."""
     moves = replace(moves, tip=4.0 * moves.tip, feed=np.full(len(moves), 600.0))
-    path = Toolpath("path", (Operation("", Tool(), Frame(), moves, Arcs.none(), (), 1),))
+    path = Toolpath("path", (Operation("", Tool(), Frame(), moves, Arcs.empty(), (), 1),))
     begin = time.perf_counter()
-    motion = plan([path], machine, 0.001, wishes).motions[0]
+    motion = plan([path], machine, 0.001, options).motions[0]
     took = time.perf_counter() - begin
     rotary = motion.rotary
-    share = shares(machine, motion.operation, rotary).max(axis=1)
-    leaned = motion.departures
+    share = speed_shares(machine, motion.operation, rotary).max(axis=1)
+    leaned = motion.deviations
     joints = np.zeros((len(leaned.rotary), 5))
     joints[:, list(machine.rotary)] = leaned.rotary
     apart = np.linalg.norm(forward(machine, joints)[1] - moves.axis[leaned.leaned], axis=1)
     lean = float(np.degrees(2.0 * np.arcsin(0.5 * apart)).max(initial=0.0))
     cells = (f"{100.0 * share.max():.0f} %", f"{int((share > 1.0).sum())}", f"{lean:.4f}")
-    return " | ".join((*cells, f"{seconds(machine, motion):.1f}", f"{1e3 * took:.0f}"))
+    return " | ".join((*cells, f"{operation_seconds(machine, motion):.1f}", f"{1e3 * took:.0f}"))
 
 
 def poles() -> None:
@@ -226,14 +226,14 @@ def without_tcp(points: int) -> None:
         moves = moves_of(axis, np.zeros(len(rows), bool))
         moves = replace(moves, tip=np.ascontiguousarray(rows[:, :3]))
         step = float(np.linalg.norm(np.diff(moves.tip, axis=0), axis=1).mean())
-        toolpath = Toolpath("path", (Operation("", Tool(), Frame(), moves, Arcs.none(), (), 1),))
+        toolpath = Toolpath("path", (Operation("", Tool(), Frame(), moves, Arcs.empty(), (), 1),))
         for name, model in machines().items():
             axes = tuple(a if a.is_rotary else replace(a, low=-np.inf, high=np.inf) for a in model.axes)
             machine = replace(model, axes=axes, workpiece_zero=(37.0, -21.0, 110.0), tool_length=83.7)
             best = float("inf")
             for _ in range(3):
                 begin = time.process_time()
-                planned = plan([toolpath], machine, 0.001, Wishes(tcp=False))
+                planned = plan([toolpath], machine, 0.001, PlanOptions(tcp=False))
                 best = min(best, time.process_time() - begin)
             out = len(planned.motions[0].operation.moves)
             rewinds = sum("to rewind" in problem.what for problem in planned.problems)
@@ -252,7 +252,7 @@ def main() -> None:
     for title, make in PATHS.items():
         moves = make()
         for name, machine in machines().items():
-            for which, choice in (("nearest", choose_nearest), ("optimum", choose)):
+            for which, choice in (("nearest", choose_nearest_states), ("optimum", choose_states)):
                 print(f"| {title} ({len(moves)}) | {name} | {which} | {measured(machine, moves, choice)} |")
     print("\n| machine | states | points/s |\n| --- | --- | --- |")
     rows = path(0, points)
@@ -261,8 +261,8 @@ def main() -> None:
         best = float("inf")
         for _ in range(3):
             begin = time.perf_counter()
-            state = choose(machine, moves, False)
-            take(machine, moves, state, False)
+            state = choose_states(machine, moves, False)
+            poses_of_states(machine, moves, state, False)
             best = min(best, time.perf_counter() - begin)
         print(f"| {name} | {len(states_of(machine))} | {points / best:,.0f} |")
     without_tcp(points)

@@ -80,7 +80,7 @@ def stage_read(small: Path, program: Path) -> dict[str, Any]:
     bare = watch.read()
     # Columns may be worked out only when they are asked for.
     assert len(ran.tip) == len(ran.axis)
-    return {"bare": bare, "whole": watch.read(), "findings": len(ran.findings)}
+    return {"bare": bare, "whole": watch.read(), "findings": len(ran.diagnostics)}
 
 
 def stage_prove(small: Path, cls: Path, program: Path) -> dict[str, Any]:
@@ -98,7 +98,7 @@ def post_and_prove(cls: Path, program: Path) -> dict[str, Any]:
     from trunnion.output.program_writer import write_program
     from trunnion.planning import plan
     from trunnion.readers import run_program
-    from trunnion.verification import Allowed, Settings, verify
+    from trunnion.verification import Settings, Tolerances, verify
 
     machine = load_machine(MACHINE)
     control = load_control(machine.control)
@@ -118,8 +118,8 @@ def post_and_prove(cls: Path, program: Path) -> dict[str, Any]:
     watch = step("write", watch)
     ran = run_program(program, machine)
     watch = step("read back", watch)
-    half = Allowed(5e-6 + 1e-9, 5e-6 + 1e-9)
-    found = verify(ran, [toolpath], allowed=half, settings=Settings(work_offset=54, edge=1), columns=False)
+    half = Tolerances(5e-6 + 1e-9, 5e-6 + 1e-9)
+    found = verify(ran, [toolpath], tolerances=half, settings=Settings(work_offset=54, edge=1), columns=False)
     step("check", watch)
     return {"steps": steps, "passed": found.passed}
 
@@ -136,7 +136,7 @@ def stage_agree(program: Path, rows: Path) -> dict[str, Any]:
         return {"rows": [int(tcp.sum()), len(naive)]}
     return {
         "rows": [len(naive), len(naive)],
-        "lines": int((ran.block[tcp] != naive[:, 0]).sum()),
+        "lines": int((ran.line[tcp] != naive[:, 0]).sum()),
         "kinds": int((ran.kind[tcp] != naive[:, 1]).sum()),
         "tip": float(np.abs(ran.tip[tcp] - naive[:, 2:5]).max()),
         "axis": float(np.abs(ran.axis[tcp] - naive[:, 5:8]).max()),

@@ -7,30 +7,30 @@ import os
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
-from trunnion.cli import at_full_speed
+from trunnion.cli import configure_process
 
 
 def main() -> None:
     """Run from the command line."""
-    at_full_speed()
-    from trunnion.cli.cl_files import toolpaths
+    configure_process()
+    from trunnion.cli.cl_files import read_toolpaths
 
     source, name, target = sys.argv[1:]
-    with ThreadPoolExecutor(1) as aside:
-        coming = toolpaths([source], None, False, aside)
+    with ThreadPoolExecutor(1) as executor:
+        coming = read_toolpaths([source], None, False, executor)
         # As the command does, all else is imported while the file is read.
-        from trunnion.cli.post import planned_program
+        from trunnion.cli.post import plan_program
         from trunnion.controls import load_control
-        from trunnion.files import whole
+        from trunnion.files import atomic_file
         from trunnion.machines import load_machine
         from trunnion.output.program_writer import write_program
-        from trunnion.planning import Wishes
+        from trunnion.planning import PlanOptions
 
         machine = load_machine(name)
         control = load_control(machine.control)
-        wishes = Wishes(manners=control.manners({}))
-        program, _ = planned_program([next(coming)], machine, control, {}, False, wishes)
-        with whole(target) as sink:
+        options = PlanOptions(modes=control.modes({}))
+        program, _ = plan_program([next(coming)], machine, control, {}, False, options)
+        with atomic_file(target) as sink:
             write_program(program, sink)
     os._exit(0)  # as the command ends
 

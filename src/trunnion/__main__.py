@@ -1,5 +1,5 @@
 """``python -m trunnion``."""
 
-from trunnion.cli import run
+from trunnion.cli import run_and_exit
 
-run()
+run_and_exit()

@@ -8,25 +8,25 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import zip_longest
 from typing import TypeVar
 
-Part = TypeVar("Part")
+Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 #: Parts from which on a second thread is worth its start.
-_WORTH_A_THREAD = 2
+_MIN_ITEMS = 2
 
 
-def one_ahead(work: Callable[[Part], Result], parts: Sequence[Part]) -> Iterator[Result]:
+def prefetch(work: Callable[[Item], Result], items: Sequence[Item]) -> Iterator[Result]:
     """Results of ``work`` for all parts, in their order; ``work`` is never more than one part ahead.
 
     An error in ``work`` is raised where its result is asked for.
     """
-    if len(parts) < _WORTH_A_THREAD:
-        yield from map(work, parts)
+    if len(items) < _MIN_ITEMS:
+        yield from map(work, items)
         return
-    with ThreadPoolExecutor(1) as aside:
-        coming = aside.submit(work, parts[0])
-        for _, after in zip_longest(parts, parts[1:]):
-            ready = coming.result()
-            if after is not None:
-                coming = aside.submit(work, after)
+    with ThreadPoolExecutor(1) as executor:
+        pending = executor.submit(work, items[0])
+        for _, following in zip_longest(items, items[1:]):
+            ready = pending.result()
+            if following is not None:
+                pending = executor.submit(work, following)
             yield ready

@@ -2,7 +2,7 @@
 
     TrunnionError            carries every Problem found, never only the first
     ├── InputError           a file, a definition or a command that cannot be used      (exit 2)
-    └── Refused              understood, but the program must not run as it is           (exit 1)
+    └── RefusedError         understood, but the program must not run as it is           (exit 1)
 
 A Problem prints as ``file:line: error: what is wrong; what puts it right``, the form that
 editors and CI systems know how to jump to.
@@ -52,5 +52,5 @@ class InputError(TrunnionError):
     """A file, a definition or a command that cannot be used."""
 
 
-class Refused(TrunnionError):  # noqa: N818 - it is the program that is refused
+class RefusedError(TrunnionError):
     """The input was understood, but the program that it asks for must not run."""

@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 class FamilyEntry(NamedTuple):
     """A family of controls.
 
-    writer       module that writes its programs (``trunnion.controls.family.FamilyWriter``)
+    writer       module that writes its programs (``trunnion.controls.family_writer.FamilyWriter``)
     reader       module that reads them; None: nobody does
     interpreter  its class that runs a program
     """

@@ -14,45 +14,45 @@ from typing import BinaryIO
 from trunnion.errors import InputError, Problem
 
 
-class Growing:
+class WriteProgress:
     """How far the writing of a file has come, for whoever reads it at the same time."""
 
     def __init__(self) -> None:
-        self._news = Condition()
-        self._size = self._foreseen = 0
-        self._ended = False
+        self._changed = Condition()
+        self._size = self._expected_size = 0
+        self._finished = False
 
-    def grow(self, size: int, foreseen: int = 0) -> None:
+    def advance(self, size: int, expected_size: int = 0) -> None:
         """Say that ``size`` bytes can be read, and how many there will be if the file goes on as it began."""
-        with self._news:
-            self._size, self._foreseen = size, foreseen
-            self._news.notify_all()
+        with self._changed:
+            self._size, self._expected_size = size, expected_size
+            self._changed.notify_all()
 
-    def end(self) -> None:
+    def finish(self) -> None:
         """Say that nothing more will be written."""
-        with self._news:
-            self._ended = True
-            self._news.notify_all()
+        with self._changed:
+            self._finished = True
+            self._changed.notify_all()
 
-    def reach(self, size: int) -> bool:
+    def wait_for(self, size: int) -> bool:
         """Wait until so many bytes can be read, or nothing more is written: then False, be they there or not."""
-        with self._news:
-            self._news.wait_for(lambda: self._ended or self._size >= size)
-            return not self._ended
+        with self._changed:
+            self._changed.wait_for(lambda: self._finished or self._size >= size)
+            return not self._finished
 
-    def wait(self) -> None:
+    def wait_until_finished(self) -> None:
         """Wait until nothing more will be written."""
-        with self._news:
-            self._news.wait_for(lambda: self._ended)
+        with self._changed:
+            self._changed.wait_for(lambda: self._finished)
 
     @property
-    def foreseen(self) -> int:
+    def expected_size(self) -> int:
         """About how many bytes there will be, and no fewer than there are."""
-        with self._news:
-            return max(self._size, self._foreseen)
+        with self._changed:
+            return max(self._size, self._expected_size)
 
 
-class Output:
+class OutputFiles:
     """A file that is being written, and others beside it; nobody sees them before all of them are complete.
 
     main   sink of the file itself
@@ -62,57 +62,57 @@ class Output:
     def __init__(self, folder: Path, name: str) -> None:
         self.path = folder / name
         self.main: BinaryIO = self.path.open("w+b")
-        self._others: dict[Path, BinaryIO] = {}
-        self._aside: ThreadPoolExecutor | None = None
+        self._other_files: dict[Path, BinaryIO] = {}
+        self._sync_thread: ThreadPoolExecutor | None = None
 
-    def begin(self, name: str) -> BinaryIO:
+    def add_file(self, name: str) -> BinaryIO:
         """Begin another file of the same folder."""
         path = self.path.parent / name
-        assert path not in (self.path, *self._others), f"{name} is begun twice"
-        self._others[path] = path.open("w+b")
-        return self._others[path]
+        assert path not in (self.path, *self._other_files), f"{name} is begun twice"
+        self._other_files[path] = path.open("w+b")
+        return self._other_files[path]
 
     @property
-    def others(self) -> list[Path]:
+    def other_paths(self) -> list[Path]:
         """The files beside the first, in the order in which they were begun."""
-        return list(self._others)
+        return list(self._other_files)
 
     def flush(self) -> None:
         """See that all can be read back."""
-        for sink in (self.main, *self._others.values()):
+        for sink in (self.main, *self._other_files.values()):
             sink.flush()
 
-    def settle(self) -> None:
-        """Begin to bring what is written to the disk, beside whatever comes next: ``keep`` has less to wait for."""
+    def start_sync(self) -> None:
+        """Begin to bring what is written to the disk, beside whatever comes next: ``sync`` has less to wait for."""
         self.flush()
-        self._aside = self._aside or ThreadPoolExecutor(1)
-        self._aside.submit(os.fsync, self.main.fileno())
+        self._sync_thread = self._sync_thread or ThreadPoolExecutor(1)
+        self._sync_thread.submit(os.fsync, self.main.fileno())
 
-    def keep(self) -> None:
+    def sync(self) -> None:
         """See that all is on the disk for good, so that no power failure leaves half a file under its new name."""
         self.flush()
-        for sink in (self.main, *self._others.values()):
+        for sink in (self.main, *self._other_files.values()):
             os.fsync(sink.fileno())
 
-    def begin_again(self) -> None:
+    def restart(self) -> None:
         """Forget all that was written."""
         self.main.seek(0)
         self.main.truncate()
-        for path, sink in self._others.items():
+        for path, sink in self._other_files.items():
             sink.close()
             path.unlink()
-        self._others.clear()
+        self._other_files.clear()
 
     def close(self) -> None:
         """Write no more."""
-        if self._aside is not None:
-            self._aside.shutdown()
-        for sink in (self.main, *self._others.values()):
+        if self._sync_thread is not None:
+            self._sync_thread.shutdown()
+        for sink in (self.main, *self._other_files.values()):
             sink.close()
 
 
 @contextmanager
-def output(target: str) -> Iterator[Output]:
+def atomic_output(target: str) -> Iterator[OutputFiles]:
     """A file, and others beside it, that reach ``target`` (a path, or ``-`` for stdout) when the block ends without an
     error.
 
@@ -126,16 +126,16 @@ def output(target: str) -> Iterator[Output]:
     """
     if target == "-":
         with tempfile.TemporaryDirectory(prefix="trunnion-") as folder:
-            made = Output(Path(folder), "stdout")
+            files = OutputFiles(Path(folder), "stdout")
             try:
-                yield made
-                assert not made.others, "stdout is one file"
-                made.main.seek(0)
+                yield files
+                assert not files.other_paths, "stdout is one file"
+                files.main.seek(0)
                 sys.stdout.flush()
-                shutil.copyfileobj(made.main, sys.stdout.buffer)
+                shutil.copyfileobj(files.main, sys.stdout.buffer)
                 sys.stdout.buffer.flush()
             finally:
-                made.close()
+                files.close()
         return
     path = Path(target)
     try:
@@ -146,13 +146,13 @@ def output(target: str) -> Iterator[Output]:
     except OSError as error:
         raise _cannot_write(target, error) from None
     try:
-        made = Output(hidden, path.name)
+        files = OutputFiles(hidden, path.name)
         try:
-            yield made
-            made.keep()
+            yield files
+            files.sync()
         finally:
-            made.close()
-        _move([*made.others, made.path], path.parent)
+            files.close()
+        _move_all([*files.other_paths, files.path], path.parent)
     except OSError as error:
         raise _cannot_write(target, error) from None
     finally:
@@ -160,16 +160,16 @@ def output(target: str) -> Iterator[Output]:
 
 
 @contextmanager
-def whole(target: str) -> Iterator[BinaryIO]:
-    """A sink whose bytes reach ``target`` as the one file of ``output``.
+def atomic_file(target: str) -> Iterator[BinaryIO]:
+    """A sink whose bytes reach ``target`` as the one file of ``atomic_output``.
 
     Its ``name`` is the path under which it can be read back before that, once it is flushed.
     """
-    with output(target) as made:
-        yield made.main
+    with atomic_output(target) as files:
+        yield files.main
 
 
-def _move(files: list[Path], folder: Path) -> None:
+def _move_all(files: list[Path], folder: Path) -> None:
     """Take files to a folder, all or none: what was there before comes back where one cannot be taken there."""
     targets = [folder / file.name for file in files]
     for target in targets:
@@ -179,7 +179,7 @@ def _move(files: list[Path], folder: Path) -> None:
     try:
         for file, target in zip(files, targets, strict=True):
             last = file is files[-1]
-            moved.append((target, None if last else _kept(target, file.with_name(f"{file.name}.before"))))
+            moved.append((target, None if last else _backup(target, file.with_name(f"{file.name}.before"))))
             file.replace(target)
     except OSError:
         for target, before in reversed(moved[:-1]):
@@ -190,7 +190,7 @@ def _move(files: list[Path], folder: Path) -> None:
         raise
 
 
-def _kept(file: Path, under: Path) -> Path | None:
+def _backup(file: Path, under: Path) -> Path | None:
     """Another name for a file, if there is one, under which it lives on when it is replaced."""
     if not file.exists():
         return None

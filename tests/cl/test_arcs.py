@@ -16,7 +16,7 @@ def test_an_arc_is_a_row_with_its_circle(body: Body) -> None:
     assert arcs.row.tolist() == [1]
     assert arcs.centre.tolist() == [[0, 0, 1]]
     assert arcs.normal.tolist() == [[0, 0, -1]]
-    assert (arcs.radius.tolist(), arcs.turns.tolist()) == ([15], [0])
+    assert (arcs.radius.tolist(), arcs.full_turns.tolist()) == ([15], [0])
 
 
 @pytest.mark.parametrize("normal", [(0, 0, 1), (0, 1, 0), (1, 0, 0), (0.6, 0, 0.8), (-0.48, 0.6, 0.64)])
@@ -34,7 +34,7 @@ def test_arcs_lie_in_any_plane(body: Body, normal: tuple[float, float, float]) -
 
 def test_a_full_circle_ends_where_it_starts_and_has_no_extra_turn(body: Body) -> None:
     operation = body("GOTO/5,0,0", "CIRCLE/0,0,0,0,0,1,5", "GOTO/5,0,0")
-    assert operation.arcs.turns.tolist() == [0]
+    assert operation.arcs.full_turns.tolist() == [0]
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def test_a_full_circle_ends_where_it_starts_and_has_no_extra_turn(body: Body) ->
 )
 def test_times_counts_the_turns_that_a_helix_begins(body: Body, tail: str, turns: int) -> None:
     operation = body("GOTO/5,0,9", f"CIRCLE/0,0,0,0,0,1,5{tail}", "GOTO/0,5,0")
-    assert operation.arcs.turns.tolist() == [turns]
+    assert operation.arcs.full_turns.tolist() == [turns]
 
 
 def test_an_arc_may_start_at_from(body: Body) -> None:
@@ -94,4 +94,4 @@ def test_an_arc_that_does_not_fit_is_refused_with_its_line(
 
 def test_the_helix_of_a_ramp_may_leave_its_plane(body: Body) -> None:
     end = f"GOTO/{5 * math.cos(1):.5f},{5 * math.sin(1):.5f},-7"
-    assert body("GOTO/5,0,9", "CIRCLE/0,0,-7,0,0,1,5,TIMES,2", end).arcs.turns.tolist() == [1]
+    assert body("GOTO/5,0,9", "CIRCLE/0,0,-7,0,0,1,5,TIMES,2", end).arcs.full_turns.tolist() == [1]

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from tests.paths import SHARED
 from trunnion.arrays import Floats
-from trunnion.cl import contact, read_cl
-from trunnion.cl.contact import contact_points, with_normals
+from trunnion.cl import read_cl, surface_normals
+from trunnion.cl.surface_normals import contact_points, with_normals
 from trunnion.errors import InputError, Severity
 from trunnion.model.toolpath import Toolpath
 
@@ -126,7 +126,7 @@ def test_contact_points_are_those_that_a_plain_look_finds(
     file.write_bytes(text.replace("\n", end).encode())
     line = np.array([k for k, each in enumerate(text.splitlines(), 1) if each.startswith("GOTO")])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(contact, "_CHUNK", chunk)
+        patch.setattr(surface_normals, "_CHUNK", chunk)
         found = contact_points(file, line.astype(np.int32))
     assert [None if np.isnan(row).any() else tuple(row.tolist()) for row in found] == naive(text)
 

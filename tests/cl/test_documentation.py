@@ -3,17 +3,17 @@
 import re
 from pathlib import Path
 
-from trunnion.cl.assemble import COLOURS, RADIUS_TOLERANCE
-from trunnion.cl.nx import RULES
+from trunnion.cl.assemble import COLOUR_PHASES, RADIUS_TOLERANCE
+from trunnion.cl.nx import HANDLERS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "cl.md").read_text(encoding="utf-8")
 
 
 def test_every_statement_that_is_read_is_in_the_page() -> None:
     named = set(re.findall(r"`([A-Z-]+(?: PATH)?)", PAGE))
-    assert {major.replace("TOOLPATH", "TOOL PATH") for major in RULES} <= named
+    assert {major.replace("TOOLPATH", "TOOL PATH") for major in HANDLERS} <= named
 
 
 def test_every_colour_and_the_tolerance_are_in_the_page() -> None:
-    assert all(re.search(rf"\| {colour} \|", PAGE) for colour in COLOURS)
+    assert all(re.search(rf"\| {colour} \|", PAGE) for colour in COLOUR_PHASES)
     assert f"{RADIUS_TOLERANCE} mm" in PAGE

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.cl import naive
 from trunnion.arrays import Floats, Lines
 from trunnion.cl.read import read_cl, read_in_chunks
-from trunnion.cl.scan import OPEN, ROW, SPAN, scan, settle_axes
+from trunnion.cl.scan import MAKES_ROW, SPAN_COLUMNS, UNFINISHED, fill_modal_axes, scan
 from trunnion.errors import InputError
 from trunnion.model.toolpath import Toolpath
 
@@ -24,7 +24,7 @@ def scan_all(data: bytes, spans: int = 64) -> tuple[Floats, Floats, Lines, list[
     data += b"" if data.endswith(b"\n") else b"\n"
     n = data.count(b"\n") + 1
     tip, axis, line = np.full((n, 3), np.inf), np.full((n, 3), np.inf), np.zeros(n, np.int32)
-    room = np.zeros((spans, SPAN), np.int64)
+    room = np.zeros((spans, SPAN_COLUMNS), np.int64)
     array = np.frombuffer(bytearray(data), np.uint8)
     at, number, rows = 0, 1, 0
     found = []
@@ -62,7 +62,7 @@ def test_a_point_is_read_to_the_last_bit_or_left_to_python(fields: list[str], bl
     tip, axis, line, found = scan_all(text.encode())
     assert line.tolist() == [1]
     if found:
-        assert found == [(text.strip(), 1, 0, ROW)]
+        assert found == [(text.strip(), 1, 0, MAKES_ROW)]
         exact = [field.strip("+-").replace(".", "") for field in fields]
         assert any(len(field) > 18 or int(field) > 2**53 for field in exact)
     else:
@@ -144,7 +144,7 @@ def test_the_walk_finds_the_statements_of_its_twin(text: str, spans: int) -> Non
     for statement, number, unfinished in expected:
         is_row = naive.is_row(statement)
         if number in left:
-            assert left.pop(number) == (statement, row, ROW * is_row | OPEN * unfinished)
+            assert left.pop(number) == (statement, row, MAKES_ROW * is_row | UNFINISHED * unfinished)
         else:
             assert [*tip[row].tolist(), *axis[row].tolist()][: len(naive.numbers(statement))] == naive.numbers(
                 statement
@@ -163,7 +163,7 @@ vectors = st.none() | st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda v: sum(x 
 def test_axes_are_settled_as_by_the_twin(given_vectors: list[list[float] | None]) -> None:
     axis = np.array([vector or [np.nan] * 3 for vector in given_vectors]).reshape(-1, 3)
     bad = np.zeros(4, np.int64)
-    assert settle_axes(axis, 0, len(axis), np.array([0.0, 0.0, 1.0]), bad) == 0
+    assert fill_modal_axes(axis, 0, len(axis), np.array([0.0, 0.0, 1.0]), bad) == 0
     assert np.allclose(axis, np.reshape(naive.settle(given_vectors, [0, 0, 1]), (-1, 3)), rtol=0, atol=3e-16)
 
 

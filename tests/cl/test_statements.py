@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.cl.conftest import Body, Fail, Read
-from trunnion.cl.nx import RULES
+from trunnion.cl.nx import HANDLERS
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -21,14 +21,14 @@ from trunnion.model.toolpath import (
     Kind,
     LoadTool,
     Message,
-    Mode,
     SelectTool,
     Sense,
+    SetMode,
     SpindleOff,
     SpindleOn,
     Stop,
     Tool,
-    Unknown,
+    UnknownStatement,
 )
 
 GO = "GOTO/0,0,0"
@@ -144,9 +144,9 @@ def test_coolnt_keeps_its_kind(body: Body, kind: str) -> None:
         ("INSERTG00Z10.$", Insert(0, 3, "G00Z10.$")),
         ("OPSKIP/ON", BlockSkip(0, 3, True)),
         ("OPSKIP/OFF", BlockSkip(0, 3, False)),
-        ("SET/LINEAR", Mode(0, 3, ("SET", "LINEAR"))),
-        ("MODE/TOOL,0,0,1", Mode(0, 3, ("MODE", "TOOL", "0", "0", "1"))),
-        ("MULTAX/ON", Mode(0, 3, ("MULTAX", "ON"))),
+        ("SET/LINEAR", SetMode(0, 3, ("SET", "LINEAR"))),
+        ("MODE/TOOL,0,0,1", SetMode(0, 3, ("MODE", "TOOL", "0", "0", "1"))),
+        ("MULTAX/ON", SetMode(0, 3, ("MULTAX", "ON"))),
         ("GOHOME", GoHome(0, 3)),
         ("CYCLE/OFF", CycleOff(0, 3)),
     ],
@@ -386,7 +386,7 @@ def test_a_statement_that_is_not_known_is_kept_with_a_remark_and_an_error_when_s
     read: Read, body: Body, body_fails: Fail, text: str
 ) -> None:
     toolpath = read(f"TOOL PATH/A,TOOL,T\n{text}\nGOTO/0,0,0\nEND-OF-PATH\n")
-    assert toolpath.operations[0].events == (Unknown(0, 2, text),)
+    assert toolpath.operations[0].events == (UnknownStatement(0, 2, text),)
     assert [remark.line for remark in toolpath.remarks] == [2]
     assert str(toolpath.remarks[0].severity) == "warning"
     (problem,) = body_fails(text, GO, strict=True)
@@ -395,8 +395,8 @@ def test_a_statement_that_is_not_known_is_kept_with_a_remark_and_an_error_when_s
 
 def test_a_statement_is_kept_once_however_much_of_it_is_not_known(read: Read) -> None:
     toolpath = read("TOOL PATH/A,TOOL,T\nCYCLE/DRILL,A,B,C\nGOTO/0,0,0\nEND-OF-PATH\n")
-    assert [event for event in toolpath.operations[0].events if isinstance(event, Unknown)] == [
-        Unknown(0, 2, "CYCLE/DRILL,A,B,C")
+    assert [event for event in toolpath.operations[0].events if isinstance(event, UnknownStatement)] == [
+        UnknownStatement(0, 2, "CYCLE/DRILL,A,B,C")
     ]
     assert len(toolpath.remarks) == 3
 
@@ -416,7 +416,7 @@ def test_how_the_path_is_drawn_is_nothing(read: Read, text: str) -> None:
 
 
 def test_majors_are_written_without_blanks() -> None:
-    assert all(major == major.upper().replace(" ", "") for major in RULES)
+    assert all(major == major.upper().replace(" ", "") for major in HANDLERS)
 
 
 # -- progress -----------------------------------------------------------------------------------------------------

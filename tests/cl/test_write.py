@@ -15,7 +15,7 @@ from tests.paths import YL569
 from trunnion.cl import read_cl
 from trunnion.cl.write import write_cl
 from trunnion.errors import InputError
-from trunnion.model.toolpath import Event, From, Operation, Phase, Toolpath, Unknown
+from trunnion.model.toolpath import Event, From, Operation, Phase, Toolpath, UnknownStatement
 
 GOLDEN = sorted(path.stem for path in YL569.glob("*.cls"))
 
@@ -55,7 +55,7 @@ def assert_same(first: Operation, second: Operation) -> None:
     for column in ("tip", "kind", "phase", "feed", "per_rev"):
         np.testing.assert_array_equal(getattr(first.moves, column), getattr(second.moves, column), column)
     assert np.abs(first.moves.axis - second.moves.axis).max() < 1.5e-12
-    for column in ("row", "centre", "normal", "radius", "turns"):
+    for column in ("row", "centre", "normal", "radius", "full_turns"):
         np.testing.assert_array_equal(getattr(first.arcs, column), getattr(second.arcs, column), column)
     assert len(first.events) == len(second.events)
     for a, b in zip(first.events, second.events, strict=True):
@@ -149,7 +149,7 @@ def test_unknown_tools_stay_unknown(read: Read, tmp_path: Path) -> None:
     toolpath = read("TOOL PATH/OP,TOOL,T1\nTLDATA/PROBE,1,2\nGOTO/1,2,3\nEND-OF-PATH\n")
     back = again(toolpath, tmp_path)
     assert back.operations[0].tool == toolpath.operations[0].tool
-    assert [type(event) for event in back.operations[0].events] == [Unknown]
+    assert [type(event) for event in back.operations[0].events] == [UnknownStatement]
 
 
 @pytest.mark.parametrize(

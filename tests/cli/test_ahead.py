@@ -10,7 +10,7 @@ import pytest
 
 from tests.paths import GOLDEN, YL569
 from trunnion.cli import main
-from trunnion.cli.cl_files import toolpaths
+from trunnion.cli.cl_files import read_toolpaths
 from trunnion.errors import InputError
 
 FILES = [str(YL569 / "2_hub_rough.cls"), str(YL569 / "3_blade_finish.cls"), str(GOLDEN / "dmu65" / "corner.cls")]
@@ -18,7 +18,8 @@ FILES = [str(YL569 / "2_hub_rough.cls"), str(YL569 / "3_blade_finish.cls"), str(
 
 def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> None:
     script = (
-        "import sys\nfrom trunnion.cli.arguments import parse\nparse(['post', 'a.cls', '--machine', 'yl569'])\n"
+        "import sys\nfrom trunnion.cli.arguments import parse_arguments\n"
+        "parse_arguments(['post', 'a.cls', '--machine', 'yl569'])\n"
         "print(*(name for name in sys.modules if name in ('numpy', 'numba') or name.startswith('trunnion.')))"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
@@ -31,8 +32,8 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
 
 
 def test_toolpaths_come_in_order_and_are_not_kept() -> None:
-    with ThreadPoolExecutor(1) as aside:
-        coming = toolpaths(FILES, None, False, aside)
+    with ThreadPoolExecutor(1) as executor:
+        coming = read_toolpaths(FILES, None, False, executor)
         first = next(coming)
         assert first.file == FILES[0]
         gone = weakref.ref(first.operations[0].moves.tip)
@@ -43,8 +44,8 @@ def test_toolpaths_come_in_order_and_are_not_kept() -> None:
 
 
 def test_a_file_that_cannot_be_read_is_said_where_its_toolpath_is_wanted(tmp_path: Path) -> None:
-    with ThreadPoolExecutor(1) as aside:
-        coming = toolpaths([str(tmp_path / "none.cls"), *FILES], None, False, aside)
+    with ThreadPoolExecutor(1) as executor:
+        coming = read_toolpaths([str(tmp_path / "none.cls"), *FILES], None, False, executor)
         with pytest.raises(InputError, match="No such file"):
             next(coming)
 

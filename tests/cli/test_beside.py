@@ -8,15 +8,15 @@ import pytest
 from tests.paths import GOLDEN, YL569
 from tests.reader.test_growing import facts
 from trunnion.cl import read_cl
-from trunnion.cli.post import Claim, planned_program, prove, running, write
+from trunnion.cli.post import WrittenProgram, plan_program, prove_program, run_while_writing, write_for_proof
 from trunnion.controls import load_control
-from trunnion.errors import Refused
-from trunnion.files import Output
+from trunnion.errors import RefusedError
+from trunnion.files import OutputFiles
 from trunnion.machines import load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
-from trunnion.planning import Wishes
+from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
 
 CASES = {
@@ -40,31 +40,31 @@ class Spoiled:
         return getattr(self._sink, name)
 
 
-def planned(name: str) -> tuple[Program, Wishes, Toolpath]:
+def planned(name: str) -> tuple[Program, PlanOptions, Toolpath]:
     """The program of a case for its machine."""
     machine, toolpath = load_machine(name), read_cl(CASES[name])
     control = load_control(machine.control)
-    wishes = Wishes(manners=control.manners({}))
-    return planned_program([toolpath], machine, control, {}, True, wishes)[0], wishes, toolpath
+    options = PlanOptions(modes=control.modes({}))
+    return plan_program([toolpath], machine, control, {}, True, options)[0], options, toolpath
 
 
-def write_and_run(program: Program, made: Output, wishes: Wishes) -> tuple[Claim, Run | None]:
+def write_and_run(program: Program, made: OutputFiles, options: PlanOptions) -> tuple[WrittenProgram, Run | None]:
     """As ``trunnion post`` does it."""
-    with running(made, program.machine, None) as (growing, run):
-        claim = write(program, made.main, wishes, growing)
+    with run_while_writing(made, program.machine, None) as (write_progress, run):
+        claim = write_for_proof(program, made.main, options, write_progress)
     return claim, run.result()
 
 
 @pytest.mark.parametrize("name", sorted(CASES))
 def test_beside_and_afterwards_are_one(name: str, tmp_path: Path) -> None:
-    program, wishes, _ = planned(name)
+    program, options, _ = planned(name)
     file = tmp_path / "program"
-    made = Output(tmp_path, file.name)
-    claim, run = write_and_run(program, made, wishes)
+    made = OutputFiles(tmp_path, file.name)
+    claim, run = write_and_run(program, made, options)
     made.close()
     beside = file.read_bytes()
     with file.open("wb") as sink:
-        alone = write(program, sink, wishes)
+        alone = write_for_proof(program, sink, options)
     assert beside == file.read_bytes()
     assert (claim.rows, claim.operations, claim.settings) == (alone.rows, alone.operations, alone.settings)
     assert run is not None
@@ -72,24 +72,24 @@ def test_beside_and_afterwards_are_one(name: str, tmp_path: Path) -> None:
 
 
 def test_what_is_proven_is_what_is_on_disk(tmp_path: Path) -> None:
-    program, wishes, toolpath = planned("yl569")
-    made = Output(tmp_path, "program")
+    program, options, toolpath = planned("yl569")
+    made = OutputFiles(tmp_path, "program")
     made.main = cast("BinaryIO", Spoiled(made.main, b" Y12.98584 ", b" Y12.98684 "))
-    claim, run = write_and_run(program, made, wishes)
-    with pytest.raises(Refused, match="does not do what this file asks for: tip"):
-        prove(claim, run, [toolpath], made, "program")
+    claim, run = write_and_run(program, made, options)
+    with pytest.raises(RefusedError, match="does not do what this file asks for: tip"):
+        prove_program(claim, run, [toolpath], made, "program")
     made.close()
 
 
 def test_a_program_that_cannot_be_written_to_its_end_is_not_run_on_for_ever(tmp_path: Path) -> None:
-    program, wishes, _ = planned("yl569")
+    program, options, _ = planned("yl569")
 
     class Full(Spoiled):
         def write(self, data: Any) -> int:
             raise OSError(28, "No space left on device")
 
-    made = Output(tmp_path, "program")
+    made = OutputFiles(tmp_path, "program")
     made.main = cast("BinaryIO", Full(made.main, b"", b""))
     with pytest.raises(OSError, match="No space left"):
-        write_and_run(program, made, wishes)
+        write_and_run(program, made, options)
     made.close()

@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from trunnion.cli import main
-from trunnion.machines import shipped
+from trunnion.machines import shipped_machines
 
 
 def test_the_list_names_every_shipped_machine(capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["machines"]) == 0
     listed = [line.split()[0] for line in capfd.readouterr().out.splitlines()]
-    assert listed == shipped()
+    assert listed == shipped_machines()
     assert {"yl569", "ucp800", "hs664rt", "dmu65", "mikron_600u"} < set(listed)
 
 
@@ -22,7 +22,7 @@ def test_a_definition_is_printed_as_it_is(capfd: pytest.CaptureFixture[str]) -> 
     assert "limits_deg = [-11, 100]" in out
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", shipped_machines())
 def test_every_shipped_machine_is_good(name: str, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["check", name]) == 0
 

@@ -14,7 +14,7 @@ from tests.paths import YL569
 from trunnion.cli import main
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
-from trunnion.output.subprograms import Division
+from trunnion.output.subprograms import SubprogramOutput
 
 PROGRAM = YL569 / "3_blade_finish.expected.mpf"
 CL = YL569 / "3_blade_finish.cls"
@@ -167,9 +167,9 @@ def spoil(monkeypatch: pytest.MonkeyPatch, change: Callable[[bytes], bytes]) -> 
         program: Program,
         sink: BinaryIO,
         advance: Callable[[int], None] | None = None,
-        division: Division | None = None,
+        subprograms: SubprogramOutput | None = None,
     ) -> None:
-        assert division is None
+        assert subprograms is None
         whole = BytesIO()
         write_program(program, whole, advance)
         changed = change(whole.getvalue())

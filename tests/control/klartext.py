@@ -13,20 +13,22 @@ from tests.plan.naive import operation_of
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.verify.proven import unproven
 from trunnion.cli import main
-from trunnion.cli.post import planned_program, write
-from trunnion.cli.settings import wishes_of
+from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import Control, load_control
-from trunnion.machines import Machine, load_machine, shipped
+from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.model.toolpath import Arcs, LoadTool, Moves, SpindleOn, Toolpath
 from trunnion.readers import run_program
 from trunnion.verification import Verification, failures, verify
 
 DMU65 = GOLDEN / "dmu65"
 OWN = {name: load_machine(name) for name in ("dmu65", "mikron_600u", "ucp800")}
-CONTROLS = {name: load_control(machine.control.fresh()) for name, machine in OWN.items()}
+CONTROLS = {name: load_control(machine.control.unread_copy()) for name, machine in OWN.items()}
 
 #: Every shipped machine, with the control of one of these.
-MACHINES = {name: replace(load_machine(name), control=OWN["mikron_600u"].control.fresh()) for name in shipped()}
+MACHINES = {
+    name: replace(load_machine(name), control=OWN["mikron_600u"].control.unread_copy()) for name in shipped_machines()
+}
 
 
 class Post:
@@ -70,7 +72,7 @@ TILTED = HEAD.replace("0.0,0.0,50.0,0.0,0.0,1.0", "0.0,0.0,50.0,0.5,0.0,0.866025
 
 def toolpath_of(moves: Moves, arcs: Arcs | None = None) -> Toolpath:
     """A CL file of one operation, with all that a program needs besides."""
-    operation = replace(operation_of(moves), arcs=arcs or Arcs.none())
+    operation = replace(operation_of(moves), arcs=arcs or Arcs.empty())
     events = (LoadTool(0, 1, 1), SpindleOn(0, 2, 1000.0))
     return Toolpath("part.cls", (replace(operation, events=events, intol=0.01, outtol=0.01),))
 
@@ -80,17 +82,17 @@ def proven(toolpath: Toolpath, machine: Machine, control: Control, folder: Path,
 
     Raises
     ------
-    Refused, InputError
+    RefusedError, InputError
         When there is no program, as over-travel and tool axes out of reach leave none.
     """
-    wishes = wishes_of(given, control)
-    program, _ = planned_program([toolpath], machine, control, given, False, wishes)
+    options = parse_plan_options(given, control)
+    program, _ = plan_program([toolpath], machine, control, given, False, options)
     target = folder / "part.h"
     with target.open("wb") as sink:
-        claim = write(program, sink, wishes)
-    found = verify(run_program(target, machine), [toolpath], allowed=claim.allowed, settings=claim.settings)
+        claim = write_for_proof(program, sink, options)
+    found = verify(run_program(target, machine), [toolpath], tolerances=claim.allowed, settings=claim.settings)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
-    assert not found.run.findings, [finding.text for finding in found.run.findings]
+    assert not found.run.diagnostics, [finding.text for finding in found.run.diagnostics]
     return found
 
 

@@ -8,7 +8,7 @@ import pytest
 from trunnion.arrays import Ints
 from trunnion.cli import main
 from trunnion.machines import load_machine
-from trunnion.model.run import Run, Written
+from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.readers import run_program
 
@@ -76,9 +76,9 @@ TEXTS = {"milled": MILLED, "turned": TURNED, "drilled": DRILLED}
 
 def places(run: Run, skipped: set[int]) -> Ints:
     """Rows that go to a place of the workpiece beside them, or drill; none that may be skipped."""
-    words = run.programmed & int(Written.X | Written.Y | Written.Z)
-    goes = ((words != 0) & (words != Written.Z)) | ((run.programmed == 0) & (run.kind == Kind.LINEAR))
-    kept = np.array([line not in skipped for line in run.block.tolist()])
+    words = run.programmed & int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
+    goes = ((words != 0) & (words != ProgrammedWord.Z)) | ((run.programmed == 0) & (run.kind == Kind.LINEAR))
+    kept = np.array([line not in skipped for line in run.line.tolist()])
     return np.flatnonzero(goes & kept & ~run.machine_frame)
 
 
@@ -100,9 +100,9 @@ def test_blocks_behind_skipped_ones_do_the_same(
     assert skipped
     here, there = places(short, set()), places(whole, skipped)
     assert len(here)
-    assert short.block[here].tolist() == whole.block[there].tolist()
+    assert short.line[here].tolist() == whole.line[there].tolist()
     assert short.joints[here] == pytest.approx(whole.joints[there], abs=1e-9)
-    for column in ("kind", "feed_mode", "rpm", "spindle", "tool", "offset", "tcp"):
+    for column in ("kind", "feed_mode", "rpm", "spindle", "tool", "work_offset", "tcp"):
         assert np.array_equal(getattr(short, column)[here], getattr(whole, column)[there]), column
     cuts = short.kind[here] != Kind.RAPID
     assert np.array_equal(short.feed[here][cuts], whole.feed[there][cuts])

@@ -18,17 +18,17 @@ from tests.machines import at_zero
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.plan.test_read_back import toolpath_of
 from trunnion.cl import read_cl
-from trunnion.cli.post import planned_program, write
-from trunnion.cli.settings import wishes_of
+from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.controls.words import BlockNumbers
 from trunnion.conversion import convert
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 from trunnion.machines import Machine, load_machine
 from trunnion.model.run import offset_name
 from trunnion.model.toolpath import LoadTool, Moves, Toolpath
-from trunnion.output.euler_angles import about_first_and_third
-from trunnion.output.families.fanuc.writer import comment, inside, wrong_settings
+from trunnion.output.euler_angles import euler_zxz_angles
+from trunnion.output.families.fanuc.writer import comment, escape_comment, validate_settings
 from trunnion.readers import run_program
 from trunnion.verification import Verification, failures, verify
 
@@ -62,13 +62,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def posted(toolpath: Toolpath, folder: Path, model: Machine, **asked: str) -> tuple[Verification, str]:
     """The proof of the program of a toolpath, and its text."""
-    wishes = wishes_of(asked, CONTROL)
+    options = parse_plan_options(asked, CONTROL)
     printed = {key: value for key, value in asked.items() if key in CONTROL.settings}
-    program, _ = planned_program([toolpath], model, CONTROL, printed, False, wishes)
+    program, _ = plan_program([toolpath], model, CONTROL, printed, False, options)
     target = folder / "part.nc"
     with target.open("wb") as sink:
-        claim = write(program, sink, wishes)
-    found = verify(run_program(target, model), [toolpath], allowed=claim.allowed, settings=claim.settings)
+        claim = write_for_proof(program, sink, options)
+    found = verify(run_program(target, model), [toolpath], tolerances=claim.allowed, settings=claim.settings)
     return found, target.read_text(encoding="ascii")
 
 
@@ -103,7 +103,7 @@ def read(text: str, folder: Path) -> Toolpath:
 def test_simultaneous_motion_is_proven(name: str, moves: Moves, folder: Path) -> None:
     try:
         text = proven(toolpath_of(moves), folder, machine(name))
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)
         return
     assert "G43.5" not in text
@@ -114,10 +114,10 @@ def test_simultaneous_motion_is_proven(name: str, moves: Moves, folder: Path) ->
 @given(moves=smooth_paths(40.0) | short_paths(6))
 def test_motion_without_tcp_is_proven(name: str, moves: Moves, folder: Path) -> None:
     model = machine(name)
-    model = replace(model, workpiece_zero=(37.0, -21.0, 110.0), tool_length=83.7 if model.turns_tool else None)
+    model = replace(model, workpiece_zero=(37.0, -21.0, 110.0), tool_length=83.7 if model.has_rotary_head else None)
     try:
-        text = proven(toolpath_of(moves), folder, model, tcp="off", manner="auto")
-    except (Refused, InputError):
+        text = proven(toolpath_of(moves), folder, model, tcp="off", mode="auto")
+    except (RefusedError, InputError):
         assume(False)
         return
     assert "G43.4" not in text
@@ -322,10 +322,10 @@ def test_a_control_that_taps_rigidly_by_itself_needs_no_m29(folder: Path) -> Non
     control = load_control(FANUC)
     bare = replace(control, settings={**control.settings, "rigid_tap": ""})
     path = read(UPRIGHT + f"CYCLE/TAP,{HEIGHTS}MMPR,1\nGOTO/10,5,2\nCYCLE/OFF\n" + END, folder)
-    program, _ = planned_program([path], load_machine("matsuura_mx330"), bare, {}, False, wishes_of({}, bare))
+    program, _ = plan_program([path], load_machine("matsuura_mx330"), bare, {}, False, parse_plan_options({}, bare))
     target = folder / "tap.nc"
     with target.open("wb") as sink:
-        write(program, sink)
+        write_for_proof(program, sink)
     assert "M29" not in target.read_text(encoding="ascii")
 
 
@@ -339,7 +339,7 @@ def test_a_control_that_taps_rigidly_by_itself_needs_no_m29(folder: Path) -> Non
     ],
 )
 def test_what_cannot_be_said_is_refused(text: str, what: str, folder: Path) -> None:
-    with pytest.raises((Refused, InputError), match=what):
+    with pytest.raises((RefusedError, InputError), match=what):
         posted(read(UPRIGHT + text + END, folder), folder, load_machine("matsuura_mx330"))
 
 
@@ -358,11 +358,11 @@ def test_the_work_offset_that_is_asked_for_is_the_one_that_is_proven(said: str, 
     model, path = load_machine("matsuura_mx330"), read(LEANING + END, folder)
     found, text = posted(path, folder, model, work_offset=said)
     assert f" {said}\n" in text
-    assert set(found.run.offset[~found.run.machine_frame].tolist()) <= {0, code}
+    assert set(found.run.work_offset[~found.run.machine_frame].tolist()) <= {0, code}
     check = next(check for check in found.checks if check.key == "offset")
     assert (check.passed, check.summary) == (True, f"{offset_name(code)} throughout")
-    program, _ = planned_program([path], model, CONTROL, {"work_offset": said}, False, wishes_of({}, CONTROL))
-    asked = write(program, io.BytesIO()).settings
+    program, _ = plan_program([path], model, CONTROL, {"work_offset": said}, False, parse_plan_options({}, CONTROL))
+    asked = write_for_proof(program, io.BytesIO()).settings
     for other in ("G54", "G54.1 P4"):
         target = folder / "other.nc"
         target.write_text(text.replace(f" {said}\n", f" {other}\n"), encoding="ascii")
@@ -377,13 +377,13 @@ def test_the_work_offset_that_is_asked_for_is_the_one_that_is_proven(said: str, 
 def test_comments_are_what_the_control_has_characters_for(text: str) -> None:
     for line in comment(text):
         assert re.fullmatch(r"\([A-Z0-9 .,=+\-*/_#\[\]'!?&<>@]{0,76}\)", line), line
-    assert inside(inside(text)) == inside(text)
+    assert escape_comment(escape_comment(text)) == escape_comment(text)
 
 
 @given(ANGLES, ANGLES, ANGLES)
 def test_euler_angles_make_the_plane_again(first: float, second: float, third: float) -> None:
     matrix = about(2, first) @ about(0, second) @ about(2, third)
-    one, two, three = about_first_and_third(matrix)
+    one, two, three = euler_zxz_angles(matrix)
     again = about(2, one) @ about(0, two) @ about(2, three)
     np.testing.assert_allclose(again, matrix, atol=3e-8)  # beside the pole, where two turns become one
 
@@ -405,7 +405,7 @@ def test_euler_angles_make_the_plane_again(first: float, second: float, third: f
     ],
 )
 def test_settings_that_are_no_numbers_are_named(name: str, value: str, good: bool) -> None:
-    assert (wrong_settings({name: value}) == []) == good
+    assert (validate_settings({name: value}) == []) == good
 
 
 def test_the_length_is_that_of_the_register_that_the_cl_file_names(folder: Path) -> None:
@@ -423,12 +423,12 @@ def test_the_length_is_that_of_the_register_that_the_cl_file_names(folder: Path)
 def test_block_numbers_are_every_n_th_or_none(folder: Path) -> None:
     model, path = load_machine("matsuura_mx330"), read(LEANING + END, folder)
     for numbers in (BlockNumbers("N", 5, 5, 9995, True, "%O("), BlockNumbers("N", 10, 10, 99990, False, "%O(")):
-        control = replace(CONTROL, numbers=numbers)
-        program, _ = planned_program([path], model, control, {}, False, wishes_of({}, control))
+        control = replace(CONTROL, block_numbers=numbers)
+        program, _ = plan_program([path], model, control, {}, False, parse_plan_options({}, control))
         target = folder / "numbers.nc"
         with target.open("wb") as sink:
-            claim = write(program, sink)
-        found = verify(run_program(target, model), [path], allowed=claim.allowed, settings=claim.settings)
+            claim = write_for_proof(program, sink)
+        found = verify(run_program(target, model), [path], tolerances=claim.allowed, settings=claim.settings)
         assert not failures(found)
         words = re.findall(r"(?m)^N(\d+) ", target.read_text(encoding="ascii"))
         assert [int(word) for word in words] == [5 * (k + 1) for k in range(17)] * numbers.numbered

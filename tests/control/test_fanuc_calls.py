@@ -9,7 +9,7 @@ from tests.control.test_fanuc import LEANING
 from tests.control.test_fidia import END
 from tests.control.test_program import FOOT, HEAD
 from trunnion.cli import main
-from trunnion.output.families.fanuc.writer import wrong_settings
+from trunnion.output.families.fanuc.writer import validate_settings
 
 #: A three-axis operation and one with TCP.
 TWO = HEAD + FOOT + LEANING.replace("OP1", "OP2") + END
@@ -88,4 +88,4 @@ def test_a_shop_uses_the_arguments_in_its_own_templates(tmp_path: Path) -> None:
     ],
 )
 def test_calls_that_no_control_takes_are_named(call: str, good: bool) -> None:
-    assert (wrong_settings({"call": call}) == []) == good
+    assert (validate_settings({"call": call}) == []) == good

@@ -16,15 +16,15 @@ from tests.control.test_program import HEAD
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
 from tests.plan.test_read_back import toolpath_of
 from trunnion.arrays import Floats
-from trunnion.cli.post import planned_program
-from trunnion.cli.settings import wishes_of
-from trunnion.errors import InputError, Refused, Severity
-from trunnion.machines import Carries, Machine, inverse, load_machine
-from trunnion.model.motion import Manner
-from trunnion.model.run import Orientation, Written
+from trunnion.cli.post import plan_program
+from trunnion.cli.settings import parse_plan_options
+from trunnion.errors import InputError, RefusedError, Severity
+from trunnion.machines import Machine, Mount, inverse, load_machine
+from trunnion.model.motion import MachiningMode
+from trunnion.model.run import Orientation, ProgrammedWord
 from trunnion.model.toolpath import Moves, Toolpath
 from trunnion.output.program import Program
-from trunnion.output.tool_vectors import first_elsewhere, leads_by_one_axis, vectors_of
+from trunnion.output.tool_vectors import first_row_at_other_pose, leading_axis_pose_is_planned, tool_vectors_at
 from trunnion.output.validation import check_program
 from trunnion.readers import run_program
 
@@ -37,7 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def planned(toolpath: Toolpath, model: Machine) -> Program:
-    return planned_program([toolpath], model, CONTROL, VECTORS, False, wishes_of(VECTORS, CONTROL))[0]
+    return plan_program([toolpath], model, CONTROL, VECTORS, False, parse_plan_options(VECTORS, CONTROL))[0]
 
 
 def test_a_whole_operation_by_vectors(folder: Path) -> None:
@@ -87,17 +87,17 @@ PATHS = st.one_of(
 def test_the_axes_stand_where_rotary_words_would_have_them(name: str, moves: Moves, folder: Path) -> None:
     model, path = machine(name), toolpath_of(moves)
     try:
-        proven(path, folder, model, manner="tcp")
-    except (Refused, InputError):
+        proven(path, folder, model, mode="tcp")
+    except (RefusedError, InputError):
         assume(False)
     words = run_program(folder / "part.nc", model)
-    text = proven(path, folder, model, manner="tcp", **VECTORS)
+    text = proven(path, folder, model, mode="tcp", **VECTORS)
     vectors = run_program(folder / "part.nc", model)
     by_vectors = "G43.5" in text
     event(f"vectors: {by_vectors}")
     assert by_vectors != ("G43.4" in text)
     tips = vectors.tcp & ~vectors.machine_frame
-    other = int(Written.FIRST | Written.SECOND if by_vectors else Written.VECTOR)
+    other = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND if by_vectors else ProgrammedWord.VECTOR)
     assert not (vectors.programmed[tips] & other).any()
     assert (vectors.orientation[tips] == Orientation.ANGLES).all()
     assert len(words) == len(vectors)
@@ -113,7 +113,11 @@ def _ways(model: Machine, rotary: Floats) -> Floats:
     """(n, 2, 3): how the tool axis goes as either axis turns, per radian."""
     step = np.eye(2) * 0.01
     return np.stack(
-        [(vectors_of(model, rotary + one) - vectors_of(model, rotary - one)) / np.radians(0.02) for one in step], axis=1
+        [
+            (tool_vectors_at(model, rotary + one) - tool_vectors_at(model, rotary - one)) / np.radians(0.02)
+            for one in step
+        ],
+        axis=1,
     )
 
 
@@ -130,7 +134,7 @@ def chosen(model: Machine, vector: Floats, stands: Floats, inside: bool) -> Floa
         low, high = np.array([(axis.low, axis.high) for axis in axes]).T
         within = [pair for pair in candidates if ((pair >= low - 1e-6) & (pair <= high + 1e-6)).all()]
         candidates = within or candidates
-    tables = [axis.carries is Carries.PART for axis in axes]
+    tables = [axis.mount is Mount.PART for axis in axes]
     first = 1 if all(tables) else 0  # the one that carries the other; where only one is a table, that one
     order = [first, 1 - first]
 
@@ -162,10 +166,10 @@ def test_where_it_is_said_to_lead_there_the_control_chooses_so(
     model = machine(name)
     before = np.array([stands])
     rotary = before + step
-    vector = vectors_of(model, rotary)
+    vector = tool_vectors_at(model, rotary)
     shown = np.round(vector, 7)
-    deciding = 1 if all(model.axes[column].carries is Carries.PART for column in model.rotary) else 0
-    leads = bool(leads_by_one_axis(model, shown, rotary, before, deciding, np.array([placed]))[0])
+    deciding = 1 if all(model.axes[column].mount is Mount.PART for column in model.rotary) else 0
+    leads = bool(leading_axis_pose_is_planned(model, shown, rotary, before, deciding, np.array([placed]))[0])
     if not placed:  # the vector before may have left an axis a little off
         before = before + np.array([off]) * 1e-5
     event(f"leads: {leads}")
@@ -189,7 +193,7 @@ def test_the_reader_chooses_as_the_manual_says(
     low, high = np.array([(model.axes[column].low, model.axes[column].high) for column in model.rotary]).T
     before = np.round(np.clip(np.array(stands), low, high), 3)
     there = np.clip(before + step, low, high)
-    vector = np.round(vectors_of(model, there[None])[0], 9)
+    vector = np.round(tool_vectors_at(model, there[None])[0], 9)
     solved = inverse(model, np.zeros((1, 3)), vector[None])
     assume(not solved.pole[0])
     letters = [model.axes[column].name for column in model.rotary]
@@ -199,7 +203,7 @@ def test_the_reader_chooses_as_the_manual_says(
     program.write_text(f"G54 G0 {words}\nG43.5 H1 X0. Y0. Z0.\nG1 {components} F100.\nG49 G53 Z0.\nM30\n")
     run = run_program(program, model)
     assert run.errors == ()
-    row = int(np.flatnonzero(run.block == 3)[0])
+    row = int(np.flatnonzero(run.line == 3)[0])
     stood = run.rotary[row - 1]
     goes, wanted = run.rotary[row] - stood, chosen(model, vector, stood, True) - stood
     # Half a turn is as far either way.
@@ -227,12 +231,12 @@ def test_a_rewind_keeps_its_operation_at_rotary_words_and_the_next_one_at_vector
 def test_a_turn_at_the_pole_is_nothing_that_a_vector_says(folder: Path) -> None:
     path = toolpath_of(winding(20.0, 0.0, 90.0, 10))
     program = planned(path, load_machine("matsuura_mx330"))
-    motion = next(motion for motion in program.motions if motion.manner is Manner.TCP)
+    motion = next(motion for motion in program.motions if motion.mode is MachiningMode.TCP)
     words = CONTROL.block_words("A", "C", motion.three_axis)
-    assert first_elsewhere(program.machine, motion, words) == -1
+    assert first_row_at_other_pose(program.machine, motion, words) == -1
     upright = motion.rotary.copy()
     upright[5:7, list(program.machine.rotary).index(program.machine.column("A"))] = 0.0
-    assert first_elsewhere(program.machine, replace(motion, rotary=upright), words) == 5
+    assert first_row_at_other_pose(program.machine, replace(motion, rotary=upright), words) == 5
 
 
 def test_words_of_the_reader_for_vectors(tmp_path: Path) -> None:
@@ -243,10 +247,10 @@ def test_words_of_the_reader_for_vectors(tmp_path: Path) -> None:
         "G43.5 P2 H1 Z1.\nG49 G53 G0 Z0.\nM30\n"
     )
     run = run_program(program, model)
-    assert [(finding.line, str(finding.severity)) for finding in run.findings] == [
+    assert [(finding.line, str(finding.severity)) for finding in run.diagnostics] == [
         (2, "error"),
         (4, "warning"),
         (6, "error"),
     ]
-    assert run.orientation[run.block == 3].tolist() == [Orientation.GREAT_CIRCLE]
-    assert run.orientation[run.block == 4].tolist() == [Orientation.ANGLES]
+    assert run.orientation[run.line == 3].tolist() == [Orientation.GREAT_CIRCLE]
+    assert run.orientation[run.line == 4].tolist() == [Orientation.ANGLES]

@@ -18,10 +18,10 @@ from tests.verify.proven import unproven
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
-from trunnion.cli.post import planned_program, write
-from trunnion.cli.settings import wishes_of
+from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 from trunnion.machines import Machine, load_machine
 from trunnion.model.toolpath import Moves, Toolpath
 from trunnion.readers import run_program
@@ -70,11 +70,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def posted(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked: str) -> tuple[Verification, str]:
     """The proof of the program of a toolpath, and its text."""
-    program, _ = planned_program([toolpath], machine, CONTROL, {}, False, wishes_of(asked, CONTROL))
+    program, _ = plan_program([toolpath], machine, CONTROL, {}, False, parse_plan_options(asked, CONTROL))
     target = folder / "part.txt"
     with target.open("wb") as sink:
-        claim = write(program, sink)
-    found = verify(run_program(target, machine), [toolpath], allowed=claim.allowed, settings=claim.settings)
+        claim = write_for_proof(program, sink)
+    found = verify(run_program(target, machine), [toolpath], tolerances=claim.allowed, settings=claim.settings)
     return found, target.read_text(encoding="utf-8")
 
 
@@ -82,7 +82,7 @@ def proven(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked
     """The text of a program that is proven, and has no G0 and no feed that is not a whole number."""
     found, text = posted(toolpath, folder, machine, **asked)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
-    assert not found.run.findings
+    assert not found.run.diagnostics
     blocks = [line for line in text.splitlines() if not line.startswith("(")]
     assert not [line for line in blocks if re.search(r"G0?0(?!\d)|F\d*\.", line)]
     assert all(re.match(r"N\d+ ", line) for line in blocks)
@@ -94,7 +94,7 @@ def proven(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked
 def test_simultaneous_motion_is_proven(moves: Moves, folder: Path) -> None:
     try:
         text = proven(toolpath_of(moves), folder)
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)
         return
     if "G154" not in text and re.search(r"A-?[1-9]", text):
@@ -193,7 +193,7 @@ def test_milling_in_planes_with_circles_is_proven(
     parts = [data.draw(circles(direction(*turn))) for turn in turns]
     text = "".join(START.replace("OP1", f"OP{k}") + part + END for k, part in enumerate(parts))
     written = proven(read(text, folder), folder)
-    level = wishes_of({}, CONTROL).level  # what leans less is upright, for nobody prints it
+    level = parse_plan_options({}, CONTROL).negligible_tilt  # what leans less is upright, for nobody prints it
     tilted = sum(axis[2] < 0.0 or float(np.hypot(*axis[:2])) >= level for axis in (direction(*t) for t in turns))
     assert written.count("G154\n") == 2 * tilted  # taken up, and the plane of the machine at the end
     assert not re.search(r"G[23] .*Z.*I.*J", written), "circles in G17 do not rise"
@@ -276,7 +276,7 @@ def test_each_cycle_has_its_word(mode: str, folder: Path) -> None:
     ],
 )
 def test_what_cannot_be_said_is_refused(text: str, what: str, folder: Path) -> None:
-    with pytest.raises((Refused, InputError), match=what):
+    with pytest.raises((RefusedError, InputError), match=what):
         posted(read(START + "RAPID\nGOTO/10,5,50,0,0,1\n" + text + END, folder), folder)
 
 
@@ -288,5 +288,5 @@ def test_a_feed_that_would_print_as_nothing_is_refused(folder: Path) -> None:
 
 def test_without_tcp_there_is_nothing_but_planes(folder: Path) -> None:
     text = START + "RAPID\nGOTO/10,5,50,0,0,1\nFEDRAT/MMPM,300\nGOTO/10,5,20,0.1,0,0.994987437107\n" + END
-    with pytest.raises((Refused, InputError), match="no words for"):
+    with pytest.raises((RefusedError, InputError), match="no words for"):
         posted(read(text, folder), folder, tcp="off")

@@ -11,7 +11,7 @@ from tests.matrix.expected import WITHOUT_TCP
 from tests.matrix.paths import CYCLES, off_the_pole, operation, reachable, square, words
 from tests.matrix.test_matrix import FEW, Pair, check_proven, check_refused, pair_of, posted
 from trunnion.cl import read_cl
-from trunnion.cli.settings import set_up
+from trunnion.cli.settings import apply_setup
 from trunnion.controls import load_control
 from trunnion.machines import Machine, load_machine
 from trunnion.model.feed_path import FeedPath
@@ -33,7 +33,7 @@ def stated(name: str, folder: Path, written: str, read: str) -> Pair:
 
 
 def known(machine: Machine) -> Machine:
-    return set_up(machine, dict(setting.split("=") for setting in WITHOUT_TCP))
+    return apply_setup(machine, dict(setting.split("=") for setting in WITHOUT_TCP))
 
 
 def cut(machine: Machine) -> str:

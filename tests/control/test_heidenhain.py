@@ -12,7 +12,7 @@ from tests.control.test_planes import reachable, text_of
 from tests.control.test_program import FOOT, HEAD
 from trunnion.cl import read_cl
 from trunnion.cli import main
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 
 
 @pytest.fixture
@@ -191,10 +191,10 @@ def test_a_retract_along_the_tool_axis_is_proven(
     machine, file = MACHINES[name], folder / "retract.cls"
     text = text_of([reachable(machine, share) for share in shares], [(0.0, 0.0, 0.0), (30.0, -5.0, 2.0)])
     file.write_text(text, encoding="utf-8")
-    said = {"retract_distance": distance, **({"manner": "tcp"} if manner else {})}
+    said = {"retract_distance": distance, **({"mode": "tcp"} if manner else {})}
     try:
         proven(read_cl(file), machine, CONTROLS["mikron_600u"], folder, retract="m140", **said)
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)
 
 

@@ -16,7 +16,7 @@ from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.errors import Severity
 from trunnion.machines import load_machine
-from trunnion.output.hole_positions import _lowest
+from trunnion.output.hole_positions import _lowest_clearance
 from trunnion.readers import run_program
 
 CLEAR = HEAD.replace("FEDRAT/MMPM,500.0\nGOTO/10.0,0.0,5.0\n", "")
@@ -168,7 +168,7 @@ def test_the_lowest_place_of_a_way_is_that_of_all_its_places(
 ) -> None:
     part = np.linspace(0.0, 1.0, 2001)
     heights = [a + part * (b - a) for a, b in (one, other)]
-    assert _lowest(one, other) == pytest.approx(float(np.maximum(*heights).min()), abs=0.051)
+    assert _lowest_clearance(one, other) == pytest.approx(float(np.maximum(*heights).min()), abs=0.051)
 
 
 @pytest.mark.parametrize("name", sinumeriks())
@@ -201,7 +201,7 @@ def test_holes_along_any_axes_are_proven_on_every_machine(
         return  # no room for the slides
     assert code == 0
     run = run_program(program, load_machine(machine))
-    assert not [finding for finding in run.findings if finding.severity is Severity.ERROR]
+    assert not [finding for finding in run.diagnostics if finding.severity is Severity.ERROR]
     depth = float(words.split("FEDTO,-")[1].split(",")[0])
     tips = run.tip[run.tcp]
     for axis in axes:

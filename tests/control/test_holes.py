@@ -16,7 +16,7 @@ from trunnion.cli import main
 from trunnion.errors import Severity
 from trunnion.machines import load_machine
 from trunnion.model.toolpath import CycleOn, Kind
-from trunnion.planning.holes.cycles import Cycle, CycleError, Making, cycle_of
+from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, cycle_from_event
 from trunnion.readers import run_program
 
 CLEAR = HEAD.replace("FEDRAT/MMPM,500.0\nGOTO/10.0,0.0,5.0\n", "")
@@ -143,8 +143,8 @@ def test_auto_needs_a_point_before_the_cycle(post: Post) -> None:
 
 
 def test_a_tap_with_the_spindle_standing_is_refused() -> None:
-    with pytest.raises(CycleError):
-        cycle_of(CycleOn(0, 1, ("TAP",), (("RAPTO", (3.0,)),)))
+    with pytest.raises(HoleCycleError):
+        cycle_from_event(CycleOn(0, 1, ("TAP",), (("RAPTO", (3.0,)),)))
 
 
 def test_holes_of_an_operation_whose_axis_changes_in_a_cut_are_motion_with_tcp(post: Post) -> None:
@@ -238,7 +238,7 @@ def test_holes_in_any_planes_are_proven_on_every_machine(
         return  # a retract height by AUTO below the hole
     assert code == 0
     run = run_program(program, machine)
-    assert not [finding for finding in run.findings if finding.severity is Severity.ERROR]
+    assert not [finding for finding in run.diagnostics if finding.severity is Severity.ERROR]
     holes = sum(len(points) for _ in words)
     assert int(np.count_nonzero((run.programmed == 0) & (run.kind != Kind.ARC))) >= 3 * holes
 
@@ -304,8 +304,8 @@ def test_a_number_in_a_cycle_that_is_another_one_is_seen(tmp_path: Path) -> None
 
 def test_a_cycle_holds_what_the_statement_says() -> None:
     values = (("RAPTO", (3.0,)), ("FEDTO", (-20.0,)), ("STEP", (6.0, 1.0, 2.0)), ("MMPM", (250.0,)), ("DWELL", (0.5,)))
-    found = cycle_of(CycleOn(0, 1, ("DRILL", "DEEP"), values, (("RTRCTO", "AUTO"),)))
-    wanted = Cycle(Making.DEEP, 3.0, 20.0, None, (6.0, 1.0, 2.0), 0.5, False, 250.0, False, 0.0)
+    found = cycle_from_event(CycleOn(0, 1, ("DRILL", "DEEP"), values, (("RTRCTO", "AUTO"),)))
+    wanted = Cycle(HoleMethod.DEEP_DRILLING, 3.0, 20.0, None, (6.0, 1.0, 2.0), 0.5, False, 250.0, False, 0.0)
     assert found == wanted
 
 

@@ -19,8 +19,8 @@ from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.machines import Machine, load_machine
 from trunnion.model.toolpath import Kind
-from trunnion.planning import seconds
-from trunnion.planning.options import Wishes
+from trunnion.planning import operation_seconds
+from trunnion.planning.options import PlanOptions
 from trunnion.planning.planner import plan
 from trunnion.readers import run_program
 from trunnion.verification import Settings, Verification, failures, verify
@@ -76,7 +76,7 @@ def test_every_control_makes_holes_as_motion_if_that_is_wished(control: str, tmp
 
 
 @pytest.mark.parametrize("control", ["fidia_nc15", "heidenhain_tnc640", "sinumerik_840d"])
-@pytest.mark.parametrize("settings", [("cycles=off",), ("manner=tcp",)])
+@pytest.mark.parametrize("settings", [("cycles=off",), ("mode=tcp",)])
 @pytest.mark.parametrize("back", [True, False])
 def test_in_planes_and_with_tcp_they_are_proven_too(
     control: str, settings: tuple[str, ...], back: bool, tmp_path: Path
@@ -148,10 +148,12 @@ def test_what_the_words_of_a_cycle_lack_is_made_as_motion(control: str, words: s
 def test_strokes_and_dwells_count_in_the_time_of_an_operation(tmp_path: Path) -> None:
     cl = tmp_path / "holes.cls"
     cl.write_text(drilled(["DRILL with DWELL", "DRILL,DEEP"], [UPRIGHT]), encoding="utf-8")
-    motion, _ = (plan([read_cl(cl)], MACHINE, 0.001, Wishes(holes_as_motion=wish)).motions[0] for wish in (True, False))
+    motion, _ = (
+        plan([read_cl(cl)], MACHINE, 0.001, PlanOptions(holes_as_motion=wish)).motions[0] for wish in (True, False)
+    )
     assert motion.operation.moves.kind.tolist().count(Kind.LINEAR) == 2 + 10
     drilled_mm = 2 * 15.0 + 2 * (15.0 + 4 * 0.5)
-    assert seconds(MACHINE, motion) > 60.0 * drilled_mm / 90.0 + 2 * 0.5
+    assert operation_seconds(MACHINE, motion) > 60.0 * drilled_mm / 90.0 + 2 * 0.5
 
 
 def test_every_block_that_is_dropped_is_missed(tmp_path: Path) -> None:
@@ -161,7 +163,7 @@ def test_every_block_that_is_dropped_is_missed(tmp_path: Path) -> None:
     assert failed(lines, cl, tmp_path) == []
     run = run_program(program, MACHINE)
     first = next(k for k, line in enumerate(lines) if line.endswith("G43 H1")) + 1
-    moved = {int(run.blocks[row]) - 1: row for row in range(len(run))}
+    moved = {int(run.lines[row]) - 1: row for row in range(len(run))}
     for k in range(first, len(lines) - 6):
         block = lines[k].split(" ", 1)[-1]
         if block.startswith(";") or failed(lines[:k] + lines[k + 1 :], cl, tmp_path):

@@ -113,7 +113,7 @@ def test_circles_by_radius_are_those_that_were_planned(path: tuple[Moves, Arcs],
     event(f"over half a turn: {any(sign == '-' for sign, _ in said)}")
     ran = found.run.arcs
     # Far from half a turn, and not from where a helix has ended, a radius says every flat arc.
-    flat = (moves.tip[arcs.row, 2] == moves.tip[arcs.row - 1, 2]) & (arcs.turns == 0)
+    flat = (moves.tip[arcs.row, 2] == moves.tip[arcs.row - 1, 2]) & (arcs.full_turns == 0)
     sweep = swept(moves, arcs)
     clear = (np.abs(sweep - 180.0) > 60.0) & (sweep > 60.0) & (sweep < 300.0)
     behind = np.concatenate(([False], ~flat[:-1]))
@@ -121,7 +121,7 @@ def test_circles_by_radius_are_those_that_were_planned(path: tuple[Moves, Arcs],
     if len(ran.row) == len(arcs.row):
         assert np.abs(ran.centre[:, :2] - arcs.centre[:, :2])[flat & ~behind].max(initial=0.0) < 3.1e-4
         assert (ran.normal[:, 2] == arcs.normal[:, 2]).all()
-        assert (ran.turns == arcs.turns).all()
+        assert (ran.full_turns == arcs.full_turns).all()
 
 
 def swept(moves: Moves, arcs: Arcs) -> Floats:

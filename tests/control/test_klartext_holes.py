@@ -12,7 +12,7 @@ from tests.control.klartext import CONTROLS, MACHINES, SHARES, Post, motion, pro
 from tests.control.test_planes import reachable
 from tests.control.test_program import FOOT, HEAD
 from trunnion.cl import read_cl
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 
 
 @pytest.fixture
@@ -161,5 +161,5 @@ def test_holes_are_proven_on_every_machine_also_where_the_axis_changes_between_t
     file.write_text(start + words + "\n".join(lines) + "\nCYCLE/OFF\n" + FOOT, encoding="utf-8")
     try:
         proven(read_cl(file), machine, CONTROLS["mikron_600u"], folder, disengage="2")
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)

@@ -15,7 +15,7 @@ from tests.control.test_program import FOOT, HEAD
 from tests.plan.naive import moves_of
 from trunnion.arrays import Floats
 from trunnion.cli import main
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.verification import Verification
 
@@ -128,9 +128,9 @@ def test_normals_beside_a_tool_axis_that_changes_are_proven(name: str, moves: Mo
     shift = 20.0 * np.sin(np.arange(len(moves)))[:, None] * [1.0, 0.5, 0.2]
     moves = touched(replace(moves, tip=np.round(moves.tip + shift, 5)), seed)
     try:
-        given = {"orientation": "vector", "normals": "contact", "manner": "tcp"}
+        given = {"orientation": "vector", "normals": "contact", "mode": "tcp"}
         found = proven(toolpath_of(moves), MACHINES[name], CONTROLS["mikron_600u"], folder, **given)
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         event("refused")
         assume(False)
     assert moves.normal is not None
@@ -161,7 +161,7 @@ def test_normals_in_planes_are_proven(name: str, share: tuple[float, float], see
     moves = touched(moves_of(tips, np.tile(reachable(machine, share), (6, 1))), seed)
     try:
         found = proven(toolpath_of(moves), machine, CONTROLS["mikron_600u"], folder, plane=way, normals="contact")
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)
     assert moves.normal is not None
     count = int(np.isfinite(moves.normal[:, 0]).sum())

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.control.klartext import CONTROLS, DMU65, MACHINES, PATHS, SHARES, TCP, TILTED, Post, proven, toolpath_of
 from tests.control.test_planes import reachable, text_of
 from trunnion.cl import read_cl
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 from trunnion.model.toolpath import Moves
 
 
@@ -60,7 +60,7 @@ def test_what_is_planned_is_proven(name: str, moves: Moves, way: str, folder: Pa
     toolpath = toolpath_of(replace(moves, tip=moves.tip + shift))
     try:
         proven(toolpath, MACHINES[name], CONTROLS["mikron_600u"], folder, tcpm=way)
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)
 
 
@@ -88,5 +88,5 @@ def test_planes_are_proven_on_every_machine_that_reaches_them(
     file.write_text(text_of([reachable(machine, share) for share in shares], tips), encoding="utf-8")
     try:
         proven(read_cl(file), machine, CONTROLS["mikron_600u"], folder, plane=way, plane_move=move)
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)

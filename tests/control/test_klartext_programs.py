@@ -12,7 +12,7 @@ from tests.control.klartext import CONTROLS, OWN, proven
 from tests.control.test_klartext_holes import MODES
 from tests.control.test_planes import reachable
 from trunnion.cl import read_cl
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 from trunnion.machines import Machine
 
 START = """TOOL PATH/OP{n},TOOL,D{tool}
@@ -107,7 +107,7 @@ def test_programs_of_all_manners_are_proven_on_every_machine_of_these_controls(
     file.write_text(text, encoding="utf-8")
     try:
         run = proven(read_cl(file), machine, CONTROLS[name], folder, **said).run
-    except (Refused, InputError) as why:
+    except (RefusedError, InputError) as why:
         event(f"refused: {str(why).split(': ')[-1][:60]}")
         assume(False)
     if said["tcp"] == "off":

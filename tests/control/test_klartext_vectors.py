@@ -21,8 +21,8 @@ from tests.control.klartext import (
     toolpath_of,
 )
 from tests.control.test_program import FOOT, HEAD
-from trunnion.errors import InputError, Refused
-from trunnion.machines import Output
+from trunnion.errors import InputError, RefusedError
+from trunnion.machines import AngleOutput
 from trunnion.model.toolpath import Moves
 
 
@@ -74,7 +74,7 @@ def test_what_is_planned_is_proven(name: str, moves: Moves, way: str, folder: Pa
     toolpath = toolpath_of(replace(moves, tip=np.round(moves.tip + shift, 5)))
     try:
         proven(toolpath, MACHINES[name], CONTROLS["mikron_600u"], folder, tcpm=way, orientation="vector")
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         event("refused")
         assume(False)
     # Half the last digit of an angle, whatever the machine.
@@ -111,13 +111,13 @@ def test_axes_stand_where_rotary_words_would_have_them(name: str, moves: Moves, 
         runs = [
             proven(toolpath_of(moves), machine, control, folder, orientation=way).run for way in ("angles", "vector")
         ]
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)
     words, vectors = runs
     assert len(words) == len(vectors)
     apart = words.rotary - vectors.rotary
     for k, column in enumerate(machine.rotary):
-        if machine.axes[column].endless and machine.axes[column].output is not Output.NONE:
+        if machine.axes[column].endless and machine.axes[column].output is not AngleOutput.NONE:
             apart[:, k] -= 360.0 * np.rint(apart[:, k] / 360.0)
     digit = 10.0 ** -control.number_formats(three_axis=False)["angle"].decimals
     assert np.abs(apart).max() <= digit + 1e-9

@@ -13,13 +13,13 @@ from tests.control.klartext import CONTROLS, MACHINES, SIMULTANEOUS, Post, prove
 from tests.plan.naive import moves_of
 from tests.plan.test_without_tcp import steps
 from trunnion.conversion import convert
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.output.axis_coordinates import TIP
+from trunnion.output.axis_coordinates import FEED_AT_TIP
 from trunnion.readers import run_program
-from trunnion.verification import Allowed, Settings, failures, verify
+from trunnion.verification import Settings, Tolerances, failures, verify
 
 #: Tool axes by the pole as well; nearer than 2e-5 four decimals cannot tell.
 LEAN = st.one_of(st.floats(-0.6, 0.6), st.floats(-1e-3, 1e-3)).map(lambda v: v if abs(v) > 2e-5 else 0.0)
@@ -54,7 +54,7 @@ def seconds_by_hand(run: Run, row: int) -> float:
     path=st.lists(st.tuples(steps, LEAN, LEAN), min_size=2, max_size=4),
     kinds=KINDS,
     tolerance=st.sampled_from([0.001, 0.01, 0.1]),
-    rule=st.sampled_from(["degrees", TIP]),
+    rule=st.sampled_from(["degrees", FEED_AT_TIP]),
     feed=st.sampled_from([100.0, 3.0, 5000.0]),
 )
 def test_whatever_is_planned_without_tcp_is_proven(
@@ -67,7 +67,7 @@ def test_whatever_is_planned_without_tcp_is_proven(
     folder: Path,
 ) -> None:
     machine = placed(MACHINES[name])
-    assume(rule != TIP or not machine.turns_tool)
+    assume(rule != FEED_AT_TIP or not machine.has_rotary_head)
     tip = np.round(np.cumsum([step for step, _, _ in path], axis=0), 4)
     assume(np.linalg.norm(np.diff(tip, axis=0), axis=1).min() > 0.1)
     axis = np.array([[i, j, 1.0] for _, i, j in path])
@@ -78,14 +78,14 @@ def test_whatever_is_planned_without_tcp_is_proven(
     said = {"tcp": "off", "tip_tolerance": str(tolerance), "rotary_feed": rule}
     try:
         run = proven(toolpath_of(moves), machine, CONTROLS["mikron_600u"], folder, **said).run
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         event("refused")
         assume(False)
     turning = np.abs(np.diff(run.joints[:, list(machine.rotary)], axis=0)).max(axis=1, initial=0.0) > 1e-9
     cuts = 1 + np.flatnonzero(turning & (run.kind[1:] == Kind.LINEAR))
     event(f"blocks that turn: {len(cuts) > 0}")
     assert not run.tcp.any()
-    if rule == TIP:
+    if rule == FEED_AT_TIP:
         assert (run.feed[run.kind == Kind.LINEAR] == feed).all()
         return
     for row in cuts.tolist():
@@ -139,8 +139,8 @@ def test_another_f_in_any_block_that_turns_is_found(name: str, share: float, at:
     k = said[int(at * len(said))]
     lines[k] = re.sub(r" F([0-9.]+)$", lambda f: f" F{share * float(f[1]):.3f}", lines[k])
     file.write_text("\n".join(lines), encoding="utf-8")
-    asked, allowed = Settings(span=0.05, span_tip=0.005), Allowed(tip=2e-4, angle=2e-4, feed=0.001)
-    found = verify(run_program(file, machine), [toolpath], allowed=allowed, settings=asked)
+    asked, allowed = Settings(span=0.05, span_tip=0.005), Tolerances(tip=2e-4, angle=2e-4, feed=0.001)
+    found = verify(run_program(file, machine), [toolpath], tolerances=allowed, settings=asked)
     assert [check.key for check in failures(found)] == ["feed"]
 
 

@@ -90,7 +90,7 @@ def test_a_tilted_plane_is_made_with_tcp_and_that_is_said(post: Post) -> None:
 
 
 def test_a_tilted_plane_that_is_wished_for_is_refused(post: Post) -> None:
-    code, lines, err = post.all(TILTED + FOOT, "--set", "manner=tilted")
+    code, lines, err = post.all(TILTED + FOOT, "--set", "mode=tilted")
     assert (code, lines) == (1, [])
     assert "part.cls:1: error: operation OP1: the control has no words for tilted plane" in err
 

@@ -15,10 +15,10 @@ from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.controls import load_control
 from trunnion.errors import InputError
-from trunnion.machines import Machine, load_machine, shipped
-from trunnion.output.euler_angles import about_three
+from trunnion.machines import Machine, load_machine, shipped_machines
+from trunnion.output.euler_angles import tait_bryan_angles
 from trunnion.output.families.sinumerik import writer as sinumerik
-from trunnion.output.families.sinumerik.writer import sequence
+from trunnion.output.families.sinumerik.writer import swivel_axes
 from trunnion.readers import run_program
 from trunnion.verification import Settings, failures, verify
 
@@ -39,13 +39,13 @@ def turned(axis: int, angle: float) -> Floats:
 
 @pytest.mark.parametrize(("mode", "letters"), MODES.items())
 def test_the_modes_name_their_axes(mode: int, letters: str) -> None:
-    assert "".join("XYZ"[axis] for axis in sequence(mode)) == letters
+    assert "".join("XYZ"[axis] for axis in swivel_axes(mode)) == letters
 
 
 @given(st.sampled_from(list(itertools.permutations(range(3)))), ANGLES, ANGLES, ANGLES)
 def test_three_turns_make_the_matrix_again(order: tuple[int, int, int], a: float, b: float, c: float) -> None:
     matrix = turned(order[0], a) @ turned(order[1], b) @ turned(order[2], c)
-    found = about_three(matrix, order)
+    found = tait_bryan_angles(matrix, order)
     again = turned(order[0], found[0]) @ turned(order[1], found[1]) @ turned(order[2], found[2])
     np.testing.assert_allclose(again, matrix, atol=3e-8)  # beside the place where two turns become one
 
@@ -53,7 +53,7 @@ def test_three_turns_make_the_matrix_again(order: tuple[int, int, int], a: float
 def sinumeriks() -> list[str]:
     """Shipped machines with a Sinumerik."""
     found = []
-    for name in shipped():
+    for name in shipped_machines():
         try:
             control = load_control(load_machine(name).control)
         except InputError:
@@ -112,7 +112,7 @@ def test_planes_are_proven_on_every_machine_that_reaches_them(
         return  # the slides have no room: refused by the planner with a reason, never by the proof
     assert code == 0
     run = run_program(program, machine)
-    assert not [finding for finding in run.findings if "CYCLE800" in finding.text], (
+    assert not [finding for finding in run.diagnostics if "CYCLE800" in finding.text], (
         "the pose asked for is the one taken"
     )
     order = [
@@ -154,7 +154,7 @@ def test_no_rotary_words_stand_in_a_plane_even_after_a_text_of_the_cl_files_own(
     assert not any(" B" in line or " C" in line for line in part)
 
 
-NONSENSE = {"plane": "euler", "swivel_mode": "58", "manner": "3+2", "frame": "own", "bore_lift": "nan"}
+NONSENSE = {"plane": "euler", "swivel_mode": "58", "mode": "3+2", "frame": "own", "bore_lift": "nan"}
 
 
 @pytest.mark.parametrize(("key", "value"), NONSENSE.items())

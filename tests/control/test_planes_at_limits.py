@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.plan.naive import moves_of, operation_of
-from trunnion.cli.post import planned_program, write
-from trunnion.cli.settings import wishes_of
+from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.machines import Machine, forward, load_machine
 from trunnion.model.toolpath import Frame, LoadTool, SpindleOn, Toolpath
-from trunnion.output.plane_from_pose import inside_limits
+from trunnion.output.plane_from_pose import with_plane_inside_limits
 from trunnion.planning import plan
 from trunnion.readers import run_program
 from trunnion.verification import failures, verify
@@ -62,14 +62,14 @@ def at_limit(model: Machine, high: bool, first: float, twist: float) -> Toolpath
 def test_a_plane_at_a_limit_is_proven(name: str, high: bool, first: float, twist: float, words: str) -> None:
     model = machine(name)
     control = load_control(model.control)
-    said = {"plane": words} if words in control.family.PLANES else {}
+    said = {"plane": words} if words in control.family.PLANE_COMMANDS else {}
     path = at_limit(model, high, first, twist)
-    program, _ = planned_program([path], model, control, said, False, wishes_of(said, control))
+    program, _ = plan_program([path], model, control, said, False, parse_plan_options(said, control))
     with TemporaryDirectory() as folder:
         file = Path(folder) / "part.nc"
         with file.open("wb") as sink:
-            claim = write(program, sink)
-        found = verify(run_program(file, model), [path], allowed=claim.allowed, settings=claim.settings)
+            claim = write_for_proof(program, sink)
+        found = verify(run_program(file, model), [path], tolerances=claim.allowed, settings=claim.settings)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
 
 
@@ -78,7 +78,7 @@ def test_a_plane_turns_inside_only_where_its_angles_would_lie_beyond() -> None:
     turned = []
     for twist in np.linspace(-180.0, 180.0, 37).tolist():
         motion = plan([at_limit(model, True, 20.0, twist)], model, 0.001).motions[1]
-        inside = inside_limits(model, motion, 4)
+        inside = with_plane_inside_limits(model, motion, 4)
         turned.append(inside is not motion)
         off = np.abs(inside.rotary[0] - motion.rotary[0])
         assert off.max() == pytest.approx(1.5e-4 if turned[-1] else 0.0, abs=1e-9)

@@ -170,7 +170,7 @@ def test_an_oblique_arc_becomes_lines(post: Post) -> None:
 
 def test_an_arc_under_a_tilted_steady_tool_axis_stays_an_arc(post: Post) -> None:
     arc = ARC.format(centre="20,0,5", normal="0,0,1", end="30,0,5")
-    assert motion(post(OFF_AXIS + arc + FOOT, "--set", "manner=tcp"))[2] == "G3 X30. Y0.0 I10. J0.0"
+    assert motion(post(OFF_AXIS + arc + FOOT, "--set", "mode=tcp"))[2] == "G3 X30. Y0.0 I10. J0.0"
 
 
 def test_a_second_operation_with_the_same_tool_changes_no_tool_and_starts_the_spindle_again(post: Post) -> None:
@@ -191,23 +191,23 @@ def test_a_second_tool_is_changed_after_coolant_off_and_from_home(post: Post) ->
 
 
 def test_rotary_axes_are_placed_before_traori(post: Post) -> None:
-    lines = post(OFF_AXIS + FOOT, "--set", "manner=tcp")
+    lines = post(OFF_AXIS + FOOT, "--set", "mode=tcp")
     assert lines.index("G0 B30. C0.0") < lines.index("TRAORI")
     assert "TRAFOOF" in lines[lines.index(";End of Path") :]
 
 
-def test_the_manner_may_be_said_of_one_operation(post: Post) -> None:
+def test_the_mode_may_be_set_for_one_operation(post: Post) -> None:
     both = OFF_AXIS + FOOT + OFF_AXIS.replace("OP1", "OP2") + FOOT
     assert "TRAORI" not in post(both)
-    assert post(both, "--set", "manner=OP2:tcp").count("TRAORI") == 1
-    assert post(both, "--set", "manner=tcp").count("TRAORI") == 2
-    assert post(both, "--set", "manner=tcp,OP1:auto").count("TRAORI") == 1
+    assert post(both, "--set", "mode=OP2:tcp").count("TRAORI") == 1
+    assert post(both, "--set", "mode=tcp").count("TRAORI") == 2
+    assert post(both, "--set", "mode=tcp,OP1:auto").count("TRAORI") == 1
     for said, why in (
-        ("OP3:tcp", "manner is said of operation OP3, and the program has none of that name; write one of OP1, OP2"),
-        ("OP1:five", "manner is 'OP1:five'; write one of auto, three-axis, tilted, tcp; OPERATION:WORD says it of one"),
-        ("five", "manner is 'five'; write one of auto, three-axis, tilted, tcp"),
+        ("OP3:tcp", "mode is set for operation OP3, and the program has none of that name; write one of OP1, OP2"),
+        ("OP1:five", "mode is 'OP1:five'; write one of auto, three-axis, tilted, tcp; OPERATION:WORD says it of one"),
+        ("five", "mode is 'five'; write one of auto, three-axis, tilted, tcp"),
     ):
-        code, out, err = post.all(both, "--set", f"manner={said}")
+        code, out, err = post.all(both, "--set", f"mode={said}")
         assert (code, out) == (2, [])
         assert why in err
 

@@ -10,18 +10,18 @@ from hypothesis import strategies as st
 
 from tests.plan.naive import moves_of, operation_of
 from trunnion.arrays import Floats
-from trunnion.cli.post import planned_program, write
-from trunnion.cli.settings import wishes_of
+from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Refused
-from trunnion.machines import load_machine, shipped
-from trunnion.model.motion import Manner
+from trunnion.errors import InputError, RefusedError
+from trunnion.machines import load_machine, shipped_machines
+from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import LoadTool, SpindleOn, Toolpath
 from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
 
-MACHINES = {name: load_machine(name) for name in shipped()}
-CONTROLS = {name: load_control(machine.control.fresh()) for name, machine in MACHINES.items()}
+MACHINES = {name: load_machine(name) for name in shipped_machines()}
+CONTROLS = {name: load_control(machine.control.unread_copy()) for name, machine in MACHINES.items()}
 TIPS = np.array([[0.0, 0.0, 50.0], [10.0, 0.0, 5.0], [20.0, 3.0, 5.0], [60.0, -40.0, 2.0]])
 
 
@@ -44,17 +44,17 @@ def toolpath_of(axis: Floats) -> Toolpath:
 
 def proof(
     name: str, axis: Floats, folder: Path, beside: Floats | None = None, plane: str = ""
-) -> tuple[Manner, Verification]:
+) -> tuple[MachiningMode, Verification]:
     """How a program is made, and its proof, against another tool axis if there is one."""
     machine, control = MACHINES[name], CONTROLS[name]
     given = {"plane": plane} if plane else {}
-    wishes, target = wishes_of(given, control), folder / "tilt.nc"
-    program, _ = planned_program([toolpath_of(axis)], machine, control, given, False, wishes)
+    options, target = parse_plan_options(given, control), folder / "tilt.nc"
+    program, _ = plan_program([toolpath_of(axis)], machine, control, given, False, options)
     with target.open("wb") as sink:
-        claim = write(program, sink, wishes)
+        claim = write_for_proof(program, sink, options)
     wanted = toolpath_of(axis if beside is None else beside)
-    found = verify(run_program(target, machine), [wanted], allowed=claim.allowed, settings=claim.settings)
-    return program.motions[0].manner, found
+    found = verify(run_program(target, machine), [wanted], tolerances=claim.allowed, settings=claim.settings)
+    return program.motions[0].mode, found
 
 
 def digit(name: str) -> float:
@@ -72,19 +72,19 @@ def digit(name: str) -> float:
 def test_a_tool_axis_that_hardly_leans_is_proven(
     name: str, tilt: float, azimuth: float, way: int, folder: Path
 ) -> None:
-    planes = CONTROLS[name].family.PLANES
+    planes = CONTROLS[name].family.PLANE_COMMANDS
     plane = planes[way % len(planes)] if len(planes) > 1 else ""
     try:
-        manner, found = proof(name, leaning(tilt, azimuth), folder, plane=plane)
-    except (Refused, InputError):
+        mode, found = proof(name, leaning(tilt, azimuth), folder, plane=plane)
+    except (RefusedError, InputError):
         assume(False)
     assert found.passed, [(check.key, check.summary) for check in found.checks if not check.passed]
     assert not found.run.errors
-    event(f"{manner.value}")
+    event(f"{mode.value}")
     if tilt < 0.49 * digit(name):
-        assert manner is Manner.THREE_AXIS
+        assert mode is MachiningMode.THREE_AXIS
     elif tilt > 0.51 * digit(name) and tilt > 1e-5:
-        assert manner is not Manner.THREE_AXIS
+        assert mode is not MachiningMode.THREE_AXIS
 
 
 @pytest.mark.parametrize("name", sorted(MACHINES))
@@ -92,8 +92,8 @@ def test_a_tool_axis_that_hardly_leans_is_proven(
 def test_a_tilt_that_is_another_one_is_found(name: str, tilt: float, folder: Path) -> None:
     for azimuth in (20.0, 130.0, 250.0):
         more = leaning(tilt + 8.0 * max(digit(name), 1e-3), azimuth)
-        manner, found = proof(name, leaning(tilt, azimuth), folder, more)
-        assert "axis" in [check.key for check in found.checks if not check.passed], manner
+        mode, found = proof(name, leaning(tilt, azimuth), folder, more)
+        assert "axis" in [check.key for check in found.checks if not check.passed], mode
 
 
 def test_an_axis_off_by_less_than_a_digit_leaves_no_turn_of_the_table(folder: Path) -> None:

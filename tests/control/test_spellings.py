@@ -13,7 +13,7 @@ from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.families import load_interpreter
 from trunnion.machines import load_machine
-from trunnion.output.euler_angles import about_first_and_third
+from trunnion.output.euler_angles import euler_zxz_angles
 from trunnion.output.families.heidenhain import writer as heidenhain
 from trunnion.output.families.sinumerik import writer as sinumerik
 
@@ -25,11 +25,11 @@ MODES = ("57", "27", "39", "45", "30", "54")
 YL569, HS664RT = load_machine("yl569"), load_machine("hs664rt")
 #: Klartext refuses a plane that the tool cannot stand on: this machine reaches all of them.
 DMU65 = replace(
-    (shipped := load_machine("dmu65")),
-    axes=tuple(replace(axis, low=-360.0, high=360.0) if axis.is_rotary else axis for axis in shipped.axes),
+    (shipped_machines := load_machine("dmu65")),
+    axes=tuple(replace(axis, low=-360.0, high=360.0) if axis.is_rotary else axis for axis in shipped_machines.axes),
 )
-SINUMERIK = dict(load_control(YL569.control.fresh()).settings)
-KLARTEXT = dict(load_control(DMU65.control.fresh()).settings)
+SINUMERIK = dict(load_control(YL569.control.unread_copy()).settings)
+KLARTEXT = dict(load_control(DMU65.control.unread_copy()).settings)
 
 
 def turned(axis: int, degrees: float) -> Floats:
@@ -60,7 +60,7 @@ def klartext(matrix: Floats, origin: tuple[float, float, float]) -> dict[str, st
     """The ways of Klartext."""
     said = {
         name: full(value)
-        for name, value in heidenhain.values(KLARTEXT, matrix).items()
+        for name, value in heidenhain.template_values(KLARTEXT, matrix).items()
         if name[-2:-1] == "_" and value is not None
     }
     head = "".join(
@@ -86,10 +86,10 @@ def siemens(matrix: Floats, origin: tuple[float, float, float]) -> dict[str, str
     x, y, z = map(full, origin)
     ways = {}
     for mode in MODES:
-        said = sinumerik.values(SINUMERIK | {"plane": "cycle800", "swivel_mode": mode}, matrix)
+        said = sinumerik.template_values(SINUMERIK | {"plane": "cycle800", "swivel_mode": mode}, matrix)
         turns = ",".join(full(said[f"plane_{which}"]) for which in ("first", "second", "third"))
         ways[f"CYCLE800, mode {mode}"] = f'CYCLE800(0,"",0,{mode},{x},{y},{z},{turns},0,0,0,0,0,1)\n'
-    said = sinumerik.values(SINUMERIK | {"plane": "frames"}, matrix)
+    said = sinumerik.template_values(SINUMERIK | {"plane": "frames"}, matrix)
     ways["frames"] = f"TRANS X{x} Y{y} Z{z}\n" + "".join(
         f"AROT {name}{full(said[f'plane_{which}'])}\n"
         for name, which in zip("XYZ", ("first", "second", "third"), strict=True)
@@ -98,7 +98,7 @@ def siemens(matrix: Floats, origin: tuple[float, float, float]) -> dict[str, str
 
 
 def fanuc(matrix: Floats, origin: tuple[float, float, float]) -> str:
-    x, y, z, i, j, k = map(full, (*origin, *about_first_and_third(matrix)))
+    x, y, z, i, j, k = map(full, (*origin, *euler_zxz_angles(matrix)))
     return f"G68.2 X{x} Y{y} Z{z} I{i} J{j} K{k}\n"
 
 

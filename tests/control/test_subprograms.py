@@ -15,11 +15,11 @@ from tests.convert.toolpaths import SAYABLE, operations
 from tests.paths import YL569
 from trunnion.arrays import Floats
 from trunnion.cli import main
-from trunnion.cli.settings import wishes_of
+from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
-from trunnion.controls.definition import Naming
+from trunnion.controls.definition import SubprogramNaming
 from trunnion.errors import InputError, Severity
-from trunnion.files import output
+from trunnion.files import atomic_output
 from trunnion.machines import load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import (
@@ -42,7 +42,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
-from trunnion.output.subprograms import LEAST_SIZE, ROOM_FOR_THE_END, Division, Names
+from trunnion.output.subprograms import END_RESERVE_BYTES, MIN_SUBPROGRAM_BYTES, SubprogramNames, SubprogramOutput
 from trunnion.output.validation import check_program
 from trunnion.planning import plan
 from trunnion.readers import run_program
@@ -87,7 +87,7 @@ TOOLPATHS = st.lists(operations(KINDS, AXES), min_size=1, max_size=3).map(
 
 
 @dataclass(frozen=True)
-class Written:
+class WrittenProgram:
     """A main program and its subprograms, as files of a folder."""
 
     main: Path
@@ -97,11 +97,13 @@ class Written:
         return run_program(self.main, MACHINES[machine], subprograms=self.others)
 
 
-def written(machine: str, toolpath: Toolpath, folder: Path, largest: int | None = None) -> tuple[Run, Written] | None:
+def written(
+    machine: str, toolpath: Toolpath, folder: Path, largest: int | None = None
+) -> tuple[Run, WrittenProgram] | None:
     """The program in one file as it runs, and in several; None where there can be none."""
     model = MACHINES[machine]
-    control = load_control(model.control.fresh())
-    planned = plan([toolpath], model, control.chord_tolerance, wishes_of({}, control))
+    control = load_control(model.control.unread_copy())
+    planned = plan([toolpath], model, control.chord_tolerance, parse_plan_options({}, control))
     program = Program(model, control, planned.motions, {"tool": "7"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
@@ -115,17 +117,17 @@ def written(machine: str, toolpath: Toolpath, folder: Path, largest: int | None 
         return made.setdefault(folder / name, io.BytesIO())
 
     head = io.BytesIO()
-    write_program(program, head, division=Division("part", begin, largest))
+    write_program(program, head, subprograms=SubprogramOutput("part", begin, largest))
     made[folder / f"part{control.extension}"] = head
     for path, each in made.items():
         path.write_bytes(each.getvalue())
     *others, first = made
-    return run_program(one, model), Written(first, others)
+    return run_program(one, model), WrittenProgram(first, others)
 
 
 @pytest.mark.parametrize("machine", CONTROLS)
 @settings(max_examples=20)
-@given(toolpath=TOOLPATHS, largest=st.sampled_from([None, ROOM_FOR_THE_END + 1800]))
+@given(toolpath=TOOLPATHS, largest=st.sampled_from([None, END_RESERVE_BYTES + 1800]))
 def test_a_program_in_several_files_does_what_it_does_in_one(
     tmp_path_factory: pytest.TempPathFactory, machine: str, toolpath: Toolpath, largest: int | None
 ) -> None:
@@ -183,7 +185,7 @@ def drilling(cycles: list[tuple[tuple[str, ...], list[tuple[int, int, int]]]], a
         np.full(n, 300.0), np.zeros(n, bool), np.arange(1, n + 1, dtype=np.int32),
     )  # fmt: skip
     tool = Tool("DRILL", "D8", 8.0, 0.0, 75.0)
-    operation = Operation("HOLES", tool, Frame(), moves, Arcs.none(), tuple(events), 1, 0.01, 0.01)
+    operation = Operation("HOLES", tool, Frame(), moves, Arcs.empty(), tuple(events), 1, 0.01, 0.01)
     return Toolpath("holes.cls", (operation,))
 
 
@@ -198,7 +200,7 @@ def test_holes_are_divided_between_two_of_them(
     room: int,
 ) -> None:
     axis = (0.48, 0.36, 0.8) if tilted else (0.0, 0.0, 1.0)
-    made = written(machine, drilling(cycles, axis), tmp_path_factory.getbasetemp(), ROOM_FOR_THE_END + room)
+    made = written(machine, drilling(cycles, axis), tmp_path_factory.getbasetemp(), END_RESERVE_BYTES + room)
     assume(made is not None)  # LinuxCNC has no threads along a tilted axis
     assert made is not None
     one, several = made
@@ -228,7 +230,7 @@ def test_each_operation_can_be_entered_alone(
     for k, path in enumerate(made[1].others):
         calling, language = path.with_name("alone"), CONTROLS[machine]
         calling.write_text(language.alone.format(name=path.stem.removeprefix(language.before)), encoding="utf-8")
-        alone = (Written(calling, [path]) if language.alone else Written(path, [])).run(machine)
+        alone = (WrittenProgram(calling, [path]) if language.alone else WrittenProgram(path, [])).run(machine)
         assert alone.errors == ()
         rows = whole.file == whole.files.index(str(path)) if str(path) in whole.files else None
         assert rows is not None
@@ -238,14 +240,20 @@ def test_each_operation_can_be_entered_alone(
             np.testing.assert_allclose(
                 getattr(whole, name)[rows], getattr(alone, name), rtol=0, atol=1e-9, err_msg=name
             )
-        at_work = ~alone.machine_frame & (alone.offset > 0)
+        at_work = ~alone.machine_frame & (alone.work_offset > 0)
         cuts = at_work & (alone.kind != 0)
-        for name, count in {"offset": at_work, "edge": at_work, "feed": cuts, "feed_mode": cuts, "rpm": cuts}.items():
+        for name, count in {
+            "work_offset": at_work,
+            "edge": at_work,
+            "feed": cuts,
+            "feed_mode": cuts,
+            "rpm": cuts,
+        }.items():
             assert (getattr(whole, name)[rows][count] == getattr(alone, name)[count]).all(), name
 
 
 def test_parts_of_an_operation_are_no_larger_than_asked_and_say_what_is_in_force(tmp_path: Path) -> None:
-    target, size = tmp_path / "hub.mpf", LEAST_SIZE
+    target, size = tmp_path / "hub.mpf", MIN_SUBPROGRAM_BYTES
     cl = tmp_path / "hub.cls"
     text = (YL569 / "2_hub_rough.cls").read_text()
     begin, end = text.index("GOTO/"), text.rindex("GOTO/")
@@ -274,47 +282,47 @@ def test_parts_with_holes_are_no_larger_than_asked(tmp_path: Path) -> None:
     cycle = "CYCLE/DRILL,DEEP,RAPTO,3,FEDTO,-12,STEP,2.5,RTRCTO,9,MMPM,90\n"
     cl.write_text(f"{head}GOTO/0,0,50,0,0,1\n{cycle}{points}CYCLE/OFF\nRAPID\nGOTO/0,0,50\n{end}")
     common = ["post", str(cl), "--machine", "yl569", "--output", str(target)]
-    assert main([*common, "--set", "programs=operations", "--set", f"split={LEAST_SIZE}"]) == 0
+    assert main([*common, "--set", "programs=operations", "--set", f"split={MIN_SUBPROGRAM_BYTES}"]) == 0
     parts = sorted(tmp_path.glob("*.spf"))
     assert len(parts) > 3
-    assert all(path.stat().st_size <= LEAST_SIZE for path in parts)
+    assert all(path.stat().st_size <= MIN_SUBPROGRAM_BYTES for path in parts)
     assert parts[1].read_text().splitlines()[5].endswith("S2000 D1 M3"), parts[1].read_text()[:600]
 
 
-NAMINGS = st.sampled_from([Naming(".spf", True, 24, ("CYCLE",)), Naming(".ngc", False, 12)])
+NAMINGS = st.sampled_from([SubprogramNaming(".spf", True, 24, ("CYCLE",)), SubprogramNaming(".ngc", False, 12)])
 
 
 @given(naming=NAMINGS, main_program=st.sampled_from(["PART", "OP"]), texts=st.lists(st.text(max_size=40), max_size=30))
 def test_names_are_such_as_controls_take_and_each_is_given_once(
-    naming: Naming, main_program: str, texts: list[str]
+    naming: SubprogramNaming, main_program: str, texts: list[str]
 ) -> None:
-    names = Names(naming, main_program)
-    found = [names.of(text) for text in [*texts, *texts, "CON", "cycle81", "", "刀具", "1st"]]
+    names = SubprogramNames(naming, main_program)
+    found = [names.unique(text) for text in [*texts, *texts, "CON", "cycle81", "", "刀具", "1st"]]
     letters = "[A-Z]{2}[A-Z0-9_]*" if naming.capitals else "[a-z]{2}[a-z0-9_]*"
-    assert all(re.fullmatch(letters, name) and len(name) <= naming.longest for name in found)
+    assert all(re.fullmatch(letters, name) and len(name) <= naming.max_length for name in found)
     assert len({name.upper() for name in [*found, main_program]}) == len(found) + 1
     assert not {"CON", "NUL", "COM1"} & {name.upper() for name in found}
-    assert not any(name.upper().startswith(naming.reserved) for name in found)
+    assert not any(name.upper().startswith(naming.reserved_prefixes) for name in found)
 
 
 @given(first=st.integers(1, 9990), program=st.integers(1, 9999), texts=st.lists(st.text(), max_size=8))
 def test_numbers_are_given_once_and_never_that_of_the_main_program(first: int, program: int, texts: list[str]) -> None:
-    names = Names(Naming(".nc", True, 4, first=first), "part", f"{program:04d}")
-    found = [int(names.of(text)) for text in texts]
+    names = SubprogramNames(SubprogramNaming(".nc", True, 4, first_number=first), "part", f"{program:04d}")
+    found = [int(names.unique(text)) for text in texts]
     assert found == [n for n in range(first, first + 9) if n != program][: len(texts)]
 
 
 @pytest.mark.parametrize("main_program", ["O1001", "o1001", "1001"])
 def test_no_number_is_that_of_the_main_programs_file(main_program: str) -> None:
-    names = Names(Naming(".nc", True, 4, first=1001, before="O"), main_program, "0001")
-    assert [names.of("a"), names.of("b")] == ["1002", "1003"]
+    names = SubprogramNames(SubprogramNaming(".nc", True, 4, first_number=1001, prefix="O"), main_program, "0001")
+    assert [names.unique("a"), names.unique("b")] == ["1002", "1003"]
 
 
 def test_numbers_come_to_an_end() -> None:
-    names = Names(Naming(".nc", True, 4, first=9998), "9999")
-    assert names.of("a") == "9998"
+    names = SubprogramNames(SubprogramNaming(".nc", True, 4, first_number=9998), "9999")
+    assert names.unique("a") == "9998"
     with pytest.raises(InputError, match="no program numbers are left from 9998 on"):
-        names.of("b")
+        names.unique("b")
 
 
 def test_files_appear_together_or_as_they_were(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -324,10 +332,10 @@ def test_files_appear_together_or_as_they_were(tmp_path: Path, monkeypatch: pyte
     target = str(tmp_path / "part.mpf")
 
     def write(fails: str = "") -> None:
-        with output(target) as made:
+        with atomic_output(target) as made:
             made.main.write(b"main")
             for name in ("A.spf", "B.spf", "C.spf"):
-                made.begin(name).write(name.encode())
+                made.add_file(name).write(name.encode())
             if fails == "inside":
                 raise ValueError("inside")
 
@@ -355,8 +363,8 @@ def test_files_appear_together_or_as_they_were(tmp_path: Path, monkeypatch: pyte
 
 def test_a_folder_in_the_way_stays(tmp_path: Path) -> None:
     (tmp_path / "A.spf").mkdir()
-    with pytest.raises(InputError, match=r"A\.spf is a folder"), output(str(tmp_path / "part.mpf")) as made:
-        made.begin("A.spf")
+    with pytest.raises(InputError, match=r"A\.spf is a folder"), atomic_output(str(tmp_path / "part.mpf")) as made:
+        made.add_file("A.spf")
     assert [path.name for path in tmp_path.iterdir()] == ["A.spf"]
 
 

@@ -15,12 +15,12 @@ from tests.plan.test_optimum import short_paths, smooth_paths, winding
 from tests.plan.test_read_back import CONTROL, MACHINES, toolpath_of
 from trunnion.arrays import Floats
 from trunnion.cli import main
-from trunnion.cli.post import planned_program, write
-from trunnion.errors import InputError, Refused
-from trunnion.machines import Machine, Output
-from trunnion.model.run import Orientation, Run, Written
+from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.errors import InputError, RefusedError
+from trunnion.machines import AngleOutput, Machine
+from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Moves, Toolpath
-from trunnion.planning import Wishes
+from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
 from trunnion.verification import failures, verify
 
@@ -38,12 +38,12 @@ PATHS = st.one_of(
 
 def posted(machine: Machine, toolpath: Toolpath, folder: Path, orientation: str) -> Run:
     """The program as it runs, proven."""
-    program, _ = planned_program([toolpath], machine, CONTROL, {"orientation": orientation}, False, Wishes())
+    program, _ = plan_program([toolpath], machine, CONTROL, {"orientation": orientation}, False, PlanOptions())
     target = folder / f"{orientation}.mpf"
     with target.open("wb") as sink:
-        claim = write(program, sink)
+        claim = write_for_proof(program, sink)
     run = run_program(target, machine)
-    found = verify(run, [toolpath], allowed=claim.allowed, settings=claim.settings)
+    found = verify(run, [toolpath], tolerances=claim.allowed, settings=claim.settings)
     assert [(check.key, check.summary) for check in failures(found)] == []
     return run
 
@@ -52,7 +52,7 @@ def wound(machine: Machine, rotary: Floats) -> Floats:
     """Rotary positions with those of one turn in that turn."""
     found = rotary.copy()
     for k, column in enumerate(machine.rotary):
-        if machine.axes[column].endless and machine.axes[column].output is not Output.NONE:
+        if machine.axes[column].endless and machine.axes[column].output is not AngleOutput.NONE:
             found[:, k] -= 360.0 * np.floor(found[:, k] / 360.0)
     return found
 
@@ -65,15 +65,15 @@ def test_axes_stand_where_rotary_words_would_have_them(
     machine, folder = MACHINES[name], tmp_path_factory.getbasetemp()
     try:
         words = posted(machine, toolpath_of(moves), folder, "angles")
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)
     vectors = posted(machine, toolpath_of(moves), folder, "vector")
     assume(words.tcp.any())
     assert len(words) == len(vectors)
     apart = np.abs(wound(machine, words.rotary) - wound(machine, vectors.rotary))
     assert np.minimum(apart, np.abs(apart - 360.0)).max() <= DIGIT + 1e-9
-    by_vector = (vectors.programmed & int(Written.VECTOR)) != 0
-    by_words = (vectors.programmed & int(Written.FIRST | Written.SECOND)) != 0
+    by_vector = (vectors.programmed & int(ProgrammedWord.VECTOR)) != 0
+    by_words = (vectors.programmed & int(ProgrammedWord.FIRST | ProgrammedWord.SECOND)) != 0
     assert (vectors.orientation[by_vector & vectors.tcp] == Orientation.GREAT_CIRCLE).all()
     assert (vectors.orientation[by_words & vectors.tcp & ~vectors.machine_frame] == Orientation.ANGLES).all()
 

@@ -41,7 +41,7 @@ def through_a_file(axis: Floats, folder: Path) -> Floats:
     feed, line = np.full(n, 100.0), np.arange(1, n + 1, dtype=np.int32)
     moves = Moves(tip, axis, np.ones(n, np.uint8), np.full(n, 4, np.uint8), feed, np.zeros(n, bool), line)
     sink = io.BytesIO()
-    write_cl(Toolpath("a", (Operation("O", Tool(), Frame(), moves, Arcs.none(), (), 1),)), sink)
+    write_cl(Toolpath("a", (Operation("O", Tool(), Frame(), moves, Arcs.empty(), (), 1),)), sink)
     (folder / "a.cls").write_bytes(sink.getvalue())
     return read_cl(folder / "a.cls").operations[0].moves.axis
 

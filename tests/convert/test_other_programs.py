@@ -7,7 +7,7 @@ import pytest
 
 from tests.paths import SHARED
 from trunnion.controls import load_control
-from trunnion.conversion import Converted, convert
+from trunnion.conversion import Conversion, convert
 from trunnion.machines import load_machine
 from trunnion.model.toolpath import (
     Coolant,
@@ -37,7 +37,7 @@ class Programs:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    def all(self, *lines: str) -> Converted:
+    def all(self, *lines: str) -> Conversion:
         """The program as a whole."""
         (self.folder / "part.mpf").write_text("\n".join(lines) + "\nM30\n", encoding="utf-8")
         return convert(
@@ -129,7 +129,7 @@ def test_tools_are_preselected_and_changes_without_motion_are_remarked_upon(prog
     converted = programs.all("T1 M6", "M0", "T2", "M6", "T3", "G0 X0 Y0 Z5", "G1 X1 F10", "M6", "M5")
     (operation,) = converted.toolpath.operations
     assert operation.events[:3] == (Stop(0, 2, False), LoadTool(0, 4, 2), SelectTool(0, 5, 3))
-    assert [(remark.line, remark.what) for remark in converted.remarks] == [
+    assert [(remark.line, remark.what) for remark in converted.warnings] == [
         (1, "no motion follows the change to tool 1: not carried over"),
         (8, "no motion follows the change to tool 3: not carried over"),
     ]
@@ -150,7 +150,7 @@ def test_machine_positions_and_the_placing_of_rotary_axes_are_no_motion_of_the_p
 def test_machine_positions_on_the_way_are_remarked_upon(programs: Programs) -> None:
     converted = programs.all("G0 X1 Y2 Z3", "SUPA Z0", "G0 X2 Y2 Z3")
     assert [len(operation.moves) for operation in converted.toolpath.operations] == [2]
-    assert [(remark.line, remark.what) for remark in converted.remarks] == [
+    assert [(remark.line, remark.what) for remark in converted.warnings] == [
         (2, "moves to machine positions within an operation are left out")
     ]
 
@@ -168,7 +168,7 @@ def test_an_arc_keeps_the_point_where_it_begins(programs: Programs) -> None:
 
 
 def test_words_that_only_drive_the_machine_are_remarked_upon(programs: Programs) -> None:
-    remarks = programs.all("G0 X0 Y0 Z0", "G64 SOFT", "G1 X1 F1", "COMPCAD", "X2").remarks
+    remarks = programs.all("G0 X0 Y0 Z0", "G64 SOFT", "G1 X1 F1", "COMPCAD", "X2").warnings
     assert [(remark.line, remark.what) for remark in remarks] == [
         (2, "G64 SOFT is not carried over"),
         (4, "COMPCAD is not carried over"),
@@ -176,15 +176,15 @@ def test_words_that_only_drive_the_machine_are_remarked_upon(programs: Programs)
 
 
 def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> None:
-    remarks = programs.all("TRAORI", "G0 X0 Y0 Z0 B0 C0", "G1 X1 C90 F1", "X2").remarks
+    remarks = programs.all("TRAORI", "G0 X0 Y0 Z0 B0 C0", "G1 X1 C90 F1", "X2").warnings
     assert [(remark.line, remark.what) for remark in remarks] == [
         (3, "2 points place the rotary axes otherwise than their tool axis says, the first by C")
     ]
 
 
-def remarks_on(programs: Programs, *lines: str) -> list[tuple[int, str]]:
+def warnings_for(programs: Programs, *lines: str) -> list[tuple[int, str]]:
     """Line and text of what is remarked upon."""
-    return [(remark.line, remark.what) for remark in programs.all(*lines).remarks]
+    return [(remark.line, remark.what) for remark in programs.all(*lines).warnings]
 
 
 @pytest.mark.parametrize(
@@ -214,17 +214,17 @@ def remarks_on(programs: Programs, *lines: str) -> list[tuple[int, str]]:
 def test_what_a_toolpath_has_no_place_for_is_remarked_upon(
     lines: list[str], line: int, what: str, programs: Programs
 ) -> None:
-    assert remarks_on(programs, *lines) == [(line, what)]
+    assert warnings_for(programs, *lines) == [(line, what)]
 
 
 @pytest.mark.parametrize("harmless", ["; G64 SOFT", 'MSG("G64 SOFT")', "G17 G90 G40", "MSG()"])
 def test_words_in_texts_and_those_said_anyhow_are_not_remarked_upon(harmless: str, programs: Programs) -> None:
-    assert remarks_on(programs, "G0 X0 Y0 Z0", harmless, "G1 X1 F1") == []
+    assert warnings_for(programs, "G0 X0 Y0 Z0", harmless, "G1 X1 F1") == []
 
 
 def test_a_phase_without_motion_is_remarked_upon(programs: Programs) -> None:
     lines = [";Start of Path", "G0 X0 Y0 Z0", ";Engage Move", ";Cutting", "G1 X1 F1", ";Retract Move", ";End of Path"]
-    assert remarks_on(programs, *lines) == [
+    assert warnings_for(programs, *lines) == [
         (3, "no motion follows 'Engage Move', which is not carried over"),
         (6, "no motion follows 'Retract Move', which is not carried over"),
     ]
@@ -233,13 +233,13 @@ def test_a_phase_without_motion_is_remarked_upon(programs: Programs) -> None:
 
 def test_words_of_a_subprogram_are_remarked_upon_in_its_file(programs: Programs) -> None:
     (programs.folder / "HOLE.SPF").write_text("G1 Z0 F10\nSOFT\nG0 Z5\nM17\n")
-    (remark,) = programs.all("G0 X0 Y0 Z5", "HOLE").remarks
+    (remark,) = programs.all("G0 X0 Y0 Z5", "HOLE").warnings
     assert (Path(remark.file).name, remark.line, remark.what) == ("HOLE.SPF", 2, "SOFT is not carried over")
 
 
 def test_signs_that_have_no_place_in_a_program_with_jumps_are_remarked_upon(programs: Programs) -> None:
     lines = "R1=0", "AGAIN:", "G41 G0 X=R1 Y0 Z0", "/G1 X9 F1", "R1=R1+1", "IF R1<2 GOTOB AGAIN"
-    assert remarks_on(programs, *lines) == [
+    assert warnings_for(programs, *lines) == [
         (0, "block skip signs and cutter radius compensation in a program with jumps or subprograms: not carried over")
     ]
 

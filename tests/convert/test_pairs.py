@@ -10,14 +10,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.cli.post import Claim, planned_program, write
-from trunnion.cli.settings import wishes_of
+from trunnion.cli.post import WrittenProgram, plan_program, write_for_proof
+from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import Control, load_control
-from trunnion.conversion import carried_over, convert
+from trunnion.conversion import convert, transfer_settings
 from trunnion.errors import InputError
-from trunnion.machines import Machine, load_machine, shipped
-from trunnion.model.motion import Manner
-from trunnion.model.run import Run, Written
+from trunnion.machines import Machine, load_machine, shipped_machines
+from trunnion.model.motion import MachiningMode
+from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import (
     Arcs,
     Coolant,
@@ -38,7 +38,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.readers import run_program
 from trunnion.readers.common.settings import family_of
-from trunnion.verification import Allowed, compare, failures, verify, with_rapids
+from trunnion.verification import Tolerances, compare, failures, restore_rapids, verify
 
 
 @dataclass(frozen=True)
@@ -65,10 +65,10 @@ def roomy(machine: Machine) -> Machine:
 
 def sites() -> Iterator[tuple[str, Site]]:
     """The first shipped machine of each family of controls that can be written and holds the tip."""
-    for name in shipped():
+    for name in shipped_machines():
         machine = roomy(load_machine(name))
         try:
-            control = load_control(machine.control.fresh())
+            control = load_control(machine.control.unread_copy())
         except InputError:
             continue
         if control.tcp and "approach_five_axis" in control.templates:
@@ -119,7 +119,7 @@ def operations(draw: st.DrawFn, number: int) -> Operation:
         st.sampled_from([[], [Coolant(middle, 1, "ON")], [Dwell(middle, 1, 1.5)], [Message(middle, 1, "X")]])
     )
     tool = Tool("MILL", "D10", 10.0, 5.0, 80.0)
-    return Operation(f"OP{number}", tool, Frame(), moves, Arcs.none(), tuple(events), 1, 0.01, 0.01)
+    return Operation(f"OP{number}", tool, Frame(), moves, Arcs.empty(), tuple(events), 1, 0.01, 0.01)
 
 
 def posted(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> Run:
@@ -127,14 +127,14 @@ def posted(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> R
     return made(path, site, given, target)[0]
 
 
-def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tuple[Run, Claim]:
+def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tuple[Run, WrittenProgram]:
     """The same, and what the program says of itself."""
-    wishes = wishes_of({}, site.control)
-    program, _ = planned_program([path], site.machine, site.control, given, force=False, wishes=wishes)
+    options = parse_plan_options({}, site.control)
+    program, _ = plan_program([path], site.machine, site.control, given, force=False, options=options)
     with target.open("wb") as sink:
-        claim = write(program, sink)
+        claim = write_for_proof(program, sink)
     run = run_program(target, site.machine)
-    found = verify(run, [path], allowed=claim.allowed, settings=claim.settings)
+    found = verify(run, [path], tolerances=claim.allowed, settings=claim.settings)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
     return run, claim
 
@@ -142,13 +142,13 @@ def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tup
 def converted(run: Run, one: Site, two: Site, target: Path) -> Run:
     """A program of one control, posted for another; nothing of it is lost."""
     found = convert(run, one.control)
-    assert [str(remark) for remark in found.remarks] == []
-    return posted(found.toolpath, two, carried_over(found.settings, one.control, two.control), target)
+    assert [str(remark) for remark in found.warnings] == []
+    return posted(found.toolpath, two, transfer_settings(found.settings, one.control, two.control), target)
 
 
 def same(one: Run, first: Site, two: Run, second: Site) -> None:
     """The same way: tips within half of both last digits, tool axes within what both rotary axes are rounded by."""
-    found = compare(with_rapids(one, first.rapid_feed), with_rapids(two, second.rapid_feed), 0.01)
+    found = compare(restore_rapids(one, first.rapid_feed), restore_rapids(two, second.rapid_feed), 0.01)
     assert found.same, "\n".join(found.lines())
     assert found.tip <= first.tip + second.tip + 1e-8
     assert found.axis <= 2.0 * (first.angle + second.angle) + 1e-8
@@ -231,7 +231,7 @@ def level_paths(draw: st.DrawFn) -> Toolpath:
             events += [CycleOn(1, 1, ("DRILL",), heights), CycleOff(n - 1, 1)]
         rows, centres, normals, radii = zip(*arcs, strict=True) if arcs else ([], [], [], [])
         columns = np.array(rows, np.int64), np.array(centres), np.array(normals), np.array(radii)
-        curves = Arcs(*columns, np.zeros(len(arcs), np.int64)) if arcs else Arcs.none()
+        curves = Arcs(*columns, np.zeros(len(arcs), np.int64)) if arcs else Arcs.empty()
         tool = Tool("MILL", "D10", 10.0, 5.0, 80.0)
         made.append(Operation(f"OP{number}", tool, Frame(), moves, curves, tuple(events), 1, 0.01, 0.01))
     return Toolpath("made.cls", tuple(made))
@@ -251,16 +251,16 @@ def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_fil
         assume(False)  # no room, or no words
     curved = any(operation.moves.axis[0, 2] < 1.0 and len(operation.arcs.row) for operation in path.operations)
     for two in SITES.values():
-        if curved and Manner.TILTED not in two.control.manners({}):
+        if curved and MachiningMode.TILTED not in two.control.modes({}):
             continue  # lines for circles that are rounded already: the proof may find their ends beyond the tolerance
         found = convert(run, one.control)
-        assert [str(remark) for remark in found.remarks] == []
-        carried = carried_over(found.settings, one.control, two.control)
+        assert [str(remark) for remark in found.warnings] == []
+        carried = transfer_settings(found.settings, one.control, two.control)
         there, other = made(found.toolpath, two, carried, folder / f"two{two.control.extension}")
         both = [added(*pair) for pair in zip(claim.allowed, other.allowed, strict=True)]
         milled = [(k, each) for k, each in enumerate(path.operations) if not drills(each)]
         if len(milled) == len(path.operations):
-            checks = failures(verify(there, [path], allowed=both, settings=other.settings))
+            checks = failures(verify(there, [path], tolerances=both, settings=other.settings))
             assert not checks, [(check.key, check.summary) for check in checks]
         for k, operation in enumerate(path.operations):
             if drills(operation):
@@ -279,9 +279,9 @@ def drilled(run: Run, operation: Operation, allowed: float) -> None:
             assert np.abs(tips - tip - height * axis).max(axis=1).min() <= 2.0 * allowed + 1e-6
 
 
-def added(one: Allowed, other: Allowed) -> Allowed:
+def added(one: Tolerances, other: Tolerances) -> Tolerances:
     """What a program may be off that was made from another one."""
-    return Allowed(one.tip + other.tip, one.angle + other.angle, one.chord + other.chord, one.feed + other.feed)
+    return Tolerances(one.tip + other.tip, one.angle + other.angle, one.chord + other.chord, one.feed + other.feed)
 
 
 VECTORS = sorted(key for key, site in SITES.items() if "orientation" in site.control.settings)
@@ -299,7 +299,7 @@ def test_orientations_by_vectors_stay_vectors_on_the_same_family(
     except InputError:
         assume(False)  # vectors that lead elsewhere
     again = converted(run, site, site, folder / "again.nc")
-    said = [run.programmed & int(Written.VECTOR) != 0 for run in (run, again)]
+    said = [run.programmed & int(ProgrammedWord.VECTOR) != 0 for run in (run, again)]
     assert said[0].any()
     assert said[0].tolist() == said[1].tolist()
     same(run, site, again, site)

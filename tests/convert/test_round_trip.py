@@ -14,12 +14,12 @@ from trunnion.controls import load_control
 from trunnion.conversion import convert
 from trunnion.errors import Severity
 from trunnion.machines import load_machine
-from trunnion.model.motion import Manner
+from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.validation import check_program
-from trunnion.planning import Wishes, plan
+from trunnion.planning import PlanOptions, plan
 from trunnion.readers import run_program
 from trunnion.verification import compare
 
@@ -40,7 +40,7 @@ def posted(toolpath: Toolpath, given: dict[str, str], planes: bool = True) -> by
     """The program; None where there can be none. Without ``planes`` one that would have tilted planes goes with TCP."""
     planned = plan([toolpath], MACHINE, CONTROL.chord_tolerance)
     if not planes and any(motion.plane is not None for motion in planned.motions):
-        planned = plan([toolpath], MACHINE, CONTROL.chord_tolerance, Wishes(manner=Manner.TCP))
+        planned = plan([toolpath], MACHINE, CONTROL.chord_tolerance, PlanOptions(mode=MachiningMode.TCP))
     program = Program(MACHINE, CONTROL, planned.motions, given, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None

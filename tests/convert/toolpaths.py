@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from trunnion.arrays import Codes, Floats
-from trunnion.cl.assemble import COLOURS, fill_phases
+from trunnion.cl.assemble import COLOUR_PHASES, fill_phases
 from trunnion.model.toolpath import (
     Arcs,
     BlockSkip,
@@ -24,17 +24,17 @@ from trunnion.model.toolpath import (
     Kind,
     LoadTool,
     Message,
-    Mode,
     Moves,
     Operation,
     SelectTool,
     Sense,
+    SetMode,
     SpindleOff,
     SpindleOn,
     Stop,
     Tool,
     Toolpath,
-    Unknown,
+    UnknownStatement,
 )
 
 TEXT = st.text(
@@ -89,8 +89,8 @@ OTHERS: dict[str, st.SearchStrategy[Any]] = {
     "tapping": DECIMAL.map(lambda f: CycleOn(0, 0, ("TAP",), (("MMPR", (f,)), ("RAPTO", (3.0,))))),
     "cycle off": st.just(CycleOff(0, 0)),
     "home": st.just(GoHome(0, 0)),
-    "mode": st.just(Mode(0, 0, ("SET", "MODE", "ABSOL"))),
-    "unknown": st.just(Unknown(0, 0, "AUXFUN/27")),
+    "mode": st.just(SetMode(0, 0, ("SET", "MODE", "ABSOL"))),
+    "unknown": st.just(UnknownStatement(0, 0, "AUXFUN/27")),
     "from": st.builds(lambda tip, axis: From(0, 0, tip, _unit(axis)), st.tuples(LENGTH, LENGTH, LENGTH), UNIT),
 }
 
@@ -107,7 +107,7 @@ def events(draw: st.DrawFn, rows: int, kinds: dict[str, st.SearchStrategy[Any]])
 @st.composite
 def phases(draw: st.DrawFn, rows: int, rapids: list[int]) -> Codes:
     """Phases that colours can say, by the colours that say them."""
-    colours = draw(st.lists(st.tuples(st.integers(0, rows - 1), st.sampled_from(list(COLOURS))), max_size=6))
+    colours = draw(st.lists(st.tuples(st.integers(0, rows - 1), st.sampled_from(list(COLOUR_PHASES))), max_size=6))
     phase = np.empty(rows, np.uint8)
     fill_phases(phase, np.array(rapids, np.int64), sorted(colours, key=lambda pair: pair[0]))
     return phase
@@ -155,7 +155,7 @@ def operations(draw: st.DrawFn, kinds: dict[str, st.SearchStrategy[Any]], axes: 
             np.array(sorted(arcs), np.int64), np.array(centre), np.array(normal), np.array(radius), np.array(turns)
         )
         if arcs
-        else Arcs.none(),
+        else Arcs.empty(),
         events=draw(events(rows, kinds)),
         line=1,
         intol=draw(st.sampled_from([None, 0.03, 0.0125])),

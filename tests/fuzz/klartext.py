@@ -45,7 +45,7 @@ PIECES: Final[Mapping[str, Sequence[str]]] = {
         "TURN MB<n> FMAX SYM+", "STAY TABLE ROT", "TURN COORD ROT", "",
     ),
     "q": ("200", "201", "202", "203", "204", "205", "206", "207", "208", "209", "240", "241", "256", "999"),
-    "b": (*sorted(words.BLOCKS_NAMED), "SUPER", "LT", "BLK FORM 0.1 Z X<n>", "FUNCTION FEED"),
+    "b": (*sorted(words.BLOCKS_NOT_SIMULATED), "SUPER", "LT", "BLK FORM 0.1 Z X<n>", "FUNCTION FEED"),
     "line": (
         "L X<n> Y<n> <f>", "L X<n> Y<n> Z<n> <f> <m>", "<u> L Z<n> <f>", "L <x><n> <x><n> <f> <m>", "L <x><n>",
         "L A<n> C<n> <f>", "LN X<n> Y<n> Z<n> TX<n> TY<n> TZ<n> <f> <m>", "LN X<n> NX<n> NY<n> NZ<n>", "CC X<n> Y<n>",

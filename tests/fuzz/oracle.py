@@ -11,12 +11,12 @@ import numpy as np
 
 from tests.fuzz.seeds import SUBPROGRAMS
 from trunnion.cl import read_cl
-from trunnion.errors import InputError, Refused, TrunnionError
+from trunnion.errors import InputError, RefusedError, TrunnionError
 from trunnion.machines import Machine, load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.readers import run_program
-from trunnion.readers.common.interpreter import MOST_FINDINGS
+from trunnion.readers.common.interpreter import MAX_DIAGNOSTICS
 
 #: Blocks that loops and calls may execute.
 LIMIT: Final = 1500
@@ -80,7 +80,7 @@ def judge_cl(data: bytes, folder: Path, *, strict: bool = False) -> Toolpath | N
     try:
         with no_warnings():
             toolpath = read_cl(path, strict=strict)
-    except (InputError, Refused) as error:
+    except (InputError, RefusedError) as error:
         _check_error(error, folder)
         return None
     _check_toolpath(toolpath, data)
@@ -128,15 +128,15 @@ def _check_run(run: Run, folder: Path, limit: int) -> None:
     size = sum(Path(file).stat().st_size for file in run.files)
     n = len(run)
     assert n <= limit + total
-    assert len(run.findings) <= MOST_FINDINGS + 1
+    assert len(run.diagnostics) <= MAX_DIAGNOSTICS + 1
     assert len(run.events) + len(run.comments) <= limit + size
     assert len(run.tools) <= limit + size + 1
-    for finding in run.findings:
+    for finding in run.diagnostics:
         assert 0 <= finding.line <= lines[finding.file]
         assert 0 < len(finding.text) < 10_000
     if n:
-        assert run.block.min() >= 1
-        assert all(run.block[run.file == k].max(initial=0) <= lines[file] for k, file in enumerate(run.files))
+        assert run.line.min() >= 1
+        assert all(run.line[run.file == k].max(initial=0) <= lines[file] for k, file in enumerate(run.files))
     rows = [event.before_row for event in run.events] + [comment.before_row for comment in run.comments]
     assert all(0 <= row <= n for row in rows)
     _check_columns(run)
@@ -150,7 +150,7 @@ def _check_columns(run: Run) -> None:
         if bad.any():
             rows = np.flatnonzero(bad.reshape(len(column), -1).any(axis=1))
             explained = {finding.line for finding in run.errors}
-            assert set(run.block[rows].tolist()) <= explained, f"{name} is not finite in rows {rows[:5]}"
+            assert set(run.line[rows].tolist()) <= explained, f"{name} is not finite in rows {rows[:5]}"
     assert not np.isinf(run.feed).any()
     np.testing.assert_allclose(np.linalg.norm(run.axis, axis=1), 1.0, rtol=0, atol=1e-9)
 
@@ -160,7 +160,7 @@ def _check_arcs(run: Run) -> None:
     for values in (run.arcs.centre, run.arcs.normal, run.arcs.radius):
         assert np.isfinite(values).all()
     assert (run.arcs.radius > 0.0).all()
-    assert (run.arcs.turns >= 0).all()
+    assert (run.arcs.full_turns >= 0).all()
 
 
 def _check_toolpath(toolpath: Toolpath, data: bytes) -> None:

@@ -22,8 +22,9 @@ _DEEPEST: Final = 5
 
 _NAMES: Final = tuple(
     sorted(
-        words.SILENT | words.SILENT_VALUES | words.SILENT_CALLS | words.NAMED | words.ORIENTATION | words.FRAMES
-        | words.FLOW | words.TYPES | words.WAYS | words.ACTIVE | set(words.CONSTANTS) | set(CYCLES) | set(FUNCTIONS)
+        words.WITHOUT_PATH_EFFECT | words.WITHOUT_PATH_EFFECT_VALUES | words.WITHOUT_PATH_EFFECT_CALLS |
+        words.NOT_SIMULATED | words.ORIENTATION | words.FRAMES | words.FLOW | words.TYPES | words.POSITION_MODES |
+        words.ACTIVE | set(words.CONSTANTS) | set(CYCLES) | set(FUNCTIONS)
     )
 )  # fmt: skip
 

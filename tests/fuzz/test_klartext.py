@@ -61,7 +61,7 @@ def test_mangled_programs_are_run_or_refused(folder: Path, seed: int) -> None:
 def test_what_is_mangled_is_understood_when_it_is_whole(folder: Path, data: bytes) -> None:
     run = klartext.judge(data, folder, "dmu65")
     assert run is not None
-    assert run.findings == ()
+    assert run.diagnostics == ()
 
 
 ENDLESS = {
@@ -124,7 +124,7 @@ BOUNDED = {
 def test_numbers_and_depths_without_sense_are_named(folder: Path, text: str) -> None:
     run = klartext.judge(text.encode(), folder, "dmu65", limit=5000)
     assert run is not None
-    assert run.findings or text == "L X+1 ~"
+    assert run.diagnostics or text == "L X+1 ~"
     assert 666.0 not in run.joints
 
 
@@ -157,7 +157,7 @@ def test_a_program_runs_twice_alike(folder: Path, seed: int) -> None:
     one, two = klartext.judge(data, folder, "dmu65"), klartext.judge(data, folder, "dmu65")
     assert (one is None) == (two is None)
     if one is not None and two is not None:
-        assert one.findings == two.findings
+        assert one.diagnostics == two.diagnostics
         assert one.events == two.events
         for name in ("block", "kind", "tip", "axis", "joints", "feed", "tool", "programmed"):
             np.testing.assert_array_equal(getattr(one, name), getattr(two, name))

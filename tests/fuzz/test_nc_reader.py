@@ -70,7 +70,7 @@ def test_a_program_runs_twice_alike(folder: Path, seed: int) -> None:
     one, two = oracle.judge_program(data, folder), oracle.judge_program(data, folder)
     assert (one is None) == (two is None)
     if one is not None and two is not None:
-        assert one.findings == two.findings
+        assert one.diagnostics == two.diagnostics
         assert one.events == two.events
         for name in ("block", "kind", "tip", "axis", "joints", "feed", "tool", "programmed"):
             np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
@@ -160,7 +160,7 @@ BOUNDED = {
 @pytest.mark.parametrize("text", BOUNDED.values(), ids=BOUNDED.keys())
 def test_numbers_and_depths_without_sense_are_named(folder: Path, text: str) -> None:
     run = oracle.judge_program(text.encode(), folder, limit=5000)
-    assert run is None or run.findings or "CR=9999999" in text
+    assert run is None or run.diagnostics or "CR=9999999" in text
 
 
 def test_pieces_of_a_huge_circle_are_finite(folder: Path) -> None:
@@ -192,12 +192,12 @@ def test_labels_of_a_subprogram_are_looked_for_once(folder: Path, monkeypatch: p
 
 
 def test_a_program_calls_so_many_files_and_no_more(tmp_path: Path) -> None:
-    for k in range(interpreter.MOST_FILES + 1):
+    for k in range(interpreter.MAX_SUBPROGRAMS + 1):
         (tmp_path / f"P_{k}.SPF").write_text("RET")
     path = tmp_path / "MAIN.MPF"
-    path.write_text("".join(f"P_{k}\n" for k in range(interpreter.MOST_FILES)))
-    assert len(interpreter_run(path, 10).files) == interpreter.MOST_FILES + 1
-    path.write_text("".join(f"P_{k}\n" for k in range(interpreter.MOST_FILES + 1)))
+    path.write_text("".join(f"P_{k}\n" for k in range(interpreter.MAX_SUBPROGRAMS)))
+    assert len(interpreter_run(path, 10).files) == interpreter.MAX_SUBPROGRAMS + 1
+    path.write_text("".join(f"P_{k}\n" for k in range(interpreter.MAX_SUBPROGRAMS + 1)))
     with pytest.raises(InputError, match="calls more than 1000 subprograms"):
         interpreter_run(path, 10)
 

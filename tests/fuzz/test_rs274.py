@@ -76,7 +76,7 @@ def test_a_program_runs_twice_alike(folder: Path, language: Language) -> None:
         one, two = language.judge(data, folder), language.judge(data, folder)
         assert (one is None) == (two is None)
         if one is not None and two is not None:
-            assert one.findings == two.findings
+            assert one.diagnostics == two.diagnostics
             assert one.events == two.events
             np.testing.assert_array_equal(one.tip, two.tip)
 
@@ -119,7 +119,7 @@ BOUNDED = {
 def test_numbers_and_depths_without_sense_are_named(folder: Path, language: Language) -> None:
     for text in BOUNDED[language.family]:
         run = language.judge(text.encode(), folder, limit=3000)
-        assert run is None or run.findings or "R9999999" in text, text[:80]
+        assert run is None or run.diagnostics or "R9999999" in text, text[:80]
 
 
 CONSTANT = 40 << 20

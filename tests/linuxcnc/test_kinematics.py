@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from tests.convert.toolpaths import SAYABLE, operations
 from tests.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
 from trunnion.arrays import Floats
-from trunnion.errors import Refused
+from trunnion.errors import RefusedError
 from trunnion.machines import Machine, forward, load_machine, slide_positions
 from trunnion.model.toolpath import Toolpath
-from trunnion.planning import Wishes, plan
+from trunnion.planning import PlanOptions, plan
 
 pytestmark = [needs_modules, needs_compiler]
 
@@ -87,8 +87,8 @@ def test_the_joints_of_our_plans_are_those_that_linuxcnc_comes_to(
     wide = tuple(replace(axis, low=-1e6, high=1e6) if not axis.is_rotary else axis for axis in machine.axes)
     machine = replace(machine, axes=wide)
     try:
-        planned = plan([Toolpath("made.cls", (operation,))], machine, 0.001, Wishes())  # type: ignore[arg-type]
-    except Refused:
+        planned = plan([Toolpath("made.cls", (operation,))], machine, 0.001, PlanOptions())  # type: ignore[arg-type]
+    except RefusedError:
         return
     for motion in planned.motions:
         tip = motion.operation.moves.tip

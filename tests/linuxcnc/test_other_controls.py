@@ -66,7 +66,7 @@ extends = "{family}"
 
 def site_of(machine: Machine) -> Site:
     """A machine with its control, and room for everything."""
-    control = load_control(machine.control.fresh())
+    control = load_control(machine.control.unread_copy())
     formats = control.number_formats(three_axis=False)
     half = [0.5 * 10.0 ** -formats[key].decimals for key in ("coordinate", "angle")]
     return Site(roomy(machine), control, half[0], half[1])
@@ -155,7 +155,7 @@ def test_a_rotary_axis_that_turns_the_other_way_is_found(kinematics: dict[str, K
     )
     events = LoadTool(0, 1, 3), SpindleOn(0, 1, 1000.0, Sense.CLW)
     operation = Operation(
-        "OP", Tool("MILL", "D10", 10.0, 5.0, 80.0), Frame(), moves, Arcs.none(), events, 1, 0.01, 0.01
+        "OP", Tool("MILL", "D10", 10.0, 5.0, 80.0), Frame(), moves, Arcs.empty(), events, 1, 0.01, 0.01
     )
     path = Toolpath("made.cls", (operation,))
     right, wanted, allowed = both(path, "xyzac_trt", "heidenhain_tnc640", kinematics, tmp_path)

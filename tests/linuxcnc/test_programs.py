@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from tests.convert.toolpaths import SAYABLE, operations
 from tests.linuxcnc.interpreter import SUBROUTINES, Canon, Move, RefusedByLinuxcncError, interpret, needs_linuxcnc
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Refused, Severity
+from trunnion.errors import InputError, RefusedError, Severity
 from trunnion.machines import Machine, load_machine
-from trunnion.model.motion import Manner, Motion
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import (
     Coolant,
     Dwell,
@@ -29,9 +29,9 @@ from trunnion.model.toolpath import (
 )
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
-from trunnion.output.subprograms import Division
+from trunnion.output.subprograms import SubprogramOutput
 from trunnion.output.validation import check_program
-from trunnion.planning import Wishes, plan
+from trunnion.planning import PlanOptions, plan
 from trunnion.readers import run_program
 
 
@@ -43,7 +43,7 @@ def roomy(machine: Machine) -> Machine:
 
 #: Their workpiece and tool are known, as programs without TCP want it; the slides have room for everything.
 MACHINES = {name: roomy(load_machine(name)) for name in ("xyzac_trt", "xyzbc_trt", "linuxcnc_5axis")}
-CONTROLS = {name: load_control(machine.control.fresh()) for name, machine in MACHINES.items()}
+CONTROLS = {name: load_control(machine.control.unread_copy()) for name, machine in MACHINES.items()}
 
 #: What LinuxCNC has words for; compensated paths are judged by it as paths of another tool.
 KINDS = {name: kind for name, kind in SAYABLE.items() if name not in ("comp", "coolant")} | {
@@ -114,7 +114,7 @@ def planned_moves(motion: Motion, machine: Machine, spindle: SpindleOn | None) -
             continue
         normal = int(np.argmax(np.abs(arcs.normal[arc])))
         centre = arcs.centre[arc][[(normal + 1) % 3, (normal + 2) % 3]].tolist()
-        turns = (int(arcs.turns[arc]) + 1) * int(np.sign(arcs.normal[arc, normal]))
+        turns = (int(arcs.full_turns[arc]) + 1) * int(np.sign(arcs.normal[arc, normal]))
         found.append(Move("arc", end, *state, (centre[0], centre[1]), turns, normal))
     last = [event for event in operation.events if event.row == len(moves) and isinstance(event, SpindleOn)]
     return found, last[-1] if last else spindle
@@ -139,15 +139,17 @@ def written(
     """The program and its motions; None where there can be none. Its subroutines, if it has any, go into a folder."""
     machine, control = MACHINES[name], CONTROLS[name]
     try:
-        planned = plan([toolpath], machine, control.chord_tolerance, Wishes(manners=control.manners({}), tcp=tcp))
-    except (InputError, Refused):
+        planned = plan([toolpath], machine, control.chord_tolerance, PlanOptions(modes=control.modes({}), tcp=tcp))
+    except (InputError, RefusedError):
         return None
     program = Program(machine, control, planned.motions, {"tool": "7"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
     sink, others = io.BytesIO(), dict[str, io.BytesIO]()
-    division = None if folder is None else Division("part", lambda file: others.setdefault(file, io.BytesIO()), 8192)
-    write_program(program, sink, division=division)
+    division = (
+        None if folder is None else SubprogramOutput("part", lambda file: others.setdefault(file, io.BytesIO()), 8192)
+    )
+    write_program(program, sink, subprograms=division)
     for file, text in others.items():
         assert folder is not None
         (folder / file).write_bytes(text.getvalue())
@@ -242,5 +244,5 @@ def test_linuxcnc_takes_programs_without_tcp(
     assert not any(move.tcp for move in canon.moves)
     cuts = [move for moves in control_moves(canon) for move in moves if move.kind != "rapid"]
     assert all(move.feed > 0.0 for move in cuts)
-    if any(motion.manner is Manner.WITHOUT_TCP for motion in motions):
+    if any(motion.mode is MachiningMode.WITHOUT_TCP for motion in motions):
         assert "M428" not in text

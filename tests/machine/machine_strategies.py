@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from trunnion.machines import Axis, AxisKind, Carries, Machine, Positive
+from trunnion.machines import Axis, AxisKind, Machine, Mount, PositiveDirection
 from trunnion.machines.machine import Vector
 
 HALF = math.sqrt(0.5)
@@ -51,10 +51,10 @@ def machines(draw: st.DrawFn) -> Machine:
         Axis(
             name=f"J{k}",
             kind=AxisKind(kind),
-            carries=Carries.PART if k < side else Carries.TOOL,
+            mount=Mount.PART if k < side else Mount.TOOL,
             direction=way,
             point=draw(points) if kind == "rotary" else (0.0, 0.0, 0.0),
-            positive=draw(st.sampled_from(Positive)),
+            positive=draw(st.sampled_from(PositiveDirection)),
         )
         for k, (kind, way) in enumerate(zip(kinds, ways, strict=True))
     )

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from trunnion.definitions import load_table
 from trunnion.machines import Machine, load_machine
-from trunnion.machines.loading import library, read_machine
+from trunnion.machines.loading import machine_library, read_machine
 
 DOCUMENT = (Path(__file__).parents[2] / "docs" / "definitions.md").read_text(encoding="utf-8")
 
@@ -14,10 +14,10 @@ MERGED = {"extends", "axis.remove"}
 
 
 def test_every_key_that_the_loader_knows_is_in_the_reference_and_no_other() -> None:
-    table = load_table("yl569", library())
+    table = load_table("yl569", machine_library())
     read_machine(table, "yl569")
     described = set(re.findall(r"^\| `([a-z0-9_.]+)` \|", DOCUMENT, re.MULTILINE))
-    assert described == table.every_key() | MERGED
+    assert described == table.all_read_keys() | MERGED
 
 
 def examples(folder: Path) -> list[Machine]:

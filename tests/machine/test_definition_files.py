@@ -6,10 +6,18 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.definitions import LARGEST_FILE, Table, extended, key_lines, load_table, names_in, unit_of
+from trunnion.definitions import (
+    MAX_FILE_BYTES,
+    Table,
+    definition_names,
+    key_lines,
+    load_table,
+    resolve_extends,
+    unit_of,
+)
 from trunnion.errors import InputError
 from trunnion.machines import load_machine
-from trunnion.machines.loading import library
+from trunnion.machines.loading import machine_library
 
 TRICKY = '''\
 # a comment with = and [brackets]
@@ -115,9 +123,9 @@ def test_a_text_that_is_no_toml_does_not_trip_the_index(text: str) -> None:
 
 def test_a_key_remembers_its_place(tmp_path: Path) -> None:
     table = loaded(tmp_path, "a = 1\n\n[b]\nc = 2\n")
-    assert table.origin("a") == (str(tmp_path / "mine.toml"), 1)
-    assert table.table("b").origin("c") == (str(tmp_path / "mine.toml"), 4)
-    assert table.table("b").origin("missing") == (str(tmp_path / "mine.toml"), 3)
+    assert table.location("a") == (str(tmp_path / "mine.toml"), 1)
+    assert table.table("b").location("c") == (str(tmp_path / "mine.toml"), 4)
+    assert table.table("b").location("missing") == (str(tmp_path / "mine.toml"), 3)
 
 
 # Files
@@ -155,7 +163,7 @@ def test_a_byte_order_mark_is_no_mistake(tmp_path: Path) -> None:
 
 def test_a_file_of_more_than_a_megabyte_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has more than 1000000 bytes"):
-        loaded(tmp_path, "#" * (LARGEST_FILE + 1))
+        loaded(tmp_path, "#" * (MAX_FILE_BYTES + 1))
 
 
 @pytest.mark.parametrize(
@@ -193,17 +201,17 @@ def test_a_missing_file_and_a_folder_are_no_definitions(tmp_path: Path) -> None:
 def test_what_a_child_says_replaces_and_the_rest_is_inherited(tmp_path: Path) -> None:
     base = written(tmp_path, "shelf/base.toml", "a = 1\nb = 2\n[t]\nc = 3\nd = [1, 2]\n")
     table = loaded(tmp_path, 'extends = "base"\nb = 20\n[t]\nd = [9]\n')
-    assert table.raw() == {"a": 1, "b": 20, "t": {"c": 3, "d": [9]}}
-    assert table.origin("a") == (str(base), 1)
-    assert table.origin("b") == (str(tmp_path / "mine.toml"), 2)
-    assert table.table("t").origin("c") == (str(base), 4)
+    assert table.to_dict() == {"a": 1, "b": 20, "t": {"c": 3, "d": [9]}}
+    assert table.location("a") == (str(base), 1)
+    assert table.location("b") == (str(tmp_path / "mine.toml"), 2)
+    assert table.table("t").location("c") == (str(base), 4)
     assert table.files() == sorted([str(base), str(tmp_path / "mine.toml")])
 
 
 def test_tables_with_names_are_merged_by_name_appended_and_removed(tmp_path: Path) -> None:
     written(tmp_path, "shelf/base.toml", '[[w]]\nname="X"\nn=1\n[[w]]\nname="Y"\nn=2\n[[w]]\nname="Z"\nn=3\n')
     mine = '[[w]]\nname="Z"\nn=30\n[[w]]\nname="Q"\nn=4\n[[w]]\nname="X"\nremove=true\n'
-    names = [(w["name"], w["n"]) for w in loaded(tmp_path, 'extends = "base"\n' + mine).raw()["w"]]  # type: ignore[attr-defined]
+    names = [(w["name"], w["n"]) for w in loaded(tmp_path, 'extends = "base"\n' + mine).to_dict()["w"]]  # type: ignore[attr-defined]
     assert names == [("Y", 2), ("Z", 30), ("Q", 4)]
 
 
@@ -211,7 +219,7 @@ def test_removing_what_is_not_there_and_a_name_left_out_are_mistakes(tmp_path: P
     written(tmp_path, "shelf/base.toml", '[[w]]\nname="X"\n')
     table = loaded(tmp_path, 'extends = "base"\n[[w]]\nname="XX"\nremove=true\n[[w]]\nn=1\n')
     with pytest.raises(InputError) as caught:
-        table.check()
+        table.raise_problems()
     assert [(p.line, p.what) for p in caught.value.problems] == [
         (4, 'w[0]: there is no w called "XX" to remove'),
         (5, "w[1].name is missing"),
@@ -221,7 +229,7 @@ def test_removing_what_is_not_there_and_a_name_left_out_are_mistakes(tmp_path: P
 def test_a_chain_of_three_files_is_merged_in_order(tmp_path: Path) -> None:
     written(tmp_path, "shelf/old.toml", "a = 1\nb = 1\nc = 1\n")
     written(tmp_path, "sub/mid.toml", 'extends = "old"\nb = 2\nc = 2\n')
-    assert loaded(tmp_path, 'extends = "sub/mid.toml"\nc = 3\n').raw() == {"a": 1, "b": 2, "c": 3}
+    assert loaded(tmp_path, 'extends = "sub/mid.toml"\nc = 3\n').to_dict() == {"a": 1, "b": 2, "c": 3}
 
 
 @pytest.mark.parametrize(
@@ -269,10 +277,10 @@ def test_a_user_file_may_bear_the_name_of_the_shipped_one_that_it_extends(tmp_pa
 
 def test_a_machine_changes_one_limit_of_a_shipped_one_in_four_lines(tmp_path: Path) -> None:
     path = written(tmp_path, "ours.toml", 'extends = "yl569"\n[[axis]]\nname = "B"\nlimits_deg = [-5, 95]\n')
-    ours, shipped = load_machine(path), load_machine("yl569")
-    assert ours.names == shipped.names
+    ours, shipped_machines = load_machine(path), load_machine("yl569")
+    assert ours.names == shipped_machines.names
     assert (ours.axis("B").low, ours.axis("B").high) == (-5.0, 95.0)
-    assert ours.axes[0] == shipped.axes[0]
+    assert ours.axes[0] == shipped_machines.axes[0]
 
 
 def test_overrides_act_like_a_file_that_extends_this_one() -> None:
@@ -293,22 +301,22 @@ def test_the_control_of_a_machine_extends_a_library_of_controls(tmp_path: Path) 
     mine = 'extends = "base"\n[control]\ntitle = "mine"\n[[control.word]]\nname = "S"\nremove = true\n'
     control = loaded(tmp_path, mine).table("control")
     for _ in range(2):  # reading twice must not use anything up
-        table = extended(control, controls)
-        assert table.raw() == {"title": "mine", "word": [{"name": "F", "n": 5}]}
-        table.check()
-    assert table.origin("title") == (str(tmp_path / "mine.toml"), 3)
+        table = resolve_extends(control, controls)
+        assert table.to_dict() == {"title": "mine", "word": [{"name": "F", "n": 5}]}
+        table.raise_problems()
+    assert table.location("title") == (str(tmp_path / "mine.toml"), 3)
 
 
 def test_a_control_table_without_extends_is_read_as_it_is(tmp_path: Path) -> None:
     control = loaded(tmp_path, '[control]\nfamily = "fidia"\n').table("control")
-    assert extended(control, tmp_path).raw() == {"family": "fidia"}
+    assert resolve_extends(control, tmp_path).to_dict() == {"family": "fidia"}
 
 
 def test_a_mistake_in_a_control_table_is_told_with_its_path(tmp_path: Path) -> None:
-    table = extended(loaded(tmp_path, "[control]\nfamily = 5\n").table("control"), tmp_path)
+    table = resolve_extends(loaded(tmp_path, "[control]\nfamily = 5\n").table("control"), tmp_path)
     table.text("family")
     with pytest.raises(InputError, match=r"mine.toml:2: error: control.family is 5; write a text in quotes"):
-        table.check()
+        table.raise_problems()
 
 
 # Getters
@@ -343,8 +351,8 @@ def test_getters_return_what_is_written(tmp_path: Path) -> None:
     assert table.texts("texts") == ("a", "b")
     assert table.table("table").integer("x") == 1
     assert [entry.integer("x") for entry in table.tables("tables")] == [1, 2]
-    table.finish()
-    table.check()
+    table.report_unread_keys()
+    table.raise_problems()
 
 
 def test_getters_return_the_default_for_what_is_not_written(tmp_path: Path) -> None:
@@ -359,7 +367,7 @@ def test_getters_return_the_default_for_what_is_not_written(tmp_path: Path) -> N
     assert table.texts("a", ("x",)) == ("x",)
     assert table.table("a").keys() == []
     assert table.tables("a") == []
-    table.check()
+    table.raise_problems()
 
 
 def test_every_getter_notes_what_is_missing_and_reading_goes_on(tmp_path: Path) -> None:
@@ -374,7 +382,7 @@ def test_every_getter_notes_what_is_missing_and_reading_goes_on(tmp_path: Path) 
     table.table("h", required=True)
     table.tables("i", required=True)
     with pytest.raises(InputError) as caught:
-        table.check()
+        table.raise_problems()
     assert [problem.what for problem in caught.value.problems] == [f"{key} is missing" for key in "abcdefghi"]
 
 
@@ -407,7 +415,7 @@ def test_a_value_of_the_wrong_type_is_told_what_to_write(tmp_path: Path, value: 
     getter = getattr(table, read)
     getter("k_mm", 3) if read == "vector" else getter("k_mm")
     with pytest.raises(InputError) as caught:
-        table.check()
+        table.raise_problems()
     assert [(p.line, p.cure) for p in caught.value.problems] == [(1, cure)]
 
 
@@ -417,7 +425,7 @@ def test_bounds_are_kept_and_told(tmp_path: Path) -> None:
     table.number("b", at_most=4)
     table.integer("c", at_least=0, at_most=9)
     with pytest.raises(InputError) as caught:
-        table.check()
+        table.raise_problems()
     assert [problem.cure for problem in caught.value.problems] == [
         "write a number above 0",
         "write a number of at most 4",
@@ -428,9 +436,9 @@ def test_bounds_are_kept_and_told(tmp_path: Path) -> None:
 def test_a_fresh_table_starts_its_account_anew(tmp_path: Path) -> None:
     table = loaded(tmp_path, "a = 1\n")
     table.text("a")
-    again = table.fresh()
-    again.check()
-    again.finish()
+    again = table.unread_copy()
+    again.raise_problems()
+    again.report_unread_keys()
     assert len(again.problems) == 1
 
 
@@ -442,4 +450,4 @@ def test_the_end_of_a_key_says_its_unit(key: str, unit: str) -> None:
 
 
 def test_a_library_lists_its_definitions() -> None:
-    assert "yl569" in names_in(library())
+    assert "yl569" in definition_names(machine_library())

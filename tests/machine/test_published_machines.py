@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trunnion.machines import Carries, Output, forward, inverse, load_machine, shipped
+from trunnion.machines import AngleOutput, Mount, forward, inverse, load_machine, shipped_machines
 
 #: B, C, i, j, k as printed; the vectors are cut to four decimals, not rounded. The fourth row is left out of them: it
 #: repeats the vector of the first, and only to 1.5e-4 belongs to its own angles.
@@ -119,18 +119,18 @@ def test_a_nutated_head_lies_down_after_half_a_turn() -> None:
 def test_the_yl569_has_its_published_travel_and_speeds() -> None:
     machine = load_machine("yl569")
     assert machine.names == ("C", "B", "X", "Y", "Z")
-    assert [axis.carries for axis in machine.axes] == [Carries.PART] * 4 + [Carries.TOOL]
+    assert [axis.mount for axis in machine.axes] == [Mount.PART] * 4 + [Mount.TOOL]
     limits = dict(zip(machine.names, machine.limits.tolist(), strict=True))
     assert limits["B"] == [-11.0, 100.0]
     assert [limits[name] for name in "XYZ"] == [[-250.0, 250.0], [-150.0, 150.0], [-250.0, 250.0]]
     assert machine.axis("C").endless
-    assert machine.axis("C").output is Output.POSITIVE
+    assert machine.axis("C").output is AngleOutput.POSITIVE
     assert [machine.axis(name).rapid for name in "XYZBC"] == [5000.0, 5000.0, 5000.0, 5760.0, 9720.0]
     assert machine.spindle_max_rpm == 9000.0
     assert machine.facts.tool_holder == "BT40"
 
 
-@pytest.mark.parametrize("key", shipped())
+@pytest.mark.parametrize("key", shipped_machines())
 def test_every_shipped_machine_says_what_it_is_and_names_its_control(key: str) -> None:
     machine = load_machine(key)
     assert machine.key == key
@@ -140,7 +140,7 @@ def test_every_shipped_machine_says_what_it_is_and_names_its_control(key: str) -
 
 
 def test_all_the_machines_of_the_published_work_are_shipped() -> None:
-    assert {"yl569", "ucp800", "mikron_600u", "hs664rt", "dmu65"} <= set(shipped())
+    assert {"yl569", "ucp800", "mikron_600u", "hs664rt", "dmu65"} <= set(shipped_machines())
 
 
 def test_the_workpiece_zero_moves_coordinates_and_nothing_else() -> None:
@@ -154,7 +154,7 @@ def test_the_workpiece_zero_moves_coordinates_and_nothing_else() -> None:
 
 
 def test_the_primary_rotary_axis_is_the_one_that_carries_the_other_or_the_head() -> None:
-    named = {key: load_machine(key) for key in shipped()}
+    named = {key: load_machine(key) for key in shipped_machines()}
     primary = {key: machine.names[machine.primary] for key, machine in named.items()}
     secondary = {key: machine.names[machine.secondary] for key, machine in named.items()}
     assert (primary["yl569"], secondary["yl569"]) == ("B", "C")

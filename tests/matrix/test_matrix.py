@@ -21,13 +21,13 @@ from tests.matrix.paths import CYCLES, cycles, holes, off_the_pole
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
-from trunnion.cli.settings import set_up
+from trunnion.cli.settings import apply_setup
 from trunnion.controls import Control, load_control
 from trunnion.controls.definition import library
 from trunnion.families import FAMILIES as CONTROL_FAMILIES
 from trunnion.families import load_writer
-from trunnion.machines import Machine, load_machine, shipped
-from trunnion.model.motion import Manner
+from trunnion.machines import Machine, load_machine, shipped_machines
+from trunnion.model.motion import MachiningMode
 from trunnion.model.run import Run
 from trunnion.model.toolpath import CycleOn
 from trunnion.readers import run_program
@@ -61,7 +61,7 @@ class Pair:
         """What the control has to be told: without TCP where things are; a Fidia other words for the TCP of a head."""
         if not self.control.tcp:
             return WITHOUT_TCP[1:]
-        heads = [axis for axis in self.machine.axes if axis.is_rotary and axis.carries.value == "tool"]
+        heads = [axis for axis in self.machine.axes if axis.is_rotary and axis.mount.value == "tool"]
         return ("tcp_on=G96", "tcp_off=G97") if heads and self.family == "fidia_nc15" else ()
 
     @property
@@ -116,7 +116,7 @@ def check_proven(done: Posted, pair: Pair, settings: Sequence[str]) -> None:
     """Every check has passed, and every point of the CL file that is no hole is met, by a search of the test's own."""
     assert (done.code, done.failed) == (0, []), done.err
     assert sum(line.split()[1:2] == ["ok"] for line in done.err.splitlines()) >= 15
-    machine = set_up(pair.machine, dict(setting.split("=") for setting in (*pair.settings, *settings)))
+    machine = apply_setup(pair.machine, dict(setting.split("=") for setting in (*pair.settings, *settings)))
     check_met(run_program(done.program, machine), done.cl, *half_digits(pair))
 
 
@@ -156,7 +156,7 @@ def check_refused(done: Posted, reason: str) -> None:
 
 @pytest.mark.parametrize("path", FAMILIES)
 @pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", shipped_machines())
 def test_every_control_moves_every_machine(name: str, control: str, path: str, folder: Path) -> None:
     pair = pair_of(control, name, folder)
     family, asked = FAMILIES[path]
@@ -179,11 +179,11 @@ def test_every_control_moves_every_machine(name: str, control: str, path: str, f
 def stands(text: str, pair: Pair) -> bool:
     """Whether the tool axis of a cut is the same throughout, so that it is made in a plane, where there are any."""
     axes = {tuple(line.split(",")[3:]) for line in text.splitlines() if line.startswith("GOTO") and line.count(",") > 2}
-    return len(axes) == 1 and Manner.TILTED in pair.control.manners({})
+    return len(axes) == 1 and MachiningMode.TILTED in pair.control.modes({})
 
 
 @pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", shipped_machines())
 def test_all_cycles_that_a_control_has_are_proven(name: str, control: str, folder: Path) -> None:
     pair = pair_of(control, name, folder)
     refused = REFUSED.get(pair.family)
@@ -214,7 +214,9 @@ def test_cycles_are_refused_for_the_reason_that_is_said(control: str, mode: str,
 
 
 @pytest.mark.parametrize("control", ["heidenhain_tnc640", "linuxcnc", "sinumerik_840d"])
-@pytest.mark.parametrize("name", [name for name in shipped() if load_machine(name).turns_tool] + ["dmu65", "yl569"])
+@pytest.mark.parametrize(
+    "name", [name for name in shipped_machines() if load_machine(name).has_rotary_head] + ["dmu65", "yl569"]
+)
 def test_where_a_head_turns_the_tool_a_program_without_tcp_is_for_one_length(
     name: str, control: str, folder: Path
 ) -> None:
@@ -231,7 +233,7 @@ def test_where_a_head_turns_the_tool_a_program_without_tcp_is_for_one_length(
         asked = "tcp=off", f"zero={zero}", f"tool_length={length:.3f}"
         check_proven(posted(text, pair, folder, asked), pair, asked)
         assert verified(round(length, 3))
-        assert verified(round(length + more, 3)) != (pair.machine.turns_tool and not stands(text, pair))
+        assert verified(round(length + more, 3)) != (pair.machine.has_rotary_head and not stands(text, pair))
 
     every()
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from trunnion.controls.words import ABSENT, NumberFormat, Word, counts
+from trunnion.controls.words import ABSENT, NumberFormat, Word, round_to_counts
 
 numbers = st.floats(-99999.0, 99999.0, allow_nan=False)
 
@@ -21,23 +21,23 @@ numbers = st.floats(-99999.0, 99999.0, allow_nan=False)
 @example(-0.000004, 5)
 def test_a_number_is_rounded_as_if_it_were_written_out_in_full(value: float, decimals: int) -> None:
     exact = Decimal(value).quantize(Decimal(1).scaleb(-decimals), rounding=ROUND_HALF_EVEN)
-    assert counts(np.array([value]), decimals)[0] == int(exact.scaleb(decimals))
+    assert round_to_counts(np.array([value]), decimals)[0] == int(exact.scaleb(decimals))
 
 
 @given(st.lists(st.integers(-(10**11), 10**11), min_size=1), st.integers(1, 6))
 def test_half_way_cases_of_a_cl_file_round_like_printf(halves: list[int], decimals: int) -> None:
     values = np.array([n / 10**decimals / 2 for n in halves])
     printed = [f"{value:.{decimals}f}" for value in values]
-    assert counts(values, decimals).tolist() == [round(Decimal(text).scaleb(decimals)) for text in printed]
+    assert round_to_counts(values, decimals).tolist() == [round(Decimal(text).scaleb(decimals)) for text in printed]
 
 
 def test_a_missing_number_is_an_absent_word() -> None:
-    assert counts(np.array([np.nan, 1.0]), 3).tolist() == [ABSENT, 1000]
+    assert round_to_counts(np.array([np.nan, 1.0]), 3).tolist() == [ABSENT, 1000]
 
 
 def test_a_number_with_more_digits_than_a_double_holds_is_refused() -> None:
     with pytest.raises(OverflowError, match="1e\\+15 with 5 decimals"):
-        counts(np.array([1e15, np.nan]), 5)
+        round_to_counts(np.array([1e15, np.nan]), 5)
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trunnion.controls.words import ABSENT, BlockNumbers, NumberFormat, Word, counts
-from trunnion.errors import Refused
+from trunnion.controls.words import ABSENT, BlockNumbers, NumberFormat, Word, round_to_counts
+from trunnion.errors import RefusedError
 from trunnion.output.block_writer import BlockWriter
 
 COORDINATE = NumberFormat(5, zero="0.0", least=-1e11, greatest=1e11)
@@ -51,7 +51,7 @@ def slow_blocks(rows: list[Row], numbers: BlockNumbers) -> str:
             if count == ABSENT or (modal and last.get(word.key) == count and not forced >> k & 1):
                 continue
             last[word.key] = count
-            words.append(word.letter if word.bare else word.letter + word.format.of_count(count))
+            words.append(word.letter if word.bare else word.letter + word.format.text_of_count(count))
         if set(words) - {"FMAX"}:
             block(" ".join(words))
     return "".join(line + "\n" for line in lines)
@@ -68,7 +68,7 @@ def test_the_kernel_writes_what_its_slow_twin_writes(rows: list[Row], numbers: B
     for part in (rows[:7], rows[7:]):  # memory goes on from table to table
         if part:
             table = np.array([row[:-1] for row in part], np.int64)
-            writer.table(
+            writer.write_table(
                 {word.key: table[:, k] for k, word in enumerate(WORDS)},
                 {word.key: table[:, 5] >> k & 1 for k, word in enumerate(WORDS)},
                 table[:, 6],
@@ -82,7 +82,7 @@ def written(writer: BlockWriter, sink: io.BytesIO, x: float) -> str:
     """The text of one block with an X word."""
     sink.seek(0)
     sink.truncate()
-    writer.table({"X": counts(np.array([x]), 5)})
+    writer.write_table({"X": round_to_counts(np.array([x]), 5)})
     return sink.getvalue().decode()
 
 
@@ -108,22 +108,22 @@ def test_a_change_of_format_makes_the_word_new_again() -> None:
     sink = io.BytesIO()
     writer = BlockWriter(sink, WORDS, BlockNumbers(numbered=False))
     written(writer, sink, 1.0)
-    writer.use([Word("X", "X", NumberFormat(3, zero="0.0"))])
-    writer.table({"X": counts(np.array([1.0]), 3)})
+    writer.use_words([Word("X", "X", NumberFormat(3, zero="0.0"))])
+    writer.write_table({"X": round_to_counts(np.array([1.0]), 3)})
     assert sink.getvalue().decode() == "X1.\nX1.\n"
 
 
 def test_block_skip_goes_before_the_block_number() -> None:
     sink = io.BytesIO()
     writer = BlockWriter(sink, WORDS, BlockNumbers())
-    writer.skip_blocks(True)
-    writer.lines([";off"])
-    writer.skip_blocks(False)
-    writer.lines([";on"])
+    writer.set_block_skip(True)
+    writer.write_lines([";off"])
+    writer.set_block_skip(False)
+    writer.write_lines([";on"])
     assert sink.getvalue().decode() == "/N10 ;off\nN20 ;on\n"
 
 
 def test_a_number_beyond_its_word_is_refused_and_names_the_limit() -> None:
     writer = BlockWriter(io.BytesIO(), [Word("S", "S", NumberFormat(0, greatest=99999))], BlockNumbers())
-    with pytest.raises(Refused, match="word S100000 is beyond 99999"):
-        writer.table({"S": np.array([100000])})
+    with pytest.raises(RefusedError, match="word S100000 is beyond 99999"):
+        writer.write_table({"S": np.array([100000])})

@@ -35,7 +35,7 @@ def rapids_at(moves: Moves, rows: list[int]) -> Moves:
 
 def operation_of(moves: Moves, name: str = "OP") -> Operation:
     """An operation of these moves and nothing else."""
-    return Operation(name, Tool(), Frame(), moves, Arcs.none(), (), 1)
+    return Operation(name, Tool(), Frame(), moves, Arcs.empty(), (), 1)
 
 
 def wrapped(angle: float) -> float:
@@ -44,16 +44,16 @@ def wrapped(angle: float) -> float:
 
 
 @dataclass(frozen=True)
-class Walked:
+class NearestPath:
     """What a nearest neighbour does: values as they wind, the branch of each row, and what became of it."""
 
     rotary: Floats
     branch: list[int]
     changes: list[int]  # rows into which it changes its branch or winds back
-    beyond: list[int]
+    rows_beyond_limits: list[int]
 
 
-def nearest_neighbour(machine: Machine, moves: Moves, keep_slides: bool = False) -> Walked:
+def nearest_neighbour(machine: Machine, moves: Moves, keep_slides: bool = False) -> NearestPath:
     """From row to row the branch and turn nearest to the last position that keeps the limits."""
     solutions = inverse(machine, moves.tip, moves.axis)
     columns, limits = list(machine.rotary), machine.limits
@@ -84,7 +84,7 @@ def nearest_neighbour(machine: Machine, moves: Moves, keep_slides: bool = False)
         if best[0]:
             beyond_rows.append(row)
         now, last, known = branches[row], rotary[row].copy(), not solutions.pole[row]
-    return Walked(rotary, branches, changes, beyond_rows)
+    return NearestPath(rotary, branches, changes, beyond_rows)
 
 
 def _count_beyond(machine: Machine, tip: Floats, rotary: Floats, keep_slides: bool) -> int:
@@ -94,7 +94,7 @@ def _count_beyond(machine: Machine, tip: Floats, rotary: Floats, keep_slides: bo
     return int(outside.sum() if keep_slides else outside[list(machine.rotary)].sum())
 
 
-class EveryWay:
+class AllPaths:
     """Costs of every way through the states of a short path, as docs/planning.md words them."""
 
     def __init__(self, machine: Machine, moves: Moves, prefer: int = -1) -> None:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
 from trunnion.model.toolpath import Arcs, Dwell, Frame, Kind, Moves, Operation, Tool
-from trunnion.planning.linearization.arc_chords import arc_sweeps, lines_for_arcs, plain_arcs
+from trunnion.planning.linearization.arc_chords import arc_sweeps, arcs_a_control_takes, lines_for_arcs
 
 
 def arc_operation(
@@ -86,7 +86,7 @@ def test_an_arc_that_ends_a_hair_from_its_start_is_never_left_to_the_control(end
     start = np.array([10.0, 0, 0])
     hair = np.array([10 * np.cos(end / 10), 10 * np.sin(end / 10), 0])
     operation = arc_operation(start, hair, np.zeros(3), np.array([0, 0, 1.0]))
-    assert bool(plain_arcs(operation)[0]) is kept
+    assert bool(arcs_a_control_takes(operation)[0]) is kept
     if not kept:
         lines = lines_for_arcs(operation, np.array([False]), 0.001)
         longest = np.linalg.norm(lines.moves.tip - [10.0, 0, 0], axis=1)[:-1].max()
@@ -100,7 +100,7 @@ def test_an_arc_is_kept_in_the_three_planes_and_with_a_steady_tool_axis_only() -
     tilting = arc_operation(
         start, end, np.zeros(3), np.array([0, 0, 1.0]), axes=np.array([[0, 0, 1.0], [0, 0.6, 0.8], [0, 0.6, 0.8]])
     )
-    assert [bool(plain_arcs(o)[0]) for o in (upright, oblique, tilting)] == [True, False, False]
+    assert [bool(arcs_a_control_takes(o)[0]) for o in (upright, oblique, tilting)] == [True, False, False]
     turned = lines_for_arcs(tilting, np.array([False]), 0.01).moves.axis
     tilt = np.degrees(np.arctan2(turned[:-1, 1], turned[:-1, 2]))
     assert np.allclose(np.diff(tilt), np.diff(tilt)[0], atol=1e-9), "the tool axis turns evenly along the arc"

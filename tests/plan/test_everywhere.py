@@ -11,14 +11,14 @@ import pytest
 from hypothesis import Phase, event, given, settings
 from hypothesis import strategies as st
 
-from tests.plan.naive import EveryWay, moves_of, operation_of, rapids_at
+from tests.plan.naive import AllPaths, moves_of, operation_of, rapids_at
 from tests.plan.test_optimum import directions
 from tests.plan.test_without_tcp import NAMES, machine, post, toolpath
 from trunnion.arrays import Floats
-from trunnion.errors import Refused, Severity
-from trunnion.machines import Machine, Output, inverse
+from trunnion.errors import RefusedError, Severity
+from trunnion.machines import AngleOutput, Machine, inverse
 from trunnion.model.toolpath import Moves
-from trunnion.planning import Wishes
+from trunnion.planning import PlanOptions
 
 #: How far rotary axes may be beyond a limit: half of what is printed, and what the planner takes for noise.
 HALF_DIGIT = 0.5e-5 + 1e-6
@@ -31,7 +31,7 @@ def as_it_is(model: Machine) -> Machine:
 def first_limited(model: Machine) -> Machine:
     """The first rotary axis has 400 degrees."""
     column = model.rotary[0]
-    narrow = replace(model.axes[column], low=-200.0, high=200.0, endless=False, output=Output.NONE)
+    narrow = replace(model.axes[column], low=-200.0, high=200.0, endless=False, output=AngleOutput.NONE)
     return replace(model, axes=tuple(narrow if k == column else axis for k, axis in enumerate(model.axes)))
 
 
@@ -98,8 +98,8 @@ class Fewest:
 
 
 def fewest(model: Machine, moves: Moves) -> Fewest:
-    """By dynamic programming over the states of ``EveryWay``, step after step: rewinds depend on no more than that."""
-    every = EveryWay(model, moves)
+    """By dynamic programming over the states of ``AllPaths``, step after step: rewinds depend on no more than that."""
+    every = AllPaths(model, moves)
     low, high = every.limits.T
     inside = [
         any(((every.value(row, s) >= low - 1e-5) & (every.value(row, s) <= high + 1e-5)).all() for s in every.states)
@@ -115,12 +115,12 @@ def fewest(model: Machine, moves: Moves) -> Fewest:
     return Fewest(int(count.min()), all(inside))
 
 
-def judged(name: str, variant: str, path: Moves, wishes: Wishes) -> None:
+def judged(name: str, variant: str, path: Moves, options: PlanOptions) -> None:
     model = MACHINES[variant](machine(name))
     needed = fewest(model, path)
     try:
-        done = post(model, toolpath(operation_of(path)), wishes)
-    except Refused:
+        done = post(model, toolpath(operation_of(path)), options)
+    except RefusedError:
         assert not np.isfinite(inverse(model, path.tip, path.axis).joints).all()
         event("out of reach")
         return
@@ -144,11 +144,11 @@ def judged(name: str, variant: str, path: Moves, wishes: Wishes) -> None:
 @settings(deadline=None, max_examples=14, phases=[Phase.generate])
 @given(st.sampled_from(NAMES), st.sampled_from(sorted(MACHINES)), st.data())
 def test_with_tcp(family: str, name: str, variant: str, data: st.DataObject) -> None:
-    judged(name, variant, data.draw(paths(family)), Wishes())
+    judged(name, variant, data.draw(paths(family)), PlanOptions())
 
 
 @pytest.mark.parametrize("family", FAMILIES)
 @settings(deadline=None, max_examples=8, phases=[Phase.generate])
 @given(st.sampled_from(NAMES), st.sampled_from(sorted(MACHINES)), st.sampled_from([0.001, 0.01, 0.1]), st.data())
 def test_without_tcp(family: str, name: str, variant: str, tolerance: float, data: st.DataObject) -> None:
-    judged(name, variant, data.draw(paths(family)), Wishes(tcp=False, tip_tolerance=tolerance))
+    judged(name, variant, data.draw(paths(family)), PlanOptions(tcp=False, tip_tolerance=tolerance))

@@ -22,11 +22,11 @@ from trunnion.model.toolpath import (
     SpindleOn,
     Tool,
 )
-from trunnion.planning import Wishes
-from trunnion.planning.holes.cycles import CycleError, Making, Turning, cycle_of, with_holes
-from trunnion.planning.holes.hole_motion import as_motion, strokes
+from trunnion.planning import PlanOptions
+from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_from_event, normalize_cycles
+from trunnion.planning.holes.hole_motion import convert_holes_to_motion, stroke_depths
 
-SPINDLE = Turning(1200.0, Sense.CLW)
+SPINDLE = SpindleState(1200.0, Sense.CLW)
 LENGTH = st.integers(1, 900).map(lambda n: n / 100.0)
 MODES = st.sampled_from([("DRILL",), ("DRILL", "DEEP"), ("DRILL", "BRKCHP"), ("REAM",), ("BORE", "DRAG")])
 
@@ -42,7 +42,7 @@ def operation(
     kind = np.where(rapid, Kind.RAPID, Kind.LINEAR).astype(np.uint8)
     phase, line = np.full(n, 4, np.uint8), np.arange(1, n + 1, dtype=np.int32)
     moves = Moves(np.array(tips, float), axis, kind, phase, np.full(n, 500.0), np.zeros(n, bool), line)
-    return Operation("HOLES", Tool(), Frame(), moves, Arcs.none(), events, 1)
+    return Operation("HOLES", Tool(), Frame(), moves, Arcs.empty(), events, 1)
 
 
 @st.composite
@@ -69,46 +69,46 @@ def drilled(draw: st.DrawFn) -> tuple[Operation, CycleOn]:
 
 def twin(path: Operation, cycle: CycleOn) -> list[Row]:
     """The rows of docs/cl.md, upright, one hole after the other."""
-    asked = cycle_of(cycle)
-    assert asked.retract is not None
+    asked = cycle_from_event(cycle)
+    assert asked.retract_height is not None
     holes = path.moves.tip[cycle.row : -1].tolist()
     here = None if cycle.row == 0 else tuple(path.moves.tip[cycle.row - 1].tolist())
     rows: list[Row] = [] if here is None else [(here, Kind.RAPID, ())]
     for x, y, z in holes:
-        height = z + (asked.retract if here is None else asked.above)
+        height = z + (asked.retract_height if here is None else asked.rapid_height)
         if here is not None and here[2] < height - 1e-9:
             rows.append(((here[0], here[1], height), Kind.RAPID, ()))
         elif here is not None:
             height = here[2]
         if here is None or (x, y) != here[:2] or rows[-1][0][2] != height:
             rows.append(((x, y, height), Kind.RAPID, ()))
-        if height > z + asked.above + 1e-9:
-            rows.append(((x, y, z + asked.above), Kind.RAPID, ()))
+        if height > z + asked.rapid_height + 1e-9:
+            rows.append(((x, y, z + asked.rapid_height), Kind.RAPID, ()))
         done = 0.0
-        for depth in depths(asked.making, asked.depth, asked.steps):
-            if done and asked.making is Making.DEEP:
-                rows.append(((x, y, z + asked.above), Kind.RAPID, ()))
-                if z - done + 0.5 < z + asked.above - 1e-9:
+        for depth in depths(asked.method, asked.depth, asked.strokes):
+            if done and asked.method is HoleMethod.DEEP_DRILLING:
+                rows.append(((x, y, z + asked.rapid_height), Kind.RAPID, ()))
+                if z - done + 0.5 < z + asked.rapid_height - 1e-9:
                     rows.append(((x, y, z - done + 0.5), Kind.RAPID, ()))
             elif done:
                 rows.append(((x, y, z - done + min(0.5, done / 2.0)), Kind.RAPID, ()))
             rows.append(((x, y, z - depth), Kind.LINEAR, ()))
             done = depth
         happens: tuple[str, ...] = ("Dwell",) if asked.dwell else ()
-        if asked.making is Making.DRAG:
+        if asked.method is HoleMethod.BORE:
             happens = (*happens, "SpindleOff")
-        if asked.making is Making.REAM:
-            rows.append(((x, y, z + asked.above), Kind.LINEAR, happens))
+        if asked.method is HoleMethod.REAM:
+            rows.append(((x, y, z + asked.rapid_height), Kind.LINEAR, happens))
             happens = ()
-        if asked.making is not Making.REAM or asked.retract > asked.above:
-            rows.append(((x, y, z + asked.retract), Kind.RAPID, happens))
-        here = (x, y, z + asked.retract)
+        if asked.method is not HoleMethod.REAM or asked.retract_height > asked.rapid_height:
+            rows.append(((x, y, z + asked.retract_height), Kind.RAPID, happens))
+        here = (x, y, z + asked.retract_height)
     return [*rows, ((0.0, 0.0, 50.0), Kind.RAPID, ())]
 
 
-def depths(making: Making, depth: float, steps: tuple[float, float, float]) -> list[float]:
+def depths(method: HoleMethod, depth: float, steps: tuple[float, float, float]) -> list[float]:
     """By adding up strokes, the first, then shorter ones; no stroke is shorter than the least, but for the last."""
-    if making not in (Making.DEEP, Making.CHIPS):
+    if method not in (HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING):
         return [depth]
     every, reached, stroke = [], 0.0, steps[0]
     while reached < depth - 1e-9:
@@ -131,9 +131,9 @@ def rows_of(path: Operation) -> list[Row]:
 
 
 def expanded(path: Operation) -> Operation:
-    path = with_holes(path)
+    path = normalize_cycles(path)
     home = np.zeros(len(path.moves), bool)
-    return as_motion(path, Wishes(holes_as_motion=True), SPINDLE, home, "").operation
+    return convert_holes_to_motion(path, PlanOptions(holes_as_motion=True), SPINDLE, home, "").operation
 
 
 @given(drawn=drilled())
@@ -188,7 +188,7 @@ def cycle(*step: float) -> CycleOn:
     ],
 )
 def test_strokes_become_shorter_but_not_too_short(step: tuple[float, ...], depths: list[float]) -> None:
-    assert strokes(cycle_of(cycle(*step))) == depths
+    assert stroke_depths(cycle_from_event(cycle(*step))) == depths
 
 
 @pytest.mark.parametrize(
@@ -196,16 +196,16 @@ def test_strokes_become_shorter_but_not_too_short(step: tuple[float, ...], depth
 )
 def test_strokes_that_never_get_there_are_refused(step: tuple[float, ...], why: str) -> None:
     path = operation([(0.0, 0.0, 9.0), (0.0, 0.0, 0.0)], [True, False], (cycle(*step),))
-    with pytest.raises(CycleError, match=why) as error:
+    with pytest.raises(HoleCycleError, match=why) as error:
         expanded(path)
     assert error.value.line == 7
 
 
 def test_threads_stay_cycles() -> None:
     tap = CycleOn(1, 7, ("TAP",), (("RAPTO", (2.0,)), ("FEDTO", (-9.0,)), ("MMPR", (1.0,))))
-    path = with_holes(operation([(0.0, 0.0, 9.0), (0.0, 0.0, 0.0)], [True, False], (tap,)))
+    path = normalize_cycles(operation([(0.0, 0.0, 9.0), (0.0, 0.0, 0.0)], [True, False], (tap,)))
     home = np.zeros(2, bool)
-    assert as_motion(path, Wishes(holes_as_motion=True), SPINDLE, home, "").operation is path
+    assert convert_holes_to_motion(path, PlanOptions(holes_as_motion=True), SPINDLE, home, "").operation is path
 
 
 def test_the_spindle_is_the_one_that_turns_at_each_hole() -> None:

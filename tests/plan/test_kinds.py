@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 
 from tests.plan.naive import moves_of, operation_of
 from trunnion.arrays import Floats
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 from trunnion.machines import load_machine
-from trunnion.model.frames import seen_from
-from trunnion.model.motion import Manner, Motion
+from trunnion.model.frames import relative_frame
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, Frame, Kind, Operation, Toolpath
-from trunnion.planning import Wishes, plan
-from trunnion.planning.machining_mode import plane_of
+from trunnion.planning import PlanOptions, plan
+from trunnion.planning.machining_mode import tilted_plane
 
 YL569 = load_machine("yl569")
 
@@ -34,14 +34,14 @@ def frames(draw: st.DrawFn) -> Frame:
     return Frame(draw(points), tuple(x.tolist()), tuple((y / np.linalg.norm(y)).tolist()))
 
 
-def motion_of(axis: Floats, *, frame: Frame | None = None, wish: Manner | None = None) -> Motion:
+def motion_of(axis: Floats, *, frame: Frame | None = None, wish: MachiningMode | None = None) -> Motion:
     """The second of two operations, planned; the first one is upright in the absolute system."""
     axis = np.atleast_2d(axis)
     tip = np.arange(3.0 * len(axis)).reshape(-1, 3)
     first = operation_of(moves_of(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]])), "TOP")
     second = operation_of(moves_of(tip, axis), "SIDE")
-    second = Operation("SIDE", second.tool, frame or Frame(), second.moves, Arcs.none(), (), 1)
-    return plan([Toolpath("a.cls", (first, second))], YL569, 0.001, Wishes(manner=wish)).motions[1]
+    second = Operation("SIDE", second.tool, frame or Frame(), second.moves, Arcs.empty(), (), 1)
+    return plan([Toolpath("a.cls", (first, second))], YL569, 0.001, PlanOptions(mode=wish)).motions[1]
 
 
 TILTED = np.array([0.6, 0.0, 0.8])
@@ -49,24 +49,24 @@ UPRIGHT = np.array([0.0, 0.0, 1.0])
 
 
 @pytest.mark.parametrize(
-    ("axes", "manner"),
+    ("axes", "mode"),
     [
-        ([UPRIGHT, UPRIGHT], Manner.THREE_AXIS),
-        ([TILTED], Manner.TILTED),
-        ([TILTED, TILTED], Manner.TILTED),
-        ([TILTED, UPRIGHT], Manner.TCP),
-        ([TILTED, UPRIGHT, TILTED], Manner.TCP),
-        ([UPRIGHT, TILTED, UPRIGHT], Manner.TCP),
+        ([UPRIGHT, UPRIGHT], MachiningMode.THREE_AXIS),
+        ([TILTED], MachiningMode.TILTED),
+        ([TILTED, TILTED], MachiningMode.TILTED),
+        ([TILTED, UPRIGHT], MachiningMode.TCP),
+        ([TILTED, UPRIGHT, TILTED], MachiningMode.TCP),
+        ([UPRIGHT, TILTED, UPRIGHT], MachiningMode.TCP),
     ],
 )
-def test_by_rule_it_is_what_the_tool_axis_does(axes: list[Floats], manner: Manner) -> None:
-    assert motion_of(np.array(axes)).manner is manner
+def test_by_rule_it_is_what_the_tool_axis_does(axes: list[Floats], mode: MachiningMode) -> None:
+    assert motion_of(np.array(axes)).mode is mode
 
 
 def test_an_axis_that_is_z_of_a_tilted_coordinate_system_is_a_tilted_plane_there() -> None:
     frame = Frame((10.0, 20.0, -5.0), (0.8, 0.0, -0.6), (0.0, 1.0, 0.0))
     motion = motion_of(UPRIGHT, frame=frame)
-    assert motion.manner is Manner.TILTED
+    assert motion.mode is MachiningMode.TILTED
     assert motion.plane is not None
     assert motion.plane.origin == frame.origin
     np.testing.assert_allclose(motion.plane.matrix(), frame.matrix(), atol=1e-15)
@@ -74,44 +74,50 @@ def test_an_axis_that_is_z_of_a_tilted_coordinate_system_is_a_tilted_plane_there
 
 
 def test_the_users_word_is_stronger() -> None:
-    assert motion_of(TILTED, wish=Manner.TCP).manner is Manner.TCP
-    assert motion_of(UPRIGHT, wish=Manner.TCP).manner is Manner.TCP
-    upright = motion_of(np.array([TILTED, TILTED]), wish=Manner.TILTED)
+    assert motion_of(TILTED, wish=MachiningMode.TCP).mode is MachiningMode.TCP
+    assert motion_of(UPRIGHT, wish=MachiningMode.TCP).mode is MachiningMode.TCP
+    upright = motion_of(np.array([TILTED, TILTED]), wish=MachiningMode.TILTED)
     assert upright.plane is not None
 
 
 def test_the_word_about_one_operation_is_stronger_than_that_about_all() -> None:
-    def manners(wishes: Wishes) -> list[Manner]:
+    def modes(options: PlanOptions) -> list[MachiningMode]:
         operations = tuple(operation_of(moves_of(np.zeros((2, 3)), np.array([TILTED] * 2)), name) for name in "ABC")
-        return [motion.manner for motion in plan([Toolpath("a.cls", operations)], YL569, 0.001, wishes).motions]
+        return [motion.mode for motion in plan([Toolpath("a.cls", operations)], YL569, 0.001, options).motions]
 
-    assert manners(Wishes(own_manner={"B": Manner.TCP})) == [Manner.TILTED, Manner.TCP, Manner.TILTED]
-    everywhere = Wishes(manner=Manner.TCP, own_manner={"A": None, "C": Manner.TILTED})
-    assert manners(everywhere) == [Manner.TILTED, Manner.TCP, Manner.TILTED]
-    with pytest.raises(InputError, match=r"manner is said of operation D, and the program has none.*A, B, C"):
-        manners(Wishes(own_manner={"D": None}))
+    assert modes(PlanOptions(mode_by_operation={"B": MachiningMode.TCP})) == [
+        MachiningMode.TILTED,
+        MachiningMode.TCP,
+        MachiningMode.TILTED,
+    ]
+    everywhere = PlanOptions(mode=MachiningMode.TCP, mode_by_operation={"A": None, "C": MachiningMode.TILTED})
+    assert modes(everywhere) == [MachiningMode.TILTED, MachiningMode.TCP, MachiningMode.TILTED]
+    with pytest.raises(InputError, match=r"mode is set for operation D, and the program has none.*A, B, C"):
+        modes(PlanOptions(mode_by_operation={"D": None}))
 
 
 @pytest.mark.parametrize(
     ("axes", "wish", "line"),
     [
-        ([TILTED, UPRIGHT], Manner.TILTED, 10),
-        ([UPRIGHT, TILTED], Manner.THREE_AXIS, 11),
+        ([TILTED, UPRIGHT], MachiningMode.TILTED, 10),
+        ([UPRIGHT, TILTED], MachiningMode.THREE_AXIS, 11),
     ],
 )
-def test_a_word_that_cannot_be_kept_is_refused_with_the_line(axes: list[Floats], wish: Manner, line: int) -> None:
+def test_a_word_that_cannot_be_kept_is_refused_with_the_line(
+    axes: list[Floats], wish: MachiningMode, line: int
+) -> None:
     operation = operation_of(moves_of(np.zeros((2, 3)), np.array(axes)))
-    if wish is Manner.TILTED:
+    if wish is MachiningMode.TILTED:
         line = 11
-    with pytest.raises(Refused) as refused:
-        plan([Toolpath("a.cls", (operation,))], YL569, 0.001, Wishes(manner=wish))
+    with pytest.raises(RefusedError) as refused:
+        plan([Toolpath("a.cls", (operation,))], YL569, 0.001, PlanOptions(mode=wish))
     assert [problem.line for problem in refused.value.problems] == [line]
 
 
 @given(unit_vectors, frames())
 def test_a_planes_z_is_the_tool_axis_and_its_matrix_is_square(axis: Floats, own: Frame) -> None:
-    for frame in (own, seen_from(own, own)):
-        plane = plane_of(axis, frame)
+    for frame in (own, relative_frame(own, own)):
+        plane = tilted_plane(axis, frame)
         matrix = plane.matrix()
         np.testing.assert_allclose(matrix.T @ matrix, np.eye(3), atol=1e-12)
         np.testing.assert_allclose(matrix[:, 2], axis, atol=1e-12)
@@ -120,14 +126,14 @@ def test_a_planes_z_is_the_tool_axis_and_its_matrix_is_square(axis: Floats, own:
 @given(frames(), st.floats(-1e-7, 1e-7))
 def test_a_coordinate_system_that_stands_on_the_axis_gives_origin_and_x(own: Frame, off: float) -> None:
     axis = own.matrix()[:, 2] + off * np.array(own.x)
-    plane = plane_of(axis / np.linalg.norm(axis), own)
+    plane = tilted_plane(axis / np.linalg.norm(axis), own)
     np.testing.assert_allclose(plane.origin, own.origin, atol=0.5e-4 + 1e-12)
     np.testing.assert_allclose(plane.x, own.x, atol=2e-7)
 
 
 @given(frames(), frames(), points)
 def test_a_frame_seen_from_another_holds_the_same_points(one: Frame, other: Frame, point: tuple[float, ...]) -> None:
-    seen = seen_from(one, other)
+    seen = relative_frame(one, other)
     there = seen.matrix() @ np.array(point) + seen.origin
     absolute = other.matrix() @ there + other.origin
     np.testing.assert_allclose(absolute, one.matrix() @ np.array(point) + one.origin, atol=1e-9)
@@ -147,6 +153,6 @@ def test_arcs_are_judged_in_the_plane() -> None:
     written = planned.as_written()
     assert len(written.arcs.row) == 1
     np.testing.assert_allclose(written.arcs.normal, [[0.0, 0.0, 1.0]], atol=1e-12)
-    tcp = plan([Toolpath("a.cls", (operation,))], YL569, 0.001, Wishes(manner=Manner.TCP)).motions[0]
+    tcp = plan([Toolpath("a.cls", (operation,))], YL569, 0.001, PlanOptions(mode=MachiningMode.TCP)).motions[0]
     assert len(tcp.operation.arcs.row) == 0
     assert len(tcp.operation.moves) > 10

@@ -13,22 +13,22 @@ from tests.plan.test_optimum import BC, CA, directions, winding, with_limits
 from tests.plan.test_rewind import round_part
 from tests.plan.test_without_tcp import NAMES
 from tests.plan.test_without_tcp import machine as roomy
-from trunnion.errors import InputError, Problem, Refused, Severity
+from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.machines import Machine, inverse, load_machine
-from trunnion.model.motion import Manner
+from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import CutterComp, Moves, Operation, Toolpath
-from trunnion.planning import Clearance, Surface, Wishes, plan
-from trunnion.planning.poses.limit_lookahead import out_of_reach_by
+from trunnion.planning import Clearance, ClearanceSurface, PlanOptions, plan
+from trunnion.planning.poses.limit_lookahead import degrees_out_of_reach
 
 NUTATED = load_machine("generic_nutated_b45_c")
-OFF = Wishes(tcp=False)
+OFF = PlanOptions(tcp=False)
 
 
-def against(machine: Machine, operation: Operation, wishes: Wishes | None = None) -> list[Problem]:
+def against(machine: Machine, operation: Operation, options: PlanOptions | None = None) -> list[Problem]:
     """What speaks against a plan, worst first; nothing is the matter with the other lines."""
     try:
-        problems = plan([Toolpath("part.cls", (operation,))], machine, 0.001, wishes).problems
-    except (Refused, InputError) as error:
+        problems = plan([Toolpath("part.cls", (operation,))], machine, 0.001, options).problems
+    except (RefusedError, InputError) as error:
         problems = tuple(error.problems)
     return [problem for problem in problems if problem.severity is Severity.ERROR]
 
@@ -54,7 +54,7 @@ def two_points(first: tuple[float, float], last: tuple[float, float]) -> Moves:
 
 
 #: What is asked for -> the line (10 + row), the beginning of what is wrong, and of its remedy.
-IMPOSSIBLE: dict[str, tuple[Machine, Operation, Wishes | None, str, str]] = {
+IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] = {
     "out of reach": (
         NUTATED, operation_of(cut(110.0)), None,
         r"part.cls:10: error: no rotary position of \S+ gives the tool axis 0.9\d+, ",
@@ -77,7 +77,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, Wishes | None, str, str]] = {
         "move or turn the workpiece, or post for another machine",
     ),
     "a rewind that is forbidden": (
-        CA, operation_of(round_part()), Wishes(rewind=False),
+        CA, operation_of(round_part()), PlanOptions(allow_rewinds=False),
         r"part.cls:\d\d+: error: axis C would go to 36\d\.\d+, above its limit 360 degrees in the cut",
         r"allow rewinds \(--set rewind=insert\), split the operation, or turn the workpiece",
     ),
@@ -89,7 +89,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, Wishes | None, str, str]] = {
     ),
     "a rewind that leads nowhere": (
         CA, operation_of(replace(winding(89.5, 100.0, 1100.0), tip=40.0 * winding(89.5, 100.0, 1100.0).axis)),
-        Wishes(clearance=Clearance(90.0, Surface.PLANE)),
+        PlanOptions(clearance=Clearance(90.0, ClearanceSurface.PLANE)),
         r"part.cls:\d+: error: the tool must rewind here, and its axis does not lead to the clearance plane:90",
         "--set clearance=MM draws back by a distance",
     ),
@@ -106,14 +106,14 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, Wishes | None, str, str]] = {
     ),
     "a step across the pole": (
         roomy("generic_head_head_ca"), operation_of(two_points((0.3, 0.0), (0.3, 150.0))),
-        Wishes(tcp=False, axis_tolerance=0.001),
+        PlanOptions(tcp=False, axis_tolerance=0.001),
         "part.cls:11: error: in this step of the cut the tool axis leaves its path by more than 0.001 degrees",
         "--set axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other",
     ),
     "a plane whose axis changes": (
-        BC, operation_of(two_points((10.0, 0.0), (20.0, 0.0))), Wishes(manner=Manner.TILTED),
-        "part.cls:11: error: operation OP: the tool axis changes, and manner is tilted",
-        "leave the setting manner out, or split the operation",
+        BC, operation_of(two_points((10.0, 0.0), (20.0, 0.0))), PlanOptions(mode=MachiningMode.TILTED),
+        "part.cls:11: error: operation OP: the tool axis changes, and mode is tilted",
+        "leave the setting mode out, or split the operation",
     ),
     "without TCP and a place": (
         replace(roomy("yl569"), workpiece_zero=None), operation_of(two_points((10.0, 0.0), (20.0, 0.0))), OFF,
@@ -125,8 +125,8 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, Wishes | None, str, str]] = {
 
 @pytest.mark.parametrize("request_", sorted(IMPOSSIBLE))
 def test_an_impossible_request_names_place_axis_and_remedy(request_: str) -> None:
-    machine, operation, wishes, what, cure = IMPOSSIBLE[request_]
-    problems = against(machine, operation, wishes)
+    machine, operation, options, what, cure = IMPOSSIBLE[request_]
+    problems = against(machine, operation, options)
     assert problems, "it can be done"
     said = f"{problems[0].file}:{problems[0].line}: error: {problems[0].what}"
     assert re.match(what, said), said
@@ -137,7 +137,7 @@ def test_an_impossible_request_names_place_axis_and_remedy(request_: str) -> Non
 def test_a_tool_axis_that_is_tilted_by_what_is_lacking_is_within_reach(name: str, tilt: float, azimuth: float) -> None:
     machine = load_machine(name)
     (axis,) = directions(np.array([tilt]), np.array([azimuth]))
-    lacking = out_of_reach_by(machine, axis)
+    lacking = degrees_out_of_reach(machine, axis)
     assume(abs(lacking) > 1e-4)
     assert bool(inverse(machine, np.zeros((1, 3)), axis[None]).reachable[0]) is (lacking < 0.0)
     if lacking > 0.0:

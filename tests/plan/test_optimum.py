@@ -7,23 +7,23 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from tests.plan.naive import EveryWay, moves_of, nearest_neighbour, rapids_at
+from tests.plan.naive import AllPaths, moves_of, nearest_neighbour, rapids_at
 from trunnion.arrays import Floats
-from trunnion.machines import Machine, forward, load_machine, shipped, slide_positions
+from trunnion.machines import Machine, forward, load_machine, shipped_machines, slide_positions
 from trunnion.model.toolpath import Moves
 from trunnion.planning.poses import selection as poses
 from trunnion.planning.poses.placement import REWIND
 from trunnion.planning.poses.selection import (
-    Poses,
-    choose,
-    choose_nearest,
-    follow,
-    least_cost,
-    settled,
-    sides_travel_alike,
-    take,
+    PlannedPoses,
+    branches_travel_alike,
+    cheapest_states,
+    choose_nearest_states,
+    choose_poses,
+    choose_poses_in_one_pass,
+    choose_states,
+    poses_of_states,
 )
-from trunnion.planning.poses.states import MOST_TURNS, REWOUND, STATE, states_of
+from trunnion.planning.poses.states import MOST_TURNS, REWIND_STEP, STATE_BITS, states_of
 
 
 def with_limits(machine: Machine, **limits: tuple[float, float]) -> Machine:
@@ -48,11 +48,11 @@ def winding(tilt: float, first: float, last: float, n: int = 400) -> Moves:
     return moves_of(np.zeros((n, 3)), directions(np.full(n, tilt), np.linspace(first, last, n)))
 
 
-def posed(machine: Machine, moves: Moves) -> Poses:
-    return follow(machine, moves, False)
+def posed(machine: Machine, moves: Moves) -> PlannedPoses:
+    return choose_poses(machine, moves, False)
 
 
-def rewinds(poses: Poses) -> int:
+def rewinds(poses: PlannedPoses) -> int:
     return int((poses.outcome == REWIND).sum())
 
 
@@ -90,14 +90,14 @@ def test_no_way_through_the_states_is_cheaper(name: str, moves: Moves, prefer: i
     machine = SMALL[name]
     states = states_of(machine).table
     assume(len(states) ** len(moves) < 300_000)
-    every = EveryWay(machine, moves, prefer)
+    every = AllPaths(machine, moves, prefer)
     assert [tuple(row) for row in states.tolist()] == every.states
-    state = least_cost(machine, moves, False, prefer)
+    state = cheapest_states(machine, moves, False, prefer)
     fewest, least = every.least()
-    found = every.cost_of([int(s) & STATE for s in state])
+    found = every.cost_of([int(s) & STATE_BITS for s in state])
     assert found[0] == fewest
     assert found[1] == pytest.approx(least, abs=1e-6)
-    assert int((state & REWOUND != 0).sum()) == fewest % (1 << 20)
+    assert int((state & REWIND_STEP != 0).sum()) == fewest % (1 << 20)
 
 
 def test_eight_rows_of_six_states() -> None:
@@ -105,8 +105,8 @@ def test_eight_rows_of_six_states() -> None:
     azimuth = np.array([0.0, 70.0, 140.0, 210.0, 280.0, 350.0, 420.0, 490.0])
     moves = moves_of(np.zeros((8, 3)), directions(np.full(8, 30.0), azimuth))
     assert len(states_of(machine)) == 6
-    every = EveryWay(machine, moves)
-    state = [int(s) & STATE for s in choose(machine, moves, False)]
+    every = AllPaths(machine, moves)
+    state = [int(s) & STATE_BITS for s in choose_states(machine, moves, False)]
     assert every.cost_of(state) == pytest.approx(every.least(), abs=1e-6)
 
 
@@ -128,13 +128,13 @@ def smooth_paths(draw: st.DrawFn, most: float = 80.0) -> Moves:
 def test_on_the_yl569_the_optimum_is_the_nearest_neighbour_where_that_will_do(moves: Moves) -> None:
     machine = load_machine("yl569")
     naive = nearest_neighbour(machine, moves)
-    assume(not naive.beyond and not naive.changes and len(set(naive.branch)) == 1)
+    assume(not naive.rows_beyond_limits and not naive.changes and len(set(naive.branch)) == 1)
     wound = naive.rotary[:, 0] - 360.0 * np.floor(naive.rotary[:, 0] / 360.0)
     assert np.array_equal(posed(machine, moves).rotary, np.column_stack((wound, naive.rotary[:, 1])))
 
 
-ALIKE = {name: machine for name in shipped() if sides_travel_alike(machine := load_machine(name))} | {
-    name: SMALL[name] for name in SMALL if sides_travel_alike(SMALL[name])
+ALIKE = {name: machine for name in shipped_machines() if branches_travel_alike(machine := load_machine(name))} | {
+    name: SMALL[name] for name in SMALL if branches_travel_alike(SMALL[name])
 }
 
 
@@ -147,14 +147,14 @@ def test_most_shipped_machines_have_sides_that_travel_alike() -> None:
 @given(st.sampled_from(sorted(ALIKE)), smooth_paths(100.0) | smooth_paths(4.0) | short_paths(30), st.booleans())
 def test_where_nothing_is_to_be_chosen_one_pass_finds_the_optimum(name: str, moves: Moves, keep_slides: bool) -> None:
     machine = ALIKE[name]
-    found = settled(machine, moves, keep_slides)
+    found = choose_poses_in_one_pass(machine, moves, keep_slides)
     assume(found is not None)
     assert found is not None
-    wanted = take(machine, moves, choose(machine, moves, keep_slides), keep_slides)
+    wanted = poses_of_states(machine, moves, choose_states(machine, moves, keep_slides), keep_slides)
     assert np.array_equal(found.state, wanted.state)
     assert np.array_equal(found.rotary, wanted.rotary)
     assert np.array_equal(found.extremes, wanted.extremes)
-    assert np.array_equal(found.where, wanted.where)
+    assert np.array_equal(found.extreme_rows, wanted.extreme_rows)
     assert np.array_equal(found.changes, wanted.changes)
     assert not wanted.outcome.any()
 
@@ -162,10 +162,10 @@ def test_where_nothing_is_to_be_chosen_one_pass_finds_the_optimum(name: str, mov
 @settings(deadline=None, max_examples=200)
 @given(st.sampled_from(sorted(ALIKE)), smooth_paths(4.0) | short_paths(30), st.integers(1, 12))
 def test_one_pass_does_not_depend_on_how_many_rows_go_by_at_a_time(name: str, moves: Moves, rows: int) -> None:
-    whole = settled(ALIKE[name], moves, False)
+    whole = choose_poses_in_one_pass(ALIKE[name], moves, False)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(poses, "_CHUNK", rows)
-        found = settled(ALIKE[name], moves, False)
+        found = choose_poses_in_one_pass(ALIKE[name], moves, False)
     assert (found is None) == (whole is None)
     if found is not None and whole is not None:
         for column in ("state", "rotary", "outcome", "extremes", "where", "changes"):
@@ -179,11 +179,11 @@ def test_one_pass_is_enough_for_a_path_like_most(name: str) -> None:
     moves = moves_of(np.zeros((300, 3)), directions(20.0 + 10.0 * np.sin(9.0 * rows), 20.0 + 40.0 * rows))
     upright = moves_of(np.zeros((9, 3)), directions(np.zeros(9), np.zeros(9)))
     for path in (moves, upright):
-        assert settled(machine, path, False) is not None
+        assert choose_poses_in_one_pass(machine, path, False) is not None
 
 
 #: The nearest neighbour asks no one which side is preferred.
-IMPARTIAL = [name for name in shipped() if not any(axis.preferred_sign for axis in load_machine(name).axes)]
+IMPARTIAL = [name for name in shipped_machines() if not any(axis.preferred_sign for axis in load_machine(name).axes)]
 
 
 @settings(deadline=None, max_examples=120)
@@ -191,9 +191,9 @@ IMPARTIAL = [name for name in shipped() if not any(axis.preferred_sign for axis 
 def test_on_every_machine_it_is_the_nearest_neighbour_or_cheaper(name: str, moves: Moves) -> None:
     machine = load_machine(name)
     naive = nearest_neighbour(machine, moves)
-    assume(not naive.beyond and not naive.changes)
-    every = EveryWay(machine, moves)
-    state = [int(s) & STATE for s in least_cost(machine, moves, False)]
+    assume(not naive.rows_beyond_limits and not naive.changes)
+    every = AllPaths(machine, moves)
+    state = [int(s) & STATE_BITS for s in cheapest_states(machine, moves, False)]
     turns = np.rint((naive.rotary - every.angles[naive.branch, range(len(moves))]) / 360.0)
     turns[:, every.endless] = 0
     its = [every.states.index((b, int(one), int(two))) for b, (one, two) in zip(naive.branch, turns, strict=True)]
@@ -203,17 +203,17 @@ def test_on_every_machine_it_is_the_nearest_neighbour_or_cheaper(name: str, move
 
 
 @settings(deadline=None, max_examples=60)
-@given(st.sampled_from(shipped()), smooth_paths(30.0))
+@given(st.sampled_from(shipped_machines()), smooth_paths(30.0))
 def test_the_nearest_neighbour_of_the_planner_is_that_of_the_tests(name: str, moves: Moves) -> None:
     machine = load_machine(name)
     naive = nearest_neighbour(machine, moves)
-    found = take(machine, moves, choose_nearest(machine, moves, False), False).rotary
+    found = poses_of_states(machine, moves, choose_nearest_states(machine, moves, False), False).rotary
     apart = found - naive.rotary
     assert np.abs(apart - 360.0 * np.rint(apart / 360.0)).max() < 1e-9
 
 
 @settings(deadline=None, max_examples=80)
-@given(st.sampled_from(shipped()), st.one_of(smooth_paths(35.0), short_paths(30)))
+@given(st.sampled_from(shipped_machines()), st.one_of(smooth_paths(35.0), short_paths(30)))
 def test_limits_hold_and_the_tool_points_where_it_should(name: str, moves: Moves) -> None:
     machine = load_machine(name)
     poses = posed(machine, moves)
@@ -224,7 +224,7 @@ def test_limits_hold_and_the_tool_points_where_it_should(name: str, moves: Moves
     assert np.abs(axis - moves.axis).max() < 1e-7
     assert np.abs(tip - moves.tip).max() < 1e-4
     naive = nearest_neighbour(machine, moves)
-    if not naive.beyond:
+    if not naive.rows_beyond_limits:
         assert fine.all(), "where the nearest neighbour keeps the limits, the optimum does"
 
 

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.errors import Refused, Severity
-from trunnion.machines import Machine, forward, load_machine, shipped, slide_positions
+from trunnion.errors import RefusedError, Severity
+from trunnion.machines import Machine, forward, load_machine, shipped_machines, slide_positions
 from trunnion.model.frames import into_frame
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Arcs, Frame, Moves, Operation, Tool, Toolpath
@@ -26,7 +26,7 @@ def operation(tip: Floats, axis: Floats, frame: Frame | None = None, rapid: bool
         np.zeros(n, bool),
         np.arange(10, 10 + n, dtype=np.int32),
     )
-    return Operation("OP", Tool(), frame or Frame(), moves, Arcs.none(), (), 1)
+    return Operation("OP", Tool(), frame or Frame(), moves, Arcs.empty(), (), 1)
 
 
 def planned(machine: Machine, *operations: Operation) -> Plan:
@@ -131,7 +131,9 @@ def test_with_a_known_workpiece_zero_each_slide_keeps_its_limits() -> None:
 
 def test_a_tool_axis_beyond_a_nutated_head_can_never_be_written() -> None:
     machine = load_machine("generic_nutated_b45_c")
-    with pytest.raises(Refused, match=r"part.cls:10: error: no rotary position .* 0\.000000, 0\.000000, -1\.000000"):
+    with pytest.raises(
+        RefusedError, match=r"part.cls:10: error: no rotary position .* 0\.000000, 0\.000000, -1\.000000"
+    ):
         planned(machine, operation(np.zeros((1, 3)), np.array([[0, 0, -1.0]])))
 
 
@@ -154,7 +156,7 @@ def test_operations_in_other_coordinate_systems_are_carried_into_the_first_one()
 
 @settings(deadline=None, max_examples=40)
 @given(
-    st.sampled_from(shipped()),
+    st.sampled_from(shipped_machines()),
     st.lists(st.tuples(st.floats(0, 35), st.floats(-720, 720), *[st.floats(-60, 60)] * 3), min_size=1, max_size=20),
 )
 def test_the_tool_is_where_the_toolpath_wants_it_on_every_shipped_machine(

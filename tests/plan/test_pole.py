@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 
 from tests.plan.naive import moves_of, operation_of, rapids_at
 from trunnion.arrays import Flags, Floats
-from trunnion.machines import Machine, forward, inverse, load_machine, pack, shipped
-from trunnion.model.motion import Plan, Pole, Why
+from trunnion.machines import Machine, forward, inverse, kinematic_parameters, load_machine, shipped_machines
+from trunnion.model.motion import DecisionTopic, Plan, PoleStrategy
 from trunnion.model.toolpath import Moves, Operation, Toolpath
-from trunnion.planning import Wishes, plan
-from trunnion.planning.pole.cone import leanest, nearest_second, off_pole
-from trunnion.planning.pole.pole import Leaning, leaning
+from trunnion.planning import PlanOptions, plan
+from trunnion.planning.pole.lean_limits import closest_second_angles, degrees_off_pole, least_lean
+from trunnion.planning.pole.tool_axis_lean import LeanedMoves, lean_tool_axis
 from trunnion.planning.poses.placement import REWIND
-from trunnion.planning.poses.selection import follow
-from trunnion.planning.speed.rotary_speed import RESTS, shares
+from trunnion.planning.poses.selection import choose_poses
+from trunnion.planning.speed.rotary_speed import REST_LENGTH, speed_shares
 
 
 def quick(name: str) -> Machine:
@@ -29,12 +29,12 @@ def quick(name: str) -> Machine:
     return replace(machine, axes=tuple(axes))
 
 
-MACHINES = {name: quick(name) for name in shipped()}
+MACHINES = {name: quick(name) for name in shipped_machines()}
 
 
 def pole_of(machine: Machine) -> Floats:
     """The tool axis along the first rotary axis, on the side where the spindle is at zero."""
-    line = np.array(pack(machine).frame_1[6:])
+    line = np.array(kinematic_parameters(machine).basis_1[6:])
     return line if line @ np.array(machine.spindle_direction) >= 0.0 else -line
 
 
@@ -63,10 +63,10 @@ def passes(draw: st.DrawFn, machine: Machine) -> Operation:
     return operation_of(rapids_at(moves, [row for row in range(len(moves)) if draw(st.integers(0, 60)) == 0]))
 
 
-def looked_after(machine: Machine, operation: Operation, mode: Pole, angle: float) -> Leaning:
+def looked_after(machine: Machine, operation: Operation, mode: PoleStrategy, angle: float) -> LeanedMoves:
     moves = operation.moves
-    poses = follow(machine, moves, False)
-    return leaning(machine, operation, poses, False, mode, angle, np.zeros(len(moves), bool))
+    poses = choose_poses(machine, moves, False)
+    return lean_tool_axis(machine, operation, poses, False, mode, angle, np.zeros(len(moves), bool))
 
 
 def axes_of(machine: Machine, rotary: Floats) -> Floats:
@@ -80,9 +80,9 @@ def degrees_between(a: Floats, b: Floats) -> Floats:
 
 
 @settings(max_examples=150)
-@given(st.data(), st.sampled_from(sorted(MACHINES)), st.sampled_from(list(Pole)[1:]), st.floats(0.005, 1.0))
+@given(st.data(), st.sampled_from(sorted(MACHINES)), st.sampled_from(list(PoleStrategy)[1:]), st.floats(0.005, 1.0))
 def test_the_tool_axis_leans_by_no_more_than_was_asked_for_and_only_where_it_says(
-    data: st.DataObject, name: str, mode: Pole, angle: float
+    data: st.DataObject, name: str, mode: PoleStrategy, angle: float
 ) -> None:
     machine = MACHINES[name]
     operation = data.draw(passes(machine))
@@ -109,17 +109,17 @@ def test_the_tool_axis_leans_by_no_more_than_was_asked_for_and_only_where_it_say
 def test_where_there_is_a_way_no_rotary_axis_is_too_fast(data: st.DataObject, name: str, angle: float) -> None:
     machine = MACHINES[name]
     operation = data.draw(passes(machine))
-    found = looked_after(machine, operation, Pole.LEAN, angle)
+    found = looked_after(machine, operation, PoleStrategy.LEAN, angle)
     if (found.poses.outcome > 0).any():
         return
-    share = shares(machine, operation, found.poses.rotary).max(axis=1)
+    share = speed_shares(machine, operation, found.poses.rotary).max(axis=1)
     lacking: Flags = np.zeros(len(share), bool)
-    for place in found.places:
+    for place in found.regions:
         if not place.found:
             lacking[place.first : place.end] = True
     # Where the tip rests a turn takes the time that it needs: no feed binds it.
     way = np.linalg.norm(np.diff(operation.moves.tip, axis=0, prepend=operation.moves.tip[:1]), axis=1)
-    assert share[~lacking & (way >= RESTS)].max(initial=0.0) <= 1.0
+    assert share[~lacking & (way >= REST_LENGTH)].max(initial=0.0) <= 1.0
 
 
 @settings(max_examples=100)
@@ -128,10 +128,10 @@ def test_nothing_is_done_where_nothing_is_too_fast(data: st.DataObject, name: st
     machine = MACHINES[name]
     operation = data.draw(passes(machine))
     operation = replace(operation, moves=replace(operation.moves, feed=operation.moves.feed / 1e6))
-    for mode in (Pole.HOLD, Pole.SPREAD, Pole.LEAN):
+    for mode in (PoleStrategy.HOLD, PoleStrategy.SPREAD, PoleStrategy.LEAN):
         found = looked_after(machine, operation, mode, 0.5)
-        plain = follow(machine, operation.moves, False)
-        if not (shares(machine, operation, plain.rotary) > 0.98).any():
+        plain = choose_poses(machine, operation.moves, False)
+        if not (speed_shares(machine, operation, plain.rotary) > 0.98).any():
             assert not len(found.rows)
             np.testing.assert_array_equal(found.poses.rotary, plain.rotary)
 
@@ -196,8 +196,8 @@ def test_a_way_that_a_search_finds_is_found(
     far = np.full(n, gets)
     steady = np.zeros(n, bool)
     steady[[0, -1]] = True
-    packed, free = pack(machine), (-math.inf, math.inf)
-    made, lean = leanest(packed, axis, wanted, far, steady, free, angle)
+    kinematics, free = kinematic_parameters(machine), (-math.inf, math.inf)
+    made, lean = least_lean(kinematics, axis, wanted, far, steady, free, angle)
     off = off_at_best(name, axis)
     if made is None:
         # A little less room than there is, for what a grid cannot hit.
@@ -206,7 +206,7 @@ def test_a_way_that_a_search_finds_is_found(
     assert (np.abs(np.diff(made)) <= far[1:] + 1e-9).all()
     assert made[0] == pytest.approx(wanted[0], abs=1e-9)
     assert made[-1] == pytest.approx(wanted[-1], abs=1e-9)
-    second = nearest_second(replace_limits(machine), packed, axis, made, np.zeros(n))
+    second = closest_second_angles(replace_limits(machine), kinematics, axis, made, np.zeros(n))
     assert degrees_between(axes_of(machine, np.column_stack((made, second))), axis).max() <= lean + 1e-8
     assert lean <= angle
     assert not twin_finds(off, wanted, far - GRID, 0.9 * lean - 1e-3), "there is a way with less lean"
@@ -231,22 +231,22 @@ def straight_past(off: float, feed: float = 3000.0, n: int = 401) -> Operation:
     return operation_of(replace(moves, feed=np.full(n, feed)))
 
 
-def planned(operation: Operation, **wishes: object) -> Plan:
-    return plan([Toolpath("part.cls", (operation,))], BC, 0.001, Wishes(**wishes))  # type: ignore[arg-type]
+def planned(operation: Operation, **options: object) -> Plan:
+    return plan([Toolpath("part.cls", (operation,))], BC, 0.001, PlanOptions(**options))  # type: ignore[arg-type]
 
 
 def test_held_in_the_cone_and_turned_behind_it() -> None:
     operation = straight_past(0.05)
-    found = looked_after(BC, operation, Pole.HOLD, 0.1)
-    inside = np.flatnonzero(off_pole(pack(BC), operation.moves.axis) <= 0.1)
+    found = looked_after(BC, operation, PoleStrategy.HOLD, 0.1)
+    inside = np.flatnonzero(degrees_off_pole(kinematic_parameters(BC), operation.moves.axis) <= 0.1)
     np.testing.assert_allclose(np.diff(found.poses.rotary[inside[0] - 1 : inside[-1] + 1, 0]), 0.0, atol=1e-9)
     assert set(found.rows) <= set(inside.tolist())
 
 
 def test_spread_evenly_over_the_cone() -> None:
     operation = straight_past(0.05)
-    found = looked_after(BC, operation, Pole.SPREAD, 0.1)
-    inside = np.flatnonzero(off_pole(pack(BC), operation.moves.axis) <= 0.1)
+    found = looked_after(BC, operation, PoleStrategy.SPREAD, 0.1)
+    inside = np.flatnonzero(degrees_off_pole(kinematic_parameters(BC), operation.moves.axis) <= 0.1)
     steps = np.diff(np.unwrap(found.poses.rotary[inside[0] - 1 : inside[-1] + 2, 0], period=360.0))
     np.testing.assert_allclose(steps, steps[0], atol=1e-9)
 
@@ -258,19 +258,19 @@ def test_the_turn_out_of_the_pole_is_spread_over_the_approach_without_any_lean()
     axis[:5] = around_pole(BC, np.full(5, -3.0), np.full(5, 0.0))
     tip = np.column_stack((np.arange(n) * 0.5, np.zeros(n), np.zeros(n)))
     operation = operation_of(replace(moves_of(tip, axis), feed=np.full(n, 5000.0)))
-    plain = looked_after(BC, operation, Pole.SPREAD, 0.01)
+    plain = looked_after(BC, operation, PoleStrategy.SPREAD, 0.01)
     assert plain.lean.max(initial=0.0) < 1e-9
     steps = np.abs(np.diff(np.unwrap(plain.poses.rotary[:, 0], period=360.0)))
     assert steps[4:40].max() < 4.0
-    assert shares(BC, operation, plain.poses.rotary)[:, 0].max() < 1.5
+    assert speed_shares(BC, operation, plain.poses.rotary)[:, 0].max() < 1.5
 
 
 def test_by_default_everything_stays_and_the_log_names_place_axis_and_cure() -> None:
     operation = straight_past(0.05)
     found = planned(operation, explain=True)
-    assert not len(found.motions[0].departures)
+    assert not len(found.motions[0].deviations)
     np.testing.assert_array_equal(found.motions[0].operation.moves.axis, operation.moves.axis)
-    said = [decision for decision in found.decisions if decision.why is Why.SPEED]
+    said = [decision for decision in found.decisions if decision.topic is DecisionTopic.SPEED]
     assert len(said) == 1
     assert "axis C would need" in said[0].text
     assert "--set pole=lean --set pole_angle=0.08 would do" in said[0].text
@@ -278,18 +278,22 @@ def test_by_default_everything_stays_and_the_log_names_place_axis_and_cure() -> 
 
 
 def test_no_way_is_a_warning_with_an_angle_that_would_do() -> None:
-    found = planned(straight_past(0.2), pole=Pole.LEAN, pole_angle=0.1)
+    found = planned(straight_past(0.2), pole_strategy=PoleStrategy.LEAN, pole_angle=0.1)
     assert [str(p.severity) for p in found.problems] == ["warning"]
     assert "no lean of the tool axis by up to 0.1 degrees" in found.problems[0].what
     assert found.problems[0].cure == "--set pole=lean --set pole_angle=0.2 would do, or --set lower_feed=yes"
-    enough = planned(straight_past(0.2), pole=Pole.LEAN, pole_angle=0.2)
+    enough = planned(straight_past(0.2), pole_strategy=PoleStrategy.LEAN, pole_angle=0.2)
     assert enough.problems == ()
-    assert [d.why for d in enough.decisions if d.why in (Why.SPEED, Why.POLE)][-1] is Why.POLE
+    assert [d.topic for d in enough.decisions if d.topic in (DecisionTopic.SPEED, DecisionTopic.POLE)][
+        -1
+    ] is DecisionTopic.POLE
 
 
 def test_a_machine_that_does_not_say_its_speed_is_named() -> None:
     machine = load_machine("hs664rt")
-    found = plan([Toolpath("part.cls", (straight_past(0.05),))], machine, 0.001, Wishes(pole=Pole.LEAN))
+    found = plan(
+        [Toolpath("part.cls", (straight_past(0.05),))], machine, 0.001, PlanOptions(pole_strategy=PoleStrategy.LEAN)
+    )
     assert "has no rapid speed of C and A" in found.problems[0].what
 
 
@@ -301,26 +305,28 @@ def test_a_lowered_feed_is_what_the_axes_can_do_and_no_less() -> None:
     operation = straight_past(0.05)
     found = planned(operation, lower_feed=True)
     motion = found.motions[0]
-    share = shares(BC, motion.operation, motion.rotary).max(axis=1)
+    share = speed_shares(BC, motion.operation, motion.rotary).max(axis=1)
     low = feeds(found) < operation.moves.feed
     assert low.any()
     assert share.max() < 1.0
     assert share[low].min() > 0.98
-    np.testing.assert_array_equal(motion.departures.slowed, np.flatnonzero(low))
-    np.testing.assert_array_equal(motion.departures.feed, feeds(found)[low])
-    assert [d.why for d in found.decisions if d.why in (Why.SPEED, Why.FEED)] == [Why.FEED]
+    np.testing.assert_array_equal(motion.deviations.slowed, np.flatnonzero(low))
+    np.testing.assert_array_equal(motion.deviations.feed, feeds(found)[low])
+    assert [d.topic for d in found.decisions if d.topic in (DecisionTopic.SPEED, DecisionTopic.FEED)] == [
+        DecisionTopic.FEED
+    ]
 
 
 def test_leaning_first_leaves_less_to_lower() -> None:
     operation = straight_past(0.2)
     lowered = feeds(planned(operation, lower_feed=True)).min()
-    assert feeds(planned(operation, lower_feed=True, pole=Pole.LEAN, pole_angle=0.1)).min() == lowered
-    assert feeds(planned(operation, lower_feed=True, pole=Pole.LEAN, pole_angle=0.2)).min() == 3000.0
+    assert feeds(planned(operation, lower_feed=True, pole_strategy=PoleStrategy.LEAN, pole_angle=0.1)).min() == lowered
+    assert feeds(planned(operation, lower_feed=True, pole_strategy=PoleStrategy.LEAN, pole_angle=0.2)).min() == 3000.0
 
 
 def test_moves_keep_their_number_and_their_lines() -> None:
     operation = straight_past(0.05)
-    moves: Moves = planned(operation, pole=Pole.LEAN).motions[0].operation.moves
+    moves: Moves = planned(operation, pole_strategy=PoleStrategy.LEAN).motions[0].operation.moves
     np.testing.assert_array_equal(moves.line, operation.moves.line)
     np.testing.assert_array_equal(moves.tip, operation.moves.tip)
-    assert REWIND not in looked_after(BC, operation, Pole.LEAN, 0.1).poses.outcome
+    assert REWIND not in looked_after(BC, operation, PoleStrategy.LEAN, 0.1).poses.outcome

@@ -11,20 +11,20 @@ from hypothesis import strategies as st
 from tests.machines import at_zero
 from tests.plan.naive import operation_of
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
-from trunnion.cli.post import planned_program, write
+from trunnion.cli.post import plan_program, write_for_proof
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Refused, Severity
-from trunnion.machines import Machine, load_machine, shipped
+from trunnion.errors import InputError, RefusedError, Severity
+from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.model.toolpath import LoadTool, Moves, SpindleOn, Toolpath
-from trunnion.planning import Wishes, plan
+from trunnion.planning import PlanOptions, plan
 from trunnion.readers import run_program
 from trunnion.verification import Verification, failures, verify
 
 SINUMERIK = load_machine("yl569").control
-CONTROL = load_control(SINUMERIK.fresh())
+CONTROL = load_control(SINUMERIK.unread_copy())
 
 #: Every shipped machine with a control whose programs can be written.
-MACHINES = {name: replace(at_zero(name), control=SINUMERIK.fresh()) for name in shipped()}
+MACHINES = {name: replace(at_zero(name), control=SINUMERIK.unread_copy()) for name in shipped_machines()}
 
 #: How far the rotary axes may be beyond a limit: half of what is printed.
 HALF_DIGIT = 0.5e-5 + 1e-9
@@ -43,14 +43,14 @@ def proven(machine: Machine, toolpath: Toolpath, folder: Path) -> Verification:
 
     Raises
     ------
-    Refused, InputError
+    RefusedError, InputError
         When there is no program, as over-travel and tool axes out of reach leave none.
     """
-    program, _ = planned_program([toolpath], machine, CONTROL, {}, False, Wishes())
+    program, _ = plan_program([toolpath], machine, CONTROL, {}, False, PlanOptions())
     target = folder / "part.mpf"
     with target.open("wb") as sink:
-        claim = write(program, sink)
-    return verify(run_program(target, machine), [toolpath], allowed=claim.allowed, settings=claim.settings)
+        claim = write_for_proof(program, sink)
+    return verify(run_program(target, machine), [toolpath], tolerances=claim.allowed, settings=claim.settings)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +67,7 @@ def test_what_is_planned_is_proven(name: str, moves: Moves, folder: Path) -> Non
     machine, toolpath = MACHINES[name], toolpath_of(moves)
     try:
         found = proven(machine, toolpath, folder)
-    except (Refused, InputError):
+    except (RefusedError, InputError):
         assume(False)
         return
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]

@@ -16,14 +16,14 @@ from trunnion.cl.write import write_cl
 from trunnion.cli import main
 from trunnion.errors import Severity
 from trunnion.machines import Machine, forward, slide_positions
-from trunnion.model.motion import Motion, Plan, Why
+from trunnion.model.motion import DecisionTopic, Motion, Plan
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Moves, Operation, Phase, SpindleOn, Toolpath
-from trunnion.planning import Clearance, Surface, Wishes, plan
-from trunnion.planning.retracts.clearance import LEAST
+from trunnion.planning import Clearance, ClearanceSurface, PlanOptions, plan
+from trunnion.planning.retracts.clearance import MIN_RETRACT
 
 
-def planned(operation: Operation, machine: Machine = CA, wishes: Wishes | None = None) -> Plan:
-    return plan([Toolpath("part.cls", (operation,))], machine, 0.001, wishes)
+def planned(operation: Operation, machine: Machine = CA, options: PlanOptions | None = None) -> Plan:
+    return plan([Toolpath("part.cls", (operation,))], machine, 0.001, options)
 
 
 def round_part(n: int = 400) -> Moves:
@@ -41,7 +41,7 @@ def added(motion: Motion, moves: Moves) -> tuple[int, Moves]:
 
 def test_the_tool_draws_back_turns_and_comes_back_to_the_same_point() -> None:
     moves = round_part()
-    motion = planned(operation_of(moves), wishes=Wishes(clearance=Clearance(30.0))).motions[0]
+    motion = planned(operation_of(moves), options=PlanOptions(clearance=Clearance(30.0))).motions[0]
     row, rows = added(motion, moves)
     there = slice(row + 1, row + 4)
     assert rows.kind[there].tolist() == [Kind.LINEAR, Kind.RAPID, Kind.LINEAR]
@@ -65,23 +65,23 @@ def test_the_tool_draws_back_turns_and_comes_back_to_the_same_point() -> None:
 @pytest.mark.parametrize(
     ("setting", "clear"),
     [
-        (Clearance(90.0, Surface.PLANE), lambda tip: abs(tip[2] - 90.0)),
-        (Clearance(120.0, Surface.SPHERE), lambda tip: abs(np.linalg.norm(tip) - 120.0)),
-        (Clearance(-5.0, Surface.PLANE), None),
-        (Clearance(1.0, Surface.SPHERE), None),
+        (Clearance(90.0, ClearanceSurface.PLANE), lambda tip: abs(tip[2] - 90.0)),
+        (Clearance(120.0, ClearanceSurface.SPHERE), lambda tip: abs(np.linalg.norm(tip) - 120.0)),
+        (Clearance(-5.0, ClearanceSurface.PLANE), None),
+        (Clearance(1.0, ClearanceSurface.SPHERE), None),
     ],
 )
 def test_the_tool_draws_back_to_a_plane_or_out_of_a_sphere(
     setting: Clearance, clear: Callable[[Floats], float] | None
 ) -> None:
     moves = round_part()
-    row, rows = added(planned(operation_of(moves), wishes=Wishes(clearance=setting)).motions[0], moves)
+    row, rows = added(planned(operation_of(moves), options=PlanOptions(clearance=setting)).motions[0], moves)
     there = rows.tip[row + 1]
     way = there - moves.tip[row]
     assert np.linalg.norm(np.cross(way, moves.axis[row])) < 1e-9
-    assert way @ moves.axis[row] >= LEAST - 1e-9
+    assert way @ moves.axis[row] >= MIN_RETRACT - 1e-9
     if clear is None:  # it is out there already
-        assert way @ moves.axis[row] == pytest.approx(LEAST)
+        assert way @ moves.axis[row] == pytest.approx(MIN_RETRACT)
     else:
         assert clear(there) < 1e-9
 
@@ -89,7 +89,7 @@ def test_the_tool_draws_back_to_a_plane_or_out_of_a_sphere(
 def test_a_level_tool_does_not_draw_back_to_a_plane() -> None:
     moves = winding(89.5, 100.0, 1100.0, 400)
     moves = replace(moves, tip=40.0 * moves.axis)
-    found = planned(operation_of(moves), wishes=Wishes(clearance=Clearance(90.0, Surface.PLANE)))
+    found = planned(operation_of(moves), options=PlanOptions(clearance=Clearance(90.0, ClearanceSurface.PLANE)))
     errors = [p for p in found.problems if p.severity is Severity.ERROR]
     assert errors[0].what.endswith("its axis does not lead to the clearance plane:90")
     assert np.isfinite(found.motions[0].operation.moves.tip).all()
@@ -108,7 +108,7 @@ def test_a_rewind_is_announced_in_the_program_and_in_a_warning() -> None:
 
 
 def test_without_rewinds_the_program_is_refused_with_line_axis_value_and_limit() -> None:
-    found = planned(operation_of(round_part()), wishes=Wishes(rewind=False))
+    found = planned(operation_of(round_part()), options=PlanOptions(allow_rewinds=False))
     assert len(found.motions[0].operation.moves) == 400
     (problem,) = found.problems
     assert problem.severity is Severity.ERROR
@@ -121,7 +121,7 @@ def test_without_rewinds_the_program_is_refused_with_line_axis_value_and_limit()
 def test_a_retreat_keeps_the_limits_of_the_slides_where_the_workpiece_zero_is_known() -> None:
     known = replace(CA, workpiece_zero=(0.0, 0.0, 100.0))
     assert [p.severity for p in planned(operation_of(round_part()), known).problems] == [Severity.WARNING]
-    found = planned(operation_of(round_part()), known, Wishes(clearance=Clearance(1800.0))).problems
+    found = planned(operation_of(round_part()), known, PlanOptions(clearance=Clearance(1800.0))).problems
     errors = [p for p in found if p.severity is Severity.ERROR]
     assert len(errors) == 1
     assert "on the retreat for a rewind axis" in errors[0].what
@@ -129,7 +129,7 @@ def test_a_retreat_keeps_the_limits_of_the_slides_where_the_workpiece_zero_is_kn
 
 
 def test_without_a_workpiece_zero_a_retreat_needs_room_too() -> None:
-    found = planned(operation_of(round_part()), wishes=Wishes(clearance=Clearance(3000.0))).problems
+    found = planned(operation_of(round_part()), options=PlanOptions(clearance=Clearance(3000.0))).problems
     assert any("has room for" in p.what for p in found)
 
 
@@ -290,19 +290,19 @@ def test_over_travel_says_how_much_is_lacking_and_what_the_other_pose_would_do()
 
 
 def test_every_start_change_and_rewind_is_in_the_log() -> None:
-    found = planned(operation_of(round_part(), "ROUND"), wishes=Wishes(explain=True))
-    assert [d.why for d in found.decisions] == [Why.START, Why.REWIND, Why.NEAREST]
+    found = planned(operation_of(round_part(), "ROUND"), options=PlanOptions(explain=True))
+    assert [d.topic for d in found.decisions] == [DecisionTopic.START, DecisionTopic.REWIND, DecisionTopic.NEAREST]
     assert all(d.operation == "ROUND" and d.file == "part.cls" and d.line >= 10 for d in found.decisions)
-    near = planned(operation_of(winding(40.0, 100.0, 200.0)), wishes=Wishes(explain=True))
-    assert [d.why for d in near.decisions] == [Why.START, Why.NEAREST]
+    near = planned(operation_of(winding(40.0, 100.0, 200.0)), options=PlanOptions(explain=True))
+    assert [d.topic for d in near.decisions] == [DecisionTopic.START, DecisionTopic.NEAREST]
     assert "the pose nearest to home" in near.decisions[0].text
     assert not planned(operation_of(round_part(), "ROUND")).decisions, "nobody asked"
 
 
 def test_a_path_over_the_pole_is_in_the_log() -> None:
     moves = moves_of(np.zeros((121, 3)), directions(np.linspace(-60.0, 60.0, 121), np.full(121, 30.0)))
-    log = planned(operation_of(moves), wishes=Wishes(explain=True)).decisions
-    assert [d.why for d in log] == [Why.START, Why.POLE, Why.NEAREST]
+    log = planned(operation_of(moves), options=PlanOptions(explain=True)).decisions
+    assert [d.topic for d in log] == [DecisionTopic.START, DecisionTopic.POLE, DecisionTopic.NEAREST]
     assert "goes through the pole" in log[1].text
 
 

@@ -18,7 +18,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.subdivision import subdivide
 from trunnion.model.toolpath import Kind, Message, Moves
-from trunnion.planning import Clearance, Wishes
+from trunnion.planning import Clearance, PlanOptions
 from trunnion.readers import run_program
 from trunnion.verification import verify
 
@@ -26,8 +26,8 @@ CA = machine("generic_head_head_ca")
 
 
 def posted(moves: Moves, model: Machine = CA, tolerance: float = 0.01, clearance: float = 40.0) -> Posted:
-    wishes = Wishes(tcp=False, tip_tolerance=tolerance, clearance=Clearance(clearance))
-    return post(model, toolpath(operation_of(moves)), wishes)
+    options = PlanOptions(tcp=False, tip_tolerance=tolerance, clearance=Clearance(clearance))
+    return post(model, toolpath(operation_of(moves)), options)
 
 
 def turning_rows(done: Posted) -> slice:
@@ -59,7 +59,7 @@ def test_the_slides_hold_the_tip_at_the_clearance_while_the_axes_turn() -> None:
 
 
 def test_rewinds_can_be_forbidden_without_tcp_too() -> None:
-    done = post(CA, toolpath(operation_of(round_part())), Wishes(tcp=False, rewind=False))
+    done = post(CA, toolpath(operation_of(round_part())), PlanOptions(tcp=False, allow_rewinds=False))
     (problem,) = done.plan.problems
     assert problem.severity is Severity.ERROR
     assert "axis C would go to 36" in problem.what
@@ -110,15 +110,15 @@ FAULTS: dict[str, Callable[[list[str], int, int], list[str]]] = {
 @pytest.mark.parametrize("asked", [True, False], ids=["with a tolerance of the tip", "without"])
 def test_the_proof_holds_the_tip_of_a_turn(fault: str, asked: bool, tmp_path: Path) -> None:
     path = toolpath(operation_of(round_part()))
-    done = post(CA, path, Wishes(tcp=False))
+    done = post(CA, path, PlanOptions(tcp=False))
     lines = done.text.splitlines()
     rows = turning_rows(done)
-    first, last = (int(done.run.blocks[row]) - 1 for row in (rows.start, rows.stop - 1))
+    first, last = (int(done.run.lines[row]) - 1 for row in (rows.start, rows.stop - 1))
     file = tmp_path / "part.mpf"
     for text, passes in ((lines, True), (FAULTS[fault](lines, first, last), False)):
         file.write_text("\n".join(text) + "\n", encoding="utf-8")
         said = done.settings if asked else replace(done.settings, span=1.0, span_tip=None)
-        found = verify(run_program(file, CA), [path], allowed=done.allowed, settings=said)
+        found = verify(run_program(file, CA), [path], tolerances=done.allowed, settings=said)
         assert found.passed is passes, [str(c) for c in found.checks if not c.passed]
 
 

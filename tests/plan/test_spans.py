@@ -9,10 +9,10 @@ from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.machines import Machine, forward, inverse, load_machine, shipped, slide_positions
-from trunnion.planning.linearization.linearization import Spans, divide
+from trunnion.machines import Machine, forward, inverse, load_machine, shipped_machines, slide_positions
+from trunnion.planning.linearization.intermediate_points import DividedPath, divide_path
 
-NAMES = sorted(shipped())
+NAMES = sorted(shipped_machines())
 ZERO = (37.0, -21.0, 110.0)
 
 
@@ -53,7 +53,7 @@ def axes_of(model: Machine, tip: Floats, axis: Floats) -> Floats:
     return followed(model, np.zeros_like(dense), dense)[:: len(part)]
 
 
-def off(model: Machine, tip: Floats, axis: Floats, spans: Spans, tcp: bool) -> tuple[float, float]:
+def off(model: Machine, tip: Floats, axis: Floats, spans: DividedPath, tcp: bool) -> tuple[float, float]:
     """How far the tip is from the CAM's line, mm, and the tool axis from its great circle, deg, on all ways."""
     joints = np.empty((len(spans.tip), 5))
     joints[:] = slide_positions(model, spans.tip, spans.rotary)
@@ -102,7 +102,7 @@ def test_the_tool_stays_within_its_tolerances(
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     rotary = axes_of(model, tip, axis)
     assume(np.isfinite(rotary).all())
-    spans = divide(
+    spans = divide_path(
         model, tip, axis, rotary, np.ones(len(tip), bool),
         tcp=tcp, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance,
     )  # fmt: skip
@@ -167,7 +167,7 @@ def test_no_more_points_than_a_tenth_above_the_fewest(
     assume(np.abs(axis[:, :2]).max(axis=1).min() > 1e-3)  # turns at rest in the pole are no spans
     rotary = axes_of(model, tip, axis)
     assume(np.isfinite(rotary).all())
-    spans = divide(
+    spans = divide_path(
         model, tip, axis, rotary, np.ones(len(tip), bool),
         tcp=tcp, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance,
     )  # fmt: skip
@@ -189,7 +189,11 @@ def test_with_tcp_a_short_turn_needs_no_points_and_without_it_does() -> None:
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     rotary = axes_of(model, tip, axis)
     counts = [
-        len(divide(model, tip, axis, rotary, np.ones(2, bool), tcp=tcp, tip_tolerance=0.001, axis_tolerance=0.1).tip)
+        len(
+            divide_path(
+                model, tip, axis, rotary, np.ones(2, bool), tcp=tcp, tip_tolerance=0.001, axis_tolerance=0.1
+            ).tip
+        )
         for tcp in (True, False)
     ]
     assert counts[0] == 2
@@ -207,7 +211,7 @@ def test_a_turn_in_the_pole_is_cut_into_pieces_at_rest() -> None:
     candidates = options.reshape(-1, 2)
     same_side = [c for c in candidates if abs(c[1] - first[1]) < 1e-6 and abs(c[0] - first[0]) > 90.0]
     rotary = np.array([first, same_side[0]])
-    spans = divide(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.01, axis_tolerance=0.1)
+    spans = divide_path(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.01, axis_tolerance=0.1)
     assert off(model, tip, axis, spans, tcp=False)[0] <= 0.01
     upright = np.abs(spans.axis[:, 2] - 1.0) < 1e-9
     assert upright.sum() > 50
@@ -221,7 +225,7 @@ def test_a_short_way_under_a_turning_tool_keeps_the_tip_where_it_goes_back_along
     axis = np.array([[0.0, -0.347, 1.0], [0.0, 0.597, 1.0]])
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     rotary = axes_of(model, tip, axis)
-    spans = divide(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.001, axis_tolerance=0.5)
+    spans = divide_path(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.001, axis_tolerance=0.5)
     assert off(model, tip, axis, spans, tcp=False)[0] <= 0.001
 
 
@@ -231,7 +235,7 @@ def test_rows_that_are_not_among_those_stay_as_they_are() -> None:
     axis = np.array([[0.0, 0.2, 1.0], [0.4, 0.2, 1.0], [0.0, 0.2, 1.0]])
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     rotary = axes_of(model, tip, axis)
-    spans = divide(
+    spans = divide_path(
         model, tip, axis, rotary, np.array([True, False, True]), tcp=False, tip_tolerance=0.01, axis_tolerance=1.0
     )
     assert (spans.source == 1).sum() == 1

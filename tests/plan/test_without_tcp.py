@@ -14,22 +14,22 @@ from hypothesis import strategies as st
 from tests.machines import at_zero
 from tests.plan.naive import moves_of, operation_of
 from trunnion.arrays import Codes, Floats
-from trunnion.cli.post import write
+from trunnion.cli.post import write_for_proof
 from trunnion.controls import load_control
 from trunnion.errors import Severity
-from trunnion.machines import Machine, forward, load_machine, shipped
+from trunnion.machines import Machine, forward, load_machine, shipped_machines
 from trunnion.model.motion import Plan
 from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide
 from trunnion.model.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Toolpath
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
-from trunnion.planning import Wishes, plan
-from trunnion.planning.linearization.arc_chords import turned_evenly
+from trunnion.planning import PlanOptions, plan
+from trunnion.planning.linearization.arc_chords import great_circle_points
 from trunnion.readers import run_program
-from trunnion.verification import Allowed, Settings, Verification, verify
+from trunnion.verification import Settings, Tolerances, Verification, verify
 
-NAMES = sorted(shipped())
+NAMES = sorted(shipped_machines())
 SINUMERIK = load_machine("yl569").control
 
 
@@ -37,7 +37,7 @@ def machine(name: str) -> Machine:
     """A machine with room for its slides, a part off its rotary axes, and a tool where its head turns it."""
     model = at_zero(name)
     axes = tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in model.axes)
-    length = 83.7 if model.turns_tool else None
+    length = 83.7 if model.has_rotary_head else None
     return replace(model, axes=axes, control=SINUMERIK, workpiece_zero=(37.0, -21.0, 110.0), tool_length=length)
 
 
@@ -54,22 +54,22 @@ class Posted:
     text: str
     run: Run
     found: Verification
-    allowed: Sequence[Allowed]
+    allowed: Sequence[Tolerances]
     settings: Settings
 
 
-def post(model: Machine, path: Toolpath, wishes: Wishes) -> Posted:
+def post(model: Machine, path: Toolpath, options: PlanOptions) -> Posted:
     """Plan, write, read back and prove, whatever speaks against the plan."""
     control = load_control(model.control)
-    planned = plan([path], model, control.chord_tolerance, wishes)
+    planned = plan([path], model, control.chord_tolerance, options)
     program = Program(model, control, planned.motions, {}, "part.cls")
     assert [p for p in check_program(program) if p.severity is Severity.ERROR] == []
     with TemporaryDirectory() as folder:
         file = Path(folder) / "part.mpf"
         with file.open("wb") as sink:
-            claim = write(program, sink, wishes)
+            claim = write_for_proof(program, sink, options)
         run = run_program(file, model)
-        found = verify(run, [path], allowed=claim.allowed, settings=claim.settings)
+        found = verify(run, [path], tolerances=claim.allowed, settings=claim.settings)
         return Posted(planned, file.read_text(encoding="utf-8"), run, found, claim.allowed, claim.settings)
 
 
@@ -159,7 +159,7 @@ def test_the_tool_stays_on_its_way_between_blocks(
     done = post(
         machine(name),
         toolpath(operation_of(moves)),
-        Wishes(tcp=False, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance),
+        PlanOptions(tcp=False, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance),
     )
     refused = [problem.what for problem in done.plan.problems if problem.severity is Severity.ERROR]
     event(f"refused: {bool(refused)}")
@@ -207,7 +207,7 @@ def test_smooth_paths_also_past_the_pole_and_round_and_round(
 ) -> None:
     tip, axis = smooth(form, turns, tilt, n)
     done = post(
-        machine(name), toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False, tip_tolerance=tip_tolerance)
+        machine(name), toolpath(operation_of(moves_of(tip, axis))), PlanOptions(tcp=False, tip_tolerance=tip_tolerance)
     )
     if any(problem.severity is Severity.ERROR for problem in done.plan.problems):
         event("refused")
@@ -233,7 +233,7 @@ def test_with_tcp_points_keep_the_tool_axis_where_somebody_asks(
     assume(np.abs(axis - [0.0, 0.0, 1.0]).max() > 1e-6)
     kind = np.array([Kind.RAPID, *(k for _, _, _, k in path[1:])], np.uint8)
     asked = toolpath(operation_of(replace(moves_of(tip, axis), kind=kind)))
-    done = post(machine(name), asked, Wishes(axis_tolerance=tolerance))
+    done = post(machine(name), asked, PlanOptions(axis_tolerance=tolerance))
     if any(problem.severity is Severity.ERROR for problem in done.plan.problems):
         event("refused")
         return
@@ -258,7 +258,7 @@ def worst_of(planned: Plan, model: Machine, tip: Floats, axis: Floats, kind: Cod
         joints[:, list(model.rotary)] = rotary[k] + np.linspace(0.0, 1.0, 51)[:, None] * step
         look = forward(model, joints)[1]
         part = np.linspace(0.0, 1.0, 51)
-        worst = max(worst, float(apart(look, turned_evenly(axis[k], axis[k + 1], part)).max()))
+        worst = max(worst, float(apart(look, great_circle_points(axis[k], axis[k + 1], part)).max()))
     return worst
 
 
@@ -270,7 +270,7 @@ def test_slides_of_a_tilting_head_follow_pivot_and_tool_length() -> None:
     model = replace(machine("generic_head_table_bc"), workpiece_zero=(0.0, 0.0, 50.0), tool_length=120.0)
     tip, b = np.array([[10.0, 4.0, 2.0], [12.0, 4.0, 1.0]]), np.array([30.0, 40.0])
     axis = np.column_stack((np.sin(np.radians(b)), np.zeros(2), np.cos(np.radians(b))))
-    done = post(model, toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False))
+    done = post(model, toolpath(operation_of(moves_of(tip, axis))), PlanOptions(tcp=False))
     rows = rows_of_points(done.run, tip, axis)
     places = [done.run.joints[row] for row in rows]
     arm = 180.0 + 120.0
@@ -290,7 +290,7 @@ def test_slides_of_a_tilting_table_turn_with_the_part() -> None:
     model = replace(machine("yl569"), workpiece_zero=(5.0, 0.0, 80.0))
     tip, b = np.array([[10.0, 4.0, 2.0], [12.0, 4.0, 1.0]]), np.array([30.0, 35.0])
     axis = np.column_stack((np.sin(np.radians(b)), np.zeros(2), np.cos(np.radians(b))))
-    done = post(model, toolpath(operation_of(moves_of(tip, axis))), Wishes(tcp=False))
+    done = post(model, toolpath(operation_of(moves_of(tip, axis))), PlanOptions(tcp=False))
     for point, row, angle in zip(tip, rows_of_points(done.run, tip, axis), np.radians(b), strict=True):
         x, z = point[0] + 5.0, point[2] + 80.0
         place = done.run.joints[row]
@@ -331,7 +331,7 @@ def test_circles_stay_where_the_slides_make_them(
     name: str, normal: list[float], axis: list[float], circles: int
 ) -> None:
     operation, tip = arc_moves(np.array(normal), np.array(axis))
-    done = post(machine(name), toolpath(operation), Wishes(tcp=False))
+    done = post(machine(name), toolpath(operation), PlanOptions(tcp=False))
     assert [check.key for check in done.found.checks if not check.passed] == []
     assert len(done.run.arcs.row) == circles
     rows = rows_of_points(done.run, tip, operation.moves.axis)

@@ -5,18 +5,18 @@ import numpy as np
 from trunnion.arrays import Floats
 
 
-def angle_reached(held: float, value: float | None, way: str, lowest: float = 0.0) -> float:
+def angle_reached(held: float, value: float | None, turn_rule: str, lowest: float = 0.0) -> float:
     """Where a rotary axis stands after a word, found among all turns."""
     if value is None:
         return held
-    if way == "plain":
+    if turn_rule == "plain":
         return value
     turns = [value + 360.0 * k for k in range(-200, 201)]
-    if way == "shortest":
+    if turn_rule == "shortest":
         return min(turns, key=lambda angle: (abs(angle - held), -angle))
-    if way == "positive":
+    if turn_rule == "positive":
         return min(angle for angle in turns if angle >= held - 1e-9)
-    if way == "negative":
+    if turn_rule == "negative":
         return max(angle for angle in turns if angle <= held + 1e-9)
     first = lowest + 360.0 * np.floor((held - lowest) / 360.0)
     return next(angle for angle in turns if first - 1e-9 <= angle < first + 360.0 - 1e-9)

@@ -5,8 +5,8 @@ import pytest
 from tests.reader.conftest import Runner, close
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common.drilling import CycleError
-from trunnion.readers.families.sinumerik.cycles import strokes
+from trunnion.readers.common.hole_motion import CycleExecutionError
+from trunnion.readers.families.sinumerik.cycles import peck_depths
 
 
 def heights(result: Run, kind: Kind | None = None) -> list[float]:
@@ -20,7 +20,7 @@ HEAD = "G0 X0 Y0 Z50 S1000 M3\nF180\n"
 
 def test_a_modal_cycle_drills_at_every_position_until_it_ends(run: Runner) -> None:
     result = run(HEAD + "MCALL CYCLE81(10,0,3,-6)\nX10 Y10\nX40\nMCALL\nX50")
-    assert result.findings == ()
+    assert result.diagnostics == ()
     close(
         result.tip[1:],
         [
@@ -29,7 +29,7 @@ def test_a_modal_cycle_drills_at_every_position_until_it_ends(run: Runner) -> No
             [50, 10, 10],
         ],
     )  # fmt: skip
-    assert result.block[1:].tolist() == [4, 4, 4, 4, 5, 5, 5, 5, 7]
+    assert result.line[1:].tolist() == [4, 4, 4, 4, 5, 5, 5, 5, 7]
     assert result.kind[1:5].tolist() == [Kind.RAPID, Kind.RAPID, Kind.LINEAR, Kind.RAPID]
     assert result.programmed[2:5].tolist() == [0, 0, 0]
     assert result.feed[3] == 180.0
@@ -43,7 +43,7 @@ def test_a_cycle_without_mcall_drills_once_where_the_tool_is(run: Runner) -> Non
 def test_pecking_with_full_retraction(run: Runner) -> None:
     # The facts' example: first stroke 6, then 1 less each time but not less than 2; chips are cleared at Z2.
     result = run(HEAD + "CYCLE83(50,0,2,-20,,-6,,1,0.2,0,1,1,3,2,,0,1)")
-    assert result.findings == ()
+    assert result.diagnostics == ()
     bottoms = heights(result, Kind.LINEAR)
     assert bottoms == [-6, -11, -15, -18, -20]
     assert heights(result)[1:6] == [2, -6, 2, -5, -11]
@@ -58,13 +58,13 @@ def test_pecking_with_chip_breaking(run: Runner) -> None:
 
 
 def test_strokes_of_deep_holes() -> None:
-    assert strokes(10, 10, 0, 0) == [10]
-    assert strokes(10, 4, 0, 0) == [4, 8, 10]
-    assert strokes(20, 8, -0.5, 2) == [8, 12, 14, 16, 18, 20]
-    with pytest.raises(CycleError, match="more than"):
-        strokes(10, 0.001, 0, 0)
-    with pytest.raises(CycleError, match="above"):
-        strokes(10, -1, 0, 0)
+    assert peck_depths(10, 10, 0, 0) == [10]
+    assert peck_depths(10, 4, 0, 0) == [4, 8, 10]
+    assert peck_depths(20, 8, -0.5, 2) == [8, 12, 14, 16, 18, 20]
+    with pytest.raises(CycleExecutionError, match="more than"):
+        peck_depths(10, 0.001, 0, 0)
+    with pytest.raises(CycleExecutionError, match="above"):
+        peck_depths(10, -1, 0, 0)
 
 
 def test_tapping_goes_at_the_pitch(run: Runner) -> None:
@@ -88,10 +88,10 @@ def test_reaming_and_boring(run: Runner) -> None:
 
 def test_cycles_drill_along_the_frame(run: Runner) -> None:
     tilted = run("G0 B90\nTRAORI\nROT Y90\nX1 Y2 Z50\nCYCLE81(10,0,3,-6)")
-    assert tilted.findings == ()
+    assert tilted.diagnostics == ()
     close(tilted.tip[-2], [-6, 2, -1], atol=1e-9)
     askew = run("TRAORI\nROT Y90\nX1 Y2 Z50\nCYCLE81(10,0,3,-6)")
-    assert "not the tool axis" in askew.findings[0].text
+    assert "not the tool axis" in askew.diagnostics[0].text
     side = run("G19 G0 X50\nCYCLE81(10,0,3,-6)")
     assert side.tip[:, 0].tolist() == [50, 3, -6, 10]
 

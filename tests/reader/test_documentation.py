@@ -5,37 +5,37 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.readers.common import interpreter, text
+from trunnion.readers.common import interpreter, source_text
 from trunnion.readers.families.sinumerik import cycles, expressions, flow, words
-from trunnion.readers.families.sinumerik.text import DEEPEST
+from trunnion.readers.families.sinumerik.text import MAX_NESTING
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reader.md").read_text(encoding="utf-8")
 
 #: What stands in backticks, without its value or arguments.
-NAMED = {re.split(r"[ =(\[]", word)[0] for word in re.findall(r"`([^`\n]+)`", PAGE)}
+NOT_SIMULATED = {re.split(r"[ =(\[]", word)[0] for word in re.findall(r"`([^`\n]+)`", PAGE)}
 
 G_WORDS = {
     *words.G_PLANES,
     *words.G_UNITS,
     *words.G_FEEDS,
     *words.G_MACHINE,
-    *words.G_SILENT,
-    *words.G_NAMED,
+    *words.G_WITHOUT_PATH_EFFECT,
+    *words.G_NOT_SIMULATED,
     *words.G_NO_MOTION,
     *(words.G_OFFSETS - set(range(506, 599)) - {55, 56}),
     0, 1, 2, 3, 4, 90, 91,
 }  # fmt: skip
 
 NAMES = (
-    words.SILENT
-    | words.SILENT_VALUES
-    | words.SILENT_CALLS
-    | words.NAMED
+    words.WITHOUT_PATH_EFFECT
+    | words.WITHOUT_PATH_EFFECT_VALUES
+    | words.WITHOUT_PATH_EFFECT_CALLS
+    | words.NOT_SIMULATED
     | words.ORIENTATION
     | words.FRAMES
     | words.FLOW
     | words.TYPES
-    | words.WAYS
+    | words.POSITION_MODES
     | words.ACTIVE
     | set(words.CONSTANTS)
     | set(cycles.CYCLES)
@@ -48,27 +48,27 @@ NAMES = (
 
 @pytest.mark.parametrize("code", sorted(G_WORDS))
 def test_every_g_word_is_in_the_page(code: int) -> None:
-    assert f"G{code}" in NAMED
+    assert f"G{code}" in NOT_SIMULATED
 
 
 @pytest.mark.parametrize("name", sorted(NAMES))
 def test_every_name_is_in_the_page(name: str) -> None:
-    assert name in NAMED
+    assert name in NOT_SIMULATED
 
 
 def test_every_m_word_and_event_is_in_the_page() -> None:
-    codes = {*words.M_EVENTS, *words.M_SPINDLE, *words.M_ENDS, words.M_RETURN, words.M_CHANGE}
-    assert {f"M{code}" for code in codes} <= NAMED
-    assert {kind for kind, _ in words.M_EVENTS.values()} <= NAMED
+    codes = {*words.M_EVENTS, *words.M_SPINDLE, *words.M_PROGRAM_ENDS, words.M_RETURN, words.M_CHANGE}
+    assert {f"M{code}" for code in codes} <= NOT_SIMULATED
+    assert {kind for kind, _ in words.M_EVENTS.values()} <= NOT_SIMULATED
 
 
 def test_limits_are_those_of_the_page() -> None:
     plain = PAGE.replace(" 000", "000")
-    assert str(interpreter.STEPS) in plain
-    assert f"After {interpreter.MOST_FINDINGS} findings" in plain
-    assert f"at most {DEEPEST} inside" in plain
-    assert f"At most {interpreter.DEEPEST_CALL} programs" in plain
-    assert f"calls at most {interpreter.MOST_FILES} files" in plain
-    assert f"for every {interpreter.LONG} characters" in plain
-    assert f"at most {expressions.DEEPEST} deep" in plain
-    assert f"at most {text.LARGEST_WHOLE >> 20} MiB" in plain
+    assert str(interpreter.DEFAULT_STEP_LIMIT) in plain
+    assert f"After {interpreter.MAX_DIAGNOSTICS} findings" in plain
+    assert f"at most {MAX_NESTING} inside" in plain
+    assert f"At most {interpreter.MAX_CALL_DEPTH} programs" in plain
+    assert f"calls at most {interpreter.MAX_SUBPROGRAMS} files" in plain
+    assert f"for every {interpreter.CHARACTERS_PER_STEP} characters" in plain
+    assert f"at most {expressions.MAX_NESTING} deep" in plain
+    assert f"at most {source_text.MAX_LOADED_SIZE >> 20} MiB" in plain

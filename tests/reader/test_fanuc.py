@@ -59,7 +59,7 @@ def test_whole_numbers_count_least_increments(n: int, inches: bool, run: Runner)
 def test_a_calculator_takes_whole_numbers_as_they_stand(run: Runner) -> None:
     got = run("G90 G1 X10 Y-3 B20 F500\nX2\n", CALCULATOR)
     close(slides(got), [[10.0, -3.0, 0.0], [2.0, -3.0, 0.0]])
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 def test_feeds_dwells_and_speeds_without_a_point(run: Runner) -> None:
@@ -68,7 +68,7 @@ def test_feeds_dwells_and_speeds_without_a_point(run: Runner) -> None:
     )
     close(got.feed, [1200.0, 0.2, 254.0, 12.0])
     assert [event.value for event in got.events if event.kind == "dwell"] == [2.5, 1.5, 0.7]
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 # Motion
@@ -79,7 +79,7 @@ def test_circles_helices_and_planes(run: Runner) -> None:
     assert [Kind(kind) for kind in got.kind] == [Kind.ARC] * 4
     close(got.arcs.radius, [10.0, 10.0, 10.0, 5.0])
     close(got.arcs.centre[:2], [[0.0, -10.0, 0.0], [10.0, 0.0, 0.0]], atol=1e-9)
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 @settings(max_examples=60, suppress_health_check=FRESH)
@@ -94,7 +94,7 @@ def test_vectors_and_rotary_words_stand_the_tool_alike(b: float, c: float, run: 
     close(by_vector.axis[1], by_words.axis[0], atol=1e-9)
     close(by_words.tip[0], [10.0, 5.0, 3.0], atol=1e-9)
     assert by_vector.tcp.tolist() == [True, True, False]
-    assert by_words.findings == by_vector.findings == ()
+    assert by_words.diagnostics == by_vector.diagnostics == ()
 
 
 @settings(max_examples=80, suppress_health_check=FRESH)
@@ -151,7 +151,7 @@ def test_offsets_shifts_and_machine_positions(run: Runner) -> None:
         [[1, 1, 1], [11, 1, 1], [1, 1, 1], [6, 6, 7], [8, 6, 7], [3, 6, 9], [3, 6, 0], [1, 0, 0]],
         atol=1e-9,
     )
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 # Cycles
@@ -181,11 +181,11 @@ CYCLES = {
 @pytest.mark.parametrize("block", CYCLES)
 def test_cycles_make_the_motions_of_the_manual(block: str, run: Runner) -> None:
     got = fanuc(run, f"G90 G0 X0. Y0. Z30.\n{block}\nG80\n")
-    rows = got.block == 2
+    rows = got.line == 2
     assert list(zip(got.kind[rows].tolist(), slides(got)[rows][:, 2].tolist(), strict=True)) == [
         (kind, float(height)) for kind, height in CYCLES[block]
     ]
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 #: Where the tool is beside the hole, and where it waits: what the manual says of the cycles that shift it or dwell.
@@ -203,18 +203,18 @@ ASIDE = {
 @pytest.mark.parametrize("block", ASIDE)
 def test_cycles_shift_the_tool_and_wait_where_the_manual_says(block: str, run: Runner) -> None:
     got = fanuc(run, f"G90 G0 X0. Y0. Z30.\n{block}\nG80\n")
-    rows = np.flatnonzero(got.block == 2)
+    rows = np.flatnonzero(got.line == 2)
     aside, dwells = ASIDE[block]
     close(slides(got)[rows][:, 0] - 1.0, aside)
     close(slides(got)[rows][:, 1], 0.0)
     waited = {float(slides(got)[e.before_row - 1][2]): e.value for e in got.events if e.kind == "dwell"}
     assert waited == dwells
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 def test_back_boring_needs_g98_and_shifts_by_i_and_j_too(run: Runner) -> None:
     got = fanuc(run, "G90 G0 X0. Y0. Z30.\nG98 G87 X1. Z-5. R-20. I-1. J2. F100.\nG80\nG99 G87 X9. Z-5. R-20. Q1.\n")
-    rows = got.block == 2
+    rows = got.line == 2
     close(slides(got)[rows][:, :2] - [1.0, 0.0], [[0, 0], [-1, 2], [-1, 2], [0, 0], [0, 0], [-1, 2], [-1, 2], [0, 0]])
     assert [(finding.line, "G98" in finding.text) for finding in got.errors] == [(4, True)]
 
@@ -223,7 +223,7 @@ def test_words_of_a_cycle_hold_until_it_ends(run: Runner) -> None:
     got = fanuc(run, "G90 G0 Z20.\nG99 G81 X1. Z-10. R2. F100.\nX2.\nZ-5.\nG91 X1. K3\nG90 G80\nX0.\n")
     drilled = got.kind == int(Kind.LINEAR)
     close(slides(got)[drilled][:, [0, 2]][:3], [[1, -10], [2, -10], [2, -5]])
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 def test_cycles_that_lack_something_are_named(run: Runner) -> None:
@@ -258,9 +258,9 @@ def test_macros_inside_each_other_keep_their_variables_and_are_told_of_where_the
     calls = "".join(f"O{n}\nG65 P{n + 1} A[#1+1]\nG0 X#1\nM99\n" for n in range(2, 6))
     got = fanuc(run, f"O1\n#1=50.\nG65 P2 A1.\nG0 X#1\nM30\n{calls}O6\nG0 X#1\nM99\n")
     close(slides(got)[:, 0], [5, 4, 3, 2, 1, 50])
-    assert [(finding.line, str(finding.severity)) for finding in got.findings] == [(19, "warning")]
+    assert [(finding.line, str(finding.severity)) for finding in got.diagnostics] == [(19, "warning")]
     endless = fanuc(run, "O1\nG65 P2\nM30\nO2\nG0 X1.\nM99\n")
-    assert endless.findings == ()
+    assert endless.diagnostics == ()
     with pytest.raises(InputError, match="deeper than 16 levels"):
         fanuc(run, "O1\nG65 P1 A1.\nM30\n")
 
@@ -324,7 +324,7 @@ def test_what_is_not_known_is_named(run: Runner) -> None:
         "G0 X1. A5.\nG41 D1\nG123\nG51 X0 Y0 P2\nG0 X1. K2.\nG28\nG1 F0\nX2.\nG12.1\nX#3001\nG65 P77\nGOTO 99\n(open\n"
         "M198 P1\nG54.4 P1\nG10 L50\n",
     )
-    assert sorted({finding.line for finding in got.findings}) == [1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 16]
+    assert sorted({finding.line for finding in got.diagnostics}) == [1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 16]
 
 
 ENDLESS = {
@@ -350,7 +350,7 @@ def test_loops_that_are_nested_wrongly_are_refused(text: str, run: Runner) -> No
 
 def test_m99_of_the_program_itself_ends_it_with_a_word(run: Runner) -> None:
     got = fanuc(run, "O1\nG0 X1.\nM99\n")
-    assert [str(finding.severity) for finding in got.findings] == ["warning"]
+    assert [str(finding.severity) for finding in got.diagnostics] == ["warning"]
 
 
 def test_wrong_settings_are_refused(tmp_path: Path) -> None:
@@ -390,7 +390,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
                 results.append(error.problems)
     fast, slow = results
     if isinstance(fast, Run) and isinstance(slow, Run):
-        assert sorted(map(str, fast.findings)) == sorted(map(str, slow.findings))
+        assert sorted(map(str, fast.diagnostics)) == sorted(map(str, slow.diagnostics))
         for one in (fast, slow):
             object.__setattr__(one, "findings", ())
         same(fast, slow)

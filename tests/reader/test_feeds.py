@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.reader.conftest import Runner
 from tests.reader.klartext.conftest import dmu65, run
 from trunnion.machines import forward, load_machine
-from trunnion.model.feed_path import FeedPath, counted, ways
+from trunnion.model.feed_path import FeedPath, feed_path_lengths, row_feed_path_lengths
 from trunnion.verification import verify
 
 __all__ = ["dmu65", "run"]
@@ -26,7 +26,7 @@ def test_each_rule_counts_what_it_says(before: list[float], after: list[float], 
     slides = math.sqrt(sum(steps[k] ** 2 for k in MACHINE.linear))
     turned = max(abs(steps[k]) for k in MACHINE.rotary)
     there = np.array([before] * 3), np.array([after] * 3)
-    way = ways(MACHINE, *there, np.array([FeedPath.SLIDES, FeedPath.AXES, FeedPath.TIP], np.uint8))
+    way = feed_path_lengths(MACHINE, *there, np.array([FeedPath.SLIDES, FeedPath.AXES, FeedPath.TIP], np.uint8))
     assert way[0] == pytest.approx(slides if slides > 1e-9 else turned, abs=1e-9)
     assert way[1] == pytest.approx(math.sqrt(sum(step**2 for step in steps)), abs=1e-9)
     ends = [np.array(before) + h * np.array(steps) for h in (-1e-4, 1e-4)]
@@ -63,12 +63,12 @@ def test_a_block_takes_what_the_control_makes_of_its_f(block: str, more: str, se
 def test_only_blocks_that_turn_without_tcp_count_something_else(run: Runner) -> None:
     blocks = "4 L X+140 F600\n5 L X+150 C+20\n6 M128\n7 L C+40\n8 M129\n"
     found = run(LINES.format(blocks=blocks, more=""))
-    way = counted(found, np.arange(len(found)))
+    way = row_feed_path_lengths(found, np.arange(len(found)))
     assert np.isnan(way).tolist() == [True, True, False, True]
     assert way[2] == pytest.approx(math.hypot(10.0, 20.0))
-    assert counted(found, np.array([2, 0])).tolist()[0] == way[2]
+    assert row_feed_path_lengths(found, np.array([2, 0])).tolist()[0] == way[2]
 
 
 def test_m116_leaves_out_the_axes_of_a_head(run: Runner) -> None:
     found = run(LINES.format(blocks="4 L Z+1 F100\n", more=" M116"), load_machine("generic_head_head_ca"))
-    assert [str(f.severity) for f in found.findings if "M116" in f.text] == ["warning"]
+    assert [str(f.severity) for f in found.diagnostics if "M116" in f.text] == ["warning"]

@@ -52,13 +52,13 @@ def holes() -> list[tuple[Floats, Floats]]:
 
 def test_the_published_program_drills_the_holes_of_its_cl_file() -> None:
     run = run_program(GOLDEN / "radial_holes.expected.txt", MACHINE)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     cycles = [
         k + 1 for k, line in enumerate((GOLDEN / "radial_holes.expected.txt").read_text().splitlines()) if "G83" in line
     ]
     assert len(cycles) == len(holes()) == 4
     for block, (top, axis) in zip(cycles, holes(), strict=True):
-        rows = run.block == block
+        rows = run.line == block
         tips, cut = run.tip[rows], run.kind[rows] == int(Kind.LINEAR)
         close(run.axis[rows], np.tile(axis, (rows.sum(), 1)), atol=2e-5)
         heights = (tips - top) @ axis
@@ -68,7 +68,7 @@ def test_the_published_program_drills_the_holes_of_its_cl_file() -> None:
         assert heights[-1] == pytest.approx(18.0, abs=2e-3)
         assert heights[~cut].min() >= -1.0
         assert set(run.feed[rows][cut]) == {70.0}
-    others = ~np.isin(run.block, cycles)
+    others = ~np.isin(run.line, cycles)
     assert set(run.feed[others]) == {3000.0}
     assert [event.value for event in run.events if event.kind == "tool_change"] == ["1"]
     assert [event.kind for event in run.events][-3:] == ["coolant", "retract", "end"]
@@ -81,7 +81,7 @@ def test_g154_takes_the_plane_of_the_present_rotary_position(
 ) -> None:
     a, c, x, y, z = (round(value, 3) for value in (a, c, x, y, z))
     got = fidia(run, f"G1 A{a:.3f} C{c:.3f} F3000\nG154\nX{x:.3f} Y{y:.3f} Z{z:.3f}\nA0. C0.\nG69\nX1. Y2. Z3.\n")
-    assert got.findings == ()
+    assert got.diagnostics == ()
     turn = table(a, c)
     close(got.tip[1], turn @ np.array([x, y, z]), atol=1e-9)
     close(got.axis[1], turn[:, 2], atol=1e-9)
@@ -95,7 +95,7 @@ def test_centres_are_absolute(run: Runner) -> None:
     got = fidia(run, "G0 X10. Y5.\nG2 X20. Y-5. I10. J-5. F500\nG3 X10. Y5. I20. J5.\nG18 G2 X10. Z0 I15. K0\n")
     assert [Kind(kind) for kind in got.kind] == [Kind.RAPID, Kind.ARC, Kind.ARC, Kind.ARC]
     close(got.arcs.centre, [[10, -5, 0], [20, 5, 0], [15, 5, 0]], atol=1e-12)
-    assert got.findings == ()
+    assert got.diagnostics == ()
     assert fidia(run, "G2 X1. Y1. I1. F9\n").errors
 
 
@@ -103,7 +103,7 @@ def test_tcp_is_switched(run: Runner) -> None:
     got = fidia(run, "G0 X5. Y6. Z7.\nG196\nG1 X1. Y2. Z3. A20. C30. F9\nG197\nG0 X5.\n")
     assert got.tcp.tolist() == [False, True, False]
     close(got.tip[1], [1.0, 2.0, 3.0], atol=1e-9)
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 CYCLES = {
@@ -132,9 +132,9 @@ CYCLES = {
 @pytest.mark.parametrize("start", [50.0, 0.0])
 def test_cycles_mean_their_words_in_fidias_way(block: str, start: float, run: Runner) -> None:
     got = fidia(run, f"G0 X0 Z{start}\n{block}\nX2.\nG80\nX3.\n")
-    assert got.findings == ()
+    assert got.diagnostics == ()
     for line in (2, 3):
-        rows = got.block == line
+        rows = got.line == line
         motions = list(zip(got.kind[rows].tolist(), got.tip[rows][:, 2].round(9).tolist(), strict=True))
         # First over the hole, on the higher one of both heights.
         begin = next(k for k, motion in enumerate(motions) if motion[1] == float(CYCLES[block][0][1]))
@@ -143,7 +143,7 @@ def test_cycles_mean_their_words_in_fidias_way(block: str, start: float, run: Ru
         ]
         down = got.tip[rows][got.kind[rows] == 1]
         assert set(down[:, 0].tolist()) == {float(line - 1)}
-    assert got.block[-1] == 5
+    assert got.line[-1] == 5
 
 
 def test_what_is_not_known_is_named(run: Runner) -> None:
@@ -152,7 +152,7 @@ def test_what_is_not_known_is_named(run: Runner) -> None:
         "G93 X1. F2\nG21 X1.\nG41 D1\nX#1\nG83 X1. Z5. R2. F9\nG80\nT3\nX1. K2.\nG200\nG83 X1. Z1. R2. E3. D1.\nG80\n"
         "B5.\nG55 O100\nG22 X1. Y1. I0 J0 P90\n",
     )
-    assert sorted({finding.line for finding in got.findings}) == [1, 2, 3, 4, 5, 7, 8, 9, 10, 12, 13, 14]
+    assert sorted({finding.line for finding in got.diagnostics}) == [1, 2, 3, 4, 5, 7, 8, 9, 10, 12, 13, 14]
 
 
 words = st.sampled_from(
@@ -176,7 +176,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
     with monkeypatch.context() as patch:
         patch.setattr(FidiaInterpreter, "_may_be_plain", lambda *_: False)
         slow = run_program(path, MACHINE)
-    assert sorted(map(str, fast.findings)) == sorted(map(str, slow.findings))
+    assert sorted(map(str, fast.diagnostics)) == sorted(map(str, slow.diagnostics))
     for one in (fast, slow):
         object.__setattr__(one, "findings", ())
     same(fast, slow)

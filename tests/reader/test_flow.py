@@ -50,7 +50,7 @@ def xs(result: Run) -> list[float]:
 )
 def test_flow(run: Runner, text: str, expected: list[float]) -> None:
     result = run(text)
-    assert result.findings == ()
+    assert result.diagnostics == ()
     assert xs(result) == expected
 
 
@@ -58,7 +58,7 @@ def test_a_long_program_may_jump_back_over_many_plain_blocks(run: Runner) -> Non
     body = "".join(f"N{k} X{k} Y1\n" for k in range(1, 3001))
     result = run(f"R1=0\nAGAIN:\n{body}R1=R1+1\nIF R1<3 GOTOB AGAIN\nX0")
     assert len(result) == 9001
-    assert result.block[3000] == 3
+    assert result.line[3000] == 3
     assert xs(result)[:3] == [1, 2, 3]
 
 
@@ -68,7 +68,7 @@ def test_chunks_of_the_file_leave_no_seam(run: Runner) -> None:
     result = run(body)
     assert len(result) == 60_000
     np.testing.assert_allclose(result.tip[:, 0], np.arange(60_000) / 1000, atol=1e-12)
-    assert result.block.tolist() == list(range(1, 60_001))
+    assert result.line.tolist() == list(range(1, 60_001))
     assert [c.text for c in result.comments] == [f"c{k}" for k in range(60_000)]
 
 
@@ -99,7 +99,7 @@ SUB = {
 )
 def test_subprograms_that_are_named(run: Runner, text: str, expected: list[float]) -> None:
     result = run(text, files=SUB)
-    assert result.findings == ()
+    assert result.diagnostics == ()
     assert xs(result) == expected
 
 
@@ -195,18 +195,18 @@ def test_a_file_that_cannot_be_read_is_an_input_error(tmp_path: Path, yl569: Mac
 
 def test_findings_are_counted_when_they_are_too_many(run: Runner) -> None:
     result = run("Q1\n" * 10_050)
-    assert len(result.findings) == 10_001
-    assert "50 findings more" in result.findings[-1].text
+    assert len(result.diagnostics) == 10_001
+    assert "50 findings more" in result.diagnostics[-1].text
 
 
 def test_a_block_with_several_subprograms_executes_the_first(run: Runner) -> None:
     result = run("X1\nL10 OTHER M8\nX5\nQ1", files=SUB)
     assert xs(result) == [1, 2, 5]
-    assert [(f.line, f.text.split(":")[0]) for f in result.findings] == [
+    assert [(f.line, f.text.split(":")[0]) for f in result.diagnostics] == [
         (2, "several subprograms in one block"),
         (4, "unknown word Q=1"),
     ]
-    assert all(f.file.endswith("MAIN.MPF") for f in result.findings)
+    assert all(f.file.endswith("MAIN.MPF") for f in result.diagnostics)
 
 
 def test_what_a_block_says_beside_a_call_comes_before_the_subprogram(run: Runner) -> None:
@@ -217,7 +217,7 @@ def test_what_a_block_says_beside_a_call_comes_before_the_subprogram(run: Runner
 
 def test_findings_after_a_subprogram_are_those_of_its_caller(run: Runner) -> None:
     result = run("\n\n\nL10\nQ1", files={"L10.SPF": "Q2\nM17"})
-    assert [(f.line, f.file[-8:]) for f in result.findings] == [(1, "/L10.SPF"), (5, "MAIN.MPF")]
+    assert [(f.line, f.file[-8:]) for f in result.diagnostics] == [(1, "/L10.SPF"), (5, "MAIN.MPF")]
 
 
 @pytest.mark.parametrize(
@@ -247,11 +247,11 @@ def test_a_subprogram_goes_before_a_main_program_of_its_name(run: Runner) -> Non
 def test_a_long_subprogram_leaves_no_seam_and_may_be_called_again(run: Runner) -> None:
     body = "".join(f"X{k / 1000:.3f} Y{k % 7}\n" for k in range(30_000))
     result = run("X-1\nLONG\nX-2\nLONG P2\nX-3", files={"LONG.SPF": body + "M17"})
-    assert result.findings == ()
+    assert result.diagnostics == ()
     once = list(range(30_000))
     assert [round(1000 * x) for x in xs(result)] == [-1000, *once, -2000, *once, *once, -3000]
     assert set(result.file[1:30_001].tolist()) == {1}
-    assert result.block[30_000] == 30_000
+    assert result.line[30_000] == 30_000
 
 
 def test_a_loop_over_all_r_parameters_is_none(run: Runner) -> None:

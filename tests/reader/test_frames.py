@@ -59,7 +59,7 @@ P = np.array([1.0, 2.0, 3.0])
 def test_frames(run: Runner, words: str, point: Floats) -> None:
     result = run(f"{words}\nG17 X1 Y2 Z3")
     close(result.tip[-1], point, atol=1e-12)
-    assert result.findings == ()
+    assert result.diagnostics == ()
 
 
 def test_vectors_and_circles_turn_with_the_frame(run: Runner) -> None:
@@ -101,7 +101,7 @@ def test_cycle800_turns_about_axes_already_turned(run: Runner, mode: int) -> Non
     close(result.tip[-1], plane @ (P + vector(1, 2, 3)) + vector(20, 0, -5), atol=1e-9)
     close(result.axis[-1], plane[:, 2], atol=1e-9)
     assert result.joints[-1, 1] < 0
-    assert result.findings == ()
+    assert result.diagnostics == ()
 
 
 def test_cycle800_moves_the_rotary_axes_or_only_computes(run: Runner) -> None:
@@ -117,14 +117,14 @@ def test_cycle800_moves_the_rotary_axes_or_only_computes(run: Runner) -> None:
 def test_cycle800_takes_the_only_solution_inside_the_travel_and_says_so(run: Runner) -> None:
     result = run('CYCLE800(0,"",0,57,0,0,0,0,30,0,0,0,0,-1)\nX1')
     assert result.joints[0, 1] == pytest.approx(30)
-    assert "outside the travel" in result.findings[0].text
+    assert "outside the travel" in result.diagnostics[0].text
 
 
 @pytest.mark.parametrize("reset", ["CYCLE800()", 'CYCLE800(,"0",,,,,,,,,,,,,)'])
 def test_cycle800_resets(run: Runner, reset: str) -> None:
     result = run(f'CYCLE800(0,"",0,57,5,0,0,0,30,0,0,0,0,1)\n{reset}\nG0 B0 C0\nX1 Y2 Z3')
     close(result.tip[-1], P, atol=1e-12)
-    assert result.findings == ()
+    assert result.diagnostics == ()
 
 
 def test_cycle800_new_replaces_and_additive_adds(run: Runner) -> None:
@@ -143,9 +143,9 @@ def test_cycle800_with_direct_angles(run: Runner) -> None:
 
 
 def test_cycle800_accepts_fifteen_values_and_names_what_it_cannot_do(run: Runner) -> None:
-    assert run('CYCLE800(0,"",0,57,0,0,0,0,30,0,0,0,0,1,)\nX1').findings == ()
+    assert run('CYCLE800(0,"",0,57,0,0,0,0,30,0,0,0,0,1,)\nX1').diagnostics == ()
     assert "_MODE 64" in run('CYCLE800(0,"",0,64,0,0,0,0,30,0,0,0,0,1,)').errors[0].text
-    assert "retracts" in run('CYCLE800(1,"",0,57,0,0,0,0,30,0,0,0,0,1,)').findings[0].text
+    assert "retracts" in run('CYCLE800(1,"",0,57,0,0,0,0,30,0,0,0,0,1,)').diagnostics[0].text
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ def test_cycle800_accepts_fifteen_values_and_names_what_it_cannot_do(run: Runner
 )
 def test_z_of_a_frame_is_turned_to_the_tool(words: str, along: float, run: Runner) -> None:
     result = run(f"G54\nG0 B30 C40\nTRAORI\nG0 X7 Y2 Z20 F100\n{words}\nTRAFOOF\nM30\n")
-    assert not result.findings
+    assert not result.diagnostics
     axis = (Z(40) @ Y(30))[:, 2]
     start, end = result.tip[-2:]
     close(result.axis[-1], axis, atol=1e-12)

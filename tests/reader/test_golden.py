@@ -37,7 +37,7 @@ def test_every_cl_point_is_reached_with_the_tool_axis_asked_for(name: str, yl569
     run = run_program(FOLDER / f"{name}.expected.mpf", yl569)
     tips, axes = cl_points(name)
     cut = ~run.machine_frame & ((run.programmed & 7) != 0)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     np.testing.assert_allclose(run.tip[cut], tips, rtol=0, atol=ROUNDING[name])
     np.testing.assert_allclose(run.axis[cut], axes, rtol=0, atol=2e-7)
 
@@ -45,8 +45,8 @@ def test_every_cl_point_is_reached_with_the_tool_axis_asked_for(name: str, yl569
 def test_the_modal_state_is_that_of_the_finishing_program(yl569: Machine) -> None:
     run = run_program(FOLDER / "3_blade_finish.expected.mpf", yl569)
     first = int(np.flatnonzero(run.tcp)[0])
-    assert run.block[first] == 46
-    assert run.number[first] == 460
+    assert run.line[first] == 46
+    assert run.block_number[first] == 460
     assert run.kind[first] == Kind.RAPID
     assert run.kind[first + 1] == Kind.LINEAR
     assert np.isnan(run.feed[first])
@@ -56,7 +56,7 @@ def test_the_modal_state_is_that_of_the_finishing_program(yl569: Machine) -> Non
     assert run.spindle[first] == 1
     assert run.tools[run.tool[first]] == "2"
     assert run.edge[first] == 1
-    assert run.offset[first] == 54
+    assert run.work_offset[first] == 54
     assert not run.tcp[first - 1]
     assert run.machine_frame[[0, 1, 2, 3, -1, -2]].all()
     assert run.spindle[-1] == 1
@@ -73,7 +73,7 @@ def test_angles_are_those_written_but_for_whole_turns(yl569: Machine) -> None:
     run = run_program(path, yl569)
     lines = path.read_text(encoding="utf-8").splitlines()
     for row in np.flatnonzero(run.programmed & 24):
-        text = lines[run.block[row] - 1]
+        text = lines[run.line[row] - 1]
         if run.machine_frame[row]:
             continue
         for column, letter in enumerate("CB"):

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tests.paths import YL569
 from trunnion.errors import InputError
-from trunnion.files import Growing
+from trunnion.files import WriteProgress
 from trunnion.machines import Machine, load_machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
@@ -31,23 +31,23 @@ PROGRAMS = {
 }
 
 
-def written(data: bytes, ends: Sequence[int], file: Path, growing: Growing) -> None:
+def written(data: bytes, ends: Sequence[int], file: Path, write_progress: WriteProgress) -> None:
     """Write a file in pieces, and say so."""
     with file.open("wb") as sink:
         for start, end in zip([0, *ends], [*ends, len(data)], strict=True):
             sink.write(data[start:end])
             sink.flush()
-            growing.grow(end, len(data) // 2)
-    growing.end()
+            write_progress.advance(end, len(data) // 2)
+    write_progress.finish()
 
 
 def run_beside(data: bytes, ends: Sequence[int], file: Path, machine: Machine) -> Run:
     """The run of a program that somebody writes at the same time."""
     file.write_bytes(b"")
-    growing = Growing()
+    write_progress = WriteProgress()
     with ThreadPoolExecutor(1) as aside:
-        writing = aside.submit(written, data, ends, file, growing)
-        run = run_program(file, machine, growing=growing)
+        writing = aside.submit(written, data, ends, file, write_progress)
+        run = run_program(file, machine, write_progress=write_progress)
         writing.result()
     return run
 
@@ -86,5 +86,5 @@ def test_what_cannot_be_read_is_said_while_it_is_written(tmp_path: Path, yl569: 
 def test_a_jump_waits_for_the_place_that_it_leads_to(tmp_path: Path, yl569: Machine) -> None:
     text = b"G1 X1 F100\nGOTOF THERE\n" + b"X2\n" * 5000 + b"THERE:\nX3\nM30\n"
     run = run_beside(text, [15, 30, 9000], tmp_path / "jump.mpf", yl569)
-    assert run.place[:, 0].tolist() == [1.0, 3.0]
-    assert run.block.tolist() == [1, 5004]
+    assert run.xyz[:, 0].tolist() == [1.0, 3.0]
+    assert run.line.tolist() == [1, 5004]

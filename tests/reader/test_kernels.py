@@ -11,16 +11,29 @@ from hypothesis import strategies as st
 from tests.reader import naive
 from trunnion.errors import InputError
 from trunnion.machines import forward, load_machine
-from trunnion.model import axis_positions as poses
+from trunnion.model import axis_positions
 from trunnion.model.run import Run
-from trunnion.model.subdivision import on_circle
+from trunnion.model.subdivision import circle_points
 from trunnion.readers import run_program
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 
 YL569 = load_machine("yl569")
 GOLDEN = sorted((Path(__file__).parents[1] / "golden" / "yl569").glob("*.mpf"))
 
-COLUMNS = ("block", "number", "kind", "programmed", "tip", "axis", "joints", "feed", "offset", "tcp", "spindle", "file")
+COLUMNS = (
+    "line",
+    "block_number",
+    "kind",
+    "programmed",
+    "tip",
+    "axis",
+    "joints",
+    "feed",
+    "work_offset",
+    "tcp",
+    "spindle",
+    "file",
+)
 
 SETTINGS = settings(deadline=None, max_examples=120, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
@@ -35,7 +48,7 @@ def same(one: Run, two: Run) -> None:
             np.testing.assert_array_equal(a, b, err_msg=name)
     assert one.comments == two.comments
     assert one.events == two.events
-    assert one.findings == two.findings
+    assert one.diagnostics == two.diagnostics
 
 
 def twice(path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Run, Run]:
@@ -92,22 +105,22 @@ def test_numbers_are_read_to_the_last_bit(
 
 ways = st.sampled_from(["plain", "shortest", "positive", "negative", "turn"])
 CODES = {
-    "plain": poses.PLAIN,
-    "shortest": poses.SHORTEST,
-    "positive": poses.POSITIVE,
-    "negative": poses.NEGATIVE,
-    "turn": poses.SAME_TURN,
+    "plain": axis_positions.PLAIN,
+    "shortest": axis_positions.SHORTEST,
+    "positive": axis_positions.POSITIVE_DIRECTION,
+    "negative": axis_positions.NEGATIVE_DIRECTION,
+    "turn": axis_positions.SAME_TURN,
 }
 angles = st.integers(-20000, 20000).map(lambda n: n / 7.0)
 
 
 @settings(deadline=None, max_examples=300)
-@given(held=angles, value=st.one_of(st.none(), angles), way=ways, lowest=st.sampled_from([0.0, -180.0]))
+@given(held=angles, value=st.one_of(st.none(), angles), turn_rule=ways, lowest=st.sampled_from([0.0, -180.0]))
 def test_rotary_words_reach_the_turn_that_the_twin_finds(
-    held: float, value: float | None, way: str, lowest: float
+    held: float, value: float | None, turn_rule: str, lowest: float
 ) -> None:
-    got = poses.reach(held, math.nan if value is None else value, CODES[way], lowest)
-    assert got == pytest.approx(naive.angle_reached(held, value, way, lowest), abs=1e-8)
+    got = axis_positions.rotary_position(held, math.nan if value is None else value, CODES[turn_rule], lowest)
+    assert got == pytest.approx(naive.angle_reached(held, value, turn_rule, lowest), abs=1e-8)
 
 
 @settings(deadline=None, max_examples=100)
@@ -121,7 +134,7 @@ def test_vectors_are_followed_on_the_near_branch(b: list[float], c: list[float])
     axis = forward(YL569, joints)[1]
     rotary = np.full((len(b), 2), np.nan)
     status = np.zeros(len(b), np.uint8)
-    poses.angles(YL569, rotary, np.zeros(len(b), np.uint8), axis, np.zeros(2), status)
+    axis_positions.resolve_angles(YL569, rotary, np.zeros(len(b), np.uint8), axis, np.zeros(2), status)
     got = np.zeros((len(b), 5))
     got[:, list(YL569.rotary)] = rotary
     np.testing.assert_allclose(forward(YL569, got)[1], axis, atol=1e-9)
@@ -146,7 +159,7 @@ def test_points_on_circles(angle: float, radius: float, rise: float, turns: int,
     y = np.cross(normal, x)
     start = centre + radius * x
     end = centre + radius * (math.cos(angle) * x + math.sin(angle) * y) + rise * normal
-    got = on_circle(start[None], end[None], centre[None], normal[None], np.array([turns]), np.array([fraction]))[0]
+    got = circle_points(start[None], end[None], centre[None], normal[None], np.array([turns]), np.array([fraction]))[0]
     np.testing.assert_allclose(got, naive.point_on_circle(start, end, centre, normal, turns, fraction), atol=1e-8)
 
 

@@ -65,7 +65,7 @@ def test_switched_kinematics_bring_the_joints_where_linuxcnc_does(
     path = tmp_path / "p.ngc"
     path.write_text("\n".join(["M428", *blocks, "M429", "G0 X1", "M2", ""]))
     run = run_program(path, machine)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     wanted = [trt(machine.key, x, y, z, round(t, 5), round(c, 5)) for x, y, z, t, c in points]
     close(at(run, "XYZ")[:-1], wanted, atol=1e-9)
     close(run.tip[:-1], [point[:3] for point in points], atol=1e-9)
@@ -79,13 +79,13 @@ def test_switched_kinematics_bring_the_joints_where_linuxcnc_does(
 def test_real_programs_are_read_whole(name: str) -> None:
     path = FOLDER / f"{name}.ngc"
     run = run_program(path, XYZBC if "xyzbc" in name else XYZAC)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     assert run.tcp.all()
     # Every line with an axis word is a motion, and positions are the numbers that a plain look at the text finds.
     lines = [re.sub(r"\(.*?\)|;.*", "", line) for line in path.read_text().splitlines()]
     words = [dict(re.findall(r"([XYZABC])\s*(-?[0-9.]+)", line)) for line in lines]
     moving = [number for number, found in enumerate(words, 1) if found]
-    assert run.block.tolist() == moving
+    assert run.line.tolist() == moving
     # Under G53 numbers are the same here: the workpiece zero of these machines is that of their axes.
     for axis in range(3):
         told = [float(found["XYZ"[axis]]) for found in words if "XYZ"[axis] in found]
@@ -125,7 +125,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
                 results.append(error.problems)
     fast, slow = results
     if isinstance(fast, Run) and isinstance(slow, Run):
-        assert sorted(map(str, fast.findings)) == sorted(map(str, slow.findings))
+        assert sorted(map(str, fast.diagnostics)) == sorted(map(str, slow.diagnostics))
         same(without_findings(fast), without_findings(slow))
     else:
         assert fast == slow
@@ -164,12 +164,12 @@ def test_continue_goes_to_the_next_round(run: Runner) -> None:
 def test_a_program_ends_at_its_second_percent_sign(run: Runner) -> None:
     got = run("\n%\nG0 X1\n%\nG0 X2\n", XYZAC)
     assert len(got) == 1
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 def test_tool_coolant_and_stops_are_events(run: Runner) -> None:
     got = run("T3 M6\nG43 H3\nS900 M3 M8\nG0 X1 M0\nG4 P2\nM9 M5\nM30\n", XYZAC)
-    assert got.findings == ()
+    assert got.diagnostics == ()
     assert [(event.kind, event.value) for event in got.events] == [
         ("tool", "3"), ("tool_change", "3"), ("speed", 900.0), ("spindle", "clockwise"), ("coolant", "flood"),
         ("stop", None), ("dwell", 2.0), ("coolant", "off"), ("spindle", "off"), ("end", "M30"),
@@ -181,12 +181,12 @@ def test_g53_with_tcp_is_a_position_of_the_tip_in_the_machines_frame(run: Runner
     machine = load_machine("xyzac_trt", {"workpiece": {"zero_mm": [5, 6, 7]}})
     got = run("M428\nG0 A-30 C20\nG0 X1 Y2 Z3\nG53 G0 Z10\nM2\n", machine)
     close(got.tip[-1], [1.0, 2.0, 3.0], atol=1e-9)
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 def test_words_of_other_machines_and_without_use_are_named(run: Runner) -> None:
     got = run("G0 X1 B5\nG0 X2 K1\nM20\nG41 D1\nG5.1 X1 Y1 I1 J1\nM110 P1\nG0 X3\nM2\n", XYZAC)
-    assert [finding.line for finding in got.findings] == [1, 2, 3, 4, 5, 6]
+    assert [finding.line for finding in got.diagnostics] == [1, 2, 3, 4, 5, 6]
     close(at(got, "X")[-1], [3.0])
 
 

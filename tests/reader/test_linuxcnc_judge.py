@@ -42,7 +42,7 @@ def agree(run: Run, canon: Canon) -> None:
     feeds = np.array([move.feed * move.unit for move in canon.moves])[theirs]
     np.testing.assert_allclose(run.feed[ours][plain], feeds[plain], atol=0.05)
     turns = [abs(move.turns) for move in canon.moves if move.kind == "arc"]
-    assert [more + 1 for more in run.arcs.turns.tolist()] == turns
+    assert [more + 1 for more in run.arcs.full_turns.tolist()] == turns
     dwells = [event.value for event in run.events if event.kind == "dwell"]
     np.testing.assert_allclose([d for d in dwells if isinstance(d, float)], [d for d in canon.dwells if d], atol=1e-4)
     if not got[:, 3:].any():

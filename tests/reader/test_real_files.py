@@ -36,7 +36,7 @@ def names() -> list[str]:
 def test_real_programs_hold_no_word_that_the_reader_does_not_know(name: str) -> None:
     run = run_program(FOLDER / f"{name}.mpf", machine())
     odd = EXPECTED.get(name, set())
-    assert [f for f in run.findings if not any(text in f.text for text in odd)] == []
+    assert [f for f in run.diagnostics if not any(text in f.text for text in odd)] == []
     assert np.isfinite(run.joints).all()
 
 
@@ -61,6 +61,6 @@ def distinct(rows: Floats) -> Floats:
 def test_planes_of_the_axis_cross_stand_where_its_frames_turn_them() -> None:
     run = run_program(FOLDER / "Coordinate_system_representation_Achskreuz.mpf", machine())
     # N10330: B90 C0, TRAORI, AROT Y90, then X31 Y-15.001 Z165.236 in that frame.
-    row = int(np.flatnonzero(run.number == 10330)[0])
+    row = int(np.flatnonzero(run.block_number == 10330)[0])
     np.testing.assert_allclose(run.tip[row], [165.236, -15.001, -31.0], atol=1e-9)
     np.testing.assert_allclose(run.axis[row], [1.0, 0.0, 0.0], atol=1e-12)

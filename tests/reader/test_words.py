@@ -6,7 +6,7 @@ import pytest
 from tests.reader.conftest import Runner, close, rotary, slides
 from trunnion.errors import InputError, Severity
 from trunnion.machines import load_machine
-from trunnion.model.run import Orientation, Written
+from trunnion.model.run import Orientation, ProgrammedWord
 from trunnion.model.toolpath import Kind
 
 
@@ -29,19 +29,19 @@ from trunnion.model.toolpath import Kind
 def test_a_position_may_be_written_in_many_ways(run: Runner, text: str) -> None:
     result = run(text)
     close(slides(result)[-1], [1.5, -2.0, 0.25], atol=1e-15)
-    assert result.findings == ()
+    assert result.diagnostics == ()
 
 
 def test_rows_know_line_number_and_what_was_written(run: Runner) -> None:
     result = run("N5 G0 X1\n\nN20 ;only a comment\nN30 G1 Y2 F100\nB3 C4\nX5")
-    assert result.block.tolist() == [1, 4, 5, 6]
-    assert result.number.tolist() == [5, 30, -1, -1]
+    assert result.line.tolist() == [1, 4, 5, 6]
+    assert result.block_number.tolist() == [5, 30, -1, -1]
     assert result.kind.tolist() == [Kind.RAPID, Kind.LINEAR, Kind.LINEAR, Kind.LINEAR]
     assert result.programmed.tolist() == [
-        Written.X,
-        Written.Y | Written.FEED,
-        Written.SECOND | Written.FIRST,
-        Written.X,
+        ProgrammedWord.X,
+        ProgrammedWord.Y | ProgrammedWord.FEED,
+        ProgrammedWord.SECOND | ProgrammedWord.FIRST,
+        ProgrammedWord.X,
     ]
     assert result.comments[0].text == "only a comment"
     assert result.comments[0].before_row == 1
@@ -112,11 +112,11 @@ def test_messages_stops_coolant_and_dwell_are_events(run: Runner) -> None:
 )
 def test_circles(run: Runner, text: str, centre: tuple[float, ...], normal: tuple[float, ...], radius: float) -> None:
     result = run(text)
-    assert result.findings == ()
+    assert result.diagnostics == ()
     close(result.arcs.centre[0], centre, atol=1e-12)
     close(result.arcs.normal[0], normal, atol=1e-12)
     assert result.arcs.radius[0] == pytest.approx(radius)
-    assert result.arcs.turns[0] == (2 if "TURN" in text else 0)
+    assert result.arcs.full_turns[0] == (2 if "TURN" in text else 0)
     assert result.kind[0] == Kind.ARC
 
 
@@ -137,7 +137,7 @@ def test_circles(run: Runner, text: str, centre: tuple[float, ...], normal: tupl
 )
 def test_circles_that_are_none_are_named_and_go_straight(run: Runner, text: str) -> None:
     result = run(text)
-    assert [f.severity for f in result.findings] == [Severity.ERROR]
+    assert [f.severity for f in result.diagnostics] == [Severity.ERROR]
     assert result.kind[0] == Kind.LINEAR
 
 
@@ -198,8 +198,8 @@ def test_vectors_point_from_tip_to_holder_and_missing_components_are_zero(run: R
 
 def test_a_vector_out_of_reach_is_named(run: Runner) -> None:
     result = run("TRAORI\nX1 A3=1 C3=-2")
-    assert [f.severity for f in result.findings] == [Severity.WARNING]
-    assert "travel" in result.findings[0].text
+    assert [f.severity for f in result.diagnostics] == [Severity.WARNING]
+    assert "travel" in result.diagnostics[0].text
 
 
 def test_machine_positions(run: Runner) -> None:
@@ -216,9 +216,9 @@ def test_machine_positions(run: Runner) -> None:
 def test_work_offsets(run: Runner) -> None:
     machine = load_machine("yl569", {"workpiece": {"zero_mm": [1.0, 2.0, 3.0]}})
     result = run("X0 Y0 Z0\nG54 X0\nG500 X0 Y0 Z0\nG505 X0 Y0 Z0", machine=machine)
-    assert result.offset.tolist() == [0, 54, 500, 505]
+    assert result.work_offset.tolist() == [0, 54, 500, 505]
     close(slides(result)[:, 0], [1.0, 1.0, 0.0, 1.0])
-    assert "work offsets are not known" in result.findings[0].text
+    assert "work offsets are not known" in result.diagnostics[0].text
 
 
 @pytest.mark.parametrize(
@@ -258,7 +258,7 @@ def test_work_offsets(run: Runner) -> None:
 )
 def test_what_is_not_known_is_named_with_its_line(run: Runner, text: str, named: str) -> None:
     try:
-        findings = [(f.line, f.text) for f in run("X1\n" + text).findings]
+        findings = [(f.line, f.text) for f in run("X1\n" + text).diagnostics]
     except InputError as error:
         findings = [(p.line, p.what) for p in error.problems]
     assert any(line == 2 and named in what for line, what in findings), findings
@@ -313,14 +313,14 @@ def test_what_stands_before_an_unknown_word_is_still_done(run: Runner) -> None:
 )
 def test_arithmetic(run: Runner, expression: str, value: float) -> None:
     result = run(f"R2=7\nDEF INT _FIELD[3]=SET(1,4,9)\nX={expression}")
-    assert result.findings == ()
+    assert result.diagnostics == ()
     assert slides(result)[0, 0] == pytest.approx(value)
 
 
 def test_variables_have_types(run: Runner) -> None:
     result = run('DEF INT _N=2.6\nDEF BOOL _B=5\nDEF REAL _R\nDEF STRING[8] _S="X"\n_R=_N*2\nX=_N Y=_B Z=_R')
     assert slides(result)[0].tolist() == [3.0, 1.0, 6.0]
-    assert "takes a number" in run('DEF REAL _R\n_R="TEXT"').findings[0].text
+    assert "takes a number" in run('DEF REAL _R\n_R="TEXT"').diagnostics[0].text
 
 
 def test_incremental_words_carry_a_new_frame_along_and_others_stay(run: Runner) -> None:
@@ -348,7 +348,7 @@ def test_transfer_header_and_words_without_effect(run: Runner) -> None:
         'WORKPIECE(,"",,"BOX",112,0,-10,80,0,0,1,1)\nSTOPRE\nSPOS=90\n'
         "CYCLE832(0.02,_ORI_ROUGH,0.5)\nCYCLE832()\nG64 ADIS=0.1\nTCARR=0\nM17"
     )
-    assert result.findings == ()
+    assert result.diagnostics == ()
     assert result.events[1].value == (0.02, "_ORI_ROUGH", 0.5)
 
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from tests.paths import YL569
 from trunnion.arrays import Floats, Lines
 from trunnion.machines import Machine, load_machine
-from trunnion.model.columns import Ramps, Steps
-from trunnion.model.run import Run, State
+from trunnion.model.columns import RampColumn, StepColumn
+from trunnion.model.run import ModalState, Run
 from trunnion.model.toolpath import Arcs
 from trunnion.readers import run_program
 from trunnion.verification.results import Check, Place, Verification
@@ -40,7 +40,7 @@ def blade(name: str = "3_blade_finish.mpf", checks: tuple[Check, ...] = CHECKS) 
     """Return a verification of a golden program."""
     run = run_program(YL569 / "3_blade_finish.expected.mpf", load_machine("yl569"))
     seconds, feed = times(run)
-    cl_line = np.where(run.number > 0, run.block - 10, 0).astype(np.int32)
+    cl_line = np.where(run.block_number > 0, run.line - 10, 0).astype(np.int32)
     return Verification(name, run.machine, run, checks, seconds, feed, cl_line)
 
 
@@ -50,20 +50,20 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
     along = np.linspace(0.0, 200.0, n)
     joints = np.stack([along, 40 + 40 * np.sin(along), 90 * np.cos(along), along / 2, -along / 3], axis=1)
 
-    def same(value: float, kind: type[np.generic]) -> Steps:
-        return Steps.always(n, value, kind)
+    def same(value: float, kind: type[np.generic]) -> StepColumn:
+        return StepColumn.constant(n, value, kind)
 
     lines: Lines = np.arange(1, n + 1, dtype=np.int32)
     run = Run(
         machine=machine,
         files=("waves.mpf",),
-        blocks=Ramps(n, np.array([0]), np.array([1]), np.array([1])),
-        numbers=Ramps(n, np.array([0]), np.array([10]), np.array([10])),
+        lines=RampColumn(n, np.array([0]), np.array([1]), np.array([1])),
+        block_numbers=RampColumn(n, np.array([0]), np.array([10]), np.array([10])),
         kind=np.ones(n, np.uint8),
         programmed=np.zeros(n, np.uint8),
-        place=joints[:, [machine.column(name) for name in "XYZ"]],
+        xyz=joints[:, [machine.column(name) for name in "XYZ"]],
         rotary=joints[:, list(machine.rotary)],
-        state=State(
+        state=ModalState(
             file=same(0, np.uint16),
             feed=same(1000.0, np.float64),
             feed_mode=same(94, np.uint8),
@@ -72,16 +72,16 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
             tool=same(len(tools) - 1, np.int32),
             edge=same(1, np.int32),
             compensation=same(0, np.int8),
-            offset=same(54, np.uint16),
+            work_offset=same(54, np.uint16),
             tcp=same(1, np.bool_),
             machine_frame=same(0, np.bool_),
             inches=same(0, np.bool_),
             orientation=same(0, np.uint8),
-            by_tip=same(0, np.bool_),
+            xyz_is_tip=same(0, np.bool_),
             feed_path=same(0, np.uint8),
         ),
         start=np.zeros(5),
-        arcs=Arcs.none(),
+        arcs=Arcs.empty(),
         tools=tools,
     )
     seconds = np.full(n, 0.01)

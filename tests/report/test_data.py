@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.report.cases import CHECKS, PLACES, blade, waves, with_columns
-from trunnion.reporting import data, write_report
+from trunnion.reporting import json_report, write_report
 from trunnion.verification.results import Check, Verification
 
 
@@ -55,7 +55,7 @@ def test_extents_have_their_blocks_and_margins(tmp_path: Path) -> None:
     axes = {axis["name"]: axis for axis in data_of(verification, tmp_path)["extents"]["axes"]}
     highest = verification.run.joints[:, 1].argmax()
     assert axes["B"]["whole"]["high"] == verification.run.joints[highest, 1]
-    assert axes["B"]["whole"]["high_at"]["nc_line"] == verification.run.block[highest]
+    assert axes["B"]["whole"]["high_at"]["nc_line"] == verification.run.line[highest]
     assert axes["B"]["margin"] == pytest.approx(11.0)
     assert (axes["C"]["endless"], axes["C"]["margin"], axes["C"]["limits"]) == (True, None, [None, None])
 
@@ -64,7 +64,7 @@ def test_columns_have_one_value_a_motion(tmp_path: Path) -> None:
     verification = blade()
     columns = data_of(verification, tmp_path)["columns"]
     assert {len(column) for column in columns.values()} == {154}
-    assert columns["nc_line"] == verification.run.block.tolist()
+    assert columns["nc_line"] == verification.run.line.tolist()
     assert columns["time"][-1] == pytest.approx(verification.seconds.sum(), abs=1e-4)
     assert columns["axis B"] == pytest.approx(verification.run.joints[:, 1], abs=1e-5)
 
@@ -83,7 +83,7 @@ def test_values_without_a_number_are_null(tmp_path: Path) -> None:
 
 
 def test_long_programs_leave_the_columns_out_and_say_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(data, "COLUMNS_UP_TO", 1000)
+    monkeypatch.setattr(json_report, "MAX_COLUMN_MOTIONS", 1000)
     assert data_of(waves(1000), tmp_path)["columns_left_out"] is None
     said = data_of(waves(1001), tmp_path)
     assert said["columns"] is None

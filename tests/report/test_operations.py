@@ -10,18 +10,19 @@ import pytest
 from tests.paths import YL569
 from tests.report.cases import Page, blade
 from trunnion.cli import main
-from trunnion.reporting import Decided, write_report
-from trunnion.verification import Share
+from trunnion.reporting import PlanDecision, write_report
+from trunnion.verification import OperationRows
 
 DECIDED = [
-    Decided("BLADE", "blade.cls", 12, "start", "starts at C 1.000 B 2.000"),
-    Decided("<b>BLADE</b>", "blade.cls", 40, "pole", "axis C holds & turns <script>\x00"),
+    PlanDecision("BLADE", "blade.cls", 12, "start", "starts at C 1.000 B 2.000"),
+    PlanDecision("<b>BLADE</b>", "blade.cls", 40, "pole", "axis C holds & turns <script>\x00"),
 ]
 
 
 def test_operations_and_decisions_are_in_the_data(tmp_path: Path) -> None:
     found = replace(
-        blade(), operations=(Share("ONE", "BALL", "a.cls", 0, 100), Share("TWO", "BALL", "b.cls", 100, 154))
+        blade(),
+        operations=(OperationRows("ONE", "BALL", "a.cls", 0, 100), OperationRows("TWO", "BALL", "b.cls", 100, 154)),
     )
     write_report(found, tmp_path / "report.json", decisions=DECIDED)
     said: Any = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
@@ -37,7 +38,7 @@ def test_operations_and_decisions_are_in_the_data(tmp_path: Path) -> None:
 
 
 def test_an_operation_without_motion_has_no_block(tmp_path: Path) -> None:
-    found = replace(blade(), operations=(Share("ONE", "", "", 0, 0), Share("TWO", "", "", 0, 154)))
+    found = replace(blade(), operations=(OperationRows("ONE", "", "", 0, 0), OperationRows("TWO", "", "", 0, 154)))
     write_report(found, tmp_path / "report.json")
     said: Any = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
     assert said["operations"][0]["first"] is None
@@ -45,7 +46,7 @@ def test_an_operation_without_motion_has_no_block(tmp_path: Path) -> None:
 
 
 def test_the_page_shows_them_as_text(tmp_path: Path) -> None:
-    found = replace(blade(), operations=(Share("<i>ONE</i>", "BALL", "a.cls", 0, 154),))
+    found = replace(blade(), operations=(OperationRows("<i>ONE</i>", "BALL", "a.cls", 0, 154),))
     write_report(found, tmp_path / "report.html", decisions=DECIDED)
     text = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "&lt;i&gt;ONE&lt;/i&gt;" in text

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from tests.report.cases import CHECKS, PLACES, Page, blade, waves, with_columns, with_seconds
-from trunnion.machines.motion_time import clock
-from trunnion.model.columns import Steps
+from trunnion.machines.motion_time import format_duration
+from trunnion.model.columns import StepColumn
 from trunnion.reporting import write_report
-from trunnion.reporting.pack import unpack
-from trunnion.reporting.page import short
+from trunnion.reporting.column_encoding import decode_column
+from trunnion.reporting.html_page import format_number
 from trunnion.verification.results import Check, Verification
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'--><!--&amp;"
@@ -89,7 +89,7 @@ def test_names_and_texts_cannot_leave_their_place(tmp_path: Path) -> None:
     check = Check(HOSTILE, HOSTILE, False, HOSTILE, 1.0, 2.0, HOSTILE, (replace(PLACES[0], text=HOSTILE),))
     plain = page_of(blade(), tmp_path)
     verification = blade(HOSTILE, (check,))
-    state = replace(verification.run.state, file=Steps.always(len(verification.run), 1, np.uint16))
+    state = replace(verification.run.state, file=StepColumn.constant(len(verification.run), 1, np.uint16))
     run = replace(verification.run, tools=("", HOSTILE), files=(HOSTILE, HOSTILE), state=state)
     machine = replace(verification.machine, name=HOSTILE)
     page = page_of(replace(verification, run=run, machine=machine), tmp_path)
@@ -138,12 +138,12 @@ def test_the_columns_are_those_of_the_run(page: Page) -> None:
     verification = blade()
     run = verification.run
     for k in range(5):
-        column = unpack(page.script(f"full-axis{k}").encode()).view(np.float32)
+        column = decode_column(page.script(f"full-axis{k}").encode()).view(np.float32)
         assert column[0] == run.start[k]
         assert np.array_equal(column[1:], run.joints[:, k].astype(np.float32))
-    assert np.array_equal(unpack(page.script("full-block").encode())[1:], run.block)
-    assert np.array_equal(unpack(page.script("full-number").encode())[1:], run.number)
-    assert np.array_equal(unpack(page.script("full-cl").encode())[1:], verification.cl_line)
+    assert np.array_equal(decode_column(page.script("full-block").encode())[1:], run.line)
+    assert np.array_equal(decode_column(page.script("full-number").encode())[1:], run.block_number)
+    assert np.array_equal(decode_column(page.script("full-cl").encode())[1:], verification.cl_line)
 
 
 def test_every_plot_has_its_columns_and_limits(page: Page) -> None:
@@ -166,7 +166,7 @@ def test_short_programs_have_no_levels_and_long_ones_a_coarse_one_before_all_els
     assert names.index("coarse-cl") < names.index(None) < names.index("full-seconds")
     levels = json.loads(long.script("report"))["levels"]
     assert levels == [1000]
-    assert len(unpack(long.script("coarse-block").encode())) < 30_000
+    assert len(decode_column(long.script("coarse-block").encode())) < 30_000
 
 
 def test_the_same_input_makes_the_same_bytes_and_no_date(tmp_path: Path) -> None:
@@ -197,7 +197,13 @@ def test_a_program_that_moves_nothing_has_a_report_without_plots(tmp_path: Path)
 
 
 def test_times_and_numbers_read_well() -> None:
-    assert [clock(x) for x in (0, 59.94, 59.96, 75, 7384)] == ["0.0 s", "59.9 s", "1:00 min", "1:15 min", "2:03:04 h"]
+    assert [format_duration(x) for x in (0, 59.94, 59.96, 75, 7384)] == [
+        "0.0 s",
+        "59.9 s",
+        "1:00 min",
+        "1:15 min",
+        "2:03:04 h",
+    ]
     said = {0.00123456: "0.001235", 12345.6: "12346", -0.5: "−0.5", 3e-9: "3e−09", 0.0: "0", 5000.0: "5000"}
-    assert {value: short(value) for value in said} == said
-    assert [short(None), short(float("nan")), short(float("-inf"))] == ["", "", "−∞"]
+    assert {value: format_number(value) for value in said} == said
+    assert [format_number(None), format_number(float("nan")), format_number(float("-inf"))] == ["", "", "−∞"]

@@ -5,14 +5,22 @@ from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from tests.report.cases import blade, waves
-from trunnion.reporting.pack import pack, unpack
-from trunnion.reporting.series import DIRECT, IN_VIEW, bucket_of, kept, levels, rows_of, series
+from trunnion.reporting.column_encoding import decode_column, encode_column
+from trunnion.reporting.plot_series import (
+    BUCKETS_IN_VIEW,
+    MAX_DIRECT_POINTS,
+    bucket_of,
+    collect_series,
+    detail_levels,
+    extreme_rows,
+    select_rows,
+)
 
 SINGLES = st.floats(-1e6, 1e6, width=32)
 
 
-def kept_slowly(columns: list[NDArray[np.float32]], bucket: list[int]) -> list[int]:
-    """Say what ``kept`` says, bucket by bucket."""
+def extreme_rows_naive(columns: list[NDArray[np.float32]], bucket: list[int]) -> list[int]:
+    """Say what ``extreme_rows`` says, bucket by bucket."""
     keep: set[int] = set()
     for name in sorted(set(bucket)):
         rows = [row for row, at in enumerate(bucket) if at == name]
@@ -31,8 +39,8 @@ def test_levels_keep_the_extremes_of_every_bucket(data: st.DataObject, n: int, s
     few = st.sampled_from([-1.0, 0.0, 1.0]) | SINGLES
     columns = [data.draw(arrays.arrays(np.float32, n, elements=few)) for _ in range(2)]
     bucket = np.cumsum(np.array(steps[:n], np.int64))
-    rows = kept(columns, bucket)
-    assert rows.tolist() == kept_slowly(columns, bucket.tolist())
+    rows = extreme_rows(columns, bucket)
+    assert rows.tolist() == extreme_rows_naive(columns, bucket.tolist())
     for at in np.unique(bucket):
         for column in columns:
             every, some = column[bucket == at], column[rows[bucket[rows] == at]]
@@ -51,37 +59,37 @@ def test_buckets_are_pieces_of_equal_time(seconds: NDArray[np.float64], buckets:
 
 
 def test_levels_grow_finer_until_a_stretch_can_be_drawn_as_it_is() -> None:
-    shown = series(waves(400_000))
-    found = list(levels(shown))
+    series = collect_series(waves(400_000))
+    found = list(detail_levels(series))
     assert len(found) == 3
     assert [len(level.rows) for level in found] == sorted(len(level.rows) for level in found)
-    assert len(shown) / found[-1].buckets * IN_VIEW <= DIRECT
-    assert not list(levels(series(blade())))
+    assert len(series) / found[-1].buckets * BUCKETS_IN_VIEW <= MAX_DIRECT_POINTS
+    assert not list(detail_levels(collect_series(blade())))
 
 
 def test_a_level_spans_the_same_time_and_shows_real_blocks() -> None:
-    shown = series(waves(60_000))
-    level = next(levels(shown))
-    coarse = rows_of(shown, level.rows)
-    assert abs(coarse.time()[-1] - shown.time()[-1]) < 1e-3
+    series = collect_series(waves(60_000))
+    level = next(detail_levels(series))
+    coarse = select_rows(series, level.rows)
+    assert abs(coarse.time()[-1] - series.time()[-1]) < 1e-3
     assert np.array_equal(coarse.lines["block"], level.rows)
-    for name, column in shown.values.items():
+    for name, column in series.values.items():
         assert (coarse.values[name].min(), coarse.values[name].max()) == (column.min(), column.max())
 
 
 def test_rotary_speeds_are_the_turn_of_each_motion_over_its_time() -> None:
     verification = blade()
-    shown = series(verification)
+    series = collect_series(verification)
     run, before = verification.run, verification.run.start[1]
     for row in range(len(run)):
         turn, seconds = abs(run.joints[row, 1] - before), verification.seconds[row]
         wanted = turn / seconds * 60 if seconds > 0 else 0.0
-        assert shown.values["speed1"][row + 1] == np.float32(wanted)
+        assert series.values["speed1"][row + 1] == np.float32(wanted)
         before = run.joints[row, 1]
 
 
 def test_the_tool_changes_are_marked() -> None:
-    assert series(blade()).changes == ((2, "2"),)
+    assert collect_series(blade()).tool_changes == ((2, "2"),)
 
 
 @given(
@@ -89,4 +97,4 @@ def test_the_tool_changes_are_marked() -> None:
     | arrays.arrays(np.float32, st.integers(0, 40), elements=st.floats(width=32))
 )
 def test_what_is_packed_comes_back_bit_by_bit(column: NDArray[np.int32] | NDArray[np.float32]) -> None:
-    assert np.array_equal(unpack(pack(column)), column.view(np.int32))
+    assert np.array_equal(decode_column(encode_column(column)), column.view(np.int32))

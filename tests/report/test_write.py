@@ -30,7 +30,7 @@ def test_a_report_that_breaks_off_leaves_the_old_one(tmp_path: Path, monkeypatch
         raise RuntimeError("the power went")
 
     (tmp_path / "report.html").write_text("old", encoding="utf-8")
-    monkeypatch.setitem(write.FORMS, ".html", broken)
+    monkeypatch.setitem(write.RENDERERS, ".html", broken)
     with pytest.raises(RuntimeError):
         write_report(blade(), tmp_path / "report.html")
     assert [path.name for path in tmp_path.iterdir()] == ["report.html"]

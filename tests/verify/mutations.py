@@ -31,7 +31,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.readers import run_program
 from trunnion.readers.families.sinumerik import words
-from trunnion.verification import Allowed, Check, Settings, Verification, verify
+from trunnion.verification import Check, Settings, Tolerances, Verification, verify
 
 CASES = ("1_contour_rough", "2_hub_rough", "3_blade_finish")
 HALF_DIGIT = {"1_contour_rough": 5e-4, "2_hub_rough": 5e-6, "3_blade_finish": 5e-6}
@@ -80,7 +80,7 @@ def golden(name: str) -> tuple[tuple[str, ...], Toolpath]:
 def checked(name: str, run: Run) -> Verification:
     """A run against the golden CL file, half a digit allowed."""
     half = HALF_DIGIT[name] + 1e-9
-    return verify(run, [golden(name)[1]], allowed=Allowed(half, half), settings=SETTINGS)
+    return verify(run, [golden(name)[1]], tolerances=Tolerances(half, half), settings=SETTINGS)
 
 
 @cache
@@ -110,7 +110,7 @@ def judge(name: str, mutation: Mutation, folder: Path) -> Outcome:
 
 def _placed(mutation: Mutation, failed: list[Check], run: Run, first: set[int]) -> Outcome:
     """How near to the fault the failed checks are."""
-    motions = run.block[run.block >= mutation.line][:1].tolist()
+    motions = run.line[run.line >= mutation.line][:1].tolist()
     changes = [e.line for e in run.events if e.kind == "tool_change" and e.line >= mutation.line][:1]
     shows = {line + k for line in (*first, *motions, *changes) for k in (-1, 0, 1)}
     right = {"BLOCK": {mutation.line}, "NEXT": {mutation.line - 1, mutation.line + 1}, "SHOWS": shows}
@@ -152,13 +152,13 @@ def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
     lengthless = home | (((run.programmed & 7) == 0) & ~run.tcp)
     coolant = _coolant(run)
     circle = np.zeros((len(run), 8))
-    circle[run.arcs.row] = np.column_stack((run.arcs.centre, run.arcs.normal, run.arcs.radius, run.arcs.turns))
+    circle[run.arcs.row] = np.column_stack((run.arcs.centre, run.arcs.normal, run.arcs.radius, run.arcs.full_turns))
     tools = np.array([int(tool) if tool.isdigit() else 0 for tool in run.tools])[run.tool]
     columns = [
-        run.block, run.kind, run.tip, run.axis, run.joints, np.where(rapid, 0.0, run.feed),
+        run.line, run.kind, run.tip, run.axis, run.joints, np.where(rapid, 0.0, run.feed),
         np.where(rapid, 0, run.feed_mode), np.where(home, 0.0, run.rpm), np.where(home, 0, run.spindle),
         np.where(home, 0, tools), np.where(lengthless, 0, run.edge),
-        np.where(lengthless, 0, run.offset),
+        np.where(lengthless, 0, run.work_offset),
         run.tcp, run.machine_frame, run.orientation, np.where(home, 0.0, coolant), circle,
     ]  # fmt: skip
     return [np.asarray(column, np.float64)[keep] for column in columns]
@@ -167,8 +167,8 @@ def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
 def _end(run: Run) -> tuple[object, ...]:
     """What happens besides motion: whether the program ends, and words that are not understood."""
     ends = [event.value for event in run.events if event.kind == "end"]
-    unknown = sorted(finding.text for finding in run.findings if finding.severity is Severity.ERROR)
-    compensated = [f.text for f in run.findings if f.text.startswith(("G41", "G42"))]
+    unknown = sorted(finding.text for finding in run.diagnostics if finding.severity is Severity.ERROR)
+    compensated = [f.text for f in run.diagnostics if f.text.startswith(("G41", "G42"))]
     return bool(ends), tuple(unknown), tuple(compensated)
 
 
@@ -190,7 +190,12 @@ def _coolant(run: Run) -> Floats:
 # What changes beside the work
 
 #: Words that say how the control drives, and words that say again what it was switched to when the program began.
-_DRIVES = words.SILENT | words.SILENT_VALUES | {"ORIWKS", "ORIMKS"} | {f"G{code}" for code in words.G_SILENT}
+_DRIVES = (
+    words.WITHOUT_PATH_EFFECT
+    | words.WITHOUT_PATH_EFFECT_VALUES
+    | {"ORIWKS", "ORIMKS"}
+    | {f"G{code}" for code in words.G_WITHOUT_PATH_EFFECT}
+)
 _AGAIN = {"TRAFOOF", "TRAORI", *(f"G{code}" for code in (17, 18, 19, 70, 71, 700, 710, 90, 91, 93, 94, 95))}
 
 _NAME = re.compile(r"[A-Z_$][A-Z_]+\d*|[A-Z]\d+")
@@ -219,9 +224,9 @@ def beside(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
     """What a program does beside the work, by the kind of thing: two programs that agree in all of it do the same."""
     finds = _finds(run)
     counts = _moves(run) | np.array(finds, np.bool_)
-    at = run.block[counts]
+    at = run.line[counts]
     rows = np.concatenate(([0], np.cumsum(counts)))
-    state = np.column_stack((run.rpm, run.spindle, run.tool, run.edge, run.offset, _coolant(run)))[counts]
+    state = np.column_stack((run.rpm, run.spindle, run.tool, run.edge, run.work_offset, _coolant(run)))[counts]
     said = [(int(np.searchsorted(at, k + 1)), _names(line)) for k, line in enumerate(lines)]
     changes = [event.before_row for event in run.events if event.kind == "tool_change"]
     found = [(bits, sum(k <= row for k in changes), int(run.kind[row])) for row, bits in enumerate(finds) if bits]

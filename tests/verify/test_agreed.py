@@ -9,14 +9,14 @@ import pytest
 from tests.plan.test_pole import around_pole
 from tests.verify.conftest import CL_FOOT, CL_HEAD, check
 from trunnion.cl import read_cl
-from trunnion.cli.post import Claim, planned_program, write
+from trunnion.cli.post import WrittenProgram, plan_program, write_for_proof
 from trunnion.controls import load_control
 from trunnion.machines import Machine, load_machine
-from trunnion.model.motion import Pole
+from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Toolpath
-from trunnion.planning import Wishes
+from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
-from trunnion.verification import Agreed, Verification, verify
+from trunnion.verification import DeclaredDeviations, Verification, verify
 
 ROWS = 81
 
@@ -27,29 +27,29 @@ class Posted:
 
     machine: Machine
     path: Toolpath
-    claim: Claim
+    claim: WrittenProgram
     text: list[str]
     folder: Path
 
-    def verified(self, text: list[str] | None = None, agreed: Agreed | None = None) -> Verification:
+    def verified(self, text: list[str] | None = None, deviations: DeclaredDeviations | None = None) -> Verification:
         """The program, or another text in its place, against the CL file and what was agreed upon."""
         file = self.folder / "again.mpf"
         file.write_text("\n".join(self.text if text is None else text) + "\n", encoding="utf-8")
-        allowed = [replace(self.claim.allowed[0], agreed=agreed or self.agreed)]
+        allowed = [replace(self.claim.allowed[0], deviations=deviations or self.deviations)]
         run = run_program(file, self.machine)
-        return verify(run, [self.path], allowed=allowed, settings=self.claim.settings)
+        return verify(run, [self.path], tolerances=allowed, settings=self.claim.settings)
 
     @property
-    def agreed(self) -> Agreed:
-        assert self.claim.allowed[0].agreed is not None
-        return self.claim.allowed[0].agreed
+    def deviations(self) -> DeclaredDeviations:
+        assert self.claim.allowed[0].deviations is not None
+        return self.claim.allowed[0].deviations
 
     def block(self, row: int) -> int:
         """Index of the line that goes to a CL row; row 0 is the rapid."""
         return [k for k, line in enumerate(self.text) if " X" in line and ("C" in line or "Y" in line)][row]
 
 
-def posted(folder: Path, wishes: Wishes) -> Posted:
+def posted(folder: Path, options: PlanOptions) -> Posted:
     machine = load_machine("yl569")
     axis = around_pole(machine, np.linspace(-2.0, 2.0, ROWS), np.full(ROWS, 0.05))
     tips = [f"{0.25 * k:.6f},{0.01 * k:.6f},5.000000" for k in range(ROWS)]
@@ -59,21 +59,21 @@ def posted(folder: Path, wishes: Wishes) -> Posted:
     head = CL_HEAD.replace("GOTO/0.0,0.0,50.0,0.0,0.0,1.0\n", start).replace("500.0", "3000.0")
     source.write_text(head + "".join(points) + CL_FOOT, encoding="utf-8")
     path = read_cl(source)
-    program, _ = planned_program([path], machine, load_control(machine.control), {}, False, wishes)
+    program, _ = plan_program([path], machine, load_control(machine.control), {}, False, options)
     target = folder / "pole.mpf"
     with target.open("wb") as sink:
-        claim = write(program, sink)
+        claim = write_for_proof(program, sink)
     return Posted(machine, path, claim, target.read_text(encoding="utf-8").splitlines(), folder)
 
 
 @pytest.fixture
 def leaning(tmp_path: Path) -> Posted:
-    return posted(tmp_path, Wishes(pole=Pole.LEAN))
+    return posted(tmp_path, PlanOptions(pole_strategy=PoleStrategy.LEAN))
 
 
 @pytest.fixture
 def slowed(tmp_path: Path) -> Posted:
-    return posted(tmp_path, Wishes(lower_feed=True))
+    return posted(tmp_path, PlanOptions(lower_feed=True))
 
 
 def failed(found: Verification) -> list[str]:
@@ -88,16 +88,16 @@ def with_word(line: str, letter: str, change: float) -> str:
     return " ".join(words)
 
 
-@pytest.mark.parametrize("mode", [Pole.HOLD, Pole.SPREAD, Pole.LEAN])
-def test_a_leaning_program_is_proven_as_it_says(mode: Pole, tmp_path: Path) -> None:
-    found = posted(tmp_path, Wishes(pole=mode)).verified()
+@pytest.mark.parametrize("mode", [PoleStrategy.HOLD, PoleStrategy.SPREAD, PoleStrategy.LEAN])
+def test_a_leaning_program_is_proven_as_it_says(mode: PoleStrategy, tmp_path: Path) -> None:
+    found = posted(tmp_path, PlanOptions(pole_strategy=mode)).verified()
     assert failed(found) == []
     assert "; leans by up to 0.0" in check(found, "axis").summary
 
 
 def test_without_its_claim_it_fails(leaning: Posted) -> None:
-    nothing = Agreed(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
-    assert "axis" in failed(leaning.verified(agreed=nothing))
+    nothing = DeclaredDeviations(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
+    assert "axis" in failed(leaning.verified(deviations=nothing))
 
 
 def test_a_wrong_rotary_position_is_found_in_every_row(leaning: Posted) -> None:
@@ -112,20 +112,20 @@ def test_a_wrong_rotary_position_is_found_in_every_row(leaning: Posted) -> None:
                     )
                     if "SUPA" not in line:
                         assert "axis" in failed(found), (line, change)
-    assert tried > 4 * len(leaning.agreed.leaned)
+    assert tried > 4 * len(leaning.deviations.leaned)
 
 
 def test_a_lean_beyond_what_was_asked_for_is_not_believed(leaning: Posted) -> None:
-    off = check(leaning.verified(agreed=replace(leaning.agreed, lean=0.03)), "axis")
+    off = check(leaning.verified(deviations=replace(leaning.deviations, lean=0.03)), "axis")
     assert not off.passed
     assert "more than the 0.03 asked for" in off.places[0].text
     assert off.places[0].cl_line in range(12, 12 + ROWS)
 
 
 def test_a_claim_about_other_rows_is_not_met(leaning: Posted) -> None:
-    agreed = leaning.agreed
-    moved = replace(agreed, leaned=agreed.leaned + 1)
-    assert "axis" in failed(leaning.verified(agreed=moved))
+    deviations = leaning.deviations
+    moved = replace(deviations, leaned=deviations.leaned + 1)
+    assert "axis" in failed(leaning.verified(deviations=moved))
 
 
 def test_a_slowed_program_is_proven_as_it_says(slowed: Posted) -> None:
@@ -149,7 +149,7 @@ def test_every_wrong_feed_is_found(slowed: Posted) -> None:
 def test_a_feed_lower_than_needed_or_higher_than_asked_for_is_not_believed(
     factor: float, text: str, slowed: Posted
 ) -> None:
-    agreed = replace(slowed.agreed, feed=slowed.agreed.feed * factor)
-    found = check(slowed.verified(agreed=agreed), "feed")
+    deviations = replace(slowed.deviations, feed=slowed.deviations.feed * factor)
+    found = check(slowed.verified(deviations=deviations), "feed")
     assert not found.passed
     assert any(text in place.text for place in found.places)

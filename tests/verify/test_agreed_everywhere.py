@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from tests.plan.naive import moves_of, operation_of
 from tests.plan.test_pole import MACHINES, around_pole, passes
-from trunnion.cli.post import planned_program, write
+from trunnion.cli.post import plan_program, write_for_proof
 from trunnion.controls import load_control
-from trunnion.errors import Refused
+from trunnion.errors import RefusedError
 from trunnion.machines import Machine
-from trunnion.model.motion import Pole
+from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Tool, Toolpath
-from trunnion.planning import Wishes
-from trunnion.planning.linearization.arc_chords import lines_for_arcs, plain_arcs
+from trunnion.planning import PlanOptions
+from trunnion.planning.linearization.arc_chords import arcs_a_control_takes, lines_for_arcs
 from trunnion.planning.pole.deviations import source_rows
 from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
@@ -25,22 +25,22 @@ from trunnion.verification import Verification, verify
 NAMES = ("yl569", "generic_head_table_bc", "generic_head_head_ca", "generic_nutated_b45_c")
 
 
-def proven(machine: Machine, operation: Operation, wishes: Wishes) -> Verification | None:
+def proven(machine: Machine, operation: Operation, options: PlanOptions) -> Verification | None:
     """The program, written, read back and compared; None where there can be none."""
     operation = replace(
         operation, tool=Tool("MILL", "D10", 10.0, 5.0, 50.0), events=(LoadTool(0, 1, 1), SpindleOn(0, 1, 5000.0))
     )
     path = Toolpath("part.cls", (operation,))
     try:
-        program, _ = planned_program([path], machine, load_control(machine.control), {}, False, wishes)
-    except Refused:
+        program, _ = plan_program([path], machine, load_control(machine.control), {}, False, options)
+    except RefusedError:
         return None
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "part.mpf"
         with target.open("wb") as sink:
-            claim = write(program, sink)
+            claim = write_for_proof(program, sink)
         run = run_program(target, machine)
-        return verify(run, [path], allowed=claim.allowed, settings=claim.settings)
+        return verify(run, [path], tolerances=claim.allowed, settings=claim.settings)
 
 
 def failed(found: Verification) -> list[str]:
@@ -48,11 +48,13 @@ def failed(found: Verification) -> list[str]:
 
 
 @settings(max_examples=60)
-@given(st.data(), st.sampled_from(NAMES), st.sampled_from(list(Pole)), st.floats(0.01, 0.5), st.booleans())
-def test_what_is_planned_is_proven(data: st.DataObject, name: str, mode: Pole, angle: float, lower: bool) -> None:
+@given(st.data(), st.sampled_from(NAMES), st.sampled_from(list(PoleStrategy)), st.floats(0.01, 0.5), st.booleans())
+def test_what_is_planned_is_proven(
+    data: st.DataObject, name: str, mode: PoleStrategy, angle: float, lower: bool
+) -> None:
     machine = MACHINES[name]
     operation = data.draw(passes(machine))
-    found = proven(machine, operation, Wishes(pole=mode, pole_angle=angle, lower_feed=lower))
+    found = proven(machine, operation, PlanOptions(pole_strategy=mode, pole_angle=angle, lower_feed=lower))
     if found is None:
         return
     assert failed(found) == []
@@ -84,17 +86,17 @@ def tilting_arcs(past: float, feed: float) -> Operation:
 
 
 @settings(max_examples=20)
-@given(st.sampled_from(list(Pole)), st.booleans(), st.floats(0.01, 0.2), st.floats(500.0, 5000.0))
-def test_arcs_keep_their_tool_axes_and_share_a_feed(mode: Pole, lower: bool, past: float, feed: float) -> None:
+@given(st.sampled_from(list(PoleStrategy)), st.booleans(), st.floats(0.01, 0.2), st.floats(500.0, 5000.0))
+def test_arcs_keep_their_tool_axes_and_share_a_feed(mode: PoleStrategy, lower: bool, past: float, feed: float) -> None:
     machine = MACHINES["generic_head_table_bc"]
-    found = proven(machine, tilting_arcs(past, feed), Wishes(pole=mode, lower_feed=lower, pole_angle=0.3))
+    found = proven(machine, tilting_arcs(past, feed), PlanOptions(pole_strategy=mode, lower_feed=lower, pole_angle=0.3))
     assert found is not None
     assert failed(found) == []
 
 
 def test_lines_for_arcs_belong_to_the_arc() -> None:
     before = tilting_arcs(0.05, 1000.0)
-    kept = plain_arcs(before)
+    kept = arcs_a_control_takes(before)
     assert kept.tolist() == [False, True]
     after = lines_for_arcs(before, kept, 0.001)
     source = source_rows(before, after)

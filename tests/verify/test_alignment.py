@@ -13,12 +13,12 @@ from tests.control.test_program import FOOT, HEAD
 from tests.plan.naive import moves_of, operation_of
 from tests.plan.test_without_tcp import machine, post, toolpath
 from trunnion.cl import read_cl
-from trunnion.cli.post import planned_program, write
-from trunnion.cli.settings import wishes_of
+from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.machines import load_machine
 from trunnion.model.toolpath import Kind
-from trunnion.planning import Wishes
+from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
 from trunnion.verification import Check, failures, verify
 
@@ -36,10 +36,10 @@ def failed(text: str, name: str, folder: Path) -> list[Check]:
     cl.write_text(text, encoding="utf-8")
     model = load_machine(name)
     control = load_control(model.control)
-    program, _ = planned_program([read_cl(cl)], model, control, {}, False, wishes_of({}, control))
+    program, _ = plan_program([read_cl(cl)], model, control, {}, False, parse_plan_options({}, control))
     with nc.open("wb") as sink:
-        claim = write(program, sink)
-    found = verify(run_program(nc, model), [read_cl(cl)], allowed=claim.allowed, settings=claim.settings)
+        claim = write_for_proof(program, sink)
+    found = verify(run_program(nc, model), [read_cl(cl)], tolerances=claim.allowed, settings=claim.settings)
     return failures(found)
 
 
@@ -94,6 +94,6 @@ def test_where_rotary_axes_turn_and_the_tool_hardly_moves_the_right_block_is_tak
     axis = np.column_stack((np.array(lean), np.ones(len(lean))))
     moves = moves_of(np.array(tip), axis / np.linalg.norm(axis, axis=1)[:, None])
     kind = np.array([Kind.RAPID, *[Kind.LINEAR] * (len(tip) - 1)], np.uint8)
-    done = post(machine(name), toolpath(operation_of(replace(moves, kind=kind))), Wishes(tcp=False))
+    done = post(machine(name), toolpath(operation_of(replace(moves, kind=kind))), PlanOptions(tcp=False))
     assert not any(problem.severity.value == "error" for problem in done.plan.problems)
     assert failures(done.found) == []

@@ -7,7 +7,7 @@ import pytest
 
 from tests.verify.conftest import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier, check
 from trunnion.machines import Machine
-from trunnion.verification import Allowed, Settings
+from trunnion.verification import Settings, Tolerances
 
 CUT = "G0 X0 Y0 Z50\nG1 X10 Z5 F500\nX20\n"
 CL = CL_HEAD + "GOTO/10,0,5\nGOTO/20,0,5\n" + CL_FOOT
@@ -79,12 +79,12 @@ def test_lines_may_stand_for_an_arc_and_their_chords_are_told(verified: Verifier
     points = [(20 + 10 * np.cos(a), 10 * np.sin(a)) for a in angle]
     lines = "".join(f"X{x:.5f} Y{y:.5f}\n" for x, y in points)
     text = HEAD + "G0 X0 Y0 Z50\nG1 X10 Z5 F500\n" + lines + FOOT
-    found = verified(text, cl, allowed=Allowed(6e-6, 6e-6))
+    found = verified(text, cl, tolerances=Tolerances(6e-6, 6e-6))
     assert found.passed, [c for c in found.checks if not c.passed]
     assert "tip 0.0003" in check(found, "span").summary
     x, y = points[90]
     off = text.replace(f"X{x:.5f} Y{y:.5f}", f"X{x:.5f} Y{y + 0.001:.5f}")
-    wrong = check(verified(off, cl, allowed=Allowed(6e-6, 6e-6)), "tip")
+    wrong = check(verified(off, cl, tolerances=Tolerances(6e-6, 6e-6)), "tip")
     assert not wrong.passed
     assert wrong.places[0].nc_line == off.splitlines().index(f"X{x:.5f} Y{y + 0.001:.5f}") + 1
 

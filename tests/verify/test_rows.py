@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.verification.matching.row_ranges import Rows
+from trunnion.verification.matching.row_ranges import RowRanges
 
 FLAGS = st.lists(st.booleans(), max_size=40)
 
@@ -15,7 +15,7 @@ def test_rows_are_the_numbers_of_the_rows_that_have_a_flag(
 ) -> None:
     numbers = [row for row, flag in enumerate(flags) if flag]
     column = np.array(flags, np.bool_)
-    rows = Rows.where((first, column[first : first + piece]) for first in range(0, len(flags), piece))
+    rows = RowRanges.where((first, column[first : first + piece]) for first in range(0, len(flags), piece))
     assert [rows[k] for k in range(len(rows))] == numbers
     assert [rows[k - len(rows)] for k in range(len(rows))] == numbers
     begin, end = max(start, 0), max(start, 0) + length
@@ -30,6 +30,6 @@ def test_rows_can_be_put_together_from_stretches(gaps: list[tuple[int, int]]) ->
     for gap, count in gaps:
         stretches.append((at + gap, count))
         at += gap + count
-    rows = Rows.of(stretches)
+    rows = RowRanges.of(stretches)
     wanted = [first + k for first, count in stretches for k in range(count)]
     assert rows.part(0, len(rows)).tolist() == wanted

@@ -13,11 +13,11 @@ from tests.plan.naive import moves_of, operation_of, rapids_at
 from tests.plan.test_pole import around_pole
 from trunnion.cl import read_cl
 from trunnion.machines import Machine, load_machine, slide_positions
-from trunnion.model.motion import Manner, Motion
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Dwell, Operation, Toolpath
-from trunnion.planning import Wishes, plan, seconds
-from trunnion.planning.speed.operation_time import row_times
-from trunnion.planning.speed.rotary_speed import wound
+from trunnion.planning import PlanOptions, operation_seconds, plan
+from trunnion.planning.speed.operation_time import row_durations
+from trunnion.planning.speed.rotary_speed import continuous_positions
 from trunnion.readers import run_program
 from trunnion.verification import Verification, time_lines, verify
 
@@ -45,7 +45,7 @@ def motion_of(operation: Operation, feed: float = 1.0) -> Motion:
     """How the machine makes it, with the feed times a factor."""
     moves = operation.moves
     operation = replace(operation, moves=replace(moves, feed=feed * moves.feed))
-    return plan([Toolpath("part.cls", (operation,))], BC, 0.001, Wishes()).motions[0]
+    return plan([Toolpath("part.cls", (operation,))], BC, 0.001, PlanOptions()).motions[0]
 
 
 def rest_to_rest(way: float, top: float, ramp: float) -> float:
@@ -56,12 +56,12 @@ def rest_to_rest(way: float, top: float, ramp: float) -> float:
 @given(operations())
 def test_no_axis_is_faster_than_it_can_be_and_no_row_than_its_feed(operation: Operation) -> None:
     motion = motion_of(operation)
-    times, moves = row_times(BC, motion), motion.operation.moves
+    times, moves = row_durations(BC, motion), motion.operation.moves
     assert np.isfinite(times).all()
     way = np.linalg.norm(np.diff(moves.tip, axis=0), axis=1)
     fed = (moves.kind[1:] != 0) & (way > 1e-9)
     assert (times[1:][fed] >= 60.0 * way[fed] / moves.feed[1:][fed] * (1.0 - 1e-9)).all()
-    steps = np.abs(np.diff(slide_positions(BC, moves.tip, wound(BC, motion.rotary)), axis=0))
+    steps = np.abs(np.diff(slide_positions(BC, moves.tip, continuous_positions(BC, motion.rotary)), axis=0))
     for k, axis in enumerate(BC.axes):
         assert axis.rapid is not None
         assert (steps[:, k] <= axis.rapid / 60.0 * times[1:] * (1.0 + 1e-9) + 1e-9).all()
@@ -72,22 +72,26 @@ def test_a_stop_at_every_row_is_no_faster(operation: Operation) -> None:
     motion = motion_of(operation)
     stops = tuple(Dwell(row, 1, 0.0) for row in range(1, len(motion.operation.moves)))
     stopping = replace(motion, operation=replace(motion.operation, events=stops))
-    assert row_times(BC, motion).sum() <= row_times(BC, stopping).sum() * (1.0 + 1e-9)
+    assert row_durations(BC, motion).sum() <= row_durations(BC, stopping).sum() * (1.0 + 1e-9)
 
 
 @given(operations(), st.floats(1.0, 20.0))
 def test_a_higher_feed_is_no_slower(operation: Operation, factor: float) -> None:
-    assert row_times(BC, motion_of(operation, factor)).sum() <= row_times(BC, motion_of(operation)).sum() * (1.0 + 1e-9)
+    assert row_durations(BC, motion_of(operation, factor)).sum() <= row_durations(BC, motion_of(operation)).sum() * (
+        1.0 + 1e-9
+    )
 
 
 def test_a_dwell_takes_its_time() -> None:
     tip = np.column_stack((np.linspace(0.0, 100.0, 11), np.zeros(11), np.zeros(11)))
     operation = operation_of(replace(moves_of(tip, np.tile([0.0, 0.0, 1.0], (11, 1))), feed=np.full(11, 6000.0)))
-    motion = Motion(operation, np.zeros((11, 2)), Manner.THREE_AXIS)
+    motion = Motion(operation, np.zeros((11, 2)), MachiningMode.THREE_AXIS)
     top, ramp = 100.0, 4000.0
-    assert seconds(BC, motion) == pytest.approx(rest_to_rest(100.0, top, ramp))
+    assert operation_seconds(BC, motion) == pytest.approx(rest_to_rest(100.0, top, ramp))
     dwelling = replace(motion, operation=replace(operation, events=(Dwell(5, 1, 2.5),)))
-    assert seconds(BC, dwelling) == pytest.approx(2.5 + rest_to_rest(40.0, top, ramp) + rest_to_rest(60.0, top, ramp))
+    assert operation_seconds(BC, dwelling) == pytest.approx(
+        2.5 + rest_to_rest(40.0, top, ramp) + rest_to_rest(60.0, top, ramp)
+    )
 
 
 @pytest.fixture(scope="module")

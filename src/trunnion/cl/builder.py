@@ -10,7 +10,7 @@ from trunnion.model.toolpath import Event, Frame, Sense, Tool
 
 
 @dataclass(slots=True)
-class Columns:
+class MoveColumns:
     """The columns of the whole file, with room for ``n`` rows; operations are slices of them.
 
     Tip and axis are written while the file is scanned, the others when an operation is assembled.
@@ -34,9 +34,9 @@ class Columns:
             setattr(self, name, new)
 
     @staticmethod
-    def room_for(n: int) -> "Columns":
+    def allocate(n: int) -> "MoveColumns":
         """Return columns of ``n`` rows, not yet written."""
-        return Columns(
+        return MoveColumns(
             tip=np.empty((n, 3)),
             axis=np.empty((n, 3)),
             kind=np.empty(n, np.uint8),
@@ -56,16 +56,16 @@ class SurfaceSpeed(Event):
     diameter: float | None
 
 
-class Feed(NamedTuple):
+class FeedChange(NamedTuple):
     """A FEDRAT: ``value`` in mm/min or mm/rev, or in units of the file if it named none."""
 
     row: int
     value: float
     per_rev: bool
-    bare: bool
+    in_file_units: bool
 
 
-class Circle(NamedTuple):
+class CircleStatement(NamedTuple):
     """A CIRCLE: xc, yc, zc, i, j, k, r in units of the file, and the turns that it begins."""
 
     row: int
@@ -74,7 +74,7 @@ class Circle(NamedTuple):
     turns: int
 
 
-class Start(NamedTuple):
+class FromStatement(NamedTuple):
     """A FROM: the tip, and the axis if one was given."""
 
     row: int
@@ -84,7 +84,7 @@ class Start(NamedTuple):
 
 
 @dataclass(slots=True)
-class Draft:
+class OperationBuilder:
     """An operation while it is read. Rows count from ``first``, the operation's first row in the columns."""
 
     name: str
@@ -96,8 +96,8 @@ class Draft:
     intol: float | None = None
     outtol: float | None = None
     events: list[Event] = field(default_factory=list)
-    feeds: list[Feed] = field(default_factory=list)
+    feeds: list[FeedChange] = field(default_factory=list)
     colours: list[tuple[int, int]] = field(default_factory=list)
     rapids: list[int] = field(default_factory=list)
-    circles: list[Circle] = field(default_factory=list)
-    starts: list[Start] = field(default_factory=list)
+    circles: list[CircleStatement] = field(default_factory=list)
+    starts: list[FromStatement] = field(default_factory=list)

@@ -3,10 +3,10 @@
 from trunnion.errors import InputError, Problem, Severity
 
 #: More problems than this are counted, not listed.
-MOST = 100
+MAX_LISTED = 100
 
 
-class Wrong(Exception):  # noqa: N818 - it never leaves this room
+class StatementError(Exception):
     """A statement that cannot be used; the line is added by the one who knows it."""
 
     def __init__(self, what: str, cure: str) -> None:
@@ -15,8 +15,8 @@ class Wrong(Exception):  # noqa: N818 - it never leaves this room
         self.cure = cure
 
 
-class Findings:
-    """Errors and remarks of one file, of each at most ``MOST`` and a count of the rest."""
+class Diagnostics:
+    """Errors and remarks of one file, of each at most ``MAX_LISTED`` and a count of the rest."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -36,13 +36,13 @@ class Findings:
         self.error(line, what, cure)
         return InputError(self._listed(Severity.ERROR))
 
-    def check(self) -> None:
+    def raise_errors(self) -> None:
         """Raise the errors, if there are any."""
         if self._lists[Severity.ERROR]:
             raise InputError(self._listed(Severity.ERROR))
 
     @property
-    def failed(self) -> bool:
+    def has_errors(self) -> bool:
         """Whether there was an error."""
         return bool(self._lists[Severity.ERROR])
 
@@ -53,7 +53,7 @@ class Findings:
 
     def _add(self, problem: Problem) -> None:
         listed = self._lists[problem.severity]
-        if len(listed) < MOST:
+        if len(listed) < MAX_LISTED:
             listed.append(problem)
         else:
             self._more[problem.severity] += 1

@@ -11,15 +11,15 @@ _RUN = re.compile(rb"([A-Za-z]?)([\x80-\xff]+)([\x40-\x7e]?)")
 _LETTER = re.compile(rb"[A-Za-z]")
 
 #: So many stretches of non-ASCII bytes are evidence enough.
-_ENOUGH = 4096
+_MAX_STRETCHES = 4096
 
 
-class Guess:
+class EncodingDetector:
     """Takes the file piece by piece and says in the end which encoding it is."""
 
     def __init__(self) -> None:
         self._utf8: codecs.IncrementalDecoder | None = codecs.getincrementaldecoder("utf-8")("strict")
-        self._odd = True
+        self._is_unlikely_utf8 = True
         self._seen = 0
         self._hanzi = 0
         self._others = 0
@@ -35,23 +35,23 @@ class Guess:
             except UnicodeDecodeError:
                 self._utf8 = None
         for run in _RUN.finditer(piece):
-            if self._seen >= _ENOUGH:
+            if self._seen >= _MAX_STRETCHES:
                 break
             self._seen += 1
-            self._odd = self._odd and _is_odd(run[2])
-            hanzi, others = _count(*run.groups())
+            self._is_unlikely_utf8 = self._is_unlikely_utf8 and _unlikely_in_utf8(run[2])
+            hanzi, others = _count_characters(*run.groups())
             self._hanzi += hanzi
             self._others += others
 
-    def name(self) -> str:
+    def encoding(self) -> str:
         """Python's name of the encoding."""
         chinese = self._hanzi > self._others
-        if self._utf8 is not None and self._utf8.getstate()[0] == b"" and not (chinese and self._odd):
+        if self._utf8 is not None and self._utf8.getstate()[0] == b"" and not (chinese and self._is_unlikely_utf8):
             return "utf-8"
         return "gb18030" if chinese else "latin-1"
 
 
-def _is_odd(high: bytes) -> bool:
+def _unlikely_in_utf8(high: bytes) -> bool:
     """Whether bytes are no UTF-8 that anybody writes in a name, though the rules may let them pass.
 
     A single Chinese character of GBK can look like a two-byte one of UTF-8: of a phonetic alphabet, or of none.
@@ -62,7 +62,7 @@ def _is_odd(high: bytes) -> bool:
     )
 
 
-def _count(before: bytes, high: bytes, after: bytes) -> tuple[int, int]:
+def _count_characters(before: bytes, high: bytes, after: bytes) -> tuple[int, int]:
     """Count common Chinese characters, and other things, in a stretch of high bytes and its neighbours.
 
     The everyday characters (GB 2312 level 1) and the full-width signs have both bytes above 0xA0 and the first

@@ -9,8 +9,8 @@ Words are told apart by what they are, never by their place: systems differ in `
 from dataclasses import replace
 
 from trunnion.cl.assemble import CYCLE_LENGTHS
-from trunnion.cl.builder import Draft, Feed, SurfaceSpeed
-from trunnion.cl.diagnostics import Findings, Wrong
+from trunnion.cl.builder import FeedChange, OperationBuilder, SurfaceSpeed
+from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.statement import Statement, is_whole, numbers
 from trunnion.model.toolpath import (
     BlockSkip,
@@ -23,13 +23,13 @@ from trunnion.model.toolpath import (
     Insert,
     LoadTool,
     Message,
-    Mode,
     SelectTool,
     Sense,
+    SetMode,
     SpindleOff,
     SpindleOn,
     Stop,
-    Unknown,
+    UnknownStatement,
 )
 
 MM_PER_INCH = 25.4
@@ -55,55 +55,59 @@ class EventStatements:
     What stands between two operations is kept in a draft without a name until one takes it over.
     """
 
-    def __init__(self, findings: Findings, strict: bool) -> None:
-        self._findings = findings
+    def __init__(self, diagnostics: Diagnostics, strict: bool) -> None:
+        self._diagnostics = diagnostics
         self._strict = strict
-        self._draft = Draft("", 0, 0)
+        self._builder = OperationBuilder("", 0, 0)
         self._row = 0
         self._line = 0
-        self._per_rev = False
-        self._bare = True
-        self._factor = 1.0
+        self._feed_per_rev = False
+        self._feed_in_file_units = True
+        self._feed_factor = 1.0
         self._spindle: SpindleOn | SurfaceSpeed | None = None
         self._cycle: CycleOn | None = None
         self._metric = 0
         self._inch = 0
 
     def _add(self, event: Event) -> None:
-        self._draft.events.append(event)
+        self._builder.events.append(event)
 
     @property
-    def _here(self) -> int:
+    def _operation_row(self) -> int:
         """Row within the operation."""
-        return self._row - self._draft.first
+        return self._row - self._builder.first
 
-    def _unsure(self, statement: Statement, what: str) -> None:
+    def _keep_unknown(self, statement: Statement, what: str) -> None:
         """Keep a statement as it stands, once however much of it is not known."""
-        last = self._draft.events[-1] if self._draft.events else None
-        if not isinstance(last, Unknown) or last.line != self._line:
-            self._add(Unknown(self._here, self._line, statement.source))
+        last = self._builder.events[-1] if self._builder.events else None
+        if not isinstance(last, UnknownStatement) or last.line != self._line:
+            self._add(UnknownStatement(self._operation_row, self._line, statement.source))
         if self._strict:
-            self._findings.error(self._line, what, "take the statement out, or read without strict")
+            self._diagnostics.error(self._line, what, "take the statement out, or read without strict")
         else:
-            self._findings.remark(self._line, f"{what}; kept as it stands", "look whether the program needs it")
+            self._diagnostics.remark(self._line, f"{what}; kept as it stands", "look whether the program needs it")
 
     # -- feed, spindle, tool ------------------------------------------------------------------------------------
 
     def _fedrat(self, statement: Statement) -> None:
         for word in statement.words():
             if word not in _FEEDS:
-                raise Wrong(f"FEDRAT/{word} is not a feed that is read", "write the feed in MMPM, MMPR, IPM or IPR")
-            self._factor, self._per_rev = _FEEDS[word]
-            self._bare = False
-            self._saw(word)
+                raise StatementError(
+                    f"FEDRAT/{word} is not a feed that is read", "write the feed in MMPM, MMPR, IPM or IPR"
+                )
+            self._feed_factor, self._feed_per_rev = _FEEDS[word]
+            self._feed_in_file_units = False
+            self._note_feed_unit(word)
         (value,) = numbers("FEDRAT", tuple(value for value in statement.values if not isinstance(value, str)), 1)
         if value < 0:
-            raise Wrong(f"FEDRAT is negative: {value:g}", "write a feed above 0")
+            raise StatementError(f"FEDRAT is negative: {value:g}", "write a feed above 0")
         if value == 0:
-            self._findings.remark(self._line, "FEDRAT is 0", "write a feed above 0, or RAPID")
-        self._draft.feeds.append(Feed(self._here, value * self._factor, self._per_rev, self._bare))
+            self._diagnostics.remark(self._line, "FEDRAT is 0", "write a feed above 0, or RAPID")
+        self._builder.feeds.append(
+            FeedChange(self._operation_row, value * self._feed_factor, self._feed_per_rev, self._feed_in_file_units)
+        )
 
-    def _saw(self, word: str) -> None:
+    def _note_feed_unit(self, word: str) -> None:
         if _FEEDS[word][0] == 1.0:
             self._metric = self._metric or self._line
         else:
@@ -112,10 +116,10 @@ class EventStatements:
     def _spindl(self, statement: Statement) -> None:
         words = set(statement.words())
         if "OFF" in words:
-            self._add(SpindleOff(self._here, self._line))
+            self._add(SpindleOff(self._operation_row, self._line))
             return
         if words - {"RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "LOW", "MEDIUM", "HIGH", "RANGE", "DIAMTR"}:
-            self._unsure(statement, f"SPINDL/{','.join(statement.words())} is not known")
+            self._keep_unknown(statement, f"SPINDL/{','.join(statement.words())} is not known")
             return
         speed: float | None = None
         diameter: float | None = None
@@ -129,21 +133,23 @@ class EventStatements:
                     speed = value
             last = value
         if "RANGE" in words or words & {"LOW", "MEDIUM", "HIGH"}:
-            self._findings.remark(
+            self._diagnostics.remark(
                 self._line, "the gear range of SPINDL is not written", "INSERT/ says it, if it must be"
             )
         sense = self._sense(words)
         surface = words & _SURFACE.keys()
         if speed is None:
             if self._spindle is None:
-                raise Wrong("SPINDL turns the spindle on before any speed was given", "write SPINDL/RPM,n,CLW")
-            self._spindle = replace(self._spindle, row=self._here, line=self._line, sense=sense)
+                raise StatementError("SPINDL turns the spindle on before any speed was given", "write SPINDL/RPM,n,CLW")
+            self._spindle = replace(self._spindle, row=self._operation_row, line=self._line, sense=sense)
         elif speed < 0:
-            raise Wrong(f"SPINDL has a negative speed: {speed:g}", "write CLW or CCLW for the sense")
+            raise StatementError(f"SPINDL has a negative speed: {speed:g}", "write CLW or CCLW for the sense")
         elif surface:
-            self._spindle = SurfaceSpeed(self._here, self._line, speed * _SURFACE[surface.pop()], sense, diameter)
+            self._spindle = SurfaceSpeed(
+                self._operation_row, self._line, speed * _SURFACE[surface.pop()], sense, diameter
+            )
         else:
-            self._spindle = SpindleOn(self._here, self._line, speed, sense)
+            self._spindle = SpindleOn(self._operation_row, self._line, speed, sense)
         self._add(self._spindle)
 
     def _sense(self, words: set[str]) -> Sense:
@@ -156,27 +162,29 @@ class EventStatements:
     def _load(self, statement: Statement) -> None:
         values = statement.values
         if values[:1] != ("TOOL",):
-            self._unsure(statement, f"{statement.major} without TOOL is not known")
+            self._keep_unknown(statement, f"{statement.major} without TOOL is not known")
             return
-        number = whole(statement.major, values[1:2])
+        number = whole_number(statement.major, values[1:2])
         if statement.major == "SELECT":
-            self._add(SelectTool(self._here, self._line, number))
+            self._add(SelectTool(self._operation_row, self._line, number))
             return
         adjust = 0
         if "ADJUST" in values:
-            place = values.index("ADJUST")
-            adjust = whole("LOAD ADJUST", values[place + 1 : place + 2])
-            values = values[:place] + values[place + 2 :]
+            index = values.index("ADJUST")
+            adjust = whole_number("LOAD ADJUST", values[index + 1 : index + 2])
+            values = values[:index] + values[index + 2 :]
         if len(values) > 2:
-            self._unsure(statement, f"LOAD/TOOL with {','.join(map(str, values[2:]))} is not known beyond its number")
-        self._add(LoadTool(self._here, self._line, number, adjust))
+            self._keep_unknown(
+                statement, f"LOAD/TOOL with {','.join(map(str, values[2:]))} is not known beyond its number"
+            )
+        self._add(LoadTool(self._operation_row, self._line, number, adjust))
 
     def _coolnt(self, statement: Statement) -> None:
         values = statement.values or ("ON",)
         if len(values) != 1 or not isinstance(values[0], str) or values[0] not in _COOLANTS:
-            self._unsure(statement, f"{statement.source.strip()} is not a coolant that is known")
+            self._keep_unknown(statement, f"{statement.source.strip()} is not a coolant that is known")
             return
-        self._add(Coolant(self._here, self._line, values[0]))
+        self._add(Coolant(self._operation_row, self._line, values[0]))
 
     def _cutcom(self, statement: Statement) -> None:
         words = statement.words()
@@ -184,22 +192,22 @@ class EventStatements:
         plane = [word for word in words if word in _PLANES]
         register = tuple(value for value in statement.values if not isinstance(value, str))
         if len(side) != 1 or len(plane) > 1 or len(words) != len(side) + len(plane) or len(register) > 1:
-            self._unsure(statement, f"{statement.source.strip()} is not known")
+            self._keep_unknown(statement, f"{statement.source.strip()} is not known")
             return
-        number = whole("CUTCOM", register) if register else 0
-        self._add(CutterComp(self._here, self._line, side[0], plane[0] if plane else "", number))
+        number = whole_number("CUTCOM", register) if register else 0
+        self._add(CutterComp(self._operation_row, self._line, side[0], plane[0] if plane else "", number))
 
     # -- cycles -------------------------------------------------------------------------------------------------
 
-    def _cycle_word(self, statement: Statement) -> None:
+    def _cycle_statement(self, statement: Statement) -> None:
         values = statement.values
         if values == ("OFF",):
-            self._add(CycleOff(self._here, self._line))
+            self._add(CycleOff(self._operation_row, self._line))
             return
         if values == ("ON",):
             if self._cycle is None:
-                raise Wrong("CYCLE/ON before any cycle", "write the cycle with its values")
-            self._cycle = replace(self._cycle, row=self._here, line=self._line)
+                raise StatementError("CYCLE/ON before any cycle", "write the cycle with its values")
+            self._cycle = replace(self._cycle, row=self._operation_row, line=self._line)
         else:
             self._cycle = self._cycle_on(statement)
         self._add(self._cycle)
@@ -211,12 +219,14 @@ class EventStatements:
         words: list[tuple[str, str]] = []
         values = statement.values
         if not values or not isinstance(values[0], str):
-            raise Wrong("CYCLE without a word for its kind", "write CYCLE/DRILL, CYCLE/TAP, ..., or CYCLE/OFF")
+            raise StatementError("CYCLE without a word for its kind", "write CYCLE/DRILL, CYCLE/TAP, ..., or CYCLE/OFF")
         at = 0
         while at < len(values):
             word = values[at]
             if not isinstance(word, str):
-                raise Wrong(f"CYCLE has the number {word:g} without a word before it", "name each number of the cycle")
+                raise StatementError(
+                    f"CYCLE has the number {word:g} without a word before it", "name each number of the cycle"
+                )
             stop = at + 1
             while stop < len(values) and not isinstance(values[stop], str):
                 stop += 1
@@ -224,7 +234,7 @@ class EventStatements:
             after = values[stop] if stop < len(values) else ""
             if word in _FEEDS:
                 factor, per_rev = _FEEDS[word]
-                self._saw(word)
+                self._note_feed_unit(word)
                 (feed,) = numbers(f"CYCLE {word}", given, 1)
                 couplets.append(("MMPR" if per_rev else "MMPM", (feed * factor,)))
             elif word in _CYCLE_MODES and not couplets and not words:
@@ -242,51 +252,51 @@ class EventStatements:
             elif word in _CYCLE_NUMBERS and given:
                 couplets.append((word, given))
             elif word in _CYCLE_NUMBERS:
-                raise Wrong(f"CYCLE has {word} without a number", f"write {word},value")
+                raise StatementError(f"CYCLE has {word} without a number", f"write {word},value")
             elif given:
-                self._unsure(statement, f"CYCLE with {word} is not known")
+                self._keep_unknown(statement, f"CYCLE with {word} is not known")
                 couplets.append((word, given))
             else:
                 if word not in _CYCLE_WORDS:
-                    self._unsure(statement, f"CYCLE with {word or 'nothing between two commas'} is not known")
+                    self._keep_unknown(statement, f"CYCLE with {word or 'nothing between two commas'} is not known")
                 words.append((word, ""))
             at = stop
-        return CycleOn(self._here, self._line, tuple(mode), tuple(couplets), tuple(words))
+        return CycleOn(self._operation_row, self._line, tuple(mode), tuple(couplets), tuple(words))
 
     # -- other events -------------------------------------------------------------------------------------------
 
     def _delay(self, statement: Statement) -> None:
         words = statement.words()
         if words not in ([], ["REV"]):
-            self._unsure(statement, f"DELAY/{','.join(words)} is not known")
+            self._keep_unknown(statement, f"DELAY/{','.join(words)} is not known")
             return
         (amount,) = numbers("DELAY", tuple(value for value in statement.values if not isinstance(value, str)), 1)
         if amount < 0:
-            raise Wrong("DELAY is negative", "write the time in seconds, or the revolutions and REV")
-        self._add(Dwell(self._here, self._line, amount, bool(words)))
+            raise StatementError("DELAY is negative", "write the time in seconds, or the revolutions and REV")
+        self._add(Dwell(self._operation_row, self._line, amount, bool(words)))
 
     def _stop(self, statement: Statement) -> None:
-        self._add(Stop(self._here, self._line, statement.major == "OPSTOP", statement.text))
+        self._add(Stop(self._operation_row, self._line, statement.major == "OPSTOP", statement.text))
 
     def _message(self, statement: Statement) -> None:
-        self._add(Message(self._here, self._line, statement.text, statement.major in ("DISPLY", "DISPLAY")))
+        self._add(Message(self._operation_row, self._line, statement.text, statement.major in ("DISPLY", "DISPLAY")))
 
     def _insert(self, statement: Statement) -> None:
-        self._add(Insert(self._here, self._line, statement.text))
+        self._add(Insert(self._operation_row, self._line, statement.text))
 
     def _opskip(self, statement: Statement) -> None:
         if statement.values not in (("ON",), ("OFF",)):
-            self._unsure(statement, f"{statement.source.strip()} is not known")
+            self._keep_unknown(statement, f"{statement.source.strip()} is not known")
             return
-        self._add(BlockSkip(self._here, self._line, statement.values == ("ON",)))
+        self._add(BlockSkip(self._operation_row, self._line, statement.values == ("ON",)))
 
     def _mode(self, statement: Statement) -> None:
         values = [value if isinstance(value, str) else f"{value:g}" for value in statement.values]
-        self._add(Mode(self._here, self._line, (statement.major, *values)))
+        self._add(SetMode(self._operation_row, self._line, (statement.major, *values)))
 
 
-def whole(major: str, values: tuple[str | float, ...]) -> int:
+def whole_number(major: str, values: tuple[str | float, ...]) -> int:
     (number,) = numbers(major, values, 1)
     if not is_whole(number, 0):
-        raise Wrong(f"{major} has {number:g} where a whole number belongs", "write 0, 1, 2 ...")
+        raise StatementError(f"{major} has {number:g} where a whole number belongs", "write 0, 1, 2 ...")
     return int(number)

@@ -12,21 +12,21 @@ from typing import BinaryIO
 
 import numpy as np
 
-from trunnion.cl.assemble import operation
-from trunnion.cl.builder import Columns
-from trunnion.cl.diagnostics import Findings
-from trunnion.cl.encoding import Guess
-from trunnion.cl.nx import Interpreter
-from trunnion.cl.scan import ENDLESS, LONGEST, OPEN, SPAN, scan
+from trunnion.cl.assemble import assemble_operation
+from trunnion.cl.builder import MoveColumns
+from trunnion.cl.diagnostics import Diagnostics
+from trunnion.cl.encoding import EncodingDetector
+from trunnion.cl.nx import ClsfInterpreter
+from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time.
 CHUNK = 4 << 20
 #: Statements that one walk of the scan writes down before it hands over.
-_SPANS = 1 << 15
-_SURVEY = CHUNK
+_MAX_SPANS = 1 << 15
+_SURVEY_CHUNK = CHUNK
 #: No statement that makes a row is shorter.
-_SHORTEST = len("GOTO/\n")
+_MIN_ROW_BYTES = len("GOTO/\n")
 _BOM = b"\xef\xbb\xbf"
 
 _PLAIN_TEXT = "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)"
@@ -36,10 +36,10 @@ _PLAIN_TEXT = "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)"
 class Survey:
     """What the first pass found: bytes to skip, about how many rows, encoding, whether the last line ends."""
 
-    skip: int
+    bom_bytes: int
     rows: int
     encoding: str
-    whole: bool
+    complete: bool
 
 
 def read_cl(
@@ -84,67 +84,67 @@ def read_in_chunks(
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
     """Do what ``read_cl`` says, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
-    findings = Findings(str(path))
+    diagnostics = Diagnostics(str(path))
     if units is not None and units.lower() not in ("mm", "inch"):
-        raise findings.fatal(0, f"units are {units!r}", "units are mm or inch")
+        raise diagnostics.fatal(0, f"units are {units!r}", "units are mm or inch")
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             what = "is a folder" if path.is_dir() else "is not a regular file"
-            raise findings.fatal(0, what, "give a CL file")
+            raise diagnostics.fatal(0, what, "give a CL file")
         with path.open("rb", buffering=0) as file:
-            survey = _survey(file, findings)
-            columns = Columns.room_for(survey.rows)
-            interpreter = Interpreter(columns, findings, survey.encoding, strict)
-            file.seek(survey.skip)
-            rows, line = _scan_file(file, survey, chunk, columns, interpreter, findings, progress)
+            survey = _survey(file, diagnostics)
+            columns = MoveColumns.allocate(survey.rows)
+            interpreter = ClsfInterpreter(columns, diagnostics, survey.encoding, strict)
+            file.seek(survey.bom_bytes)
+            rows, line = _scan_file(file, survey, chunk, columns, interpreter, diagnostics, progress)
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
-        raise findings.fatal(0, what, "give the name of a file that you may read") from error
+        raise diagnostics.fatal(0, what, "give the name of a file that you may read") from error
     except ValueError as error:  # a NUL in the name
-        raise findings.fatal(0, f"cannot be read: {error}", "give the name of a CL file") from error
-    interpreter.finish(rows, survey.whole, line)
+        raise diagnostics.fatal(0, f"cannot be read: {error}", "give the name of a CL file") from error
+    interpreter.finish(rows, survey.complete, line)
     unit = interpreter.unit(units)
     if unit != 1.0:
         columns.tip[:rows] *= unit
-    operations = tuple(operation(draft, columns, unit, findings) for draft in interpreter.drafts)
-    findings.check()
-    return Toolpath(str(path), operations, interpreter.part, findings.remarks, unit)
+    operations = tuple(assemble_operation(builder, columns, unit, diagnostics) for builder in interpreter.builders)
+    diagnostics.raise_errors()
+    return Toolpath(str(path), operations, interpreter.part, diagnostics.remarks, unit)
 
 
-def _survey(file: BinaryIO, findings: Findings) -> Survey:
+def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:
     """Look through the whole file, and refuse what is no text."""
-    guess = Guess()
-    skip = size = 0
+    detector = EncodingDetector()
+    bom_bytes = size = 0
     per_byte = 1.0
-    whole = lines = False
-    while piece := file.read(_SURVEY):
+    complete = lines = False
+    while piece := file.read(_SURVEY_CHUNK):
         if size == 0:
             if piece.startswith((b"\xff\xfe", b"\xfe\xff")):
-                raise findings.fatal(1, "unknown encoding: this is UTF-16", _PLAIN_TEXT)
-            skip = len(_BOM) if piece.startswith(_BOM) else 0
+                raise diagnostics.fatal(1, "unknown encoding: this is UTF-16", _PLAIN_TEXT)
+            bom_bytes = len(_BOM) if piece.startswith(_BOM) else 0
             per_byte = (piece.count(b"\n") + 1) / len(piece)
         if (nul := piece.find(0)) >= 0:
             line = _line_at(file, size + nul)
-            raise findings.fatal(line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT)
-        guess.add(piece)
+            raise diagnostics.fatal(line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT)
+        detector.add(piece)
         size += len(piece)
-        whole = piece.endswith(b"\n")
+        complete = piece.endswith(b"\n")
         lines = lines or b"\n" in piece
         if not lines and b"\r" in piece.rstrip():
-            raise findings.fatal(
+            raise diagnostics.fatal(
                 1, "the lines end with a lone carriage return", "save the file with LF or CRLF line ends"
             )
-    if size == skip:
-        raise findings.fatal(0, "the file is empty", "write the tool path out of the CAM system again")
-    rows = min(1.02 * per_byte * size, size / _SHORTEST)
-    return Survey(skip, int(rows) + 16, guess.name(), whole)
+    if size == bom_bytes:
+        raise diagnostics.fatal(0, "the file is empty", "write the tool path out of the CAM system again")
+    rows = min(1.02 * per_byte * size, size / _MIN_ROW_BYTES)
+    return Survey(bom_bytes, int(rows) + 16, detector.encoding(), complete)
 
 
 def _line_at(file: BinaryIO, offset: int) -> int:
     """Line, from 1, in which a byte of the file lies."""
     file.seek(0)
     line, left = 1, offset
-    while left and (piece := file.read(min(left, _SURVEY))):
+    while left and (piece := file.read(min(left, _SURVEY_CHUNK))):
         line += piece.count(b"\n")
         left -= len(piece)
     return line
@@ -154,23 +154,23 @@ def _scan_file(
     file: BinaryIO,
     survey: Survey,
     chunk: int,
-    columns: Columns,
-    interpreter: Interpreter,
-    findings: Findings,
+    columns: MoveColumns,
+    interpreter: ClsfInterpreter,
+    diagnostics: Diagnostics,
     progress: Callable[[int], None] | None,
 ) -> tuple[int, int]:
     """Read the file to its end; return the number of rows and of the last line.
 
     What is not yet a whole statement at the end of a piece is carried over to the next. It is never longer than
-    ``LONGEST``, and that bounds the buffer.
+    ``MAX_STATEMENT_BYTES``, and that bounds the buffer.
     """
-    data = bytearray(LONGEST + chunk + 2)
+    data = bytearray(MAX_STATEMENT_BYTES + chunk + 2)
     view = memoryview(data)
     array = np.frombuffer(data, np.uint8)
-    spans = np.empty((_SPANS, SPAN), np.int64)
+    spans = np.empty((_MAX_SPANS, SPAN_COLUMNS), np.int64)
     filled = rows = 0
     line = 1
-    done = survey.skip
+    done = survey.bom_bytes
     last = False
     while not last:
         got = file.readinto(view[filled : filled + chunk]) or 0  # type: ignore[attr-defined]
@@ -188,17 +188,17 @@ def _scan_file(
                 array, at, stop, last, line, rows, columns.tip, columns.axis, columns.line, spans
             )
             for begin, length, number, row, mark in zip(*spans[:count].T.tolist(), strict=True):
-                if mark & ENDLESS:
-                    raise _endless(number, findings)
-                if mark & OPEN:
-                    findings.error(number, "the file ends after a continuation sign $", "write the rest of it")
-                interpreter.take(bytes(view[begin : begin + length]), number, row, mark)
+                if mark & TOO_LONG:
+                    raise _too_long(number, diagnostics)
+                if mark & UNFINISHED:
+                    diagnostics.error(number, "the file ends after a continuation sign $", "write the rest of it")
+                interpreter.interpret(bytes(view[begin : begin + length]), number, row, mark)
             if rows == len(columns.line):
                 columns.grow()
             elif at == before:
                 break
-        if filled - at > LONGEST:
-            raise _endless(line, findings)
+        if filled - at > MAX_STATEMENT_BYTES:
+            raise _too_long(line, diagnostics)
         data[: filled - at] = view[at:filled]
         filled -= at
         if progress:
@@ -206,6 +206,6 @@ def _scan_file(
     return rows, line - 1
 
 
-def _endless(line: int, findings: Findings) -> Exception:
-    what = f"a statement longer than {LONGEST} bytes"
-    return findings.fatal(line, what, "no CL statement is that long: look whether line ends are missing")
+def _too_long(line: int, diagnostics: Diagnostics) -> Exception:
+    what = f"a statement longer than {MAX_STATEMENT_BYTES} bytes"
+    return diagnostics.fatal(line, what, "no CL statement is that long: look whether line ends are missing")

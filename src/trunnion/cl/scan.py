@@ -13,26 +13,26 @@ from trunnion.arrays import Bytes, Floats, Ints, Lines
 from trunnion.jit import ONE, njit, signed, unsigned
 
 #: A statement longer than this is no CL statement; it bounds the memory that one statement can take.
-LONGEST = 1 << 20
+MAX_STATEMENT_BYTES = 1 << 20
 
 #: Columns of a span: offset in the buffer, bytes, line, row before which it stands, marks.
-SPAN = 5
+SPAN_COLUMNS = 5
 
 
 #: Marks of a span, which may come together. Plain integers: they are tested for every statement.
 #: The statement is a motion, and a row is kept free for it.
-ROW = 1
+MAKES_ROW = 1
 #: The file ended after a continuation sign.
-OPEN = 2
-#: The statement is longer than ``LONGEST``.
-ENDLESS = 4
+UNFINISHED = 2
+#: The statement is longer than ``MAX_STATEMENT_BYTES``.
+TOO_LONG = 4
 
 
 #: Powers of ten that a double holds exactly.
-_TEN = 10.0 ** np.arange(23)
-_EXACT = 1 << 53
+_POWERS_OF_TEN = 10.0 ** np.arange(23)
+_MAX_EXACT = 1 << 53
 #: Eighteen digits always fit into an int64.
-_DIGITS = 18
+_MAX_DIGITS = 18
 
 
 _TAB, _NEWLINE, _RETURN, _BLANK = 9, 10, 13, 32
@@ -42,7 +42,7 @@ _GOTO = np.frombuffer(b"GOTO", np.uint8)
 _GODLTA = np.frombuffer(b"GODLTA", np.uint8)
 _GOHOME = np.frombuffer(b"GOHOME", np.uint8)
 #: Majors whose text is taken as it stands, dollar signs and all.
-_TEXTS = (
+_TEXT_MAJORS = (
     np.frombuffer(b"PPRINT", np.uint8),
     np.frombuffer(b"INSERT", np.uint8),
     np.frombuffer(b"DISPL", np.uint8),
@@ -76,7 +76,7 @@ def scan(
     tip      (n, 3) float64    written from ``row`` on; NaN in the rows of spans marked ROW
     axis     (n, 3) float64    NaN where the GOTO gives no vector
     line     (n,)   int32      line of the file
-    spans    (s, 5) int64      written from 0 on, see ``SPAN``
+    spans    (s, 5) int64      written from 0 on, see ``SPAN_COLUMNS``
     returns  where to go on in ``data``, the line there, the next free row, number of spans written
 
     A statement whose continuation lies behind ``stop`` is not touched: the walk ends before it.
@@ -84,33 +84,33 @@ def scan(
     count = 0
     at = start
     while at < stop and count < spans.shape[0] and row < tip.shape[0]:
-        following = _point(data, at, tip, axis, row)
-        if following > 0 and following - at <= LONGEST:
+        following = _parse_goto(data, at, tip, axis, row)
+        if following > 0 and following - at <= MAX_STATEMENT_BYTES:
             line[row] = line_no
             row += 1
             line_no += 1
             at = following
             continue
-        begin, end, lines, mark = _statement(data, at, stop)
-        if mark & OPEN and not last:
+        begin, end, lines, mark = _find_statement(data, at, stop)
+        if mark & UNFINISHED and not last:
             break
         following = _next_line(data, end)
-        if following - at > LONGEST:
-            mark = ENDLESS
+        if following - at > MAX_STATEMENT_BYTES:
+            mark = TOO_LONG
         if end > begin or mark:
             spans[count, 0] = begin
             spans[count, 1] = end - begin
             spans[count, 2] = line_no
             spans[count, 3] = row
             if _makes_row(data, begin, end):
-                mark |= ROW
+                mark |= MAKES_ROW
                 line[row] = line_no
                 for k in range(3):
                     tip[row, k] = axis[row, k] = np.nan
                 row += 1
             spans[count, 4] = mark
             count += 1
-            if mark & ENDLESS:
+            if mark & TOO_LONG:
                 break
         line_no += lines
         at = following
@@ -118,7 +118,7 @@ def scan(
 
 
 @njit(cache=True)
-def _point(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) -> int:
+def _parse_goto(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) -> int:
     """Read a plain ``GOTO/x,y,z[,i,j,k]`` line into a row; return where the next line begins, or 0 if it is not plain.
 
     Blanks may stand around the numbers and a ``$$`` comment behind them. No bound is checked on the way:
@@ -161,9 +161,9 @@ def _point(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) -> int:
             decimals = signed(at - first)
             digits += decimals
         # Whole number and power of ten are both exact here, so that one division rounds correctly.
-        if digits == 0 or digits > _DIGITS or mantissa > _EXACT:
+        if digits == 0 or digits > _MAX_DIGITS or mantissa > _MAX_EXACT:
             return 0
-        value = mantissa / _TEN[decimals]
+        value = mantissa / _POWERS_OF_TEN[decimals]
         if negative:
             value = -value
         if read < 3:
@@ -195,29 +195,34 @@ def _point(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) -> int:
 
 
 @njit(cache=True)
-def _statement(data: Bytes, at: int, stop: int) -> tuple[int, int, int, int]:
+def _find_statement(data: Bytes, at: int, stop: int) -> tuple[int, int, int, int]:
     """Begin, end, lines and mark of the statement at ``at``, bare of blanks and comment; empty if nothing is left."""
     while _is_blank(data[at]) and data[at] != _NEWLINE:
         at += 1
     begin = at
     lines = 1
     while True:
-        content, end = _content(data, at, False)
+        content, end = _find_content_end(data, at, False)
         signed = content > at and data[content - 1] == _DOLLAR
-        if (signed or data[end] == _DOLLAR) and lines == 1 and content > begin and _is_text(data, begin, content):
-            content, end = _content(data, at, True)
+        if (
+            (signed or data[end] == _DOLLAR)
+            and lines == 1
+            and content > begin
+            and _is_text_statement(data, begin, content)
+        ):
+            content, end = _find_content_end(data, at, True)
             signed = False
         if not signed:
             return begin, max(content, begin), lines, 0
         # What stands between the sign and the end of its line is a comment.
         at = _next_line(data, end)
         if at >= stop:
-            return begin, content, lines, OPEN
+            return begin, content, lines, UNFINISHED
         lines += 1
 
 
 @njit(cache=True)
-def _content(data: Bytes, at: int, text: bool) -> tuple[int, int]:
+def _find_content_end(data: Bytes, at: int, text: bool) -> tuple[int, int]:
     """End of what counts in the line at ``at``, and where its ``$$`` comment or newline is; text has no comments."""
     content = at
     while data[at] != _NEWLINE and (text or data[at] != _DOLLAR or data[at + 1] != _DOLLAR):
@@ -241,7 +246,7 @@ def _is_blank(byte: int) -> bool:
 
 
 @njit(cache=True)
-def _word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
+def _skip_word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
     """Where ``word`` ends if it stands at ``at``, in any case and with blanks anywhere; else 0."""
     for letter in word:
         while at < stop and (_is_blank(data[at]) or data[at] == _DOLLAR):
@@ -258,10 +263,10 @@ def _word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
 def _makes_row(data: Bytes, begin: int, end: int) -> bool:
     """Whether a statement is a motion: GOTO/, GODLTA/, or GOHOME/ with a number."""
     for word in (_GOTO, _GODLTA):
-        at = _word(data, begin, end, word)
+        at = _skip_word(data, begin, end, word)
         if at and at < end and data[at] == _SLASH:
             return True
-    at = _word(data, begin, end, _GOHOME)
+    at = _skip_word(data, begin, end, _GOHOME)
     if at == 0 or at >= end or data[at] != _SLASH:
         return False
     at += 1
@@ -273,16 +278,16 @@ def _makes_row(data: Bytes, begin: int, end: int) -> bool:
 
 
 @njit(cache=True)
-def _is_text(data: Bytes, begin: int, end: int) -> bool:
+def _is_text_statement(data: Bytes, begin: int, end: int) -> bool:
     """Whether a statement carries text, in which a dollar sign is a dollar sign."""
-    for word in _TEXTS:  # noqa: SIM110 - Numba has no generators here
-        if _word(data, begin, end, word):
+    for word in _TEXT_MAJORS:  # noqa: SIM110 - Numba has no generators here
+        if _skip_word(data, begin, end, word):
             return True
     return False
 
 
 @njit(cache=True, nogil=True)
-def settle_axes(axis: Floats, start: int, stop: int, seed: Floats, bad: Ints) -> int:
+def fill_modal_axes(axis: Floats, start: int, stop: int, modal_axis: Floats, bad: Ints) -> int:
     """Give the rows without a vector the one before them, and every vector the length 1.
 
     axis     (n, 3) float64   rows ``start:stop`` are settled in place
@@ -290,18 +295,18 @@ def settle_axes(axis: Floats, start: int, stop: int, seed: Floats, bad: Ints) ->
     bad      (b,)   int64     the first rows whose vector is zero, or more than 1 % off length 1
     returns  how many such rows there are
     """
-    wrong = 0
-    i, j, k = seed[0], seed[1], seed[2]
+    bad_count = 0
+    i, j, k = modal_axis[0], modal_axis[1], modal_axis[2]
     for row in range(start, stop):
         if not np.isnan(axis[row, 0]):
             i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
             length = np.sqrt(i * i + j * j + k * k)
             if not 0.99 <= length <= 1.01:
-                if wrong < bad.shape[0]:
-                    bad[wrong] = row
-                wrong += 1
+                if bad_count < bad.shape[0]:
+                    bad[bad_count] = row
+                bad_count += 1
             elif abs(length - 1.0) > 1e-15:
                 i, j, k = i / length, j / length, k / length
         axis[row, 0], axis[row, 1], axis[row, 2] = i, j, k
-    seed[0], seed[1], seed[2] = i, j, k
-    return wrong
+    modal_axis[0], modal_axis[1], modal_axis[2] = i, j, k
+    return bad_count

@@ -15,8 +15,8 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.arrays import Bytes, Floats
-from trunnion.cl.assemble import COLOURS, RADIUS_TOLERANCE, fill_phases
-from trunnion.cl.encoding import Guess
+from trunnion.cl.assemble import COLOUR_PHASES, RADIUS_TOLERANCE, fill_phases
+from trunnion.cl.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jit import njit
 from trunnion.model.toolpath import (
@@ -33,33 +33,33 @@ from trunnion.model.toolpath import (
     Kind,
     LoadTool,
     Message,
-    Mode,
     Moves,
     Operation,
     Phase,
     SelectTool,
+    SetMode,
     SpindleOff,
     SpindleOn,
     Stop,
     Tool,
     Toolpath,
-    Unknown,
+    UnknownStatement,
 )
 
 #: Rows that the kernel writes at a time, and the most bytes that one of them can take.
 CHUNK = 1 << 15
-_WIDEST = 192
+_MAX_LINE_BYTES = 192
 
-_TEN = 10.0 ** np.arange(23)
-_WHOLE = 10 ** np.arange(19, dtype=np.int64)
+_POWERS_OF_TEN = 10.0 ** np.arange(23)
+_INT_POWERS_OF_TEN = 10 ** np.arange(19, dtype=np.int64)
 #: Whole numbers up to here are doubles.
-_EXACT = float(1 << 53)
-_AXIS = 12
-_AXIS_NEAR = 17
+_MAX_EXACT = float(1 << 53)
+_AXIS_DECIMALS = 12
+_AXIS_DECIMALS_NEAR = 17
 #: Sine of the tilt against X, Y or Z below which a tool axis gets all decimals.
 _NEAR = 1e-3
 
-_COLOUR_OF = {phase: colour for colour, phase in COLOURS.items()} | {
+_PHASE_COLOURS = {phase: colour for colour, phase in COLOUR_PHASES.items()} | {
     Phase.INITIAL: 186,
     Phase.DEPARTURE: 211,
     Phase.TRAVERSE: 211,
@@ -90,7 +90,7 @@ def write_cl(toolpath: Toolpath, sink: BinaryIO, *, comments: Iterable[str] = ()
     InputError
         Before anything is written, when a CLSF cannot hold the toolpath at all.
     """
-    problems = [problem for operation in toolpath.operations for problem in _unsayable(toolpath, operation)]
+    problems = [problem for operation in toolpath.operations for problem in _unsupported(toolpath, operation)]
     comments = tuple(comments)
     texts = {"part name": toolpath.part, **{f"comment {text!r}": text for text in comments}}
     problems += [_bad_text(toolpath.file, 0, what) for what, text in texts.items() if not _is_one_line(text)]
@@ -98,7 +98,7 @@ def write_cl(toolpath: Toolpath, sink: BinaryIO, *, comments: Iterable[str] = ()
         problems.append(Problem(toolpath.file, 0, "there is no operation in it", "give a toolpath with motion"))
     if problems:
         raise InputError(problems)
-    if not _is_told_by_itself([*texts.values(), *(text for o in toolpath.operations for _, _, text in _texts(o))]):
+    if not _is_detected_as_utf8([*texts.values(), *(text for o in toolpath.operations for _, _, text in _texts(o))]):
         sink.write(codecs.BOM_UTF8)
     head = [f"$$ {text}" for text in comments]
     if toolpath.part:
@@ -113,7 +113,7 @@ def write_cl(toolpath: Toolpath, sink: BinaryIO, *, comments: Iterable[str] = ()
 # What cannot be said
 
 
-def _unsayable(toolpath: Toolpath, operation: Operation) -> Iterator[Problem]:
+def _unsupported(toolpath: Toolpath, operation: Operation) -> Iterator[Problem]:
     """What no CLSF can hold of an operation."""
     file = toolpath.file
     yield from (_bad_text(file, line, what) for line, what, text in _texts(operation) if not _is_one_line(text))
@@ -122,14 +122,17 @@ def _unsayable(toolpath: Toolpath, operation: Operation) -> Iterator[Problem]:
         yield Problem(file, operation.line, what, "rename the operation")
     arcs, moves = operation.arcs, operation.moves
     starts = {event.row: event.tip for event in operation.events if isinstance(event, From)}
-    for place, row in enumerate(arcs.row.tolist()):
+    for index, row in enumerate(arcs.row.tolist()):
         start = starts.get(row) or (tuple(moves.tip[row - 1].tolist()) if row else None)
         if start is None:
             what = f"operation {operation.name} begins with an arc, which has no start"
             yield Problem(file, int(moves.line[row]), what, "put a point before it")
             continue
         off = max(
-            abs(_from_line(np.array(point) - arcs.centre[place], arcs.normal[place]) - float(arcs.radius[place]))
+            abs(
+                _distance_from_line(np.array(point) - arcs.centre[index], arcs.normal[index])
+                - float(arcs.radius[index])
+            )
             for point in (start, moves.tip[row])
         )
         if off > RADIUS_TOLERANCE:
@@ -142,21 +145,21 @@ def _texts(operation: Operation) -> Iterator[tuple[int, str, str]]:
     yield operation.line, "operation name", operation.name
     yield operation.line, "tool name", operation.tool.name
     for event in operation.events:
-        if isinstance(event, Stop | Message | Insert | Unknown):
+        if isinstance(event, Stop | Message | Insert | UnknownStatement):
             yield event.line, f"text of {type(event).__name__}", event.text
-        elif isinstance(event, Mode | CycleOn):
-            for word in event.words if isinstance(event, Mode) else event.mode:
+        elif isinstance(event, SetMode | CycleOn):
+            for word in event.words if isinstance(event, SetMode) else event.mode:
                 yield event.line, "word", word
 
 
-def _is_told_by_itself(texts: Iterable[str]) -> bool:
+def _is_detected_as_utf8(texts: Iterable[str]) -> bool:
     """Whether a reader sees that the texts are UTF-8; a few letters of some alphabets look like Chinese in GBK."""
-    guess = Guess()
-    guess.add("\n".join(texts).encode())
-    return guess.name() == "utf-8"
+    detector = EncodingDetector()
+    detector.add("\n".join(texts).encode())
+    return detector.encoding() == "utf-8"
 
 
-def _from_line(offset: Floats, normal: Floats) -> float:
+def _distance_from_line(offset: Floats, normal: Floats) -> float:
     """Distance from the line through the origin along ``normal``."""
     return float(np.linalg.norm(offset - (offset @ normal) * normal))
 
@@ -178,14 +181,14 @@ def _write_operation(file: str, operation: Operation, sink: BinaryIO) -> list[Pr
     colours, remarks = _colours(file, operation)
     before = _statements(operation, colours)
     done = 0
-    in_force = np.array([0.0, 0.0, 1.0])
+    modal_axis = np.array([0.0, 0.0, 1.0])
     for row in sorted({*before, len(moves)}):
-        _points(moves, done, row, in_force, sink)
+        _write_rows(moves, done, row, modal_axis, sink)
         if row in before:
             lines, axis = before[row]
             sink.write(_lines(lines))
             if axis is not None:
-                in_force[:] = axis
+                modal_axis[:] = axis
         done = row
     sink.write(b"END-OF-PATH\n")
     return remarks
@@ -232,21 +235,21 @@ def _statements(
     head = [event for event in operation.events if event.row == 0]
     later = sorted((event for event in operation.events if event.row > 0), key=lambda event: event.row)
     for event in head:
-        put(0, _event(event), axis=event.axis if isinstance(event, From) else None)
+        put(0, _event_statement(event), axis=event.axis if isinstance(event, From) else None)
     for row, colour in colours:
         put(row, f"PAINT/COLOR,{colour}")
     for event in later:
-        put(event.row, _event(event), axis=event.axis if isinstance(event, From) else None)
+        put(event.row, _event_statement(event), axis=event.axis if isinstance(event, From) else None)
     for row in _feed_rows(moves):
         word = "MMPR" if moves.per_rev[row] else "MMPM"
         put(row, f"FEDRAT/{word},{_number(float(moves.feed[row]), 4)}")
     for row in np.flatnonzero(moves.kind == Kind.RAPID).tolist():
         put(row, "RAPID")
-    for place, row in enumerate(arcs.row.tolist()):
-        numbers = [_number(value, 6) for value in arcs.centre[place].tolist()]
-        numbers += [_number(value, 7) for value in arcs.normal[place].tolist()]
-        numbers.append(_number(float(arcs.radius[place]), 4))
-        turns = int(arcs.turns[place])
+    for index, row in enumerate(arcs.row.tolist()):
+        numbers = [_number(value, 6) for value in arcs.centre[index].tolist()]
+        numbers += [_number(value, 7) for value in arcs.normal[index].tolist()]
+        numbers.append(_number(float(arcs.radius[index]), 4))
+        turns = int(arcs.full_turns[index])
         put(row, f"CIRCLE/{','.join(numbers)}" + (f",TIMES,{turns + 1}" if turns else ""))
     return found
 
@@ -259,7 +262,7 @@ def _feed_rows(moves: Moves) -> list[int]:
     return [int(row) for row in np.flatnonzero(changed & ~np.isnan(moves.feed))]
 
 
-def _event(event: Event) -> str:
+def _event_statement(event: Event) -> str:
     """The statement of an event."""
     match event:
         case LoadTool():
@@ -294,10 +297,10 @@ def _event(event: Event) -> str:
             return f"FROM/{','.join([*tip, *_axis_numbers(event.axis)])}"
         case GoHome():
             return "GOHOME"
-        case Mode():
+        case SetMode():
             major, *words = event.words
             return major + (f"/{','.join(words)}" if words else "")
-        case Unknown():
+        case UnknownStatement():
             return event.text
     raise TypeError(type(event).__name__)
 
@@ -335,7 +338,7 @@ def _colours(file: str, operation: Operation) -> tuple[list[tuple[int, int]], li
     if not len(moves) or np.array_equal(read, moves.phase):
         return [], []
     starts = np.flatnonzero(np.diff(moves.phase.astype(np.int16), prepend=-1)).tolist()
-    colours = [(row, _COLOUR_OF[Phase(int(moves.phase[row]))]) for row in starts]
+    colours = [(row, _PHASE_COLOURS[Phase(int(moves.phase[row]))]) for row in starts]
     fill_phases(read, rapids, colours)
     off = np.flatnonzero(read != moves.phase)
     if not len(off):
@@ -363,44 +366,44 @@ def _number(value: float, decimals: int) -> str:
 
 def _axis_numbers(axis: tuple[float, float, float]) -> list[str]:
     """A tool axis as the kernel writes it."""
-    line = np.empty(_WIDEST, np.uint8)
+    line = np.empty(_MAX_LINE_BYTES, np.uint8)
     at = _put_axis(*axis, line, 0)
     return line[1:at].tobytes().decode().split(",")
 
 
-def _points(moves: Moves, first: int, last: int, in_force: Floats, sink: BinaryIO) -> None:
-    """Write the rows ``first`` to ``last``; ``in_force`` (3,) is the tool axis, kept up to date."""
+def _write_rows(moves: Moves, first: int, last: int, modal_axis: Floats, sink: BinaryIO) -> None:
+    """Write the rows ``first`` to ``last``; ``modal_axis`` (3,) is the tool axis, kept up to date."""
     if first == last:
         return
-    out = np.empty(min(last - first, CHUNK) * _WIDEST, np.uint8)
+    out = np.empty(min(last - first, CHUNK) * _MAX_LINE_BYTES, np.uint8)
     row = first
     while row < last:
         stop = min(row + CHUNK, last)
-        row, size = _write_points(moves.tip, moves.axis, row, stop, in_force, out)
+        row, size = _format_points(moves.tip, moves.axis, row, stop, modal_axis, out)
         sink.write(out[:size].data)
         if row < stop:
-            _long_point(moves, row, in_force, sink)
+            _write_long_point(moves, row, modal_axis, sink)
             row += 1
 
 
-def _long_point(moves: Moves, row: int, in_force: Floats, sink: BinaryIO) -> None:
+def _write_long_point(moves: Moves, row: int, modal_axis: Floats, sink: BinaryIO) -> None:
     """Write a row at which the kernel stopped: its numbers have more digits than 15."""
     numbers = [_number(value, 6) for value in moves.tip[row].tolist()]
     i, j, k = moves.axis[row].tolist()
-    if (i, j, k) != tuple(in_force.tolist()):
+    if (i, j, k) != tuple(modal_axis.tolist()):
         numbers += _axis_numbers((i, j, k))
-        in_force[:] = i, j, k
+        modal_axis[:] = i, j, k
     sink.write(_lines([f"GOTO/{','.join(numbers)}"]))
 
 
 @njit(cache=True, nogil=True)
-def _write_points(tip: Floats, axis: Floats, row: int, stop: int, in_force: Floats, out: Bytes) -> tuple[int, int]:
+def _format_points(tip: Floats, axis: Floats, row: int, stop: int, modal_axis: Floats, out: Bytes) -> tuple[int, int]:
     """Write GOTO lines; return the row where it ended, ``stop`` or one whose numbers need a slower way, and the bytes.
 
     tip       (n, 3) float64   mm
     axis      (n, 3) float64
     in_force  (3,)   float64   the axis that was written last; kept up to date
-    out       (b,)   uint8     room for ``_WIDEST`` bytes a row
+    out       (b,)   uint8     room for ``_MAX_LINE_BYTES`` bytes a row
     """
     at = 0
     while row < stop:
@@ -416,9 +419,9 @@ def _write_points(tip: Floats, axis: Floats, row: int, stop: int, in_force: Floa
             if at < 0:
                 return row, line
         i, j, k_ = axis[row, 0], axis[row, 1], axis[row, 2]
-        if i != in_force[0] or j != in_force[1] or k_ != in_force[2]:
+        if i != modal_axis[0] or j != modal_axis[1] or k_ != modal_axis[2]:
             at = _put_axis(i, j, k_, out, at)
-            in_force[0], in_force[1], in_force[2] = i, j, k_
+            modal_axis[0], modal_axis[1], modal_axis[2] = i, j, k_
         out[at] = _NEWLINE
         at += 1
         row += 1
@@ -429,11 +432,11 @@ def _write_points(tip: Floats, axis: Floats, row: int, stop: int, in_force: Floa
 def _put_length(value: float, out: Bytes, at: int) -> int:
     """Write a length in 6, 9, 12 or 15 decimals, the fewest that say it exactly; return the end, or -1 if none does."""
     for decimals in range(6, 16, 3):
-        count = np.rint(abs(value) * _TEN[decimals])
-        if not count <= _EXACT:
+        count = np.rint(abs(value) * _POWERS_OF_TEN[decimals])
+        if not count <= _MAX_EXACT:
             return -1
-        if count / _TEN[decimals] == abs(value):
-            return _put(value < 0.0, int(count), decimals, 6, out, at)
+        if count / _POWERS_OF_TEN[decimals] == abs(value):
+            return _put_decimal(value < 0.0, int(count), decimals, 6, out, at)
     return -1
 
 
@@ -444,15 +447,17 @@ def _put_axis(i: float, j: float, k: float, out: Bytes, at: int) -> int:
     near = (a < _NEAR and b < _NEAR) or (a < _NEAR and c < _NEAR) or (b < _NEAR and c < _NEAR)
     for value in (i, j, k):
         out[at] = _COMMA
-        decimals = _AXIS
+        decimals = _AXIS_DECIMALS
         if near:
-            decimals = _AXIS_NEAR if abs(value) < _NEAR else 15
-        at = _put(value < 0.0, int(np.rint(abs(value) * _TEN[decimals])), decimals, _AXIS, out, at + 1)
+            decimals = _AXIS_DECIMALS_NEAR if abs(value) < _NEAR else 15
+        at = _put_decimal(
+            value < 0.0, int(np.rint(abs(value) * _POWERS_OF_TEN[decimals])), decimals, _AXIS_DECIMALS, out, at + 1
+        )
     return at
 
 
 @njit(cache=True)
-def _put(negative: bool, count: int, decimals: int, fewest: int, out: Bytes, at: int) -> int:
+def _put_decimal(negative: bool, count: int, decimals: int, fewest: int, out: Bytes, at: int) -> int:
     """Write a whole number of the last decimal, without zeros at the end beyond ``fewest`` decimals; return the end."""
     if negative and count > 0:
         out[at] = _MINUS
@@ -460,18 +465,18 @@ def _put(negative: bool, count: int, decimals: int, fewest: int, out: Bytes, at:
     while decimals > fewest and count % 10 == 0:
         count //= 10
         decimals -= 1
-    whole = count // _WHOLE[decimals]
+    whole = count // _INT_POWERS_OF_TEN[decimals]
     digits = 1
-    while digits < 18 and whole >= _WHOLE[digits]:
+    while digits < 18 and whole >= _INT_POWERS_OF_TEN[digits]:
         digits += 1
-    for place in range(at + digits - 1, at - 1, -1):
-        out[place] = _ZERO + whole % 10
+    for index in range(at + digits - 1, at - 1, -1):
+        out[index] = _ZERO + whole % 10
         whole //= 10
     at += digits
     out[at] = _POINT
     at += 1
-    part = count % _WHOLE[decimals]
-    for place in range(at + decimals - 1, at - 1, -1):
-        out[place] = _ZERO + part % 10
+    part = count % _INT_POWERS_OF_TEN[decimals]
+    for index in range(at + decimals - 1, at - 1, -1):
+        out[index] = _ZERO + part % 10
         part //= 10
     return at + decimals

@@ -11,13 +11,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from trunnion.errors import InputError, Refused
+from trunnion.errors import InputError, RefusedError
 
 #: Seconds for which one thread may keep another one from Python.
-_SWITCH = 0.0002
+_SWITCH_INTERVAL = 0.0002
 
 
-def at_full_speed() -> None:
+def configure_process() -> None:
     """Settle the interpreter for a run that does one thing and ends; before NumPy is imported.
 
     A run makes no garbage in circles: the collector stays off. NumPy's linear algebra here is of vectors of three:
@@ -25,17 +25,17 @@ def at_full_speed() -> None:
     threads need. And who of these wants to go on in Python is not kept waiting for the usual 5 ms.
     """
     gc.disable()
-    sys.setswitchinterval(_SWITCH)
+    sys.setswitchinterval(_SWITCH_INTERVAL)
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
-def run() -> NoReturn:
+def run_and_exit() -> NoReturn:
     """The command of the shell: do it, and be gone.
 
     Taking the interpreter down piece by piece takes a fifth of the time that posting a small file does: the process
     ends as soon as everything is written.
     """
-    at_full_speed()
+    configure_process()
     if sys.stderr.isatty() and not Path(os.environ["NUMBA_CACHE_DIR"]).exists():
         print("first run: compiling the kernels, once; this takes some seconds", file=sys.stderr)
     code = main()
@@ -46,15 +46,15 @@ def run() -> NoReturn:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    from trunnion.cli.arguments import parse
+    from trunnion.cli.arguments import parse_arguments
 
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # Windows consoles and pipes do not speak UTF-8 by themselves
             stream.reconfigure(encoding="utf-8", errors="replace")
-    arguments = parse(sys.argv[1:] if argv is None else argv)
+    arguments = parse_arguments(sys.argv[1:] if argv is None else argv)
     try:
         code: int = arguments.run(arguments)
-    except Refused as refused:
+    except RefusedError as refused:
         print(refused, file=sys.stderr)
         return 1
     except InputError as error:

@@ -7,7 +7,7 @@ from importlib import import_module
 from trunnion import __version__
 
 
-def _pair(text: str) -> tuple[str, str]:
+def _key_value(text: str) -> tuple[str, str]:
     key, equals, value = text.partition("=")
     if not equals or not key:
         raise argparse.ArgumentTypeError(f"{text!r} is no setting; write KEY=VALUE")
@@ -24,24 +24,26 @@ def _tolerance(text: str) -> float:
     return value
 
 
-def _subprograms(parser: argparse.ArgumentParser, whose: str, option: str = "--with", to: str = "subprograms") -> None:
+def _add_subprograms(
+    parser: argparse.ArgumentParser, caller: str, option: str = "--with", to: str = "subprograms"
+) -> None:
     parser.add_argument(
         option, nargs="+", action="extend", default=[], metavar="NC", dest=to,
-        help=f"files of the subprograms that {whose} calls; no others are opened",
+        help=f"files of the subprograms that {caller} calls; no others are opened",
     )  # fmt: skip
 
 
-def _command(module: str, name: str) -> Callable[[argparse.Namespace], int]:
+def _lazy_command(module: str, name: str) -> Callable[[argparse.Namespace], int]:
     """What carries out a command. Its part of the house is imported when it is called, and nothing else."""
 
     def run(arguments: argparse.Namespace) -> int:
-        carry_out: Callable[[argparse.Namespace], int] = getattr(import_module(f"trunnion.cli.{module}"), name)
-        return carry_out(arguments)
+        command: Callable[[argparse.Namespace], int] = getattr(import_module(f"trunnion.cli.{module}"), name)
+        return command(arguments)
 
     return run
 
 
-def parse(argv: Sequence[str]) -> argparse.Namespace:
+def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     """The command and its arguments; ``run`` is the function that carries it out.
 
     Ends the process with exit code 2 and a usage line when they cannot be understood.
@@ -51,36 +53,40 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
     )
     parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    _post(commands.add_parser("post", help="write the NC program of one or more CL files"))
-    _verify(commands.add_parser("verify", help="prove an NC program: read it, run it, compare it with its CL files"))
-    _diff(commands.add_parser("diff", help="compare what two NC programs make the tool do"))
-    _convert(commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine"))
-    _machines(commands.add_parser("machines", help="list the machines, or print one definition"))
-    _check(commands.add_parser("check", help="validate a machine definition"))
+    _add_post(commands.add_parser("post", help="write the NC program of one or more CL files"))
+    _add_verify(
+        commands.add_parser("verify", help="prove an NC program: read it, run it, compare it with its CL files")
+    )
+    _add_diff(commands.add_parser("diff", help="compare what two NC programs make the tool do"))
+    _add_convert(
+        commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
+    )
+    _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
+    _add_check(commands.add_parser("check", help="validate a machine definition"))
     return parser.parse_args(list(argv))
 
 
-def _post(parser: argparse.ArgumentParser) -> None:
+def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="CL", help="CL file")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
     parser.add_argument(
         "--output", metavar="FILE|-|FOLDER", help="program, stdout, or a folder that takes one program a CL file"
     )
     parser.add_argument(
-        "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",
+        "--set", action="append", type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
         help="what templates print (title, part, date, method, …), or how to read, place and plan; may be repeated",
     )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
     parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
-    parser.set_defaults(run=_command("ahead", "run"))
+    parser.set_defaults(run=_lazy_command("startup", "run"))
 
 
-def _verify(parser: argparse.ArgumentParser) -> None:
+def _add_verify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
-    _subprograms(parser, "it")
+    _add_subprograms(parser, "it")
     parser.add_argument(
         "--cl", action="append", default=[], metavar="CL",
         help="CL file that it was made from; may be repeated, in the order in which they are cut",
@@ -106,15 +112,15 @@ def _verify(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
-    parser.set_defaults(run=_command("verify", "run"))
+    parser.set_defaults(run=_lazy_command("verify", "run"))
 
 
-def _diff(parser: argparse.ArgumentParser) -> None:
+def _add_diff(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs=2, metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs the first program")
     parser.add_argument("--to-machine", metavar="NAME_OR_FILE", help="machine that runs the second one, if another")
-    _subprograms(parser, "the first program")
-    _subprograms(parser, "the second one", "--to-with", "to_subprograms")
+    _add_subprograms(parser, "the first program")
+    _add_subprograms(parser, "the second one", "--to-with", "to_subprograms")
     parser.add_argument(
         "--tolerance", type=_tolerance, default=0.001, metavar="MM",
         help="how far tips may be apart, and in degrees tool axes; 0.001",
@@ -122,13 +128,13 @@ def _diff(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--path", action="store_true", help="compare where the tool goes, but not feed, spindle, tool and coolant"
     )
-    parser.set_defaults(run=_command("diff", "run"))
+    parser.set_defaults(run=_lazy_command("diff", "run"))
 
 
-def _convert(parser: argparse.ArgumentParser) -> None:
+def _add_convert(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that the program is for")
-    _subprograms(parser, "it")
+    _add_subprograms(parser, "it")
     into = parser.add_mutually_exclusive_group(required=True)
     into.add_argument("--to-cl", action="store_true", help="write a CL file")
     into.add_argument("--to-machine", metavar="NAME_OR_FILE", help="write a program for this machine")
@@ -136,20 +142,20 @@ def _convert(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool there, gauge point to tip")
     parser.add_argument("--output", metavar="FILE|-|FOLDER", help="result; without it a file of that name here")
     parser.add_argument(
-        "--set", action="append", type=_pair, default=[], metavar="KEY=VALUE", dest="settings",
+        "--set", action="append", type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
         help="what templates print, in place of what the program says, and zero; may be repeated",
     )  # fmt: skip
     parser.add_argument(
         "--force", action="store_true", help="convert what was understood, and write a program that must not run"
     )
-    parser.set_defaults(run=_command("convert", "run"))
+    parser.set_defaults(run=_lazy_command("convert", "run"))
 
 
-def _machines(parser: argparse.ArgumentParser) -> None:
+def _add_machines(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", metavar="NAME", help="machine whose definition is printed")
-    parser.set_defaults(run=_command("definitions", "machines"))
+    parser.set_defaults(run=_lazy_command("definitions", "machines"))
 
 
-def _check(parser: argparse.ArgumentParser) -> None:
+def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="MACHINE.toml", help="definition to validate")
-    parser.set_defaults(run=_command("definitions", "check"))
+    parser.set_defaults(run=_lazy_command("definitions", "check"))

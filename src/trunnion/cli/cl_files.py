@@ -10,16 +10,16 @@ from trunnion.cli.progress import progress
 from trunnion.model.toolpath import Toolpath
 
 
-def toolpaths(files: Sequence[str], units: str | None, strict: bool, aside: Executor) -> Iterator[Toolpath]:
+def read_toolpaths(files: Sequence[str], units: str | None, strict: bool, executor: Executor) -> Iterator[Toolpath]:
     """Toolpaths of CL files, one after the other; units and ``strict`` as ``trunnion.cl.read_cl`` has them.
 
-    The first one is read from now on, ``aside``, and the others when they are asked for: none is kept. Comes back when
+    The first one is read from now on in ``executor``, the others when they are asked for; none is kept. Comes back when
     reading needs the interpreter no longer, or is done: who imports meanwhile would only be in its way.
     """
-    under_way = Event()
-    begun = [aside.submit(_read, files[0], units, strict, under_way)]
-    begun[0].add_done_callback(lambda _: under_way.set())
-    under_way.wait()
+    scanning = Event()
+    begun = [executor.submit(_read, files[0], units, strict, scanning)]
+    begun[0].add_done_callback(lambda _: scanning.set())
+    scanning.wait()
 
     def one_by_one() -> Iterator[Toolpath]:
         yield begun.pop().result()
@@ -29,7 +29,7 @@ def toolpaths(files: Sequence[str], units: str | None, strict: bool, aside: Exec
     return one_by_one()
 
 
-def _read(file: str, units: str | None, strict: bool, under_way: Event) -> Toolpath:
+def _read(file: str, units: str | None, strict: bool, scanning: Event) -> Toolpath:
     path = Path(file)
     size = path.stat().st_size if path.is_file() else 0
     with progress(path.name, size, "B") as advance:
@@ -39,6 +39,6 @@ def _read(file: str, units: str | None, strict: bool, under_way: Event) -> Toolp
             nonlocal done
             advance(read - done)
             done = read
-            under_way.set()
+            scanning.set()
 
         return read_cl(path, units=units, strict=strict, progress=so_far)

@@ -7,18 +7,18 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.cli.post import planned_program, prove, running, say, write
-from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
+from trunnion.cli.post import plan_program, print_problems, prove_program, run_while_writing, write_for_proof
+from trunnion.cli.settings import RUN_SETTINGS, apply_setup, check_settings, parse_plan_options, program_division
 from trunnion.controls import Control, load_control
-from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.files import output
+from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.files import atomic_output
 from trunnion.machines import Machine, load_machine
 
 if TYPE_CHECKING:
-    from trunnion.conversion import Converted
+    from trunnion.conversion import Conversion
 
 #: Warnings that are printed one by one.
-_PRINTED = 20
+_MOST_PRINTED = 20
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -31,34 +31,36 @@ def run(arguments: argparse.Namespace) -> int:
     target_control = load_control(target_machine.control) if arguments.to_machine else control
     settings = dict(arguments.settings)
     _check_settings(settings, target_control, arguments.to_cl)
-    target_machine = set_up(target_machine, settings)
+    target_machine = apply_setup(target_machine, settings)
     given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
-    machine = set_up(machine, {key: value for key, value in given.items() if value})
-    wishes = wishes_of(settings, target_control)
-    target = _target(arguments, target_control)
-    with output(target) as made:
-        division = division_of(settings, target_control, target, made)
+    machine = apply_setup(machine, {key: value for key, value in given.items() if value})
+    options = parse_plan_options(settings, target_control)
+    target = _target_file(arguments, target_control)
+    with atomic_output(target) as output_files:
+        division = program_division(settings, target_control, target, output_files)
         settings = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
-        converted = _read(arguments, machine, control)
+        converted = _read_toolpath(arguments, machine, control)
         if arguments.subprograms and division is None and not arguments.to_cl:
             what = f"{1 + len(arguments.subprograms)} files become one program"
-            say([Problem(arguments.file, 0, what, "--set programs=operations writes several", Severity.WARNING)])
-        carried = _carried(converted.settings, control, target_control, arguments.file) | settings
+            print_problems(
+                [Problem(arguments.file, 0, what, "--set programs=operations writes several", Severity.WARNING)]
+            )
+        carried = _carried_settings(converted.settings, control, target_control, arguments.file) | settings
         if "tool" in settings and "tool_call" not in settings:
             carried.pop("tool_call", None)
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
         if arguments.to_cl:
             comments = [f"--set {key}={value}" for key, value in carried.items()]
-            _say_some(write_cl(converted.toolpath, made.main, comments=comments))
+            _print_first(write_cl(converted.toolpath, output_files.main, comments=comments))
         else:
             paths = [converted.toolpath]
-            with running(made, target_machine, division) as (growing, run):
-                program, _ = planned_program(paths, target_machine, target_control, carried, arguments.force, wishes)
-                claim = write(program, made.main, wishes, growing, division)
-            prove(claim, run.result(), paths, made, target, program if arguments.force else None)
+            with run_while_writing(output_files, target_machine, division) as (write_progress, run):
+                program, _ = plan_program(paths, target_machine, target_control, carried, arguments.force, options)
+                written = write_for_proof(program, output_files.main, options, write_progress, division)
+            prove_program(written, run.result(), paths, output_files, target, program if arguments.force else None)
     if arguments.to_cl and carried:
-        print(_hint(target, arguments.machine, carried), file=sys.stderr)
+        print(_post_hint(target, arguments.machine, carried), file=sys.stderr)
     if target != "-":
         print(f"{target}: {rows} points, {len(operations)} operations", file=sys.stderr)
     return 0
@@ -73,53 +75,53 @@ def _check_settings(settings: Mapping[str, str], control: Control, to_cl: bool) 
         raise InputError(Problem("--set", 0, "zero has no meaning in a CL file", "give it to trunnion post"))
 
 
-def _read(arguments: argparse.Namespace, machine: Machine, control: Control) -> "Converted":
+def _read_toolpath(arguments: argparse.Namespace, machine: Machine, control: Control) -> "Conversion":
     """The program as a toolpath; refuses one that was not understood."""
     from trunnion.conversion import convert
-    from trunnion.conversion.program_events import COMPENSATION
+    from trunnion.conversion.program_events import COMPENSATION_FINDINGS
     from trunnion.readers import run_program
 
     file = arguments.file
     run = run_program(Path(file), machine, subprograms=[Path(each) for each in arguments.subprograms])
-    problems = [Problem(finding.file, finding.line, finding.text, "", finding.severity) for finding in run.findings]
+    problems = [Problem(finding.file, finding.line, finding.text, "", finding.severity) for finding in run.diagnostics]
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     if errors and not arguments.force:
         count = f"{len(errors)} places are not understood, and nothing is written"
-        raise Refused((*errors[:_PRINTED], Problem(file, 0, count, "--force converts what was understood")))
-    _say_some([problem for problem in problems if not problem.what.startswith(COMPENSATION)])
+        raise RefusedError((*errors[:_MOST_PRINTED], Problem(file, 0, count, "--force converts what was understood")))
+    _print_first([problem for problem in problems if not problem.what.startswith(COMPENSATION_FINDINGS)])
     converted = convert(run, control)
     if not converted.toolpath.operations:
         raise InputError(Problem(file, 0, "there is no motion at the part in it", "give a program that cuts"))
-    _say_some(converted.remarks)
+    _print_first(converted.warnings)
     return converted
 
 
-def _carried(settings: Mapping[str, str], control: Control, target: Control, file: str) -> dict[str, str]:
+def _carried_settings(settings: Mapping[str, str], control: Control, target: Control, file: str) -> dict[str, str]:
     """The program's settings that mean the same on the other control; the others are named."""
-    from trunnion.conversion import carried_over
+    from trunnion.conversion import transfer_settings
 
-    carried = carried_over(settings, control, target)
+    carried = transfer_settings(settings, control, target)
     for key in sorted(settings.keys() - carried.keys()):
         what = f"{key} is {settings[key]!r}, which is not carried over"
         why = f"{target.name} has no such setting" if key not in target.settings else f"say it as {target.name} does"
-        say([Problem(file, 0, what, why, Severity.WARNING)])
+        print_problems([Problem(file, 0, what, why, Severity.WARNING)])
     return carried
 
 
-def _say_some(problems: Sequence[Problem]) -> None:
-    say(problems[:_PRINTED])
-    if len(problems) > _PRINTED:
-        print(f"and {len(problems) - _PRINTED} more", file=sys.stderr)
+def _print_first(problems: Sequence[Problem]) -> None:
+    print_problems(problems[:_MOST_PRINTED])
+    if len(problems) > _MOST_PRINTED:
+        print(f"and {len(problems) - _MOST_PRINTED} more", file=sys.stderr)
 
 
-def _hint(target: str, machine: str, settings: Mapping[str, str]) -> str:
+def _post_hint(target: str, machine: str, settings: Mapping[str, str]) -> str:
     """How to post the CL file such that the program's head becomes the same."""
     name = "FILE.cls" if target == "-" else target
     words = [f"--set={key}={value}" for key, value in settings.items()]
     return "to post it with the same head: " + shlex.join(["trunnion", "post", name, "--machine", machine, *words])
 
 
-def _target(arguments: argparse.Namespace, control: Control) -> str:
+def _target_file(arguments: argparse.Namespace, control: Control) -> str:
     """Where the result goes: never onto the program itself."""
     source = Path(arguments.file)
     extension = ".cls" if arguments.to_cl else control.extension

@@ -6,20 +6,20 @@ from pathlib import Path
 from trunnion.controls import load_control
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
-from trunnion.machines import load_machine, shipped
-from trunnion.machines.loading import library
+from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines.loading import machine_library
 
 
 def machines(arguments: argparse.Namespace) -> int:
     """List the shipped machines, or print one definition as its file has it."""
     if arguments.name:
         load_machine(arguments.name)
-        folder = library()
+        folder = machine_library()
         shipped_file = folder.joinpath(f"{arguments.name}.toml")
         source = shipped_file if shipped_file.is_file() else Path(arguments.name)
         print(source.read_text(encoding="utf-8"), end="")
         return 0
-    found = [load_machine(key) for key in shipped()]
+    found = [load_machine(key) for key in shipped_machines()]
     width = max(len(machine.key) for machine in found)
     for machine in found:
         print(f"{machine.key:<{width}}  {machine.name}")
@@ -42,6 +42,6 @@ def check(arguments: argparse.Namespace) -> int:
 
 def _load_control(file: str) -> None:
     """Read the control's part of a definition, unless it only names a family."""
-    table = load_table(file, library(), kind="machine").table("control")
+    table = load_table(file, machine_library(), kind="machine").table("control")
     if table.keys() not in ([], ["family"]):
         load_control(table)

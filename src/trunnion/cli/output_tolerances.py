@@ -9,68 +9,70 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.controls.definition import SURFACE_NORMAL
-from trunnion.controls.family import CENTRE_DIGITS
-from trunnion.model.motion import Manner, Motion
+from trunnion.controls.definition import SURFACE_NORMAL_WORDS
+from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn
-from trunnion.output.plane_from_pose import inside_limits
+from trunnion.output.plane_from_pose import with_plane_inside_limits
 from trunnion.output.program import Program
-from trunnion.planning.linearization.arc_chords import flat_arcs, off_circle
+from trunnion.planning.linearization.arc_chords import flat_arcs, radius_change
 
 if TYPE_CHECKING:
-    from trunnion.verification import Allowed
+    from trunnion.verification import Tolerances
 
 #: A turn of the rotary axes turns the tool axis by no less than this part of it, however near the pole.
-_LEAST_LEVER = 1e-3
+_LEAST_POLE_SINE = 1e-3
 
 
-def allowed_of(program: Program) -> "list[Allowed]":
+def program_tolerances(program: Program) -> "list[Tolerances]":
     """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
-    from trunnion.verification import Agreed, Allowed
+    from trunnion.verification import DeclaredDeviations, Tolerances
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
-    allowed: list[Allowed] = []
+    allowed: list[Tolerances] = []
     for motion in program.motions:
         words = control.block_words(primary, secondary, motion.three_axis)
         half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
         tip, angle = half["X"], max(half["primary"], half["secondary"])
-        normal = half.get(SURFACE_NORMAL[0], 0.0)
+        normal = half.get(SURFACE_NORMAL_WORDS[0], 0.0)
         # Near a pole angles are noisy, and the check takes the ways of the tool axis for straight.
-        angle += 1e-8 + angle * math.radians(angle) / _LEAST_LEVER
+        angle += 1e-8 + angle * math.radians(angle) / _LEAST_POLE_SINE
         if motion.plane is not None and control.plane_from_pose:
             # Places are worked out for the plane as it is printed; only circles stay in it that are not quite in it.
             widest = float(motion.operation.arcs.radius.max(initial=0.0))
-            tip = _in_plane(motion, tip, 0.0) + 2.0 * widest * math.radians(2.0 * angle)
+            tip = _plane_error(motion, tip, 0.0) + 2.0 * widest * math.radians(2.0 * angle)
         elif motion.plane is not None:
             turning = control.number_formats(three_axis=False)["plane_angle"].decimals
             tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
-            if inside_limits(machine, motion, turning) is not motion:
+            if with_plane_inside_limits(machine, motion, turning) is not motion:
                 tilt += 1.5 * 10.0**-turning
-            tip, angle = _in_plane(motion, tip, tilt), math.sqrt(2.0) * tilt + 1e-8
+            tip, angle = _plane_error(motion, tip, tilt), math.sqrt(2.0) * tilt + 1e-8
             normal = math.sqrt(3.0) * (normal + math.radians(tilt))
-        tip += _flat_ends(motion)
+        tip += _flattened_rise(motion)
         if "arc_angle" in half:
-            tip += _by_angles(motion, half["X"], half["arc_angle"])
-        if motion.manner is Manner.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
+            tip += _helix_angle_error(motion, half["X"], half["arc_angle"])
+        if motion.mode is MachiningMode.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
             # Heights of holes are printed along their axes from the zero, which rounded rotary positions turn.
             tip += math.radians(angle) * float(np.abs(motion.operation.moves.tip).max())
-        if motion.manner is Manner.WITHOUT_TCP:
+        if motion.mode is MachiningMode.WITHOUT_TCP:
             tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
-        apart = motion.departures
-        agreed = Agreed(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
-        if not motion.begins:
+        apart = motion.deviations
+        deviations = (
+            DeclaredDeviations(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
+        )
+        if not motion.starts_operation:
             before = allowed.pop()
             tip, angle, normal = max(tip, before.tip), max(angle, before.angle), max(normal, before.normal)
-            agreed = before.agreed
-        found = 2.0 * CENTRE_DIGITS * half["X"] if control.arcs_by_radius else 0.0
+            deviations = before.deviations
+        found = 2.0 * MAX_CENTRE_ERROR_DIGITS * half["X"] if control.arcs_by_radius else 0.0
         allowed.append(
-            Allowed(
+            Tolerances(
                 tip,
                 angle,
                 control.chord_tolerance,
                 half["feed"],
-                agreed,
+                deviations,
                 centre=found,
                 normal=normal,
                 plane=motion.plane is not None,
@@ -79,7 +81,7 @@ def allowed_of(program: Program) -> "list[Allowed]":
     return allowed
 
 
-def _flat_ends(motion: Motion) -> float:
+def _flattened_rise(motion: Motion) -> float:
     """How much higher circles end than they begin that are written as flat ones, mm: less than anybody prints.
 
     Such a circle stands across a tool axis that is off upright by what rotary words do not show, or rises by as little.
@@ -93,7 +95,7 @@ def _flat_ends(motion: Motion) -> float:
     return float(rise[flat_arcs(operation)].max(initial=0.0))
 
 
-def _by_angles(motion: Motion, half: float, angle: float) -> float:
+def _helix_angle_error(motion: Motion, half: float, angle: float) -> float:
     """How much farther the ends of helices may be off that are said by a centre and an angle, mm.
 
     Start and centre are rounded by ``half`` mm, of which the end has that of the centre twice, once turned; the angle
@@ -102,17 +104,17 @@ def _by_angles(motion: Motion, half: float, angle: float) -> float:
     """
     operation = motion.as_written()
     arcs, tip = operation.arcs, operation.moves.tip
-    rises = (arcs.turns > 0) | (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.5 * half)
+    rises = (arcs.full_turns > 0) | (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.5 * half)
     if not rises.any():
         return 0.0
-    rounded = half * (1.0 + math.sqrt(2.0)) + float(np.abs(off_circle(operation)[rises]).max())
+    rounded = half * (1.0 + math.sqrt(2.0)) + float(np.abs(radius_change(operation)[rises]).max())
     each = rounded + math.radians(angle) * float(arcs.radius[rises].max())
     row = arcs.row[rises]
     ends = np.flatnonzero(np.append(np.diff(row) != 1, True))
     return each * int(np.diff(ends, prepend=-1).max())
 
 
-def _in_plane(motion: Motion, half: float, tilt: float) -> float:
+def _plane_error(motion: Motion, half: float, tilt: float) -> float:
     """How far a coordinate may be off where ``half`` is, in each coordinate of the plane and of its origin, mm, and
     the plane itself by ``tilt`` degrees."""
     assert motion.plane is not None

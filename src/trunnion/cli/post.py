@@ -14,46 +14,45 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from trunnion import readers
-from trunnion.cli.output_tolerances import allowed_of
+from trunnion.cli.output_tolerances import program_tolerances
 from trunnion.cli.progress import progress
-from trunnion.cli.settings import RUN_SETTINGS, check_settings, division_of, set_up, wishes_of
-from trunnion.cli.verify import check_report
-from trunnion.cli.verify import report as write_report
+from trunnion.cli.settings import RUN_SETTINGS, apply_setup, check_settings, parse_plan_options, program_division
+from trunnion.cli.verify import check_report_name, save_report
 from trunnion.controls import Control, load_control
-from trunnion.errors import InputError, Problem, Refused, Severity
-from trunnion.files import Growing, Output, output
+from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.files import OutputFiles, WriteProgress, atomic_output
 from trunnion.jit import load
 from trunnion.machines import Machine, load_machine
-from trunnion.model.motion import Decision, Manner
+from trunnion.model.motion import Decision, MachiningMode
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.output import KERNELS as WRITING
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
-from trunnion.output.subprograms import Division
+from trunnion.output.subprograms import SubprogramOutput
 from trunnion.output.validation import check_program
 from trunnion.planning import KERNELS as PLANNING
-from trunnion.planning import Wishes, plan
+from trunnion.planning import PlanOptions, plan
 from trunnion.readers import run_program
 
 if TYPE_CHECKING:
-    from trunnion.verification import Allowed, Settings, Verification
+    from trunnion.verification import Settings, Tolerances, Verification
 
 
-def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
+def post(arguments: argparse.Namespace, coming: Iterator[Toolpath]) -> int:
     """Post every CL file; their toolpaths come one after the other."""
     if arguments.report:
-        check_report(arguments.report)
+        check_report_name(arguments.report)
     machine = load_machine(arguments.machine)
     control = load_control(machine.control)
     settings = dict(arguments.settings)
     check_settings(settings, control)
     if settings.get("numbers") == "off":
-        control = replace(control, numbers=replace(control.numbers, numbered=False))
-    machine = set_up(machine, settings)
+        control = replace(control, block_numbers=replace(control.block_numbers, numbered=False))
+    machine = apply_setup(machine, settings)
     printed = {key: value for key, value in settings.items() if key not in RUN_SETTINGS}
-    wishes = wishes_of(settings, control, arguments.explain or bool(arguments.report))
-    targets = _targets(arguments, control)
+    options = parse_plan_options(settings, control, arguments.explain or bool(arguments.report))
+    targets = _files_by_target(arguments, control)
     load(*PLANNING, *WRITING)
     import trunnion.verification  # noqa: F401 - wanted for the proof; while the first CL file is read it takes no time
 
@@ -61,71 +60,73 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
     for target, files in targets.items():
-        with output(target) as made:
-            division = division_of(settings, control, target, made)
-            paths = list(islice(toolpaths, len(files)))
+        with atomic_output(target) as output_files:
+            division = program_division(settings, control, target, output_files)
+            paths = list(islice(coming, len(files)))
             if {**control.settings, **settings}.get("normals") == "contact":
-                from trunnion.cl.contact import with_normals
+                from trunnion.cl.surface_normals import with_normals
 
                 paths = [with_normals(path) for path in paths]
             for path in paths:
-                say(path.remarks)
-            with running(made, machine, division) as (growing, run):
-                program, decisions = planned_program(
-                    paths, machine, control, printed, arguments.force, wishes, say_why=arguments.explain
+                print_problems(path.remarks)
+            with run_while_writing(output_files, machine, division) as (write_progress, run):
+                program, decisions = plan_program(
+                    paths, machine, control, printed, arguments.force, options, explain=arguments.explain
                 )
-                claim = write(program, made.main, wishes, growing, division)
+                written = write_for_proof(program, output_files.main, options, write_progress, division)
             # The proof needs nothing of what was planned; only a program that fails and is forced is written again.
-            again = program if arguments.force else None
+            forced_program = program if arguments.force else None
             del program
-            said = decisions if wishes.explain else ()
-            prove(claim, run.result(), paths, made, target, again, arguments.report, said)
+            planned_decisions = decisions if options.explain else ()
+            prove_program(
+                written, run.result(), paths, output_files, target, forced_program, arguments.report, planned_decisions
+            )
         if target != "-":
-            print(f"{target}: {claim.rows} points, {claim.operations} operations", file=sys.stderr)
-        for other in made.others:
-            print(f"{Path(target).with_name(other.name)}: a subprogram of {Path(target).name}", file=sys.stderr)
+            print(f"{target}: {written.rows} points, {written.operations} operations", file=sys.stderr)
+        for subprogram in output_files.other_paths:
+            print(f"{Path(target).with_name(subprogram.name)}: a subprogram of {Path(target).name}", file=sys.stderr)
     return 0
 
 
-def planned_program(
+def plan_program(
     paths: Sequence[Toolpath],
     machine: Machine,
     control: Control,
     settings: Mapping[str, str],
     force: bool,
-    wishes: Wishes,
+    options: PlanOptions,
     *,
-    say_why: bool = False,
+    explain: bool = False,
 ) -> tuple[Program, tuple[Decision, ...]]:
     """The program of toolpaths, planned and checked, and why it is so; what speaks against it is said.
 
     Raises
     ------
-    InputError, Refused
+    InputError, RefusedError
         When there can be no program, or when it must not run, unless ``force``: then its head says so.
     """
-    planned = plan(paths, machine, control.chord_tolerance, wishes)
-    if say_why:
+    planned = plan(paths, machine, control.chord_tolerance, options)
+    if explain:
         print(*planned.decisions, sep="\n", file=sys.stderr)
     program = Program(machine, control, planned.motions, settings, paths[0].file)
-    lacking = check_program(program)
-    errors = [problem for problem in lacking if problem.severity is Severity.ERROR]
+    unwritable = check_program(program)
+    errors = [problem for problem in unwritable if problem.severity is Severity.ERROR]
     if errors:
-        raise InputError(lacking)
-    say(lacking)
-    against = [problem for problem in planned.problems if problem.severity is Severity.ERROR]
-    against += _unprovable(machine, control)
-    if against and not force:
-        unproven = _unprovable(machine, control)
-        raise Refused(
+        raise InputError(unwritable)
+    print_problems(unwritable)
+    blocking = [problem for problem in planned.problems if problem.severity is Severity.ERROR]
+    blocking += _missing_reader(machine, control)
+    if blocking and not force:
+        unproven = _missing_reader(machine, control)
+        raise RefusedError(
             (*planned.problems, *unproven, Problem(paths[0].file, 0, "no program is written", "--force writes it"))
         )
-    say(planned.problems)
-    notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in against]
+    print_problems(planned.problems)
+    notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in blocking]
     return replace(program, notices=notices), planned.decisions
 
 
-def _unprovable(machine: Machine, control: Control) -> list[Problem]:
+def _missing_reader(machine: Machine, control: Control) -> list[Problem]:
     """Why a program of this machine can be written but not read back; empty where it can."""
     if readers.can_read(machine):
         return []
@@ -134,7 +135,7 @@ def _unprovable(machine: Machine, control: Control) -> list[Problem]:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Claim:
+class WrittenProgram:
     """What a written program says of itself, and what its proof holds against it.
 
     rows, operations  how many points and operations it has
@@ -146,52 +147,54 @@ class Claim:
     machine: Machine
     rows: int
     operations: int
-    allowed: "list[Allowed]"
+    allowed: "list[Tolerances]"
     settings: "Settings"
-    division: Division | None = None
+    division: SubprogramOutput | None = None
 
 
 @contextmanager
-def running(
-    made: Output, machine: Machine, division: Division | None
-) -> "Iterator[tuple[Growing, Future[Run | None]]]":
+def run_while_writing(
+    output_files: OutputFiles, machine: Machine, division: SubprogramOutput | None
+) -> "Iterator[tuple[WriteProgress, Future[Run | None]]]":
     """Run a program while it is being written, and get ready for that before: what runs it is imported meanwhile.
 
     Gives who wants to know how far the program is written, and the run, complete when the block has ended; None where
     nobody can read such programs. The run is of what can be read under the path of what is made, as if it had waited
     for the end. A program of several files is waited for: its calls stand before what they call.
     """
-    growing = Growing()
-    with ThreadPoolExecutor(1) as aside:
-        run = aside.submit(_run, made, machine, growing, division)
+    write_progress = WriteProgress()
+    with ThreadPoolExecutor(1) as executor:
+        run = executor.submit(_run_program, output_files, machine, write_progress, division)
         try:
-            yield growing, run
-            made.settle()
+            yield write_progress, run
+            output_files.start_sync()
         finally:
-            growing.end()
+            write_progress.finish()
 
 
-def _run(made: Output, machine: Machine, growing: Growing, division: Division | None) -> Run | None:
+def _run_program(
+    output_files: OutputFiles, machine: Machine, write_progress: WriteProgress, division: SubprogramOutput | None
+) -> Run | None:
     from trunnion import verification
 
     if not readers.can_read(machine):
         return None
     load(*readers.KERNELS, *verification.KERNELS)
     if division is not None:
-        growing.wait()
-    return run_program(made.path, machine, subprograms=made.others, growing=growing)
+        write_progress.wait_until_finished()
+    return run_program(output_files.path, machine, subprograms=output_files.other_paths, write_progress=write_progress)
 
 
-def write(
+def write_for_proof(
     program: Program,
     sink: BinaryIO,
-    wishes: Wishes | None = None,
-    growing: Growing | None = None,
-    division: Division | None = None,
-) -> Claim:
+    options: PlanOptions | None = None,
+    write_progress: WriteProgress | None = None,
+    division: SubprogramOutput | None = None,
+) -> WrittenProgram:
     """Write a program; what comes back is all that its proof needs, with the tolerances that were asked for.
 
-    ``growing`` is told how much of it can be read back.
+    ``write_progress`` is told how much of it can be read back.
     """
     rows, done = sum(len(motion.operation.moves) for motion in program.motions), 0
     with progress("writing", rows, "points") as advance:
@@ -200,23 +203,30 @@ def write(
             nonlocal done
             advance(points)
             done += points
-            if growing is not None:
+            if write_progress is not None:
                 sink.flush()
-                growing.grow(sink.tell(), sink.tell() * rows // done)
+                write_progress.advance(sink.tell(), sink.tell() * rows // done)
 
         write_program(program, sink, written, division)
     sink.flush()
-    operations = sum(motion.begins for motion in program.motions)
-    return Claim(program.machine, rows, operations, allowed_of(program), _asked(program, wishes or Wishes()), division)
+    operations = sum(motion.starts_operation for motion in program.motions)
+    return WrittenProgram(
+        program.machine,
+        rows,
+        operations,
+        program_tolerances(program),
+        _expected_settings(program, options or PlanOptions()),
+        division,
+    )
 
 
-def prove(
-    claim: Claim,
+def prove_program(
+    written: WrittenProgram,
     run: Run | None,
     paths: Sequence[Toolpath],
-    made: Output,
+    output_files: OutputFiles,
     target: str,
-    again: Program | None = None,
+    forced_program: Program | None = None,
     report: str | None = None,
     decisions: Sequence[Decision] = (),
 ) -> None:
@@ -225,7 +235,7 @@ def prove(
     Parameters
     ----------
     claim
-        Of ``write``.
+        Of ``write_for_proof``.
     run
         The program as it was read back and run; None: nobody can.
     paths
@@ -243,48 +253,57 @@ def prove(
 
     Raises
     ------
-    Refused
+    RefusedError
         When a check fails and there is no program to write again.
     """
     from trunnion.verification import check_lines, failures, place_lines, time_lines, verify
 
     if run is None:
         what = "it is written by --force, and nothing has been checked" + (": there is no report" if report else "")
-        say([Problem(target, 0, what, severity=Severity.WARNING)])
+        print_problems([Problem(target, 0, what, severity=Severity.WARNING)])
         return
-    found = verify(run, paths, allowed=claim.allowed, settings=claim.settings, columns=bool(report))
-    found = replace(found, program="the program" if target == "-" else target)
-    for line in (*check_lines(found), *place_lines(found, failed_only=True), *time_lines(found)):
+    verification = verify(run, paths, tolerances=written.allowed, settings=written.settings, columns=bool(report))
+    verification = replace(verification, program="the program" if target == "-" else target)
+    for line in (*check_lines(verification), *place_lines(verification, failed_only=True), *time_lines(verification)):
         print(line, file=sys.stderr)
-    if not decisions and _too_fast(found):
+    if not decisions and _exceeds_rotary_speed(verification):
         print(
-            f"{found.program}: a rotary axis cannot follow the feed everywhere; --explain says where, and what helps",
+            f"{verification.program}: a rotary axis cannot follow the feed everywhere;"
+            " --explain says where, and what helps",
             file=sys.stderr,
         )
     if report:
-        write_report(found, report, decisions)
-    failed = failures(found)
-    if failed and again is None:
+        save_report(verification, report, decisions)
+    failed = failures(verification)
+    if failed and forced_program is None:
         what = f"the program does not do what this file asks for: {', '.join(check.key for check in failed)}"
-        raise Refused(Problem(paths[0].file, 0, what, "no program is written; --force writes it"))
-    if failed and again is not None:
+        raise RefusedError(Problem(paths[0].file, 0, what, "no program is written; --force writes it"))
+    if failed and forced_program is not None:
         notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
-        made.begin_again()
-        write_program(replace(again, notices=[*again.notices, *notices]), made.main, division=claim.division)
+        output_files.restart()
+        write_program(
+            replace(forced_program, notices=[*forced_program.notices, *notices]),
+            output_files.main,
+            subprograms=written.division,
+        )
 
 
-def _too_fast(found: "Verification") -> bool:
+def _exceeds_rotary_speed(verification: "Verification") -> bool:
     """Whether a rotary axis would have to be faster than it can."""
-    names = tuple(f"{axis.name} " for axis in found.machine.axes if axis.is_rotary)
-    return any(c.key == "speed" and any(place.text.startswith(names) for place in c.places) for c in found.checks)
+    names = tuple(f"{axis.name} " for axis in verification.machine.axes if axis.is_rotary)
+    return any(
+        c.key == "speed" and any(place.text.startswith(names) for place in c.places) for c in verification.checks
+    )
 
 
-def _asked(program: Program, wishes: Wishes) -> "Settings":
+def _expected_settings(program: Program, options: PlanOptions) -> "Settings":
     """What the settings of the run say that the CL files do not."""
     from trunnion.verification import Settings
 
-    led = any(motion.manner is Manner.WITHOUT_TCP for motion in program.motions)
-    axis = wishes.axis_between if led or math.isfinite(wishes.axis_between) else None
+    led = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
+    axis = (
+        options.axis_tolerance_between_points if led or math.isfinite(options.axis_tolerance_between_points) else None
+    )
 
     values = {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
     rate = program.control.formats.get("inverse_time")
@@ -296,21 +315,21 @@ def _asked(program: Program, wishes: Wishes) -> "Settings":
         work_offset=int(offset) if offset.isdigit() else None,
         edge=int(values["edge"]) if "edge" in values else None,
         span=axis,
-        span_tip=wishes.tip_tolerance if led else None,
-        absolute=wishes.absolute,
-        top_rate=rate.five_axis.greatest if rate else None,
-        top_feed=program.control.formats["feed"].five_axis.greatest,
+        span_tip=options.tip_tolerance if led else None,
+        absolute=options.absolute_frame,
+        max_inverse_time_feed=rate.five_axis.greatest if rate else None,
+        max_feed=program.control.formats["feed"].five_axis.greatest,
         rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
     )
 
 
-def say(problems: Sequence[Problem]) -> None:
+def print_problems(problems: Sequence[Problem]) -> None:
     """Print problems, one a line."""
     for problem in problems:
         print(problem, file=sys.stderr)
 
 
-def _targets(arguments: argparse.Namespace, control: Control) -> dict[str, list[str]]:
+def _files_by_target(arguments: argparse.Namespace, control: Control) -> dict[str, list[str]]:
     """Which program is made from which CL files."""
     output = arguments.output
     if output == "-":

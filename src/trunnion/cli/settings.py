@@ -9,15 +9,20 @@ from typing import Any
 from trunnion.controls import Control
 from trunnion.controls.definition import UNKNOWN_FEED
 from trunnion.errors import InputError, Problem
-from trunnion.files import Output
+from trunnion.files import OutputFiles
 from trunnion.machines import Machine
-from trunnion.model.motion import Manner, Pole
-from trunnion.output.subprograms import LEAST_SIZE, Division
-from trunnion.output.validation import why_unsaid
-from trunnion.planning import Clearance, Surface, Wishes
+from trunnion.model.motion import MachiningMode, PoleStrategy
+from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES, SubprogramOutput
+from trunnion.output.validation import unsupported_cycle_reasons
+from trunnion.planning import Clearance, ClearanceSurface, PlanOptions
 
-#: What the setting ``manner`` may say.
-_MANNERS = {"auto": None, "three-axis": Manner.THREE_AXIS, "tilted": Manner.TILTED, "tcp": Manner.TCP}
+#: What the setting ``mode`` may say.
+_MODES = {
+    "auto": None,
+    "three-axis": MachiningMode.THREE_AXIS,
+    "tilted": MachiningMode.TILTED,
+    "tcp": MachiningMode.TCP,
+}
 
 #: Settings that have but a few values, the usual one first.
 _CHOICES = {
@@ -27,13 +32,13 @@ _CHOICES = {
     "tcp": ("on", "off"),
     "frame": ("first", "absolute"),
     "rewind": ("insert", "none"),
-    "pole": tuple(Pole),
+    "pole": tuple(PoleStrategy),
     "lower_feed": ("no", "yes"),
     "cycles": ("on", "off"),
 }
 
 #: What makes a control say motion without TCP for which nobody has said what F counts.
-_SAY_FEED = (
+_FEED_CURE = (
     'write feed_without_tcp = "all_axes" or "slides", what F counts while rotary axes turn, under [control] and under'
     " [control.reading] of the machine's definition, if you know it; or post with TCP"
 )
@@ -43,12 +48,16 @@ _NUMBERS = {
     "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
     "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
     "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
-    "split": (LEAST_SIZE, 1e12, f"split=BYTES, the largest size of a subprogram, at least {LEAST_SIZE}"),
+    "split": (
+        MIN_SUBPROGRAM_BYTES,
+        1e12,
+        f"split=BYTES, the largest size of a subprogram, at least {MIN_SUBPROGRAM_BYTES}",
+    ),
     "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
 }
 
 #: All settings of a run; the others are its control's.
-RUN_SETTINGS = (*_CHOICES, *_NUMBERS, "manner", "zero", "clearance")
+RUN_SETTINGS = (*_CHOICES, *_NUMBERS, "mode", "zero", "clearance")
 
 
 def check_settings(settings: Mapping[str, str], control: Control) -> None:
@@ -66,12 +75,12 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     ]
     problems += [
         Problem("--set", 0, f"{key} is {settings[key]!r}", f"write {' or '.join(f'{key}={one}' for one in choices)}")
-        for key, choices in {**_CHOICES, **control.family.CHOICES}.items()
+        for key, choices in {**_CHOICES, **control.family.SETTING_CHOICES}.items()
         if settings.get(key, choices[0]) not in choices
     ]
     problems += [
         Problem("--set", 0, f"{key} is {settings[key]!r}", cure)
-        for key, cure in control.family.wrong_settings(settings)
+        for key, cure in control.family.validate_settings(settings)
     ]
     if not settings.get("edge", "1").isdigit():
         problems.append(Problem("--set", 0, f"edge is {settings['edge']!r}", "write a whole number, such as edge=1"))
@@ -79,28 +88,28 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         raise InputError(problems)
 
 
-def _clearance(text: str) -> Clearance:
+def _parse_clearance(text: str) -> Clearance:
     """The setting ``clearance``."""
     kind, _, length = text.rpartition(":")
     try:
-        surface, value = Surface(kind or Surface.DISTANCE), float(length)
+        surface, value = ClearanceSurface(kind or ClearanceSurface.DISTANCE), float(length)
     except ValueError:
-        surface, value = Surface.DISTANCE, math.nan
-    least = -10000.0 if surface is Surface.PLANE else 0.1
+        surface, value = ClearanceSurface.DISTANCE, math.nan
+    least = -10000.0 if surface is ClearanceSurface.PLANE else 0.1
     if least <= value <= 10000.0:
         return Clearance(value, surface)
     cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
     raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
 
 
-def _manner(text: str, tcp: bool) -> tuple[Manner | None, dict[str, Manner | None]]:
-    """The setting ``manner``: that of all operations, and those of some by their names, such as ``auto,SIDES:tcp``."""
-    known = {word: manner for word, manner in _MANNERS.items() if tcp or manner is not Manner.TCP}
-    every, own = "auto", dict[str, Manner | None]()
+def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str, MachiningMode | None]]:
+    """The setting ``mode``: that of all operations, and those of some by their names, such as ``auto,SIDES:tcp``."""
+    known = {word: mode for word, mode in _MODES.items() if tcp or mode is not MachiningMode.TCP}
+    every, own = "auto", dict[str, MachiningMode | None]()
     for entry in text.split(","):
         name, _, word = entry.rpartition(":")
         if word not in known:
-            what = "manner is tcp, and there is no TCP" if word == "tcp" else f"manner is {text!r}"
+            what = "mode is tcp, and there is no TCP" if word == "tcp" else f"mode is {text!r}"
             cure = f"write one of {', '.join(known)}; OPERATION:WORD says it of one operation"
             raise InputError(Problem("--set", 0, what, cure))
         if name:
@@ -110,7 +119,7 @@ def _manner(text: str, tcp: bool) -> tuple[Manner | None, dict[str, Manner | Non
     return known[every], own
 
 
-def number(settings: Mapping[str, str], key: str) -> float | None:
+def number_setting(settings: Mapping[str, str], key: str) -> float | None:
     """A setting that is a number; None where nobody set it.
 
     Raises
@@ -131,65 +140,67 @@ def number(settings: Mapping[str, str], key: str) -> float | None:
     return value
 
 
-def set_up(machine: Machine, settings: Mapping[str, str]) -> Machine:
+def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
     """The machine with its workpiece and its tool where the settings say so."""
     if "zero" in settings:
-        machine = replace(machine, workpiece_zero=point(settings["zero"]))
-    length = number(settings, "tool_length")
+        machine = replace(machine, workpiece_zero=point_setting(settings["zero"]))
+    length = number_setting(settings, "tool_length")
     return machine if length is None else replace(machine, tool_length=length)
 
 
-def wishes_of(settings: Mapping[str, str], control: Control, explain: bool = False) -> Wishes:
+def parse_plan_options(settings: Mapping[str, str], control: Control, explain: bool = False) -> PlanOptions:
     """What the settings, checked by ``check_settings``, say to the planner."""
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:
         raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
-    manner, own_manner = _manner(settings.get("manner", "auto"), tcp)
-    said = {key: number(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
-    known: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+    mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
+    numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
+    known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
     if "clearance" in settings:
-        known["clearance"] = _clearance(settings["clearance"])
-    return Wishes(
-        rewind=settings.get("rewind", "insert") == "insert",
+        known["clearance"] = _parse_clearance(settings["clearance"])
+    return PlanOptions(
+        allow_rewinds=settings.get("rewind", "insert") == "insert",
         explain=explain,
-        manner=manner,
-        own_manner=own_manner,
-        manners=control.manners(settings),
-        level=_level(control),
-        cures={Manner.WITHOUT_TCP: _SAY_FEED} if control.feed_without_tcp == UNKNOWN_FEED else {},
-        arcs_about_z=control.arcs_about_z,
+        mode=mode,
+        mode_by_operation=mode_by_operation,
+        modes=control.modes(settings),
+        negligible_tilt=_smallest_printed_tilt(control),
+        mode_remedies={MachiningMode.WITHOUT_TCP: _FEED_CURE} if control.feed_without_tcp == UNKNOWN_FEED else {},
+        only_arcs_about_z=control.only_arcs_about_z,
         helices_by_angle="arc_angle" in control.family.WORDS,
-        machine_x=control.plane_along_machine,
-        pole=Pole(settings.get("pole", "off")),
-        absolute=settings.get("frame", "first") == "absolute",
+        plane_x_from_machine=control.plane_x_from_machine,
+        pole_strategy=PoleStrategy(settings.get("pole", "off")),
+        absolute_frame=settings.get("frame", "first") == "absolute",
         lower_feed=settings.get("lower_feed", "no") == "yes",
         helices=control.helices,
-        turns=control.turns,
-        arcs_with_tcp=not (control.only_vectors and control.by_vectors(settings)),
-        pose_planes=control.plane_from_pose,
+        multi_turn_arcs=control.multi_turn_arcs,
+        arcs_with_tcp=not (control.vectors_exclude_angles and control.uses_tool_vectors(settings)),
+        planes_from_pose=control.plane_from_pose,
         turns_between_holes=control.turns_between_holes(settings),
         tcp=tcp,
-        unsaid=why_unsaid(control, settings),
+        unsupported_cycle_reason=unsupported_cycle_reasons(control, settings),
         holes_as_motion=settings.get("cycles", "on") == "off",
         **known,
     )
 
 
-def _level(control: Control) -> float:
+def _smallest_printed_tilt(control: Control) -> float:
     """Sine of a tilt that prints as none: half the last digit of a rotary word."""
     name = next(word.format for word in control.words if word.name == "primary")
     return math.sin(math.radians(0.5 * 10.0 ** -control.number_formats(three_axis=False)[name].decimals))
 
 
-def division_of(settings: Mapping[str, str], control: Control, target: str, made: Output) -> Division | None:
-    """How the program of ``target`` is divided into files, which are made as ``made``; None: it is one file.
+def program_division(
+    settings: Mapping[str, str], control: Control, target: str, output_files: OutputFiles
+) -> SubprogramOutput | None:
+    """How the program of ``target`` is divided into files, which are made as ``output_files``; None: it is one file.
 
     Raises
     ------
     InputError
         If the control or the target cannot have several, or if the settings make no sense together.
     """
-    size = number(settings, "split")
+    size = number_setting(settings, "split")
     if settings.get("programs", "one") == "one":
         if size is not None:
             cure = "write programs=operations too"
@@ -200,10 +211,10 @@ def division_of(settings: Mapping[str, str], control: Control, target: str, made
         raise InputError(Problem("--set", 0, what, "leave it out"))
     if target == "-":
         raise InputError(Problem("--output", 0, "stdout takes one file", "name a file or a folder, or programs=one"))
-    return Division(Path(target).stem, made.begin, None if size is None else int(size))
+    return SubprogramOutput(Path(target).stem, output_files.add_file, None if size is None else int(size))
 
 
-def point(text: str) -> tuple[float, float, float]:
+def point_setting(text: str) -> tuple[float, float, float]:
     """The setting ``zero``, mm."""
     try:
         x, y, z = (float(part) for part in text.split(","))

@@ -7,13 +7,13 @@ that importing the other half takes no time of its own.
 import argparse
 from concurrent.futures import ThreadPoolExecutor
 
-from trunnion.cli.cl_files import toolpaths
+from trunnion.cli.cl_files import read_toolpaths
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Post every CL file."""
-    with ThreadPoolExecutor(1) as aside:
-        coming = toolpaths(arguments.files, dict(arguments.settings).get("units"), arguments.strict, aside)
+    with ThreadPoolExecutor(1) as executor:
+        coming = read_toolpaths(arguments.files, dict(arguments.settings).get("units"), arguments.strict, executor)
         from trunnion.cli.post import post
 
         return post(arguments, coming)

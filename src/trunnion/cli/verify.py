@@ -20,72 +20,78 @@ _REPORTS = (".html", ".json")
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program."""
     from trunnion.cl import read_cl
-    from trunnion.cli.settings import set_up
+    from trunnion.cli.settings import apply_setup
     from trunnion.readers import reader_of, run_program
-    from trunnion.verification import Allowed, Settings, check_lines, place_lines, time_lines, verify
+    from trunnion.verification import Settings, Tolerances, check_lines, place_lines, time_lines, verify
 
     if arguments.report:
-        check_report(arguments.report)
+        check_report_name(arguments.report)
     machine = load_machine(arguments.machine)
     reader_of(machine)
     given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
-    machine = set_up(machine, {key: value for key, value in given.items() if value})
-    usual = usual_settings(machine)
+    machine = apply_setup(machine, {key: value for key, value in given.items() if value})
+    usual = default_settings(machine)
     paths = [read_cl(Path(file), units=arguments.units) for file in arguments.cl]
     done = run_program(Path(arguments.file), machine, subprograms=[Path(file) for file in arguments.subprograms])
     if len(done.normals):
-        from trunnion.cl.contact import with_normals
+        from trunnion.cl.surface_normals import with_normals
 
         paths = [with_normals(path) for path in paths]
-    found = verify(
+    verification = verify(
         done,
         paths,
-        allowed=Allowed(tip=arguments.tolerance, angle=arguments.tolerance, chord=max(0.001, arguments.tolerance)),
+        tolerances=Tolerances(
+            tip=arguments.tolerance, angle=arguments.tolerance, chord=max(0.001, arguments.tolerance)
+        ),
         settings=Settings(
             tool=arguments.tool,
-            work_offset=_offset(arguments.offset, usual.get("work_offset", "G54"), bool(paths)),
+            work_offset=_work_offset_number(arguments.offset, usual.get("work_offset", "G54"), bool(paths)),
             edge=int(usual["edge"]) if arguments.edge is None and paths and "edge" in usual else arguments.edge,
             span=arguments.span,
             span_tip=arguments.span_tip,
             absolute=arguments.frame == "absolute",
-            rapid_feed=rapid_feed(machine),
+            rapid_feed=rapid_feed_of(machine),
         ),
         columns=bool(arguments.report),
     )
-    print(*check_lines(found), *place_lines(found), *time_lines(found), sep="\n")
+    print(*check_lines(verification), *place_lines(verification), *time_lines(verification), sep="\n")
     if arguments.report:
-        report(found, arguments.report)
-    return 0 if found.passed else 1
+        save_report(verification, arguments.report)
+    return 0 if verification.passed else 1
 
 
-def check_report(file: str) -> None:
+def check_report_name(file: str) -> None:
     """Raise ``InputError`` for a report of a kind that there is not, before any work."""
     if Path(file).suffix.lower() not in _REPORTS:
         raise InputError(Problem(file, 0, "a report is a page or data", f"let its name end in {' or '.join(_REPORTS)}"))
 
 
-def report(found: "Verification", file: str, decisions: Sequence[Decision] = ()) -> None:
+def save_report(verification: "Verification", file: str, decisions: Sequence[Decision] = ()) -> None:
     """Write the report of a verification, with what the planner decided."""
-    from trunnion.reporting import Decided, write_report
+    from trunnion.reporting import PlanDecision, write_report
 
-    write_report(found, Path(file), decisions=[Decided(d.operation, d.file, d.line, d.why, d.text) for d in decisions])
+    write_report(
+        verification,
+        Path(file),
+        decisions=[PlanDecision(d.operation, d.file, d.line, d.topic, d.text) for d in decisions],
+    )
 
 
-def usual_settings(machine: Machine) -> Mapping[str, str]:
+def default_settings(machine: Machine) -> Mapping[str, str]:
     """The settings of a control's definition; those of most where its programs can be read but not written."""
     try:
-        return load_control(machine.control.fresh()).settings
+        return load_control(machine.control.unread_copy()).settings
     except InputError:
         return {"edge": "1"}
 
 
-def rapid_feed(machine: Machine) -> float | None:
+def rapid_feed_of(machine: Machine) -> float | None:
     """The feed that stands for rapid motion on a machine, mm/min; None where rapids are rapids."""
-    usual = usual_settings(machine).get("rapid_feed")
+    usual = default_settings(machine).get("rapid_feed")
     return float(usual) if usual else None
 
 
-def _offset(text: str | None, usual: str, with_cl: bool) -> int | None:
+def _work_offset_number(text: str | None, usual: str, with_cl: bool) -> int | None:
     if text is None:
         code = usual.removeprefix("G")
         return int(code) if with_cl and code.isdigit() else None

@@ -14,7 +14,7 @@ from trunnion.errors import InputError, Problem
 
 Value = str | float | None
 
-_PART = re.compile(r"\[\[(.*?)\]\]")
+_OPTIONAL_PART = re.compile(r"\[\[(.*?)\]\]")
 _FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
 
 
@@ -49,7 +49,7 @@ class Template:
         def known(text: str) -> bool:
             return all(values[name] not in (None, "") for name, _ in _FIELD.findall(text))
 
-        lines = [_PART.sub(lambda part: part[1] if known(part[1]) else "", text) for text in self.lines]
+        lines = [_OPTIONAL_PART.sub(lambda part: part[1] if known(part[1]) else "", text) for text in self.lines]
         return [_FIELD.sub(printed, text) for text in lines if known(text)]
 
     def _number(self, name: str, value: Value) -> float:

@@ -42,9 +42,9 @@ class NumberFormat:
 
     def text(self, value: float) -> str:
         """``value`` as it is printed."""
-        return self.of_count(int(counts(np.array([value]), self.decimals)[0]))
+        return self.text_of_count(int(round_to_counts(np.array([value]), self.decimals)[0]))
 
-    def of_count(self, count: int) -> str:
+    def text_of_count(self, count: int) -> str:
         """The printed form of a whole count of last digits. The slow twin of the block kernel's digits."""
         if count == 0 and self.zero:
             return self.zero
@@ -80,7 +80,7 @@ class Word:
 
 
 @njit(cache=True, nogil=True)
-def count_column(value: Floats, scale: float, out: Ints) -> None:
+def round_column(value: Floats, scale: float, out: Ints) -> None:
     """Round ``value * scale`` to whole numbers as if the product were exact.
 
     The product of two doubles is hi + lo with lo no more than half a last place of hi, so hi alone decides unless its
@@ -110,7 +110,7 @@ def count_column(value: Floats, scale: float, out: Ints) -> None:
         out[row] = count
 
 
-def counts(value: Floats, decimals: int, out: Ints | None = None) -> Ints:
+def round_to_counts(value: Floats, decimals: int, out: Ints | None = None) -> Ints:
     """Values as whole counts of the last printed digit, rounded as ``f"{value:.{decimals}f}"`` rounds.
 
     Parameters
@@ -139,7 +139,7 @@ def counts(value: Floats, decimals: int, out: Ints | None = None) -> Ints:
         widest = max(abs(float(np.fmax.reduce(value))), abs(float(np.fmin.reduce(value))))
         if widest * scale > LARGEST_COUNT:  # False for NaN: a column without a number
             raise OverflowError(f"{widest:g} with {decimals} decimals has more digits than a control can read")
-    count_column(value, scale, out)
+    round_column(value, scale, out)
     return out
 
 

@@ -3,19 +3,23 @@
 from collections.abc import Iterable, Mapping
 
 from trunnion.controls.definition import Control
-from trunnion.conversion.unsupported import Remarks
+from trunnion.conversion.unsupported import Warnings
 
 #: Settings that say the same to every control; the others are words and habits of a family.
-_COMMON = frozenset({"title", "part", "date", "program", "tool", "tool_call", "tolerance", "fallback_tolerance"})
+_COMMON_SETTINGS = frozenset(
+    {"title", "part", "date", "program", "tool", "tool_call", "tolerance", "fallback_tolerance"}
+)
 
 #: Work offsets that have these names wherever they are G words.
-_OFFSETS = frozenset({"G54", "G55", "G56", "G57"})
+_COMMON_OFFSETS = frozenset({"G54", "G55", "G56", "G57"})
 
 #: Tolerances are printed with five decimals.
 _SAME_TOLERANCE = 5e-6
 
 
-def settings_of(control: Control, heads: Iterable[tuple[int, Mapping[str, str]]], remark: Remarks) -> dict[str, str]:
+def settings_from_headers(
+    control: Control, headers: Iterable[tuple[int, Mapping[str, str]]], warn: Warnings
+) -> dict[str, str]:
     """The settings that make the same heads again, as far as they are not the defaults.
 
     Parameters
@@ -28,25 +32,25 @@ def settings_of(control: Control, heads: Iterable[tuple[int, Mapping[str, str]]]
         Takes what one program cannot have twice.
     """
     merged: dict[str, str] = {}
-    for line, values in heads:
-        for name, value in _given(control, values).items():
+    for line, values in headers:
+        for name, value in _header_settings(control, values).items():
             if merged.setdefault(name, value) != value:
                 what = f"{name} is {value!r} here and {merged[name]!r} before; one program has one"
-                remark(line, what, f"the first is taken; see --set {name}=…")
-    return {name: value for name, value in merged.items() if value and not _same(value, control.settings[name])}
+                warn(line, what, f"the first is taken; see --set {name}=…")
+    return {name: value for name, value in merged.items() if value and not _equal_values(value, control.settings[name])}
 
 
-def carried_over(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
+def transfer_settings(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
     """The settings of a program for one control that mean the same on another, as far as it has them."""
     known = {name: value for name, value in settings.items() if name in target.settings}
     if control.family is target.family:
         return known
     offsets = {control.settings.get("work_offset"), target.settings.get("work_offset"), settings.get("work_offset")}
-    same = _COMMON | ({"work_offset"} if offsets <= _OFFSETS else frozenset())
+    same = _COMMON_SETTINGS | ({"work_offset"} if offsets <= _COMMON_OFFSETS else frozenset())
     return {name: value for name, value in known.items() if name in same}
 
 
-def number(text: str | None) -> float | None:
+def parse_number(text: str | None) -> float | None:
     """A number, if the text is one."""
     try:
         return float(text) if text else None
@@ -54,23 +58,23 @@ def number(text: str | None) -> float | None:
         return None
 
 
-def _given(control: Control, values: Mapping[str, str]) -> dict[str, str]:
+def _header_settings(control: Control, values: Mapping[str, str]) -> dict[str, str]:
     """The settings in a head, without those that follow from others."""
     given = {name: value for name, value in values.items() if name in control.settings}
     method = given.get("method", control.settings.get("method", ""))
-    for setting in control.by_method:
-        if given.get(setting) == control.usual(setting, method):
+    for setting in control.method_defaults:
+        if given.get(setting) == control.default_for_method(setting, method):
             given.pop(setting, None)
-    intol, outtol = number(values.get("intol")), number(values.get("outtol"))
-    fallback = number(control.settings.get("fallback_tolerance")) or 0.0
+    intol, outtol = parse_number(values.get("intol")), parse_number(values.get("outtol"))
+    fallback = parse_number(control.settings.get("fallback_tolerance")) or 0.0
     expected = intol + outtol if intol is not None and outtol is not None else fallback
-    tolerance = number(given.get("tolerance"))
+    tolerance = parse_number(given.get("tolerance"))
     if tolerance is None or abs(tolerance - expected) < _SAME_TOLERANCE:
         given.pop("tolerance", None)
     return given
 
 
-def _same(a: str, b: str) -> bool:
+def _equal_values(a: str, b: str) -> bool:
     """Whether two settings say the same, as text or as numbers."""
-    first, second = number(a), number(b)
+    first, second = parse_number(a), parse_number(b)
     return a == b or (first is not None and first == second)

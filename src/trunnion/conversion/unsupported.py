@@ -6,11 +6,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.conversion.program_text import Source
+from trunnion.conversion.program_text import ProgramText
 from trunnion.errors import Problem, Severity
-from trunnion.model.run import Orientation, Run, Written
+from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Moves
-from trunnion.planning.poses.selection import follow
+from trunnion.planning.poses.selection import choose_poses
 from trunnion.readers.families.fanuc import words as fanuc
 from trunnion.readers.families.fidia import words as fidia
 from trunnion.readers.families.heidenhain import words as heidenhain
@@ -18,10 +18,12 @@ from trunnion.readers.families.linuxcnc import words as linuxcnc
 from trunnion.readers.families.sinumerik import words as sinumerik
 
 #: Remarks of one kind that are made one by one.
-_NAMED = 5
+_MAX_WARNINGS = 5
 
 #: Words that every operation's head says, or that are said by other means.
-_SAID_ANYHOW = frozenset({"G40", "G60", "G601", "FNORM", "COMPOF", "EXTERN", "G49", "G80", "G90", "G94", "G8", "G97"})
+_ALWAYS_WRITTEN = frozenset(
+    {"G40", "G60", "G601", "FNORM", "COMPOF", "EXTERN", "G49", "G80", "G90", "G94", "G8", "G97"}
+)
 _SURFACE_SPEED = frozenset({"G96", "G961", "G962"})
 _TOOL_LENGTHS = frozenset({"G43", "G43.1", "G43.2", "G44"})
 _CANCELS = frozenset({"G15", "G50", "G50.1", "G13.1", "G22", "G23", "G91.1", "G90.1"})
@@ -32,16 +34,16 @@ def _codes(tenths: Iterable[int]) -> frozenset[str]:
 
 
 #: Words of each family that drive the machine and have no effect on the path.
-_DRIVES: Mapping[str, frozenset[str]] = {
+_SILENT_WORDS: Mapping[str, frozenset[str]] = {
     "sinumerik_840d": frozenset(
-        {*sinumerik.SILENT, *sinumerik.SILENT_VALUES, *sinumerik.SILENT_CALLS}
-        | {f"G{code}" for code in sinumerik.G_SILENT}
+        {*sinumerik.WITHOUT_PATH_EFFECT, *sinumerik.WITHOUT_PATH_EFFECT_VALUES, *sinumerik.WITHOUT_PATH_EFFECT_CALLS}
+        | {f"G{code}" for code in sinumerik.G_WITHOUT_PATH_EFFECT}
     ),
-    "linuxcnc": _codes(linuxcnc.SILENT) | {f"M{code}" for code in linuxcnc.SILENT_M},
-    "fanuc_30i": _codes(fanuc.SILENT),
-    "fidia_nc15": _codes(fidia.SILENT),
-    "heidenhain_itnc530": frozenset(f"M{code}" for code in heidenhain.M_SILENT),
-    "heidenhain_tnc640": frozenset(f"M{code}" for code in heidenhain.M_SILENT),
+    "linuxcnc": _codes(linuxcnc.WITHOUT_PATH_EFFECT) | {f"M{code}" for code in linuxcnc.WITHOUT_PATH_EFFECT_M},
+    "fanuc_30i": _codes(fanuc.WITHOUT_PATH_EFFECT),
+    "fidia_nc15": _codes(fidia.WITHOUT_PATH_EFFECT),
+    "heidenhain_itnc530": frozenset(f"M{code}" for code in heidenhain.M_WITHOUT_PATH_EFFECT),
+    "heidenhain_tnc640": frozenset(f"M{code}" for code in heidenhain.M_WITHOUT_PATH_EFFECT),
 }
 
 #: Rotary axes stand where they stood within this, degrees; programs have at most five decimals.
@@ -52,7 +54,7 @@ _SAME_POSITION = 1e-3
 _ZEROS = re.compile(r"^([GM])0+(?=\d)")
 
 
-class Remarks:
+class Warnings:
     """Takes what does not survive the way back, each with its line; file as in ``Run.file``."""
 
     def __init__(self, files: Sequence[str]) -> None:
@@ -69,7 +71,7 @@ class Remarks:
         return tuple(self._found)
 
 
-def remark_words(sources: Sequence[Source], family: str, known: Collection[int], remark: Remarks) -> None:
+def warn_of_machine_words(sources: Sequence[ProgramText], family: str, known: Collection[int], warn: Warnings) -> None:
     """Say which words only drive the machine.
 
     Parameters
@@ -81,23 +83,23 @@ def remark_words(sources: Sequence[Source], family: str, known: Collection[int],
     known
         Lines of the program that are lines of templates.
     """
-    told = 0
-    lost_words = (_DRIVES[family] | _SURFACE_SPEED) - _SAID_ANYHOW - _TOOL_LENGTHS - _CANCELS
-    said = ((file, *line) for file, source in enumerate(sources) for line in source.words())
-    for file, line, words in said:
+    count = 0
+    lost_words = (_SILENT_WORDS[family] | _SURFACE_SPEED) - _ALWAYS_WRITTEN - _TOOL_LENGTHS - _CANCELS
+    written = ((file, *line) for file, source in enumerate(sources) for line in source.sparse_words())
+    for file, line, words in written:
         lost = [word for word in words if _ZEROS.sub(r"\1", word) in lost_words]
         if not lost or (file == 0 and line in known):
             continue
-        told += 1
-        if told <= _NAMED:
+        count += 1
+        if count <= _MAX_WARNINGS:
             what = f"{' '.join(lost)} is not carried over"
             speed = _SURFACE_SPEED.intersection(lost)
-            remark(line, what, "S is taken as rev/min" if speed else "say it in a template of the control", file)
-    if told > _NAMED:
-        remark(0, f"and {told - _NAMED} more lines with words that are not carried over")
+            warn(line, what, "S is taken as rev/min" if speed else "say it in a template of the control", file)
+    if count > _MAX_WARNINGS:
+        warn(0, f"and {count - _MAX_WARNINGS} more lines with words that are not carried over")
 
 
-def remark_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], remark: Remarks) -> None:
+def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warnings) -> None:
     """Say where the rotary axes stand otherwise than posting from the tool axis alone will place them.
 
     operations   the rows (n,) of each operation, and what became of them
@@ -105,7 +107,7 @@ def remark_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], remark: Rem
     machine = run.machine
     whole = np.array([np.isfinite(machine.axes[column].display_low) for column in machine.rotary])
     for rows, moves in operations:
-        expected = follow(machine, moves, keep_slides=machine.workpiece_zero is not None).rotary
+        expected = choose_poses(machine, moves, keep_slides=machine.workpiece_zero is not None).rotary
         off = run.joints[rows][:, list(machine.rotary)] - expected
         off = np.where(whole, (off + 180.0) % 360.0 - 180.0, off)
         places, columns = np.nonzero(np.abs(off) > _SAME_ANGLE)
@@ -113,10 +115,10 @@ def remark_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], remark: Rem
             name = machine.axes[machine.rotary[int(columns[0])]].name
             many = len(np.unique(places))
             what = f"{many} points place the rotary axes otherwise than their tool axis says, the first by {name}"
-            _at(run, rows[places], what, "only the tool axis is carried over", remark)
+            _warn_at_rows(run, rows[places], what, "only the tool axis is carried over", warn)
 
 
-def remark_ways(run: Run, operations: Iterable[Ints], by_vectors: bool, remark: Remarks) -> None:
+def warn_of_interpolation(run: Run, operations: Iterable[Ints], by_vectors: bool, warn: Warnings) -> None:
     """Say where the tool turns between two points in another way than a program of ours lets it turn.
 
     operations   the rows (n,) of each operation
@@ -132,45 +134,45 @@ def remark_ways(run: Run, operations: Iterable[Ints], by_vectors: bool, remark: 
             places = np.flatnonzero(there)
             if len(places):
                 cure = "between points it goes as the control's templates say"
-                _at(run, rows[places], f"{len(places)} points {what}, which is not carried over", cure, remark)
+                _warn_at_rows(run, rows[places], f"{len(places)} points {what}, which is not carried over", cure, warn)
 
 
-def remark_registers(run: Run, operations: Iterable[Ints], offset: str, remark: Remarks) -> None:
+def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, warn: Warnings) -> None:
     """Say where work offset or edge change on the way; an edge that comes on after the first motions does not.
 
     operations   the rows (n,) of each operation
     offset       what stands before the number of a work offset
     """
     for rows in operations:
-        said = rows[np.argmax(run.edge[rows] >= 0) :]
-        for column, letter, there in ((run.offset, offset, rows), (run.edge, "D", said)):
+        written = rows[np.argmax(run.edge[rows] >= 0) :]
+        for column, letter, there in ((run.work_offset, offset, rows), (run.edge, "D", written)):
             others = there[column[there] != column[there[0]]]
             if len(others):
                 what = f"{letter}{column[others[0]]} within an operation is not carried over"
-                _at(run, others, what, f"{letter}{column[there[0]]} holds for all of it", remark)
+                _warn_at_rows(run, others, what, f"{letter}{column[there[0]]} holds for all of it", warn)
 
 
-def remark_homes(run: Run, remark: Remarks) -> None:
+def warn_of_park_positions(run: Run, warn: Warnings) -> None:
     """Say which slides park elsewhere than at their home; one that is drawn back to its end is not parked."""
     names = run.machine.names
     drawn_back = [event.before_row for event in run.events if event.kind == "retract"]
-    for word in (word for word in (Written.X, Written.Y, Written.Z) if word.name in names):
+    for word in (word for word in (ProgrammedWord.X, ProgrammedWord.Y, ProgrammedWord.Z) if word.name in names):
         axis = run.machine.axes[names.index(str(word.name))]
         placed = np.setdiff1d(np.flatnonzero(run.machine_frame & ((run.programmed & word) != 0)), drawn_back)
         places = run.joints[placed, names.index(axis.name)]
         away = np.flatnonzero(np.abs(places - axis.home) > _SAME_POSITION)
         if len(away):
             what = f"{axis.name} goes to the machine position {places[away[0]]:g}, which is not carried over"
-            _at(run, placed[away], what, "the control's templates say where to park", remark)
+            _warn_at_rows(run, placed[away], what, "the control's templates say where to park", warn)
 
 
-def remark_normals(run: Run, remark: Remarks) -> None:
+def warn_of_normals(run: Run, warn: Warnings) -> None:
     """Say that normals of surfaces stay behind."""
     if len(run.normals):
         what = f"{len(run.normals)} blocks say the surface's normal, which is not carried over"
-        _at(run, run.normals.row, what, "a CL file has contact points of the CAM in its place", remark)
+        _warn_at_rows(run, run.normals.row, what, "a CL file has contact points of the CAM in its place", warn)
 
 
-def _at(run: Run, rows: Ints, what: str, cure: str, remark: Remarks) -> None:
+def _warn_at_rows(run: Run, rows: Ints, what: str, cure: str, warn: Warnings) -> None:
     """A remark about rows, at the first of them."""
-    remark(int(run.block[rows[0]]), what, cure, int(run.file[rows[0]]))
+    warn(int(run.line[rows[0]]), what, cure, int(run.file[rows[0]]))

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 #: Deeper keys are refused unread: the TOML parser takes time that grows with the cube of their depth.
-DEEPEST_KEY: Final = 32
+MAX_KEY_DEPTH: Final = 32
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
-Path_: TypeAlias = tuple[str | int, ...]
+KeyPath: TypeAlias = tuple[str | int, ...]
 
 
 @dataclass(slots=True)
-class Entry:
+class LocatedValue:
     """A value and its place. ``value`` is a scalar, a list, a dict of entries (table) or a list of table entries."""
 
     value: object
@@ -28,18 +28,22 @@ def _is_tables(value: object) -> bool:
     return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
 
 
-def entry_of(value: object, file: str, lines: Mapping[Path_, int], path: Path_ = (), parent_line: int = 0) -> Entry:
+def locate_values(
+    value: object, file: str, lines: Mapping[KeyPath, int], path: KeyPath = (), parent_line: int = 0
+) -> LocatedValue:
     """Give a raw TOML value, and all that it holds, its place."""
     line = lines.get(path, parent_line)
     if isinstance(value, dict):
-        table = {str(key): entry_of(item, file, lines, (*path, key), line) for key, item in value.items()}
-        return Entry(table, file, line)
+        table = {str(key): locate_values(item, file, lines, (*path, key), line) for key, item in value.items()}
+        return LocatedValue(table, file, line)
     if isinstance(value, list) and _is_tables(value):
-        return Entry([entry_of(item, file, lines, (*path, i), line) for i, item in enumerate(value)], file, line)
-    return Entry(value, file, line)
+        return LocatedValue(
+            [locate_values(item, file, lines, (*path, i), line) for i, item in enumerate(value)], file, line
+        )
+    return LocatedValue(value, file, line)
 
 
-def key_lines(text: str) -> dict[Path_, int]:
+def key_lines(text: str) -> dict[KeyPath, int]:
     """Line of every key of a TOML text, from 1; tables in arrays are told apart by their index.
 
     ``tomllib`` keeps no lines. Nothing is checked here: of a text that is not TOML, any lines or none may come out.
@@ -50,12 +54,12 @@ def key_lines(text: str) -> dict[Path_, int]:
         If tables nest too deeply.
     """
     try:
-        return _Lines(text).index()
+        return _KeyLineScanner(text).index()
     except (IndexError, ValueError):
         return {}
 
 
-class _Lines:
+class _KeyLineScanner:
     """One walk over a TOML text that notes where keys stand, and skips what values hold."""
 
     def __init__(self, text: str) -> None:
@@ -63,12 +67,12 @@ class _Lines:
         self.at = 0
         self.line = 1
         self.counted = 0
-        self.found: dict[Path_, int] = {}
-        self.arrays: dict[Path_, int] = {}
+        self.found: dict[KeyPath, int] = {}
+        self.arrays: dict[KeyPath, int] = {}
 
-    def index(self) -> dict[Path_, int]:
-        here: Path_ = ()
-        while self._blank(newlines=True):
+    def index(self) -> dict[KeyPath, int]:
+        here: KeyPath = ()
+        while self._skip_blanks(newlines=True):
             if self.text.startswith("[[", self.at):
                 here = self._header(2, array=True)
             elif self.text[self.at] == "[":
@@ -77,12 +81,12 @@ class _Lines:
                 self._pair(here)
         return self.found
 
-    def _note(self, path: Path_) -> None:
+    def _note_line(self, path: KeyPath) -> None:
         self.line += self.text.count("\n", self.counted, self.at)
         self.counted = self.at
         self.found.setdefault(path, self.line)
 
-    def _blank(self, *, newlines: bool) -> bool:
+    def _skip_blanks(self, *, newlines: bool) -> bool:
         """Skip blanks (with newlines: also lines and comments); say whether text is left."""
         blanks = " \t\r\n" if newlines else " \t"
         while self.at < len(self.text):
@@ -90,12 +94,12 @@ class _Lines:
             if letter in blanks:
                 self.at += 1
             elif newlines and letter == "#":
-                self._to("\n")
+                self._skip_to("\n")
             else:
                 return True
         return False
 
-    def _to(self, mark: str) -> None:
+    def _skip_to(self, mark: str) -> None:
         end = self.text.find(mark, self.at)
         self.at = len(self.text) if end < 0 else end
 
@@ -103,7 +107,7 @@ class _Lines:
         """Read a dotted key and leave the cursor on what follows it."""
         parts: list[str] = []
         while True:
-            self._blank(newlines=False)
+            self._skip_blanks(newlines=False)
             start = self.at
             if self.text[start] in "\"'":
                 self._string()
@@ -113,38 +117,38 @@ class _Lines:
                 bare = _BARE_KEY.match(self.text, start)
                 self.at = bare.end() if bare else start + 1
                 parts.append(self.text[start : self.at])
-            self._blank(newlines=False)
+            self._skip_blanks(newlines=False)
             if not self.text.startswith(".", self.at):
                 return parts
-            if len(parts) > DEEPEST_KEY:
+            if len(parts) > MAX_KEY_DEPTH:
                 raise RecursionError
             self.at += 1
 
-    def _header(self, brackets: int, *, array: bool) -> Path_:
+    def _header(self, brackets: int, *, array: bool) -> KeyPath:
         self.at += brackets
         keys = self._key()
-        path: Path_ = ()
+        path: KeyPath = ()
         for depth, key in enumerate(keys):
             path = (*path, key)
             if array and depth == len(keys) - 1:
-                self._note(path)
+                self._note_line(path)
                 self.arrays[path] = self.arrays.get(path, -1) + 1
             if path in self.arrays:
                 path = (*path, self.arrays[path])
-            self._note(path)
+            self._note_line(path)
         self.at += brackets
         return path
 
-    def _pair(self, here: Path_) -> None:
+    def _pair(self, here: KeyPath) -> None:
         path = here
         for key in self._key():
             path = (*path, key)
-            self._note(path)
+            self._note_line(path)
         self.at += 1  # the equals sign
         self._value(path)
 
-    def _value(self, path: Path_) -> None:
-        self._blank(newlines=False)
+    def _value(self, path: KeyPath) -> None:
+        self._skip_blanks(newlines=False)
         letter = self.text[self.at] if self.at < len(self.text) else ""
         if letter == "{":
             self._items("}", path, array=False)
@@ -156,14 +160,14 @@ class _Lines:
             while self.at < len(self.text) and self.text[self.at] not in ",]}#\n":
                 self.at += 1
 
-    def _items(self, close: str, path: Path_, *, array: bool) -> None:
+    def _items(self, close: str, path: KeyPath, *, array: bool) -> None:
         self.at += 1
         count = 0
-        while self._blank(newlines=True) and self.text[self.at] != close:
+        while self._skip_blanks(newlines=True) and self.text[self.at] != close:
             if self.text[self.at] in ",]}":
                 self.at += 1  # also a bracket that closes nothing: the parser complains of it
             elif array:
-                self._note((*path, count))
+                self._note_line((*path, count))
                 self._value((*path, count))
                 count += 1
             else:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, overload
 
-from trunnion.definitions.source_lines import Entry
+from trunnion.definitions.source_lines import LocatedValue
 from trunnion.errors import InputError, Problem
 
 #: The end of a key says its unit; the longest one that fits counts.
@@ -50,7 +50,7 @@ def _stem(key: str) -> str:
     return next((key.removesuffix(end) for end in UNITS if key.endswith(end)), key)
 
 
-def shown(value: object) -> str:
+def as_written(value: object) -> str:
     """Show a value as it could stand in the file, cut short."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -59,13 +59,13 @@ def shown(value: object) -> str:
     elif isinstance(value, dict):
         return "a table"
     elif isinstance(value, list):
-        text = "an array of tables" if value and isinstance(value[0], Entry) else str(value).replace("'", '"')
+        text = "an array of tables" if value and isinstance(value[0], LocatedValue) else str(value).replace("'", '"')
     else:
         text = str(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def meant(word: str, known: Iterator[str] | Sequence[str]) -> str:
+def did_you_mean(word: str, known: Iterator[str] | Sequence[str]) -> str:
     """Ask whether the known word next to an unknown one was meant; empty where none is near."""
     near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
     return f'did you mean "{near[0]}"?' if near else ""
@@ -76,106 +76,106 @@ class Table:
     """A TOML table that keeps account of the keys that were asked for.
 
     A getter that finds a mistake adds a ``Problem`` to the shared list and returns the default, or an empty value of
-    its type, so that reading goes on to the next mistake. ``check`` raises them all.
+    its type, so that reading goes on to the next mistake. ``raise_problems`` raises them all.
     """
 
-    entry: Entry
+    content: LocatedValue
     path: str = ""
     problems: list[Problem] = field(default_factory=list)
-    asked: dict[str, None] = field(default_factory=dict)
-    below: list["Table"] = field(default_factory=list)
+    read_keys: dict[str, None] = field(default_factory=dict)
+    children: list["Table"] = field(default_factory=list)
 
     # Where things stand
 
     @property
     def file(self) -> str:
         """File of the table, or of its last change."""
-        return self.entry.file
+        return self.content.file
 
     @property
     def line(self) -> int:
         """Line of the table's header in ``file``."""
-        return self.entry.line
+        return self.content.line
 
-    def origin(self, key: str) -> tuple[str, int]:
+    def location(self, key: str) -> tuple[str, int]:
         """File and line of a key; those of the table if the key is not there."""
-        entry = self._cells.get(key, self.entry)
-        return entry.file, entry.line
+        content = self._values.get(key, self.content)
+        return content.file, content.line
 
-    def dotted(self, key: str) -> str:
+    def key_path(self, key: str) -> str:
         """Path of a key from the root of the definition, such as ``axis[1].limits_deg``."""
         return f"{self.path}.{key}" if self.path else key
 
     def keys(self) -> list[str]:
         """Every key of the table, in order, read or not."""
-        return list(self._cells)
+        return list(self._values)
 
     def __contains__(self, key: object) -> bool:
-        return key in self._cells
+        return key in self._values
 
-    def raw(self) -> dict[str, object]:
+    def to_dict(self) -> dict[str, object]:
         """Everything the table holds, as plain dicts, lists and scalars. Counts as reading nothing."""
-        plain = _plain(self.entry)
+        plain = _plain(self.content)
         assert isinstance(plain, dict)
         return plain
 
-    def fresh(self) -> "Table":
+    def unread_copy(self) -> "Table":
         """The same table with nothing read yet and no problems noted."""
-        return Table(self.entry, self.path)
+        return Table(self.content, self.path)
 
     def files(self) -> list[str]:
         """Every file that a value of this table came from, sorted."""
-        return sorted(set(_files(self.entry)))
+        return sorted(set(_files(self.content)))
 
     @property
-    def _cells(self) -> dict[str, Entry]:
-        return self.entry.value if isinstance(self.entry.value, dict) else {}
+    def _values(self) -> dict[str, LocatedValue]:
+        return self.content.value if isinstance(self.content.value, dict) else {}
 
     # Problems
 
-    def problem(self, key: str, what: str, cure: str = "") -> None:
+    def add_problem(self, key: str, what: str, cure: str = "") -> None:
         """Note that the value of a key will not do; an empty key means the table itself."""
-        file, line = self.origin(key)
-        name = self.dotted(key) if key else self.path or "definition"
+        file, line = self.location(key)
+        name = self.key_path(key) if key else self.path or "definition"
         self.problems.append(Problem(file, line, f"{name} {what}", cure))
 
-    def check(self) -> None:
+    def raise_problems(self) -> None:
         """Raise every problem noted so far, in the order of files and lines, if there is one."""
         if self.problems:
             unique = dict.fromkeys(self.problems)
             raise InputError(sorted(unique, key=lambda problem: (problem.file, problem.line)))
 
-    def finish(self) -> None:
+    def report_unread_keys(self) -> None:
         """Note each key that nobody asked for; call it when the table has been read."""
-        for key in self._cells:
-            if key in self.asked:
+        for key in self._values:
+            if key in self.read_keys:
                 continue
-            kin = next((known for known in self.asked if _stem(known) == _stem(key) and unit_of(known)), "")
+            kin = next((known for known in self.read_keys if _stem(known) == _stem(key) and unit_of(known)), "")
             if kin and unit_of(key) != unit_of(kin):
-                self.problem(key, "has a unit that does not fit here", f"write {kin}, in {unit_of(kin)}")
+                self.add_problem(key, "has a unit that does not fit here", f"write {kin}, in {unit_of(kin)}")
             else:
-                cure = meant(key, list(self.asked)) or "known here: " + ", ".join(sorted(self.asked))
-                self.problem(key, "is not a key that is known here", cure)
+                cure = did_you_mean(key, list(self.read_keys)) or "known here: " + ", ".join(sorted(self.read_keys))
+                self.add_problem(key, "is not a key that is known here", cure)
 
-    def skip(self, *keys: str) -> None:
+    def mark_read(self, *keys: str) -> None:
         """Count keys as read without looking at them."""
-        self.asked.update(dict.fromkeys(keys))
+        self.read_keys.update(dict.fromkeys(keys))
 
-    def every_key(self) -> set[str]:
+    def all_read_keys(self) -> set[str]:
         """Every key that was asked for here and below, with indices left out: ``axis.limits_deg``."""
-        found = {re.sub(r"\[\d+\]", "", self.dotted(key)) for key in self.asked}
-        return found.union(*(table.every_key() for table in self.below))
+        found = {re.sub(r"\[\d+\]", "", self.key_path(key)) for key in self.read_keys}
+        return found.union(*(table.all_read_keys() for table in self.children))
 
     # Getters
 
     def _get(self, key: str, required: bool, cure: str) -> object | None:
-        self.asked[key] = None
-        entry = self._cells.get(key)
-        if entry is None:
+        self.read_keys[key] = None
+        content = self._values.get(key)
+        if content is None:
             if required:
-                self.problem(key, "is missing", cure)
+                self.add_problem(key, "is missing", cure)
             return None
-        return entry.value
+        return content.value
 
     @overload
     def text(self, key: str, default: Required = ..., *, one_of: Sequence[str] = ...) -> str: ...
@@ -185,16 +185,16 @@ class Table:
     def text(self, key: str, default: None, *, one_of: Sequence[str] = ...) -> str | None: ...
     def text(self, key: str, default: str | Required | None = REQUIRED, *, one_of: Sequence[str] = ()) -> str | None:
         """Return a text; with ``one_of``, one of these words."""
-        spare = "" if isinstance(default, Required) else default
+        fallback = "" if isinstance(default, Required) else default
         words = ", ".join(f'"{word}"' for word in one_of)
         cure = f"write one of {words}" if one_of else "write a text in quotes"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
-            return spare
+            return fallback
         if not isinstance(value, str) or (one_of and value not in one_of):
-            near = meant(value, list(one_of)) if isinstance(value, str) else ""
-            self.problem(key, f"is {shown(value)}", near + " " + cure if near else cure)
-            return spare
+            near = did_you_mean(value, list(one_of)) if isinstance(value, str) else ""
+            self.add_problem(key, f"is {as_written(value)}", near + " " + cure if near else cure)
+            return fallback
         return value
 
     @overload
@@ -237,18 +237,18 @@ class Table:
         at_most: float | None = None,
     ) -> float | None:
         """Return a finite number, in the unit that the key names."""
-        spare = 0.0 if isinstance(default, Required) else default
+        fallback = 0.0 if isinstance(default, Required) else default
         cure = f"write {_a_number(key)}{_bounds(above, at_least, at_most)}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
-            return spare
+            return fallback
         number = _finite(value)
         if number is None:
-            self.problem(key, f"is {shown(value)}", cure + _hint(key, value))
-            return spare
+            self.add_problem(key, f"is {as_written(value)}", cure + _hint(key, value))
+            return fallback
         if not _within(number, above, at_least, at_most):
-            self.problem(key, f"is {shown(value)}", cure)
-            return spare
+            self.add_problem(key, f"is {as_written(value)}", cure)
+            return fallback
         return number
 
     @overload
@@ -270,14 +270,14 @@ class Table:
         at_most: int | None = None,
     ) -> int | None:
         """Return a whole number."""
-        spare = 0 if isinstance(default, Required) else default
+        fallback = 0 if isinstance(default, Required) else default
         cure = f"write a whole number{_bounds(None, at_least, at_most)}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
-            return spare
+            return fallback
         if not isinstance(value, int) or isinstance(value, bool) or not _within(value, None, at_least, at_most):
-            self.problem(key, f"is {shown(value)}", cure)
-            return spare
+            self.add_problem(key, f"is {as_written(value)}", cure)
+            return fallback
         return value
 
     @overload
@@ -286,13 +286,13 @@ class Table:
     def flag(self, key: str, default: None) -> bool | None: ...
     def flag(self, key: str, default: bool | Required | None = REQUIRED) -> bool | None:
         """Return true or false."""
-        spare = False if isinstance(default, Required) else default
+        fallback = False if isinstance(default, Required) else default
         value = self._get(key, isinstance(default, Required), "write true or false")
         if value is None:
-            return spare
+            return fallback
         if not isinstance(value, bool):
-            self.problem(key, f"is {shown(value)}", "write true or false, without quotes")
-            return spare
+            self.add_problem(key, f"is {as_written(value)}", "write true or false, without quotes")
+            return fallback
         return value
 
     @overload
@@ -303,17 +303,17 @@ class Table:
         self, key: str, n: int, default: Sequence[float] | Required | None = REQUIRED
     ) -> tuple[float, ...] | None:
         """Return n finite numbers, in the unit that the key names."""
-        spare = (0.0,) * n if isinstance(default, Required) else None if default is None else tuple(default)
+        fallback = (0.0,) * n if isinstance(default, Required) else None if default is None else tuple(default)
         unit = f" in {unit_of(key)}" if unit_of(key) else ""
         cure = f"write [{', '.join('abcdefgh'[:n])}] with {n} numbers{unit}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
-            return spare
+            return fallback
         numbers = [_finite(item) for item in value] if isinstance(value, list) else []
         good = [number for number in numbers if number is not None]
         if len(numbers) != n or len(good) != n:
-            self.problem(key, f"is {shown(value)}", cure)
-            return spare
+            self.add_problem(key, f"is {as_written(value)}", cure)
+            return fallback
         return tuple(good)
 
     @overload
@@ -324,20 +324,20 @@ class Table:
         self, key: str, default: tuple[float, float] | Required | None = REQUIRED
     ) -> tuple[float, float] | None:
         """Return [low, high] with low < high, in the unit that the key names."""
-        spare = (-math.inf, math.inf) if isinstance(default, Required) else default
+        fallback = (-math.inf, math.inf) if isinstance(default, Required) else default
         unit = f", in {unit_of(key)}" if unit_of(key) else ""
         cure = f"write [low, high] with low < high{unit}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
-            return spare
+            return fallback
         numbers = [_finite(item) for item in value] if isinstance(value, list) else []
         if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
-            self.problem(key, f"is {shown(value)}", cure)
-            return spare
+            self.add_problem(key, f"is {as_written(value)}", cure)
+            return fallback
         if numbers[0] >= numbers[1]:
             swapped = f": [{numbers[1]:g}, {numbers[0]:g}]?" if numbers[0] > numbers[1] else ""
-            self.problem(key, f"is {shown(value)}", cure + swapped)
-            return spare
+            self.add_problem(key, f"is {as_written(value)}", cure + swapped)
+            return fallback
         return numbers[0], numbers[1]
 
     @overload
@@ -346,57 +346,57 @@ class Table:
     def texts(self, key: str, default: None) -> tuple[str, ...] | None: ...
     def texts(self, key: str, default: Sequence[str] | Required | None = REQUIRED) -> tuple[str, ...] | None:
         """Return a list of texts."""
-        spare = () if isinstance(default, Required) else None if default is None else tuple(default)
+        fallback = () if isinstance(default, Required) else None if default is None else tuple(default)
         cure = 'write ["one", "two"]'
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
-            return spare
+            return fallback
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-            self.problem(key, f"is {shown(value)}", cure)
-            return spare
+            self.add_problem(key, f"is {as_written(value)}", cure)
+            return fallback
         return tuple(str(item) for item in value)
 
     def table(self, key: str, *, required: bool = False) -> "Table":
         """Return the table under a key; an empty one if there is none."""
-        value = self._get(key, required, f"write a table [{self.dotted(key)}]")
+        value = self._get(key, required, f"write a table [{self.key_path(key)}]")
         if isinstance(value, dict):
-            child = Table(self._cells[key], self.dotted(key), self.problems)
+            child = Table(self._values[key], self.key_path(key), self.problems)
         else:
             if value is not None:
-                self.problem(key, f"is {shown(value)}", f"write a table [{self.dotted(key)}]")
-            child = Table(Entry({}, self.file, self.line), self.dotted(key), self.problems)
-        self.below.append(child)
+                self.add_problem(key, f"is {as_written(value)}", f"write a table [{self.key_path(key)}]")
+            child = Table(LocatedValue({}, self.file, self.line), self.key_path(key), self.problems)
+        self.children.append(child)
         return child
 
     def tables(self, key: str, *, required: bool = False) -> "list[Table]":
         """Return the array of tables under a key; an empty list if there is none."""
-        value = self._get(key, required, f"write tables [[{self.dotted(key)}]]")
+        value = self._get(key, required, f"write tables [[{self.key_path(key)}]]")
         if value is None or value == []:
             return []
-        if not isinstance(value, list) or not isinstance(value[0], Entry):
-            self.problem(key, f"is {shown(value)}", f"write tables [[{self.dotted(key)}]]")
+        if not isinstance(value, list) or not isinstance(value[0], LocatedValue):
+            self.add_problem(key, f"is {as_written(value)}", f"write tables [[{self.key_path(key)}]]")
             return []
-        children = [Table(item, f"{self.dotted(key)}[{i}]", self.problems) for i, item in enumerate(value)]
-        self.below.extend(children)
+        children = [Table(item, f"{self.key_path(key)}[{i}]", self.problems) for i, item in enumerate(value)]
+        self.children.extend(children)
         return children
 
 
-def _plain(entry: Entry) -> object:
-    if isinstance(entry.value, dict):
-        return {key: _plain(item) for key, item in entry.value.items()}
-    if isinstance(entry.value, list):
-        return [_plain(item) if isinstance(item, Entry) else item for item in entry.value]
-    return entry.value
+def _plain(content: LocatedValue) -> object:
+    if isinstance(content.value, dict):
+        return {key: _plain(item) for key, item in content.value.items()}
+    if isinstance(content.value, list):
+        return [_plain(item) if isinstance(item, LocatedValue) else item for item in content.value]
+    return content.value
 
 
-def _files(entry: Entry) -> Iterator[str]:
-    yield entry.file
-    if isinstance(entry.value, dict):
-        for item in entry.value.values():
+def _files(content: LocatedValue) -> Iterator[str]:
+    yield content.file
+    if isinstance(content.value, dict):
+        for item in content.value.values():
             yield from _files(item)
-    elif isinstance(entry.value, list):
-        for item in entry.value:
-            if isinstance(item, Entry):
+    elif isinstance(content.value, list):
+        for item in content.value:
+            if isinstance(item, LocatedValue):
                 yield from _files(item)
 
 

@@ -47,7 +47,7 @@ def forward(machine: Machine, joints: Floats, tool_length: float | None = None) 
         raise ValueError(f"joints must have shape (n, 5), not {rows.shape}")
     tip = np.empty((len(rows), 3))
     axis = np.empty((len(rows), 3))
-    chain_rows(pack_chain(machine, tool_length), rows, tip, axis)
+    forward_rows(kinematic_chain(machine, tool_length), rows, tip, axis)
     return tip, axis
 
 
@@ -62,11 +62,11 @@ def tool_axes(machine: Machine, joints: Floats) -> tuple[Floats, Floats]:
         The same where every joint is half-way from a row to the next; a rotary axis goes as its values say.
     """
     axis, half_way = np.empty((len(joints), 3)), np.empty((max(len(joints) - 1, 0), 3))
-    axis_rows(pack_chain(machine), machine.rotary, joints, axis, half_way)
+    tool_axis_rows(kinematic_chain(machine), machine.rotary, joints, axis, half_way)
     return axis, half_way
 
 
-class Chain(NamedTuple):
+class KinematicChain(NamedTuple):
     """A chain as kernels take it.
 
     rotary       (5,) bool      the joint turns
@@ -85,11 +85,11 @@ class Chain(NamedTuple):
     zero: Floats
 
 
-def pack_chain(machine: Machine, tool_length: float | None = None) -> Chain:
+def kinematic_chain(machine: Machine, tool_length: float | None = None) -> KinematicChain:
     """A machine's chain for kernels; tool length from the gauge point to the tip, mm, None: the machine's."""
     spindle = np.array(machine.spindle_direction)
     length = (machine.tool_length or 0.0) if tool_length is None else tool_length
-    return Chain(
+    return KinematicChain(
         rotary=np.array([axis.is_rotary for axis in machine.axes]),
         direction=np.array([[axis.sense * d for d in axis.direction] for axis in machine.axes]),
         point=np.array([axis.point for axis in machine.axes]),
@@ -100,14 +100,14 @@ def pack_chain(machine: Machine, tool_length: float | None = None) -> Chain:
 
 
 @njit(cache=True, nogil=True)
-def chain_rows(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
+def forward_rows(chain: KinematicChain, joints: Floats, tip: Floats, axis: Floats) -> None:
     """Write tip and tool axis (n, 3) of each row of ``joints`` (n, 5)."""
     for row in range(joints.shape[0]):
-        chain_row(chain, joints[row], tip[row], axis[row])
+        forward_row(chain, joints[row], tip[row], axis[row])
 
 
 @njit(cache=True)
-def chain_row(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
+def forward_row(chain: KinematicChain, joints: Floats, tip: Floats, axis: Floats) -> None:
     """Write tip and tool axis (3,) of displayed values (5,), mm or deg."""
     x, y, z = chain.tip_at_zero[0], chain.tip_at_zero[1], chain.tip_at_zero[2]
     i, j, k = chain.spindle[0], chain.spindle[1], chain.spindle[2]
@@ -140,25 +140,27 @@ def chain_row(chain: Chain, joints: Floats, tip: Floats, axis: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def axis_rows(chain: Chain, turning: tuple[int, int], joints: Floats, axis: Floats, half_way: Floats) -> None:
+def tool_axis_rows(
+    chain: KinematicChain, rotary_columns: tuple[int, int], joints: Floats, axis: Floats, half_way: Floats
+) -> None:
     """Write the tool axis (n, 3) of rows of ``joints`` (n, 5), and ``half_way`` (n - 1, 3) between each two rows.
 
-    Half-way are the middles of both axis positions. The rotary axes are the columns ``turning``.
+    Half-way are the middles of both axis positions. The rotary axes are the columns ``rotary_columns``.
     """
-    one, two = turning
+    one, two = rotary_columns
     cos_1, sin_1, cos_2, sin_2 = 1.0, 0.0, 1.0, 0.0
     for row in range(joints.shape[0]):
-        was = cos_1, sin_1, cos_2, sin_2
+        previous = cos_1, sin_1, cos_2, sin_2
         cos_1, sin_1 = _cos_sin(joints[row, one])
         cos_2, sin_2 = _cos_sin(joints[row, two])
-        i, j, k = _turned_about(chain, two, cos_2, sin_2, chain.spindle[0], chain.spindle[1], chain.spindle[2])
-        axis[row, 0], axis[row, 1], axis[row, 2] = _turned_about(chain, one, cos_1, sin_1, i, j, k)
+        i, j, k = _rotate_about_joint(chain, two, cos_2, sin_2, chain.spindle[0], chain.spindle[1], chain.spindle[2])
+        axis[row, 0], axis[row, 1], axis[row, 2] = _rotate_about_joint(chain, one, cos_1, sin_1, i, j, k)
         if row == 0:
             continue
-        cos, sin = _middle(joints[row - 1, two], joints[row, two], was[2], was[3], cos_2, sin_2)
-        i, j, k = _turned_about(chain, two, cos, sin, chain.spindle[0], chain.spindle[1], chain.spindle[2])
-        cos, sin = _middle(joints[row - 1, one], joints[row, one], was[0], was[1], cos_1, sin_1)
-        i, j, k = _turned_about(chain, one, cos, sin, i, j, k)
+        cos, sin = _cos_sin_half_way(joints[row - 1, two], joints[row, two], previous[2], previous[3], cos_2, sin_2)
+        i, j, k = _rotate_about_joint(chain, two, cos, sin, chain.spindle[0], chain.spindle[1], chain.spindle[2])
+        cos, sin = _cos_sin_half_way(joints[row - 1, one], joints[row, one], previous[0], previous[1], cos_1, sin_1)
+        i, j, k = _rotate_about_joint(chain, one, cos, sin, i, j, k)
         half_way[row - 1, 0], half_way[row - 1, 1], half_way[row - 1, 2] = i, j, k
 
 
@@ -170,7 +172,9 @@ def _cos_sin(q: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def _middle(a: float, b: float, cos_a: float, sin_a: float, cos_b: float, sin_b: float) -> tuple[float, float]:
+def _cos_sin_half_way(
+    a: float, b: float, cos_a: float, sin_a: float, cos_b: float, sin_b: float
+) -> tuple[float, float]:
     """Cosine and sine of the middle of two angles, degrees, whose own are known: along the sum of both directions."""
     if abs(b - a) > 90.0:
         return _cos_sin(0.5 * (a + b))
@@ -180,8 +184,8 @@ def _middle(a: float, b: float, cos_a: float, sin_a: float, cos_b: float, sin_b:
 
 
 @njit(cache=True)
-def _turned_about(
-    chain: Chain, joint: int, cos: float, sin: float, i: float, j: float, k: float
+def _rotate_about_joint(
+    chain: KinematicChain, joint: int, cos: float, sin: float, i: float, j: float, k: float
 ) -> tuple[float, float, float]:
     """A direction turned about a rotary joint, by Rodrigues: v cos + (w x v) sin + w (w.v)(1 - cos)."""
     a, b, c = chain.direction[joint, 0], chain.direction[joint, 1], chain.direction[joint, 2]

@@ -28,7 +28,7 @@ Status bits, kernels do not raise:
     UNREACHABLE   no rotary angles give this tool axis; the row is NaN
     POLE          the tool axis is parallel to the first rotary axis, whose angle is free and carries 0 here. Whoever
                   keeps another angle there calls ``solve_slides`` with it
-    STUCK         the slides are linearly dependent at these angles (possible only where a rotary axis stands between
+    SLIDES_DEPENDENT the slides are linearly dependent at these angles (possible only where a rotary axis stands between
                   slides, such as a quill at 90 degrees); slide values are NaN
 """
 
@@ -45,7 +45,7 @@ from trunnion.machines.machine import Machine
 
 UNREACHABLE: Final = 1
 POLE: Final = 2
-STUCK: Final = 4
+SLIDES_DEPENDENT: Final = 4
 
 #: How far a tool axis may lie outside the reach of the rotary axes and still be taken for the edge of it, rad. CL files
 #: print seven decimals, which moves a vector by up to 0.9e-7: so much is noise. On a tool of 100 mm it is 0.01 um.
@@ -56,51 +56,51 @@ REACH_TOLERANCE: Final = 1e-7
 POLE_TOLERANCE: Final = 1e-7
 
 #: Least volume of the three slide directions, as a box of unit vectors.
-_FLAT: Final = 1e-9
+_MIN_SLIDE_VOLUME: Final = 1e-9
 
 
-Numbers: TypeAlias = tuple[float, ...]
+FlatArray: TypeAlias = tuple[float, ...]
 
 
-class Packed(NamedTuple):
+class KinematicParameters(NamedTuple):
     """A machine with a tool, for compiled kernels. Directions point where growing values move the tool.
 
     Vectors and matrices are flat tuples, which a kernel keeps in registers: with arrays it took 1.8 times as long.
 
     columns   (5,) int      columns of: first rotary, second rotary, the three slides
-    frame_1   (9,) float    rows: two unit vectors across the first rotary axis, the first towards w2; its line
-    frame_2   (9,) float    rows: two unit vectors across the second rotary axis, the first towards w1; its line
-    sense_1   float         -1 where the line of ``frame_1`` points against growing values
-    less      (2,) float    cosine and sine of (G - B)/2
-    more      (2,) float    cosine and sine of (G + B)/2
+    basis_1   (9,) float    rows: two unit vectors across the first rotary axis, the first towards w2; its line
+    basis_2   (9,) float    rows: two unit vectors across the second rotary axis, the first towards w1; its line
+    sense_1   float         -1 where the line of ``basis_1`` points against growing values
+    half_difference (2,) float    cosine and sine of (G - B)/2
+    half_sum  (2,) float    cosine and sine of (G + B)/2
     phase     (2,) float    cosine and sine of the second angle from where the spindle leans most towards w1 to zero
-    spindle   (3,) float    the spindle in ``frame_2``
+    spindle   (3,) float    the spindle in ``basis_2``
     slides    (9,) float    rows: directions of the slides
-    across    (9,) float    rows: the reciprocal of ``slides``; NaN where they do not span space
-    inside    (3,) int      how many rotary axes stand between the slide and the workpiece
-    base      (3,) float    point of the first rotary axis, from workpiece zero, mm
-    link      (3,) float    from there to the point of the second rotary axis, mm
-    reach     (3,) float    from there to the tool tip, mm
+    slides_inverse (9,) float    rows: the reciprocal of ``slides``; NaN where they do not span space
+    rotary_below (3,) int      how many rotary axes stand between the slide and the workpiece
+    first_point (3,) float    point of the first rotary axis, from workpiece zero, mm
+    second_offset (3,) float    from there to the point of the second rotary axis, mm
+    tool_offset (3,) float    from there to the tool tip, mm
     """
 
     columns: tuple[int, ...]
-    frame_1: Numbers
-    frame_2: Numbers
+    basis_1: FlatArray
+    basis_2: FlatArray
     sense_1: float
-    less: Numbers
-    more: Numbers
-    phase: Numbers
-    spindle: Numbers
-    slides: Numbers
-    across: Numbers
-    inside: tuple[int, ...]
-    base: Numbers
-    link: Numbers
-    reach: Numbers
+    half_difference: FlatArray
+    half_sum: FlatArray
+    phase: FlatArray
+    spindle: FlatArray
+    slides: FlatArray
+    slides_inverse: FlatArray
+    rotary_below: tuple[int, ...]
+    first_point: FlatArray
+    second_offset: FlatArray
+    tool_offset: FlatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Solutions:
+class InverseSolutions:
     """Axis values for rows of tool positions.
 
     joints     (2, n, 5) float64  displayed values, mm or deg; NaN where not reachable; branches as in ``branch_angles``
@@ -114,7 +114,7 @@ class Solutions:
 
 
 @lru_cache(maxsize=4)  # most runs have one machine, and ask again and again
-def pack(machine: Machine, tool_length: float | None = None) -> Packed:
+def kinematic_parameters(machine: Machine, tool_length: float | None = None) -> KinematicParameters:
     """Plain numbers for the kernels of this module, for a machine and the length (mm) of the tool in its spindle.
 
     Without a length it is that of ``machine.tool_length``.
@@ -125,43 +125,43 @@ def pack(machine: Machine, tool_length: float | None = None) -> Packed:
     points = np.array([axis.point for axis in machine.axes])
     s = np.array(machine.spindle_direction)
     w1, w2 = directions[first], directions[second]
-    sense = _towards(w1, w2, s)
+    sense = _branch_sign(w1, w2, s)
     w1 = sense * w1
-    frame_1 = _frame(w1, w2)
-    frame_2 = _frame(w2, w1)
-    spindle = frame_2 @ s
+    basis_1 = _basis(w1, w2)
+    basis_2 = _basis(w2, w1)
+    spindle = basis_2 @ s
     tip = np.array(machine.spindle_point) - length * s
     zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
     slides = machine.linear
-    return Packed(
+    return KinematicParameters(
         columns=(first, second, *slides),
-        frame_1=_flat(frame_1),
-        frame_2=_flat(frame_2),
+        basis_1=_flatten(basis_1),
+        basis_2=_flatten(basis_2),
         sense_1=sense,
-        less=_cos_sin(0.5 * (_angle(w1, w2) - _angle(w2, s))),
-        more=_cos_sin(0.5 * (_angle(w1, w2) + _angle(w2, s))),
-        phase=_flat(spindle[:2] / math.hypot(spindle[0], spindle[1])),
-        spindle=_flat(spindle),
-        slides=_flat(directions[list(slides)]),
-        across=_flat(_reciprocal(directions[list(slides)])),
-        inside=tuple(int(first < k) + int(second < k) for k in slides),
-        base=_flat(points[first] - zero),
-        link=_flat(points[second] - points[first]),
-        reach=_flat(tip - points[second]),
+        half_difference=_cos_sin(0.5 * (_angle(w1, w2) - _angle(w2, s))),
+        half_sum=_cos_sin(0.5 * (_angle(w1, w2) + _angle(w2, s))),
+        phase=_flatten(spindle[:2] / math.hypot(spindle[0], spindle[1])),
+        spindle=_flatten(spindle),
+        slides=_flatten(directions[list(slides)]),
+        slides_inverse=_flatten(_reciprocal(directions[list(slides)])),
+        rotary_below=tuple(int(first < k) + int(second < k) for k in slides),
+        first_point=_flatten(points[first] - zero),
+        second_offset=_flatten(points[second] - points[first]),
+        tool_offset=_flatten(tip - points[second]),
     )
 
 
 def _reciprocal(slides: Floats) -> Floats:
     """(3, 3): rows whose products with a vector are its parts along the slides."""
-    flat = abs(float(np.linalg.det(slides))) < _FLAT
+    flat = abs(float(np.linalg.det(slides))) < _MIN_SLIDE_VOLUME
     return np.full((3, 3), np.nan) if flat else np.asarray(np.linalg.inv(slides.T))
 
 
-def _flat(array: Floats) -> Numbers:
+def _flatten(array: Floats) -> FlatArray:
     return tuple(array.ravel().tolist())
 
 
-def _cos_sin(angle: float) -> Numbers:
+def _cos_sin(angle: float) -> FlatArray:
     return math.cos(angle), math.sin(angle)
 
 
@@ -170,7 +170,7 @@ def _angle(a: Floats, b: Floats) -> float:
     return math.atan2(float(np.linalg.norm(_cross(a, b))), float(np.dot(a, b)))
 
 
-def _frame(line: Floats, other: Floats) -> Floats:
+def _basis(line: Floats, other: Floats) -> Floats:
     """Rows: the unit vector across ``line`` towards ``other``, the one that makes it right-handed, the line."""
     across = _cross(_cross(line, other), line)
     across = across / np.linalg.norm(across)
@@ -183,9 +183,9 @@ def _cross(a: Floats, b: Floats) -> Floats:
     return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
 
 
-def _towards(w1: Floats, w2: Floats, s: Floats) -> float:
+def _branch_sign(w1: Floats, w2: Floats, s: Floats) -> float:
     """Sign that makes the first line lean towards the spindle, as seen along the second: it fixes which branch is 0."""
-    frame = _frame(w2, w1)
+    frame = _basis(w2, w1)
     lean = float(frame[0] @ s)
     if abs(lean) > 1e-9:
         return math.copysign(1.0, lean)
@@ -193,7 +193,7 @@ def _towards(w1: Floats, w2: Floats, s: Floats) -> float:
     return 1.0 if float(frame[1] @ s) > 0.0 else -1.0
 
 
-def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float | None = None) -> Solutions:
+def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float | None = None) -> InverseSolutions:
     """Both sets of axis values for rows of tool tips and tool axes.
 
     Parameters
@@ -213,8 +213,8 @@ def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float | No
         raise ValueError(f"tip and axis must both have shape (n, 3), not {tips.shape} and {axes.shape}")
     joints = np.empty((2, len(tips), 5))
     status = np.empty(len(tips), np.uint8)
-    solve_rows(pack(machine, tool_length), tips, axes, joints, status)
-    return Solutions(joints, (status & (UNREACHABLE | STUCK)) == 0, (status & POLE) != 0)
+    solve_rows(kinematic_parameters(machine, tool_length), tips, axes, joints, status)
+    return InverseSolutions(joints, (status & (UNREACHABLE | SLIDES_DEPENDENT)) == 0, (status & POLE) != 0)
 
 
 def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: float | None = None) -> Floats:
@@ -233,23 +233,25 @@ def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: 
         mm or deg, in the order of ``machine.axes``; NaN slides where they are stuck.
     """
     joints = np.empty((len(tip), 5))
-    slide_rows(pack(machine, tool_length), np.ascontiguousarray(tip), np.ascontiguousarray(rotary), joints)
+    slide_rows(
+        kinematic_parameters(machine, tool_length), np.ascontiguousarray(tip), np.ascontiguousarray(rotary), joints
+    )
     return joints
 
 
 @njit(cache=True, nogil=True)
-def slide_rows(packed: Packed, tip: Floats, rotary: Floats, joints: Floats) -> None:
+def slide_rows(kinematics: KinematicParameters, tip: Floats, rotary: Floats, joints: Floats) -> None:
     """Call ``solve_slides`` for each row; joints (n, 5) is written."""
     for row in range(tip.shape[0]):
-        solve_slides(packed, rotary[row, 0], rotary[row, 1], tip[row, 0], tip[row, 1], tip[row, 2], joints[row])
+        solve_slides(kinematics, rotary[row, 0], rotary[row, 1], tip[row, 0], tip[row, 1], tip[row, 2], joints[row])
 
 
 @njit(cache=True, nogil=True)
-def solve_rows(packed: Packed, tip: Floats, axis: Floats, joints: Floats, status: Codes) -> None:
+def solve_rows(kinematics: KinematicParameters, tip: Floats, axis: Floats, joints: Floats, status: Codes) -> None:
     """Call ``solve_point`` for each row; joints (2, n, 5) and status (n,) uint8 are written."""
     for row in range(tip.shape[0]):
         status[row] = solve_point(
-            packed,
+            kinematics,
             tip[row, 0],
             tip[row, 1],
             tip[row, 2],
@@ -261,32 +263,34 @@ def solve_rows(packed: Packed, tip: Floats, axis: Floats, joints: Floats, status
 
 
 @njit(cache=True)
-def solve_point(packed: Packed, x: float, y: float, z: float, i: float, j: float, k: float, out: Floats) -> int:
+def solve_point(
+    kinematics: KinematicParameters, x: float, y: float, z: float, i: float, j: float, k: float, out: Floats
+) -> int:
     """Write both branches of one tool position into ``out`` (2, 5), mm and deg; return the status bits."""
-    status, u0, u1, cos, sin = solve_tilt(packed, i, j, k)
+    status, u0, u1, cos, sin = solve_tilt(kinematics, i, j, k)
     if status == UNREACHABLE:
         out[:, :] = math.nan
         return UNREACHABLE
     both = status
     for branch in range(2):
         first, second, cos_1, sin_1, cos_2, sin_2 = branch_angles(
-            packed, u0, u1, cos, sin if branch == 0 else -sin, status
+            kinematics, u0, u1, cos, sin if branch == 0 else -sin, status
         )
-        out[branch, packed.columns[0]] = first
-        out[branch, packed.columns[1]] = second
-        both |= place_slides(packed, cos_1, sin_1, cos_2, sin_2, x, y, z, out[branch])
+        out[branch, kinematics.columns[0]] = first
+        out[branch, kinematics.columns[1]] = second
+        both |= solve_slides_cos_sin(kinematics, cos_1, sin_1, cos_2, sin_2, x, y, z, out[branch])
     return both
 
 
 @njit(cache=True)
-def solve_tilt(packed: Packed, i: float, j: float, k: float) -> tuple[int, float, float, float, float]:
+def solve_tilt(kinematics: KinematicParameters, i: float, j: float, k: float) -> tuple[int, float, float, float, float]:
     """Return what both branches of a tool axis share.
 
     That is the status bits, the two components of the tool axis across the first line, and cosine and sine of phi, in
     [0, 180] degrees. All sines of the module's formula come from those of A/2 by addition, so that nothing but square
     roots is needed.
     """
-    one = packed.frame_1
+    one = kinematics.basis_1
     u0 = one[0] * i + one[1] * j + one[2] * k
     u1 = one[3] * i + one[4] * j + one[5] * k
     u2 = one[6] * i + one[7] * j + one[8] * k
@@ -303,10 +307,10 @@ def solve_tilt(packed: Packed, i: float, j: float, k: float) -> tuple[int, float
     else:
         sin_a = math.sqrt(0.5 - 0.5 * u2 / length)
         cos_a = 0.5 * across / (length * sin_a)
-    lean = sin_a * packed.less[0] + cos_a * packed.less[1]  # sin(S - B)
-    between = sin_a * packed.less[0] - cos_a * packed.less[1]  # sin(S - G)
-    half = sin_a * packed.more[0] + cos_a * packed.more[1]  # sin S
-    off = cos_a * packed.more[1] - sin_a * packed.more[0]  # sin(S - A)
+    lean = sin_a * kinematics.half_difference[0] + cos_a * kinematics.half_difference[1]  # sin(S - B)
+    between = sin_a * kinematics.half_difference[0] - cos_a * kinematics.half_difference[1]  # sin(S - G)
+    half = sin_a * kinematics.half_sum[0] + cos_a * kinematics.half_sum[1]  # sin S
+    off = cos_a * kinematics.half_sum[1] - sin_a * kinematics.half_sum[0]  # sin(S - A)
     if min(min(lean, between), min(half, off)) < -0.5 * REACH_TOLERANCE:
         return UNREACHABLE, math.nan, math.nan, math.nan, math.nan
     num, den = max(lean, 0.0) * max(between, 0.0), max(half, 0.0) * max(off, 0.0)
@@ -315,7 +319,7 @@ def solve_tilt(packed: Packed, i: float, j: float, k: float) -> tuple[int, float
 
 @njit(cache=True)
 def branch_angles(
-    packed: Packed, u0: float, u1: float, cos: float, sin: float, status: int
+    kinematics: KinematicParameters, u0: float, u1: float, cos: float, sin: float, status: int
 ) -> tuple[float, float, float, float, float, float]:
     """First and second rotary angle of one branch, deg, in (-180, 180], and cosine and sine of each about its line.
 
@@ -326,13 +330,16 @@ def branch_angles(
 
     u0, u1, cos, sin and status are as ``solve_tilt`` gives them.
     """
-    cos, sin = cos * packed.phase[0] + sin * packed.phase[1], sin * packed.phase[0] - cos * packed.phase[1]
+    cos, sin = (
+        cos * kinematics.phase[0] + sin * kinematics.phase[1],
+        sin * kinematics.phase[0] - cos * kinematics.phase[1],
+    )
     second = math.degrees(math.atan2(sin, cos))
     first, cos_1, sin_1 = 0.0, 1.0, 0.0
     if not status & POLE:
         # v = R2 s, then its components across the first line.
-        one, two = packed.frame_1, packed.frame_2
-        s0, s1, s2 = packed.spindle[0], packed.spindle[1], packed.spindle[2]
+        one, two = kinematics.basis_1, kinematics.basis_2
+        s0, s1, s2 = kinematics.spindle[0], kinematics.spindle[1], kinematics.spindle[2]
         a, b = cos * s0 - sin * s1, sin * s0 + cos * s1
         v0 = two[0] * a + two[3] * b + two[6] * s2
         v1 = two[1] * a + two[4] * b + two[7] * s2
@@ -340,7 +347,7 @@ def branch_angles(
         a = one[0] * v0 + one[1] * v1 + one[2] * v2
         b = one[3] * v0 + one[4] * v1 + one[5] * v2
         cos_1, sin_1 = u0 * a + u1 * b, u1 * a - u0 * b
-        first = packed.sense_1 * math.degrees(math.atan2(sin_1, cos_1))
+        first = kinematics.sense_1 * math.degrees(math.atan2(sin_1, cos_1))
         length = math.sqrt(cos_1 * cos_1 + sin_1 * sin_1)
         cos_1, sin_1 = cos_1 / length, sin_1 / length
     if first <= -180.0:
@@ -351,23 +358,26 @@ def branch_angles(
 
 
 @njit(cache=True)
-def solve_slides(packed: Packed, first: float, second: float, x: float, y: float, z: float, out: Floats) -> int:
+def solve_slides(
+    kinematics: KinematicParameters, first: float, second: float, x: float, y: float, z: float, out: Floats
+) -> int:
     """Write one whole row ``out`` (5,): the rotary values as given, deg, and the slides that bring the tip to x, y, z.
 
-    Returns 0 or STUCK. Rotary values are displayed ones and may be wound up: whole turns drop out without loss.
+    Returns 0 or SLIDES_DEPENDENT. Rotary values are displayed ones and may be wound up: whole turns drop out without
+    loss.
     """
-    angle = packed.sense_1 * math.radians(first - 360.0 * math.floor(first / 360.0 + 0.5))
+    angle = kinematics.sense_1 * math.radians(first - 360.0 * math.floor(first / 360.0 + 0.5))
     cos_1, sin_1 = math.cos(angle), math.sin(angle)
     angle = math.radians(second - 360.0 * math.floor(second / 360.0 + 0.5))
     cos_2, sin_2 = math.cos(angle), math.sin(angle)
-    out[packed.columns[0]] = first
-    out[packed.columns[1]] = second
-    return place_slides(packed, cos_1, sin_1, cos_2, sin_2, x, y, z, out)
+    out[kinematics.columns[0]] = first
+    out[kinematics.columns[1]] = second
+    return solve_slides_cos_sin(kinematics, cos_1, sin_1, cos_2, sin_2, x, y, z, out)
 
 
 @njit(cache=True)
-def place_slides(
-    packed: Packed,
+def solve_slides_cos_sin(
+    kinematics: KinematicParameters,
     cos_1: float,
     sin_1: float,
     cos_2: float,
@@ -377,69 +387,80 @@ def place_slides(
     z: float,
     out: Floats,
 ) -> int:
-    """Write the slides of ``out`` (5,) that bring the tip to x, y, z; returns 0 or STUCK.
+    """Write the slides of ``out`` (5,) that bring the tip to x, y, z; returns 0 or SLIDES_DEPENDENT.
 
-    The rotary axes stand at the angles with these cosines and sines, about the lines of ``frame_1`` and ``frame_2``.
+    The rotary axes stand at the angles with these cosines and sines, about the lines of ``basis_1`` and ``basis_2``.
     """
-    one, two, link, reach = packed.frame_1, packed.frame_2, packed.link, packed.reach
-    x, y, z = x - packed.base[0], y - packed.base[1], z - packed.base[2]
-    inside = packed.inside
-    if inside[0] == inside[1] and inside[1] == inside[2] and not math.isnan(packed.across[0]):
+    one, two, second_offset, tool_offset = (
+        kinematics.basis_1,
+        kinematics.basis_2,
+        kinematics.second_offset,
+        kinematics.tool_offset,
+    )
+    x, y, z = x - kinematics.first_point[0], y - kinematics.first_point[1], z - kinematics.first_point[2]
+    rotary_below = kinematics.rotary_below
+    if (
+        rotary_below[0] == rotary_below[1]
+        and rotary_below[1] == rotary_below[2]
+        and not math.isnan(kinematics.slides_inverse[0])
+    ):
         # All slides stand on one side of each rotary axis, and always as at zero to each other: seen from there, what
         # is on the workpiece's side turns back, and what is on the tool's side turns.
-        if inside[0] >= 1:
-            x, y, z = turned(one, cos_1, -sin_1, x, y, z)
-            x, y, z = x - link[0], y - link[1], z - link[2]
-        rx, ry, rz = reach[0], reach[1], reach[2]
-        if inside[0] == 2:
-            x, y, z = turned(two, cos_2, -sin_2, x, y, z)
+        if rotary_below[0] >= 1:
+            x, y, z = rotate_about(one, cos_1, -sin_1, x, y, z)
+            x, y, z = x - second_offset[0], y - second_offset[1], z - second_offset[2]
+        rx, ry, rz = tool_offset[0], tool_offset[1], tool_offset[2]
+        if rotary_below[0] == 2:
+            x, y, z = rotate_about(two, cos_2, -sin_2, x, y, z)
         else:
-            rx, ry, rz = turned(two, cos_2, sin_2, rx, ry, rz)
-        if inside[0] == 0:
-            rx, ry, rz = turned(one, cos_1, sin_1, rx + link[0], ry + link[1], rz + link[2])
+            rx, ry, rz = rotate_about(two, cos_2, sin_2, rx, ry, rz)
+        if rotary_below[0] == 0:
+            rx, ry, rz = rotate_about(
+                one, cos_1, sin_1, rx + second_offset[0], ry + second_offset[1], rz + second_offset[2]
+            )
         px, py, pz = x - rx, y - ry, z - rz
-        across = packed.across
-        out[packed.columns[2]] = across[0] * px + across[1] * py + across[2] * pz + 0.0
-        out[packed.columns[3]] = across[3] * px + across[4] * py + across[5] * pz + 0.0
-        out[packed.columns[4]] = across[6] * px + across[7] * py + across[8] * pz + 0.0
+        across = kinematics.slides_inverse
+        out[kinematics.columns[2]] = across[0] * px + across[1] * py + across[2] * pz + 0.0
+        out[kinematics.columns[3]] = across[3] * px + across[4] * py + across[5] * pz + 0.0
+        out[kinematics.columns[4]] = across[6] * px + across[7] * py + across[8] * pz + 0.0
         return 0
     # Where the tip would be with the slides at zero.
-    px, py, pz = turned(two, cos_2, sin_2, reach[0], reach[1], reach[2])
-    px, py, pz = turned(one, cos_1, sin_1, px + link[0], py + link[1], pz + link[2])
+    px, py, pz = rotate_about(two, cos_2, sin_2, tool_offset[0], tool_offset[1], tool_offset[2])
+    px, py, pz = rotate_about(one, cos_1, sin_1, px + second_offset[0], py + second_offset[1], pz + second_offset[2])
     px, py, pz = x - px, y - py, z - pz
-    ax, ay, az = slide_direction(packed, 0, cos_1, sin_1, cos_2, sin_2)
-    bx, by, bz = slide_direction(packed, 1, cos_1, sin_1, cos_2, sin_2)
-    cx, cy, cz = slide_direction(packed, 2, cos_1, sin_1, cos_2, sin_2)
+    ax, ay, az = slide_direction(kinematics, 0, cos_1, sin_1, cos_2, sin_2)
+    bx, by, bz = slide_direction(kinematics, 1, cos_1, sin_1, cos_2, sin_2)
+    cx, cy, cz = slide_direction(kinematics, 2, cos_1, sin_1, cos_2, sin_2)
     # Cramer: the reciprocal basis of the three slide directions.
     rx, ry, rz = by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx
     box = ax * rx + ay * ry + az * rz
-    if abs(box) < _FLAT:
+    if abs(box) < _MIN_SLIDE_VOLUME:
         for slide in range(3):
-            out[packed.columns[2 + slide]] = math.nan
-        return STUCK
-    out[packed.columns[2]] = (px * rx + py * ry + pz * rz) / box + 0.0
+            out[kinematics.columns[2 + slide]] = math.nan
+        return SLIDES_DEPENDENT
+    out[kinematics.columns[2]] = (px * rx + py * ry + pz * rz) / box + 0.0
     rx, ry, rz = cy * az - cz * ay, cz * ax - cx * az, cx * ay - cy * ax
-    out[packed.columns[3]] = (px * rx + py * ry + pz * rz) / box + 0.0
+    out[kinematics.columns[3]] = (px * rx + py * ry + pz * rz) / box + 0.0
     rx, ry, rz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-    out[packed.columns[4]] = (px * rx + py * ry + pz * rz) / box + 0.0
+    out[kinematics.columns[4]] = (px * rx + py * ry + pz * rz) / box + 0.0
     return 0
 
 
 @njit(cache=True)
 def slide_direction(
-    packed: Packed, slide: int, cos_1: float, sin_1: float, cos_2: float, sin_2: float
+    kinematics: KinematicParameters, slide: int, cos_1: float, sin_1: float, cos_2: float, sin_2: float
 ) -> tuple[float, float, float]:
     """Direction of a slide as seen from the workpiece, with the rotary axes at these angles."""
-    x, y, z = packed.slides[3 * slide], packed.slides[3 * slide + 1], packed.slides[3 * slide + 2]
-    if packed.inside[slide] == 2:
-        x, y, z = turned(packed.frame_2, cos_2, sin_2, x, y, z)
-    if packed.inside[slide] >= 1:
-        x, y, z = turned(packed.frame_1, cos_1, sin_1, x, y, z)
+    x, y, z = kinematics.slides[3 * slide], kinematics.slides[3 * slide + 1], kinematics.slides[3 * slide + 2]
+    if kinematics.rotary_below[slide] == 2:
+        x, y, z = rotate_about(kinematics.basis_2, cos_2, sin_2, x, y, z)
+    if kinematics.rotary_below[slide] >= 1:
+        x, y, z = rotate_about(kinematics.basis_1, cos_1, sin_1, x, y, z)
     return x, y, z
 
 
 @njit(cache=True)
-def turned(frame: Numbers, cos: float, sin: float, x: float, y: float, z: float) -> tuple[float, float, float]:
+def rotate_about(frame: FlatArray, cos: float, sin: float, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Return a vector turned about the third row of ``frame``, an orthonormal 3x3 flattened by rows."""
     a = frame[0] * x + frame[1] * y + frame[2] * z
     b = frame[3] * x + frame[4] * y + frame[5] * z

@@ -15,28 +15,38 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.definitions import Table, load_table, names_in
-from trunnion.machines.machine import Axis, AxisKind, Carries, Facts, Machine, Output, Positive, Prefer, Vector
+from trunnion.definitions import Table, definition_names, load_table
+from trunnion.machines.machine import (
+    AngleOutput,
+    Axis,
+    AxisKind,
+    Machine,
+    MachineFacts,
+    Mount,
+    PositiveDirection,
+    PreferredSign,
+    Vector,
+)
 
 #: The version of the schema of machine definitions; it changes when old files need changing.
 SCHEMA: Final = 1
 
 #: Two directions nearer than this count as parallel, rad (0.06 degrees): a machine built so could not orient a tool.
-PARALLEL: Final = 1e-3
+PARALLEL_TOLERANCE: Final = 1e-3
 
 _AXIS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,7}")
 
 _VECTOR_FALLBACK: Vector = (0.0, 0.0, 1.0)
 
 
-def library() -> Traversable:
+def machine_library() -> Traversable:
     """The folder of shipped machine definitions."""
     return files("trunnion.machines").joinpath("library")
 
 
-def shipped() -> list[str]:
+def shipped_machines() -> list[str]:
     """Names of the shipped machines, sorted."""
-    return names_in(library())
+    return definition_names(machine_library())
 
 
 def load_machine(name_or_path: str | Path, overrides: Mapping[str, object] | None = None) -> Machine:
@@ -56,7 +66,7 @@ def load_machine(name_or_path: str | Path, overrides: Mapping[str, object] | Non
         With every mistake of the definition, each at its file and line.
     """
     key = PurePath(str(name_or_path)).name.removesuffix(".toml")
-    return read_machine(load_table(name_or_path, library(), overrides, kind="machine"), key)
+    return read_machine(load_table(name_or_path, machine_library(), overrides, kind="machine"), key)
 
 
 def read_machine(table: Table, key: str) -> Machine:
@@ -67,19 +77,19 @@ def read_machine(table: Table, key: str) -> Machine:
     spindle = table.table("spindle")
     workpiece = table.table("workpiece")
     control = table.table("control")
-    entries = table.tables("axis", required=True)
+    axis_tables = table.tables("axis", required=True)
     spindle_direction = _direction(spindle, "direction", (0.0, 0.0, 1.0))
     spindle_point = _vector(spindle.vector("gauge_point_mm", 3, (0.0, 0.0, 0.0)))
     max_rpm = spindle.number("max_rpm", None, above=0)
     facts = _facts(spindle, table.table("facts"))
     zero = workpiece.vector("zero_mm", 3, None)
     before = len(table.problems)
-    axes = tuple(_axis(entry) for entry in entries)
-    if "axis" in table and entries:
-        _check_chain(table, entries, axes, spindle_direction, sound=len(table.problems) == before)
+    axes = tuple(_axis(entry) for entry in axis_tables)
+    if "axis" in table and axis_tables:
+        _check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
     for part in (spindle, workpiece, table):
-        part.finish()
-    table.check()
+        part.report_unread_keys()
+    table.raise_problems()
     return Machine(
         key=key,
         name=name,
@@ -90,7 +100,7 @@ def read_machine(table: Table, key: str) -> Machine:
         spindle_max_rpm=max_rpm,
         description=description,
         facts=facts,
-        control=control.fresh(),
+        control=control.unread_copy(),
         files=tuple(table.files()),
     )
 
@@ -98,40 +108,40 @@ def read_machine(table: Table, key: str) -> Machine:
 def _axis(entry: Table) -> Axis:
     name = entry.text("name")
     if name and not _AXIS_NAME.fullmatch(name):
-        entry.problem("name", f'is "{name}"', "write a letter, then up to seven letters and digits")
+        entry.add_problem("name", f'is "{name}"', "write a letter, then up to seven letters and digits")
     word = entry.text("kind", one_of=tuple(AxisKind))
-    carries = entry.text("carries", one_of=tuple(Carries))
+    mount = entry.text("carries", one_of=tuple(Mount))
     direction = _direction(entry, "direction", None)
-    positive = entry.text("positive", Positive.STANDARD, one_of=tuple(Positive))
+    positive = entry.text("positive", PositiveDirection.STANDARD, one_of=tuple(PositiveDirection))
     if not word:
         # Which units the other keys should have is not known: guessing would only add noise.
-        entry.skip(*entry.keys())
-        return Axis(name, AxisKind.LINEAR, Carries(carries or Carries.PART), direction)
+        entry.mark_read(*entry.keys())
+        return Axis(name, AxisKind.LINEAR, Mount(mount or Mount.PART), direction)
     kind = AxisKind(word)
     unit = "mm" if kind is AxisKind.LINEAR else "deg"
-    endless, output, point, prefer = False, Output.NONE, (0.0, 0.0, 0.0), Prefer.EITHER
+    endless, output, point, prefer = False, AngleOutput.NONE, (0.0, 0.0, 0.0), PreferredSign.EITHER
     limits = entry.interval(f"limits_{unit}", None)
     if kind is AxisKind.ROTARY:
         point = _vector(entry.vector("point_mm", 3))
         endless = entry.flag("endless", False)
-        output = Output(entry.text("output", Output.NONE, one_of=tuple(Output)))
-        prefer = Prefer(entry.text("prefer", Prefer.EITHER, one_of=tuple(Prefer)))
+        output = AngleOutput(entry.text("output", AngleOutput.NONE, one_of=tuple(AngleOutput)))
+        prefer = PreferredSign(entry.text("prefer", PreferredSign.EITHER, one_of=tuple(PreferredSign)))
         _check_winding(entry, endless, output)
     low, high = limits or (-math.inf, math.inf)
     home = entry.number(f"home_{unit}", 0.0)
     if not low <= home <= high:
         explicit = f"home_{unit}" in entry
         what = f"is {home:g}, outside of the limits {low:g} to {high:g}"
-        entry.problem(
+        entry.add_problem(
             f"home_{unit}", what if explicit else f"{what} (it is 0 unless stated)", "write a home inside them"
         )
     rapid = entry.number(f"rapid_{unit}_min", None, above=0)
     acceleration = entry.number(f"acceleration_{unit}_s2", None, above=0)
-    entry.finish()
+    entry.report_unread_keys()
     return Axis(
         name=name,
         kind=kind,
-        carries=Carries(carries or Carries.PART),
+        mount=Mount(mount or Mount.PART),
         direction=direction,
         point=point,
         low=low,
@@ -141,25 +151,25 @@ def _axis(entry: Table) -> Axis:
         rapid=rapid,
         acceleration=acceleration,
         home=home,
-        positive=Positive(positive),
+        positive=PositiveDirection(positive),
         prefer=prefer,
     )
 
 
-def _check_winding(entry: Table, endless: bool, output: Output) -> None:
+def _check_winding(entry: Table, endless: bool, output: AngleOutput) -> None:
     if endless and "limits_deg" in entry:
-        entry.problem("limits_deg", "is given for an endless axis", "take out limits_deg, or write endless = false")
+        entry.add_problem("limits_deg", "is given for an endless axis", "take out limits_deg, or write endless = false")
     if not endless and "limits_deg" not in entry:
         cure = "write [low, high] with low < high, in degrees, or endless = true"
-        entry.problem("limits_deg", "is missing", cure)
-    if not endless and output is not Output.NONE:
+        entry.add_problem("limits_deg", "is missing", cure)
+    if not endless and output is not AngleOutput.NONE:
         cure = "take out output, or write endless = true: values of a limited axis are written as they are"
-        entry.problem("output", f'is "{output}" for an axis with limits', cure)
+        entry.add_problem("output", f'is "{output}" for an axis with limits', cure)
 
 
-def _facts(spindle: Table, facts: Table) -> Facts:
+def _facts(spindle: Table, facts: Table) -> MachineFacts:
     size = facts.vector("table_size_mm", 2, None)
-    result = Facts(
+    result = MachineFacts(
         spindle_min_rpm=spindle.number("min_rpm", None, at_least=0),
         spindle_power_kw=spindle.number("power_kw", None, above=0),
         spindle_torque_nm=spindle.number("torque_nm", None, above=0),
@@ -169,7 +179,7 @@ def _facts(spindle: Table, facts: Table) -> Facts:
         table_diameter_mm=facts.number("table_diameter_mm", None, above=0),
         table_load_kg=facts.number("table_load_kg", None, above=0),
     )
-    facts.finish()
+    facts.report_unread_keys()
     return result
 
 
@@ -185,7 +195,7 @@ def _direction(table: Table, key: str, default: Vector | None) -> Vector:
     largest = max(map(abs, numbers))
     if largest == 0.0:
         if len(table.problems) == before:
-            table.problem(key, "is [0, 0, 0]", "write a vector that has a direction")
+            table.add_problem(key, "is [0, 0, 0]", "write a vector that has a direction")
         return _VECTOR_FALLBACK
     # Scaled first, so that squares neither vanish nor overflow.
     x, y, z = (number / largest for number in numbers)
@@ -193,45 +203,51 @@ def _direction(table: Table, key: str, default: Vector | None) -> Vector:
     return x / length, y / length, z / length
 
 
-def _check_chain(table: Table, entries: list[Table], axes: tuple[Axis, ...], spindle: Vector, *, sound: bool) -> None:
+def _check_chain(
+    table: Table, axis_tables: list[Table], axes: tuple[Axis, ...], spindle: Vector, *, sound: bool
+) -> None:
     """Note what is wrong with the axes taken together; the geometry only if each axis is sound by itself."""
     rotary = [k for k, axis in enumerate(axes) if axis.is_rotary]
     slides = [k for k, axis in enumerate(axes) if not axis.is_rotary]
-    _check_names(entries, axes)
+    _check_names(axis_tables, axes)
     if sound and (len(rotary) != 2 or len(slides) != 3):
         what = f"has {len(slides)} linear and {len(rotary)} rotary axes"
-        table.problem("axis", what, "write three linear and two rotary axes, from the workpiece to the tool")
+        table.add_problem("axis", what, "write three linear and two rotary axes, from the workpiece to the tool")
     for k in range(1, len(axes)):
-        if axes[k].carries is Carries.PART and axes[k - 1].carries is Carries.TOOL:
+        if axes[k].mount is Mount.PART and axes[k - 1].mount is Mount.TOOL:
             what = f'is "part", but {axes[k - 1].name} before it carries the tool'
             cure = "order the axes from the workpiece to the tool: all that carry the part come first"
-            entries[k].problem("carries", what, cure)
+            axis_tables[k].add_problem("carries", what, cure)
     if not sound or len(rotary) != 2 or len(slides) != 3:
         return
     first, second = (np.array(axes[k].direction) for k in rotary)
     names = [axes[k].name for k in rotary]
-    if _sine(first, second) < PARALLEL:
+    if _sine(first, second) < PARALLEL_TOLERANCE:
         what = f"is parallel to that of {names[0]}: the machine could not orient a tool"
-        entries[rotary[1]].problem("direction", what, "write the directions of the two rotary axes as they are built")
-    elif _sine(second, np.array(spindle)) < PARALLEL:
+        axis_tables[rotary[1]].add_problem(
+            "direction", what, "write the directions of the two rotary axes as they are built"
+        )
+    elif _sine(second, np.array(spindle)) < PARALLEL_TOLERANCE:
         what = f"is parallel to the spindle: {names[1]} turns the tool about itself, and {names[0]} alone tilts it"
         cure = "the rotary axis further from the workpiece must tilt the tool: check the order of the axes"
-        entries[rotary[1]].problem("direction", what, cure)
+        axis_tables[rotary[1]].add_problem("direction", what, cure)
     box = np.array([axes[k].direction for k in slides])
-    if abs(float(np.linalg.det(box))) < PARALLEL:
+    if abs(float(np.linalg.det(box))) < PARALLEL_TOLERANCE:
         what = "do not reach every point: the directions lie in one plane"
         listed = ", ".join(axes[k].name for k in slides)
-        entries[slides[2]].problem("direction", f"and those of the other linear axes ({listed}) {what}", "write three")
+        axis_tables[slides[2]].add_problem(
+            "direction", f"and those of the other linear axes ({listed}) {what}", "write three"
+        )
 
 
-def _check_names(entries: list[Table], axes: tuple[Axis, ...]) -> None:
+def _check_names(axis_tables: list[Table], axes: tuple[Axis, ...]) -> None:
     seen: dict[str, int] = {}
     for k, axis in enumerate(axes):
         letter = axis.name.casefold()
         if letter and letter in seen:
-            file, line = entries[seen[letter]].origin("name")
-            what = f'is "{axis.name}", the name of {entries[seen[letter]].path} too ({file}:{line})'
-            entries[k].problem("name", what, "give every axis its own name")
+            file, line = axis_tables[seen[letter]].location("name")
+            what = f'is "{axis.name}", the name of {axis_tables[seen[letter]].path} too ({file}:{line})'
+            axis_tables[k].add_problem("name", what, "give every axis its own name")
         seen.setdefault(letter, k)
 
 

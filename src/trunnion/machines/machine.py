@@ -11,7 +11,7 @@ from enum import StrEnum
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.definitions import Entry, Table
+from trunnion.definitions import LocatedValue, Table
 
 Vector = tuple[float, float, float]
 
@@ -23,14 +23,14 @@ class AxisKind(StrEnum):
     ROTARY = "rotary"
 
 
-class Carries(StrEnum):
+class Mount(StrEnum):
     """What a joint moves: the part (a table) or the tool (a head, a ram)."""
 
     PART = "part"
     TOOL = "tool"
 
 
-class Positive(StrEnum):
+class PositiveDirection(StrEnum):
     """Which way a displayed value grows.
 
     STANDARD is ISO 841: growing values move the TOOL, as seen from the workpiece, along or right-handed about
@@ -41,7 +41,7 @@ class Positive(StrEnum):
     REVERSED = "reversed"
 
 
-class Prefer(StrEnum):
+class PreferredSign(StrEnum):
     """The sign of a rotary axis in the pose that a machine usually works in."""
 
     POSITIVE = "positive"
@@ -49,7 +49,7 @@ class Prefer(StrEnum):
     EITHER = "either"
 
 
-class Output(StrEnum):
+class AngleOutput(StrEnum):
     """How the values of an endless axis are written: folded into one turn, or as they wind (NONE)."""
 
     POSITIVE = "0..360"
@@ -71,18 +71,18 @@ class Axis:
 
     name: str
     kind: AxisKind
-    carries: Carries
+    mount: Mount
     direction: Vector
     point: Vector = (0.0, 0.0, 0.0)
     low: float = -np.inf
     high: float = np.inf
     endless: bool = False
-    output: Output = Output.NONE
+    output: AngleOutput = AngleOutput.NONE
     rapid: float | None = None
     acceleration: float | None = None
     home: float = 0.0
-    positive: Positive = Positive.STANDARD
-    prefer: Prefer = Prefer.EITHER
+    positive: PositiveDirection = PositiveDirection.STANDARD
+    prefer: PreferredSign = PreferredSign.EITHER
 
     @property
     def is_rotary(self) -> bool:
@@ -92,21 +92,21 @@ class Axis:
     @property
     def sense(self) -> float:
         """1.0 for standard, -1.0 for reversed."""
-        return 1.0 if self.positive is Positive.STANDARD else -1.0
+        return 1.0 if self.positive is PositiveDirection.STANDARD else -1.0
 
     @property
     def preferred_sign(self) -> float:
         """1.0 or -1.0: the sign of the axis in the preferred pose; 0.0 for either."""
-        return {Prefer.POSITIVE: 1.0, Prefer.NEGATIVE: -1.0, Prefer.EITHER: 0.0}[self.prefer]
+        return {PreferredSign.POSITIVE: 1.0, PreferredSign.NEGATIVE: -1.0, PreferredSign.EITHER: 0.0}[self.prefer]
 
     @property
     def display_low(self) -> float:
         """Lower end of the 360 degrees that the axis displays; NaN where it displays its turns."""
-        return {Output.POSITIVE: 0.0, Output.SYMMETRIC: -180.0, Output.NONE: np.nan}[self.output]
+        return {AngleOutput.POSITIVE: 0.0, AngleOutput.SYMMETRIC: -180.0, AngleOutput.NONE: np.nan}[self.output]
 
 
 @dataclass(frozen=True, slots=True)
-class Facts:
+class MachineFacts:
     """What is known of a machine besides its motion; None where not stated."""
 
     spindle_min_rpm: float | None = None
@@ -120,7 +120,7 @@ class Facts:
 
 
 def _no_control() -> Table:
-    return Table(Entry({}, "", 0), "control")
+    return Table(LocatedValue({}, "", 0), "control")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,7 +144,7 @@ class Machine:
     tool_length: float | None = None
     spindle_max_rpm: float | None = None
     description: str = ""
-    facts: Facts = Facts()
+    facts: MachineFacts = MachineFacts()
     control: Table = field(default_factory=_no_control)
     files: tuple[str, ...] = ()
 
@@ -169,8 +169,8 @@ class Machine:
     def primary(self) -> int:
         """Column of the primary rotary axis (the fourth): the one on the base, or of the head on mixed machines."""
         first, second = self.rotary
-        both_in_table = self.axes[second].carries is Carries.PART
-        mixed = self.axes[first].carries is Carries.PART and self.axes[second].carries is Carries.TOOL
+        both_in_table = self.axes[second].mount is Mount.PART
+        mixed = self.axes[first].mount is Mount.PART and self.axes[second].mount is Mount.TOOL
         return second if both_in_table or mixed else first
 
     @property
@@ -180,9 +180,9 @@ class Machine:
         return first if self.primary == second else second
 
     @property
-    def turns_tool(self) -> bool:
+    def has_rotary_head(self) -> bool:
         """Whether a rotary axis stands between the bed and the tool: then lengths of tools move the tip aside."""
-        return any(axis.is_rotary and axis.carries is Carries.TOOL for axis in self.axes)
+        return any(axis.is_rotary and axis.mount is Mount.TOOL for axis in self.axes)
 
     @property
     def limits(self) -> Floats:

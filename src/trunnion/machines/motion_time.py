@@ -1,9 +1,10 @@
 """How long a machine takes: speeds and accelerations of its axes, looking ahead over the corners.
 
 Each row is a straight line in axis space, run at one speed along its length with a ramp at either end (a trapezoid).
-A corner is rounded by a parabola that leaves it by no more than ``ROUNDING``: over the length l of the parabola the
-direction changes by d, so it stands off by d l / 8 and asks for the acceleration d v^2 / l. The speeds at the corners
-are then lowered until every ramp between them fits its row: once from the end to the start, once the other way.
+A corner is rounded by a parabola that leaves it by no more than ``CORNER_TOLERANCE``: over the length l of the
+parabola the direction changes by d, so it stands off by d l / 8 and asks for the acceleration d v^2 / l. The speeds at
+the corners are then lowered until every ramp between them fits its row: once from the end to the start, once the other
+way.
 
 Units: mm and degrees, seconds. What the definition does not state limits nothing.
 """
@@ -17,10 +18,10 @@ from trunnion.jit import njit
 from trunnion.machines.machine import Machine
 
 #: How far an axis may leave a corner, mm or degrees: what controls take for cuts of usual accuracy.
-ROUNDING = 0.01
+CORNER_TOLERANCE = 0.01
 
 
-def row_seconds(machine: Machine, steps: Floats, length: Floats, rate: Floats, stop: Flags) -> Floats:
+def row_seconds(machine: Machine, steps: Floats, length: Floats, rate: Floats, stops_after: Flags) -> Floats:
     """Time of every row of a path that begins and ends at rest.
 
     Parameters
@@ -41,14 +42,14 @@ def row_seconds(machine: Machine, steps: Floats, length: Floats, rate: Floats, s
     (n,) float64
         Seconds; 0 for rows without motion.
     """
-    rapid = np.array([math.inf if axis.rapid is None else axis.rapid / 60.0 for axis in machine.axes])
-    most = np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in machine.axes])
+    max_speed = np.array([math.inf if axis.rapid is None else axis.rapid / 60.0 for axis in machine.axes])
+    max_acceleration = np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in machine.axes])
     seconds = np.zeros(len(steps))
-    _pace(steps, length, rate / 60.0, stop, rapid, most, seconds)
+    _fill_seconds(steps, length, rate / 60.0, stops_after, max_speed, max_acceleration, seconds)
     return seconds
 
 
-def clock(seconds: float) -> str:
+def format_duration(seconds: float) -> str:
     """Return a time as people read it.
 
     >>> clock(4.26), clock(75), clock(7384)
@@ -61,60 +62,66 @@ def clock(seconds: float) -> str:
 
 
 @njit(cache=True)
-def _pace(
-    steps: Floats, length: Floats, rate: Floats, stop: Flags, rapid: Floats, most: Floats, seconds: Floats
+def _fill_seconds(
+    steps: Floats,
+    length: Floats,
+    rate: Floats,
+    stops_after: Flags,
+    max_speed: Floats,
+    max_acceleration: Floats,
+    seconds: Floats,
 ) -> None:
     """Fill ``seconds`` (n,); speeds in mm/s or deg/s."""
     n = steps.shape[0]
-    top, ramp, corner = np.zeros(n), np.zeros(n), np.zeros(n)
+    path_speed, path_acceleration, corner_speed = np.zeros(n), np.zeros(n), np.zeros(n)
     last = -1
     for row in range(n):
-        moved = 0.0
+        largest_step = 0.0
         for k in range(5):
-            moved = max(moved, abs(steps[row, k]))
-        if moved == 0.0 or not length[row] > 0.0:
-            if last >= 0 and stop[row]:
-                corner[last] = 0.0
+            largest_step = max(largest_step, abs(steps[row, k]))
+        if largest_step == 0.0 or not length[row] > 0.0:
+            if last >= 0 and stops_after[row]:
+                corner_speed[last] = 0.0
             continue
-        top[row], ramp[row] = rate[row], np.inf
+        path_speed[row], path_acceleration[row] = rate[row], np.inf
         for k in range(5):
             share = abs(steps[row, k]) / length[row]
             if share > 0.0:
-                top[row] = min(top[row], rapid[k] / share)
-                ramp[row] = min(ramp[row], most[k] / share)
-        if last >= 0 and corner[last] > 0.0:
-            fastest = min(corner[last], top[row])
+                path_speed[row] = min(path_speed[row], max_speed[k] / share)
+                path_acceleration[row] = min(path_acceleration[row], max_acceleration[k] / share)
+        if last >= 0 and corner_speed[last] > 0.0:
+            fastest = min(corner_speed[last], path_speed[row])
             for k in range(5):
-                turn = abs(steps[row, k] / length[row] - steps[last, k] / length[last])
-                if turn > 1e-12:
-                    over = min(0.5 * (length[row] + length[last]), 8.0 * ROUNDING / turn)
-                    fastest = min(fastest, math.sqrt(most[k] * over / turn))
-            corner[last] = fastest
-        corner[row] = 0.0 if stop[row] else top[row]
+                direction_change = abs(steps[row, k] / length[row] - steps[last, k] / length[last])
+                if direction_change > 1e-12:
+                    rounding_length = min(0.5 * (length[row] + length[last]), 8.0 * CORNER_TOLERANCE / direction_change)
+                    fastest = min(fastest, math.sqrt(max_acceleration[k] * rounding_length / direction_change))
+            corner_speed[last] = fastest
+        corner_speed[row] = 0.0 if stops_after[row] else path_speed[row]
         last = row
     if last >= 0:
-        corner[last] = 0.0
+        corner_speed[last] = 0.0
     after = 0.0
     for row in range(n - 1, -1, -1):
-        if ramp[row] > 0.0:
-            corner[row] = min(corner[row], after)
-            after = math.sqrt(corner[row] ** 2 + 2.0 * ramp[row] * length[row])
+        if path_acceleration[row] > 0.0:
+            corner_speed[row] = min(corner_speed[row], after)
+            after = math.sqrt(corner_speed[row] ** 2 + 2.0 * path_acceleration[row] * length[row])
     before = 0.0
     for row in range(n):
-        if ramp[row] > 0.0:
-            end = min(corner[row], math.sqrt(before**2 + 2.0 * ramp[row] * length[row]))
-            corner[row] = end
-            seconds[row] = _trapezoid(length[row], before, end, top[row], ramp[row])
+        if path_acceleration[row] > 0.0:
+            end = min(corner_speed[row], math.sqrt(before**2 + 2.0 * path_acceleration[row] * length[row]))
+            corner_speed[row] = end
+            seconds[row] = _trapezoid(length[row], before, end, path_speed[row], path_acceleration[row])
             before = end
 
 
 @njit(cache=True)
-def _trapezoid(length: float, begin: float, end: float, top: float, ramp: float) -> float:
-    """Seconds for a length from one speed to another, no faster than ``top`` (infinite: as the ramps allow)."""
-    if not math.isfinite(ramp):
-        return length / top if math.isfinite(top) and top > 0.0 else 0.0
-    peak = min(top, math.sqrt(ramp * length + 0.5 * (begin * begin + end * end)))
+def _trapezoid(length: float, begin: float, end: float, path_speed: float, path_acceleration: float) -> float:
+    """Seconds for a length from one speed to another, no faster than ``path_speed`` (infinite: as the ramps allow)."""
+    if not math.isfinite(path_acceleration):
+        return length / path_speed if math.isfinite(path_speed) and path_speed > 0.0 else 0.0
+    peak = min(path_speed, math.sqrt(path_acceleration * length + 0.5 * (begin * begin + end * end)))
     if peak <= 0.0:
         return 0.0
-    ramps = max(2.0 * peak * peak - begin * begin - end * end, 0.0) / (2.0 * ramp)
-    return (2.0 * peak - begin - end) / ramp + max(length - ramps, 0.0) / peak
+    ramp_length = max(2.0 * peak * peak - begin * begin - end * end, 0.0) / (2.0 * path_acceleration)
+    return (2.0 * peak - begin - end) / path_acceleration + max(length - ramp_length, 0.0) / peak

@@ -12,35 +12,35 @@ from trunnion.arrays import Floats, Ints
 T = TypeVar("T", int, float, bool)
 
 #: Rows that may wait: what only they need is held for so many.
-PENDING: Final = 16384
+MAX_UNRESOLVED_ROWS: Final = 16384
 
 
-class Columns:
-    """The dense columns of a run while it is being made; ``n`` rows are in use, the first ``settled`` for good.
+class RowBuffer:
+    """The dense columns of a run while it is being made; ``n`` rows are in use, the first ``resolved`` for good.
 
-    ``place`` is the tool tip or the values of the slides, as ``Run.place``. The rotary columns of rows that are not
+    ``xyz`` is the tool tip or the values of the slides, as ``Run.xyz``. The rotary columns of rows that are not
     settled hold the programmed values or NaN. Some columns have only the rows from ``base`` on, that of row
-    ``base + k`` at k: line and number of the block, its programmed vector (or NaN) in ``vector``, and in ``way`` how
-    its rotary words want to be reached (see ``trunnion.model.axis_positions``). When they are full, ``clear`` takes
+    ``base + k`` at k: line and number of the block, its programmed vector (or NaN) in ``vector``, and in ``turn_rule``
+    how its rotary words want to be reached (see ``trunnion.model.axis_positions``). When they are full, ``clear`` takes
     them away.
     """
 
     def __init__(self, capacity: int = 4096) -> None:
         self.n = 0
-        self.settled = 0
+        self.resolved = 0
         self.base = 0
         self.kind = np.empty(capacity, np.uint8)
         self.programmed = np.empty(capacity, np.uint8)
-        self.place = np.empty((capacity, 3))
+        self.xyz = np.empty((capacity, 3))
         self.rotary = np.empty((capacity, 2))
-        self.block = np.empty(PENDING, np.int64)
-        self.number = np.empty(PENDING, np.int64)
-        self.vector = np.empty((PENDING, 3))
-        self.way = np.empty(PENDING, np.uint8)
-        self.blocks = Climb()
-        self.numbers = Climb()
+        self.line = np.empty(MAX_UNRESOLVED_ROWS, np.int64)
+        self.block_number = np.empty(MAX_UNRESOLVED_ROWS, np.int64)
+        self.vector = np.empty((MAX_UNRESOLVED_ROWS, 3))
+        self.turn_rule = np.empty(MAX_UNRESOLVED_ROWS, np.uint8)
+        self.lines = RampColumnBuilder()
+        self.block_numbers = RampColumnBuilder()
 
-    _GROWING = ("kind", "programmed", "place", "rotary")
+    _GROWING = ("kind", "programmed", "xyz", "rotary")
 
     @property
     def capacity(self) -> int:
@@ -50,12 +50,12 @@ class Columns:
     @property
     def full(self) -> bool:
         """Whether there is room for no more rows before ``clear``."""
-        return self.n - self.base == PENDING
+        return self.n - self.base == MAX_UNRESOLVED_ROWS
 
     def clear(self) -> None:
         """Keep lines and numbers in another form, and begin anew; the rows must be settled."""
-        self.blocks.extend(self.block[: self.n - self.base])
-        self.numbers.extend(self.number[: self.n - self.base])
+        self.lines.extend(self.line[: self.n - self.base])
+        self.block_numbers.extend(self.block_number[: self.n - self.base])
         self.base = self.n
 
     def reserve(self, rows: int, expected: int = 0) -> None:
@@ -76,7 +76,7 @@ class Columns:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Steps:
+class StepColumn:
     """A column of n rows that changes seldom: ``values[k]`` holds from row ``rows[k]`` on.
 
     rows     (m,) int64, growing; the first is 0, and some may be n or more
@@ -88,9 +88,9 @@ class Steps:
     values: NDArray[Any]
 
     @staticmethod
-    def always(n: int, value: float, dtype: type[np.generic]) -> "Steps":
+    def constant(n: int, value: float, dtype: type[np.generic]) -> "StepColumn":
         """A column that never changes."""
-        return Steps(n, np.zeros(1, np.int64), np.array([value], dtype))
+        return StepColumn(n, np.zeros(1, np.int64), np.array([value], dtype))
 
     def __len__(self) -> int:
         return self.n
@@ -127,15 +127,15 @@ class Steps:
         whole.setflags(write=False)
         return whole
 
-    def used(self) -> NDArray[Any]:
+    def distinct(self) -> NDArray[Any]:
         """The values that rows have, each once, growing."""
         return np.unique(self.values[: np.searchsorted(self.rows, self.n)])
 
-    def begins(self, value: float) -> list[int]:
+    def rows_changing_to(self, value: float) -> list[int]:
         """Rows from which on a value holds that did not hold in the row before."""
         return [int(self.rows[k]) for k in np.flatnonzero(self.values == value) if self.rows[k] < self.n]
 
-    def where(self, value: float) -> Ints:
+    def rows_with(self, value: float) -> Ints:
         """Rows that have a value, growing."""
         ends = np.minimum(np.append(self.rows[1:], self.n), self.n)
         found = [np.arange(self.rows[k], ends[k]) for k in np.flatnonzero(self.values == value).tolist()]
@@ -143,7 +143,7 @@ class Steps:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ramps:
+class RampColumn:
     """A column of n whole numbers that grow evenly most of the time, as lines and block numbers do.
 
     From row ``rows[k]`` on it is ``values[k]``, and ``steps[k]`` more with every row; all (m,) int64.
@@ -175,8 +175,8 @@ class Ramps:
         return whole
 
 
-class Climb:
-    """A column of ``Ramps`` while it is being made."""
+class RampColumnBuilder:
+    """A column of ``RampColumn`` while it is being made."""
 
     def __init__(self) -> None:
         self._n = 0
@@ -195,31 +195,31 @@ class Climb:
         self._ramps.append(np.stack((self._n + begin, values[begin], np.append(step, 0)[begin])))
         self._n += len(values)
 
-    def ramps(self) -> Ramps:
+    def ramps(self) -> RampColumn:
         """The column, with as many rows as were added."""
-        return Ramps(self._n, *np.concatenate((np.zeros((3, 0), np.int64), *self._ramps), axis=1))
+        return RampColumn(self._n, *np.concatenate((np.zeros((3, 0), np.int64), *self._ramps), axis=1))
 
 
-class Changes(Generic[T]):
-    """A column of ``Steps`` while it is being made."""
+class StepColumnBuilder(Generic[T]):
+    """A column of ``StepColumn`` while it is being made."""
 
     def __init__(self, value: T) -> None:
         self._rows = array("q", [0])
         self._values: array[Any] = array("d" if isinstance(value, float) else "q", [value])
 
     @property
-    def now(self) -> T:
+    def current(self) -> T:
         """The value in force."""
-        now: T = self._values[-1]
-        return now
+        current: T = self._values[-1]
+        return current
 
     def set(self, row: int, value: T) -> None:
         """Let ``value`` hold from ``row`` on."""
-        if _same(value, self._values[-1]):
+        if _same_value(value, self._values[-1]):
             return
         if self._rows[-1] == row:
             self._values[-1] = value
-            if len(self._values) > 1 and _same(self._values[-2], value):
+            if len(self._values) > 1 and _same_value(self._values[-2], value):
                 self._rows.pop()
                 self._values.pop()
             return
@@ -231,17 +231,17 @@ class Changes(Generic[T]):
         self._rows.frombytes(rows.tobytes())
         self._values.frombytes(values.tobytes())
 
-    def steps(self, n: int, dtype: type[np.generic]) -> Steps:
+    def steps(self, n: int, dtype: type[np.generic]) -> StepColumn:
         """The column, when it has n rows; nothing may be added afterwards."""
         values: NDArray[Any] = np.frombuffer(self._values, self._values.typecode)
-        return Steps(n, np.frombuffer(self._rows, np.int64), values.astype(dtype, copy=False))
+        return StepColumn(n, np.frombuffer(self._rows, np.int64), values.astype(dtype, copy=False))
 
 
-def _same(one: float, two: float) -> bool:
+def _same_value(one: float, two: float) -> bool:
     """Whether two values are the same; not known (NaN) is the same as not known."""
     return one == two or (one != one and two != two)
 
 
-def affine(linear: Floats, shift: Floats) -> Floats:
+def affine_matrix(linear: Floats, shift: Floats) -> Floats:
     """(3, 4) float64 from (3, 3) and (3,): applied as ``m[:, :3] @ p + m[:, 3]``."""
     return np.ascontiguousarray(np.column_stack((linear, shift)))

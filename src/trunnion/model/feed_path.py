@@ -15,13 +15,13 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 
 #: Rotary axes that turn by less than this, degrees, stand still.
-STILL: Final = 1e-9
+NO_ROTATION: Final = 1e-9
 
 #: Slides that move by less than this, mm, rest.
-_RESTS: Final = 1e-9
+_NO_TRAVEL: Final = 1e-9
 
 #: Share of a block over which the speed at its start is taken.
-_STEP: Final = 1e-5
+_START_SHARE: Final = 1e-5
 
 
 class FeedPath(IntEnum):
@@ -38,7 +38,7 @@ class FeedPath(IntEnum):
     TIP = 2
 
 
-def ways(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats:
+def feed_path_lengths(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats:
     """(k,) float64: what F counts on k ways of the axes, mm or degrees; it takes that over F to go them.
 
     Parameters
@@ -51,17 +51,17 @@ def ways(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats
     steps = after - before
     slides = np.linalg.norm(steps[:, list(machine.linear)], axis=1)
     turned = np.abs(steps[:, list(machine.rotary)]).max(axis=1)
-    way: Floats = np.where(slides < _RESTS, turned, slides)
+    way: Floats = np.where(slides < _NO_TRAVEL, turned, slides)
     together = path == FeedPath.AXES
     way[together] = np.linalg.norm(steps[together], axis=1)
     start = path == FeedPath.TIP
     if start.any():
-        tip, on = (forward(machine, before[start] + share * steps[start])[0] for share in (0.0, _STEP))
-        way[start] = np.linalg.norm(on - tip, axis=1) / _STEP
+        tip, on = (forward(machine, before[start] + share * steps[start])[0] for share in (0.0, _START_SHARE))
+        way[start] = np.linalg.norm(on - tip, axis=1) / _START_SHARE
     return way
 
 
-def counted(run: Run, rows: Ints) -> Floats:
+def row_feed_path_lengths(run: Run, rows: Ints) -> Floats:
     """(k,) float64: what F per minute counts in rows, in any order, where that is not the tip's way; else NaN."""
     way = np.full(len(rows), np.nan)
     without = ~run.state.tcp.at(rows)
@@ -72,9 +72,9 @@ def counted(run: Run, rows: Ints) -> Floats:
         return way
     before = run.rotary[rows[free] - 1]
     before[rows[free] < 1] = run.start[list(run.machine.rotary)]
-    led = free[np.abs(run.rotary[rows[free]] - before).max(axis=1) > STILL]
+    led = free[np.abs(run.rotary[rows[free]] - before).max(axis=1) > NO_ROTATION]
     if len(led):
         there = rows[led]
-        ends = run.poses(there - 1).joints, run.poses(there).joints
-        way[led] = ways(run.machine, *ends, run.state.feed_path.at(there))
+        ends = run.positions(there - 1).joints, run.positions(there).joints
+        way[led] = feed_path_lengths(run.machine, *ends, run.state.feed_path.at(there))
     return way

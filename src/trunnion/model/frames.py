@@ -18,29 +18,29 @@ def into_frame(operation: Operation, frame: Frame) -> Operation:
         return operation
     turn = frame.matrix().T @ operation.frame.matrix()
     shift = frame.matrix().T @ (np.array(operation.frame.origin) - np.array(frame.origin))
-    return replace(_carried(operation, turn, shift), frame=frame)
+    return replace(_transformed(operation, turn, shift), frame=frame)
 
 
 def into_plane(operation: Operation, plane: Frame) -> Operation:
     """The operation as seen from a plane that is itself given in the operation's frame; its ``frame`` stays."""
     turn = plane.matrix().T
-    return _carried(operation, turn, -turn @ np.array(plane.origin))
+    return _transformed(operation, turn, -turn @ np.array(plane.origin))
 
 
-def seen_from(own: Frame, frame: Frame) -> Frame:
+def relative_frame(own: Frame, frame: Frame) -> Frame:
     """``own`` as seen from ``frame``, both given in the CAM's absolute system."""
     turn = frame.matrix().T
     origin = turn @ (np.array(own.origin) - np.array(frame.origin))
-    return frame_of(origin, turn @ np.array(own.x), turn @ np.array(own.y))
+    return frame_from_vectors(origin, turn @ np.array(own.x), turn @ np.array(own.y))
 
 
-def frame_of(origin: Floats, x: Floats, y: Floats) -> Frame:
+def frame_from_vectors(origin: Floats, x: Floats, y: Floats) -> Frame:
     """A frame from arrays of three numbers."""
     columns = [(float(v[0]), float(v[1]), float(v[2])) for v in (origin, x, y)]
     return Frame(*columns)
 
 
-def _carried(operation: Operation, turn: Floats, shift: Floats) -> Operation:
+def _transformed(operation: Operation, turn: Floats, shift: Floats) -> Operation:
     """All places p of an operation become turn p + shift, all directions u turn u."""
     moves, arcs = operation.moves, operation.arcs
     normal = None if moves.normal is None else moves.normal @ turn.T

@@ -11,8 +11,9 @@ from trunnion.model.frames import into_plane
 from trunnion.model.toolpath import Frame, Operation
 
 
-class Pole(StrEnum):
-    """What is done near the pole where a rotary axis would have to be too fast (``trunnion.planning.pole.pole``)."""
+class PoleStrategy(StrEnum):
+    """What is done near the pole where a rotary axis would have to be too fast
+    (``trunnion.planning.pole.tool_axis_lean``)."""
 
     OFF = "off"
     HOLD = "hold"
@@ -20,7 +21,7 @@ class Pole(StrEnum):
     LEAN = "lean"
 
 
-class Manner(StrEnum):
+class MachiningMode(StrEnum):
     """How the machine makes an operation."""
 
     THREE_AXIS = "three-axis"
@@ -30,7 +31,7 @@ class Manner(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Departures:
+class Deviations:
     """Where an operation is not made as its CL file has it; rows are those of the CL file, growing.
 
     lean    degrees by which the tool axis may lean at the rows ``leaned``
@@ -47,9 +48,9 @@ class Departures:
     feed: Floats
 
     @staticmethod
-    def none() -> "Departures":
+    def none() -> "Deviations":
         """Everything as it is in the CL file."""
-        return Departures(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
+        return Deviations(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
 
     def __len__(self) -> int:
         return len(self.leaned) + len(self.slowed)
@@ -64,21 +65,21 @@ class Motion:
     rotary       (n, 2) float64   positions of the rotary axes, degrees, in the order of ``machine.rotary`` and in the
                  range that each displays. The slides follow from them and the tip:
                  ``trunnion.machines.slide_positions``
-    manner       three-axis: the tool axis is +Z of the program's coordinate system throughout
-    plane        the tilted plane as seen from the program's coordinate system, for that manner only. Its Z is the tool
+    mode         three-axis: the tool axis is +Z of the program's coordinate system throughout
+    plane        the tilted plane as seen from the program's coordinate system, for that mode only. Its Z is the tool
                  axis
-    departures   where it is not made as its CL file has it
+    deviations   where it is not made as its CL file has it
     begins       False: it goes on with the operation of the motion before it, in another plane or from home
     in_hole      its last row is that of a hole: the tool is drawn back no farther than its cycle says
     """
 
     operation: Operation
     rotary: Floats
-    manner: Manner
+    mode: MachiningMode
     plane: Frame | None = None
-    departures: Departures = field(default_factory=Departures.none)
-    begins: bool = True
-    in_hole: bool = False
+    deviations: Deviations = field(default_factory=Deviations.none)
+    starts_operation: bool = True
+    ends_in_hole: bool = False
 
     def __post_init__(self) -> None:
         self.rotary.setflags(write=False)
@@ -86,14 +87,14 @@ class Motion:
     @property
     def three_axis(self) -> bool:
         """Whether the rotary axes stand still at the program's own coordinate system."""
-        return self.manner is Manner.THREE_AXIS
+        return self.mode is MachiningMode.THREE_AXIS
 
     def as_written(self) -> Operation:
         """The operation in the coordinates of its blocks: those of the tilted plane, or else the program's."""
         return self.operation if self.plane is None else into_plane(self.operation, self.plane)
 
 
-class Why(StrEnum):
+class DecisionTopic(StrEnum):
     """What a decision was about."""
 
     START = "start"
@@ -120,7 +121,7 @@ class Decision:
     operation: str
     line: int
     row: int
-    why: Why
+    topic: DecisionTopic
     text: str
 
     def __str__(self) -> str:

@@ -1,8 +1,8 @@
 """What a control did with a program: one row a motion, in columns, and what happened between the rows.
 
 A run keeps what its blocks say and what cannot be worked out from a row alone. State that changes seldom is kept by its
-changes (``State``); slides, tips and tool axes come from the machine. ``poses`` and ``stretch`` work them out for some
-rows; as whole columns they are made when they are first asked for, and then kept.
+changes (``ModalState``); slides, tips and tool axes come from the machine. ``positions`` and ``chunk`` work them out
+for some rows; as whole columns they are made when they are first asked for, and then kept.
 
 Units: mm, degrees, unit vectors, rev/min; feeds in mm/min, mm/rev or 1/min as ``feed_mode`` says.
 Frame: the workpiece frame of the machine, that is the zero point set by the work offset; programmable frames and
@@ -18,18 +18,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
-from trunnion.concurrency import one_ahead
+from trunnion.concurrency import prefetch
 from trunnion.errors import Severity
-from trunnion.machines import Machine, Packed, forward, pack, tool_axes
-from trunnion.model.axis_positions import joints_of
-from trunnion.model.columns import Ramps, Steps
+from trunnion.machines import KinematicParameters, Machine, forward, kinematic_parameters, tool_axes
+from trunnion.model.axis_positions import joints_from_rows
+from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.toolpath import Arcs
 
 #: Rows that are worked out at a time: some megabytes, and milliseconds enough that two threads seldom meet.
-CHUNK = 32768
+CHUNK_ROWS = 32768
 
 
-class Written(IntFlag):
+class ProgrammedWord(IntFlag):
     """Words that a block really wrote, as bits of ``Run.programmed``."""
 
     X = 1
@@ -49,7 +49,7 @@ class Orientation(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class Diagnostic:
     """Something that the reader did not know, could not do or finds odd; line from 1, in ``file``."""
 
     line: int
@@ -72,11 +72,11 @@ class Comment:
     file: int = 0
 
 
-Value = float | str | tuple[float | str | None, ...] | None
+EventValue = float | str | tuple[float | str | None, ...] | None
 
 
 @dataclass(frozen=True, slots=True)
-class Happening:
+class RunEvent:
     """Something that happens before row ``before_row`` (``before_row == n``: after the last one).
 
     kind    one of the names in ``docs/reader.md``: tool, tool_change, spindle, coolant, dwell, stop, message, ...
@@ -88,26 +88,26 @@ class Happening:
     line: int
     before_row: int
     kind: str
-    value: Value = None
+    value: EventValue = None
     file: int = 0
     tcp: bool = False
 
 
 #: Codes of work offsets above this are those of ``G54.1 P``.
-MORE_OFFSETS = 600
+EXTENDED_OFFSET_BASE = 600
 
 
 def offset_name(code: int) -> str:
     """The word of a work offset that is called by one: ``G54``, ``G505``, ``G54.1 P3``."""
-    return f"G{code}" if code <= MORE_OFFSETS else f"G54.1 P{code - MORE_OFFSETS}"
+    return f"G{code}" if code <= EXTENDED_OFFSET_BASE else f"G54.1 P{code - EXTENDED_OFFSET_BASE}"
 
 
-#: ``State.orientation`` before the first word of an ``Orientation``: as the words of each block have it.
-BY_WORDS = 2
+#: ``ModalState.orientation`` before the first word of an ``Orientation``: as the words of each block have it.
+ORIENTATION_FROM_WORDS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Normals:
+class SurfaceNormals:
     """The surface's normals that blocks say: ``row`` (k,), growing, and ``vector`` (k, 3) in the workpiece frame.
 
     Vectors are as long as the program has them.
@@ -124,38 +124,38 @@ class Normals:
         return len(self.row)
 
     @staticmethod
-    def none() -> "Normals":
+    def none() -> "SurfaceNormals":
         """No normals at all."""
-        return Normals(np.zeros(0, np.int64), np.zeros((0, 3)))
+        return SurfaceNormals(np.zeros(0, np.int64), np.zeros((0, 3)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class State:
+class ModalState:
     """What changes seldom, as columns that are kept by their changes. The same names in ``Run`` are the whole columns.
 
-    by_tip     ``Run.place`` is the tool tip, not the slides
-    feed_path  a ``FeedPath``: what the feed would count where rotary axes turn without TCP
+    xyz_is_tip  ``Run.xyz`` is the tool tip, not the slides
+    feed_path   a ``FeedPath``: what the feed would count where rotary axes turn without TCP
     """
 
-    file: Steps
-    feed: Steps
-    feed_mode: Steps
-    rpm: Steps
-    spindle: Steps
-    tool: Steps
-    edge: Steps
-    compensation: Steps
-    offset: Steps
-    tcp: Steps
-    machine_frame: Steps
-    inches: Steps
-    orientation: Steps
-    by_tip: Steps
-    feed_path: Steps
+    file: StepColumn
+    feed: StepColumn
+    feed_mode: StepColumn
+    rpm: StepColumn
+    spindle: StepColumn
+    tool: StepColumn
+    edge: StepColumn
+    compensation: StepColumn
+    work_offset: StepColumn
+    tcp: StepColumn
+    machine_frame: StepColumn
+    inches: StepColumn
+    orientation: StepColumn
+    xyz_is_tip: StepColumn
+    feed_path: StepColumn
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Poses:
+class RowPositions:
     """Where axes and tool are in k rows: ``joints`` (k, 5), ``tip`` and ``axis`` (k, 3) as in ``Run``, read-only."""
 
     joints: Floats
@@ -168,10 +168,10 @@ class Poses:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stretch(Poses):
-    """Consecutive rows: ``half_way`` (k - 1, 3) is the tool axis where every joint is half-way from row to row."""
+class PositionChunk(RowPositions):
+    """Consecutive rows: ``midpoint_axis`` (k - 1, 3) is the tool axis where every joint is half-way from row to row."""
 
-    half_way: Floats
+    midpoint_axis: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,22 +180,23 @@ class Run:
 
     Kept:
 
-    blocks         (n,)   Ramps    line of the file, from 1
-    numbers        (n,)   Ramps    N number of the block, -1 where it has none
+    lines          (n,)   RampColumn    line of the file, from 1
+    block_numbers  (n,)   RampColumn    N number of the block, -1 where it has none
     kind           (n,)   uint8    a ``trunnion.model.toolpath.Kind``
-    programmed     (n,)   uint8    ``Written`` bits
-    place          (n, 3) float64  what X Y Z come to, mm: the tool tip, workpiece frame, where ``state.by_tip``; else
+    programmed     (n,)   uint8    ``ProgrammedWord`` bits
+    xyz            (n, 3) float64  what X Y Z come to, mm: the tool tip, workpiece frame, where ``state.xyz_is_tip``;
+    else
                                    the values of the slides X, Y and Z
     rotary         (n, 2) float64  positions of the rotary axes as they wind, deg, as in ``machine.rotary``
     start          (5,)   float64  axis values before row 0
-    normals                        a ``Normals``: where blocks say that of the surface (LN)
+    normals                        a ``SurfaceNormals``: where blocks say that of the surface (LN)
 
     Worked out of these when asked for:
 
     tip            (n, 3) float64  tool tip, mm, workpiece frame
     axis           (n, 3) float64  unit vector from tip to holder, workpiece frame
-    block          (n,)   int32    ``blocks`` as a whole column
-    number         (n,)   int64    ``numbers`` as a whole column
+    line           (n,)   int32    ``lines`` as a whole column
+    block_number   (n,)   int64    ``block_numbers`` as a whole column
     joints         (n, 5) float64  axis values as displayed, mm or deg, machine order; rotary values as they wind
     file           (n,)   uint16   index into ``files``: 0 is the program itself, others are its subprograms
     feed           (n,)   float64  NaN before the first F; rapids carry it on
@@ -205,7 +206,7 @@ class Run:
     tool           (n,)   int32    index into ``tools``; 0 is the empty name, no tool yet
     edge           (n,)   int32    D number, -1 before the first D; Fanuc, LinuxCNC: H of the length in force, else -1
     compensation   (n,)   int8     of the tool's radius: +1 left of the path (G41), -1 right of it, 0 off; not simulated
-    offset         (n,)   uint16   work offset as the program numbers it (G54, preset 2), 0 before the first
+    work_offset    (n,)   uint16   work offset as the program numbers it (G54, preset 2), 0 before the first
     tcp            (n,)   bool     tool centre point control was on
     machine_frame  (n,)   bool     a block with positions of machine axes: SUPA, G53, M91
     inches         (n,)   bool     lengths were programmed in inches (the columns are in mm)
@@ -214,20 +215,20 @@ class Run:
 
     machine: Machine
     files: tuple[str, ...]
-    blocks: Ramps
-    numbers: Ramps
+    lines: RampColumn
+    block_numbers: RampColumn
     kind: Codes
     programmed: Codes
-    place: Floats
+    xyz: Floats
     rotary: Floats
-    state: State
+    state: ModalState
     start: Floats
     arcs: Arcs
-    normals: Normals = field(default_factory=Normals.none)
+    normals: SurfaceNormals = field(default_factory=SurfaceNormals.none)
     tools: tuple[str, ...] = ("",)
     comments: list[Comment] = field(default_factory=list)
-    events: list[Happening] = field(default_factory=list)
-    findings: tuple[Finding, ...] = ()
+    events: list[RunEvent] = field(default_factory=list)
+    diagnostics: tuple[Diagnostic, ...] = ()
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -239,93 +240,93 @@ class Run:
         return len(self.kind)
 
     @property
-    def errors(self) -> tuple[Finding, ...]:
+    def errors(self) -> tuple[Diagnostic, ...]:
         """Findings that make the columns doubtful: words unknown or not acted upon."""
-        return tuple(finding for finding in self.findings if finding.severity is Severity.ERROR)
+        return tuple(finding for finding in self.diagnostics if finding.severity is Severity.ERROR)
 
     # Some rows
 
     @cached_property
-    def _packed(self) -> Packed:
-        return pack(self.machine)
+    def _kinematics(self) -> KinematicParameters:
+        return kinematic_parameters(self.machine)
 
-    def poses(self, rows: Ints) -> Poses:
+    def positions(self, rows: Ints) -> RowPositions:
         """Where axes and tool are at the end of rows, in any order; row -1 is the place before the first one."""
         if not len(self) or not len(rows):
             joints = np.tile(self.start, (len(rows), 1))
-            return Poses(joints, *forward(self.machine, joints))
-        by_tip = self.state.by_tip.at(rows)
-        place = self.place[rows]
-        joints = joints_of(self.machine, self._packed, by_tip, place, self.rotary[rows])
+            return RowPositions(joints, *forward(self.machine, joints))
+        xyz_is_tip = self.state.xyz_is_tip.at(rows)
+        xyz = self.xyz[rows]
+        joints = joints_from_rows(self.machine, self._kinematics, xyz_is_tip, xyz, self.rotary[rows])
         first = rows < 0
         joints[first] = self.start
         tip, axis = forward(self.machine, joints)
-        by_tip &= ~first
-        tip[by_tip] = place[by_tip]
-        return Poses(joints, tip, axis)
+        xyz_is_tip &= ~first
+        tip[xyz_is_tip] = xyz[xyz_is_tip]
+        return RowPositions(joints, tip, axis)
 
-    def stretch(self, first: int, end: int) -> Stretch:
+    def chunk(self, first: int, end: int) -> PositionChunk:
         """Where axes and tool are in consecutive rows, led by the place before them: (end - first + 1) rows."""
         rows = slice(max(first - 1, 0), end)
-        by_tip = self.state.by_tip.part(rows.start, end)
-        place = self.place[rows]
-        joints = joints_of(self.machine, self._packed, by_tip, place, self.rotary[rows])
+        xyz_is_tip = self.state.xyz_is_tip.part(rows.start, end)
+        xyz = self.xyz[rows]
+        joints = joints_from_rows(self.machine, self._kinematics, xyz_is_tip, xyz, self.rotary[rows])
         if first == 0:
             joints = np.concatenate((self.start[None], joints))
-        if first and by_tip.all():
-            return Stretch(joints, place, *tool_axes(self.machine, joints))
+        if first and xyz_is_tip.all():
+            return PositionChunk(joints, xyz, *tool_axes(self.machine, joints))
         tip, _ = forward(self.machine, joints)
         reached = tip[1:] if first == 0 else tip
-        reached[by_tip] = place[by_tip]
-        return Stretch(joints, tip, *tool_axes(self.machine, joints))
+        reached[xyz_is_tip] = xyz[xyz_is_tip]
+        return PositionChunk(joints, tip, *tool_axes(self.machine, joints))
 
-    def stretches(self) -> Iterator[tuple[int, int, Stretch]]:
-        """All rows, ``CHUNK`` at a time: first row, the row after the last, and ``stretch`` of them.
+    def chunks(self) -> Iterator[tuple[int, int, PositionChunk]]:
+        """All rows, ``CHUNK_ROWS`` at a time: first row, the row after the last, and ``chunk`` of them.
 
-        While one stretch is looked at the next one is worked out, on another core if there is one.
+        While one chunk is looked at the next one is worked out, on another core if there is one.
         """
-        bounds = [(first, min(first + CHUNK, len(self))) for first in range(0, len(self), CHUNK)]
-        for (first, end), poses in zip(bounds, one_ahead(lambda rows: self.stretch(*rows), bounds), strict=True):
+        bounds = [(first, min(first + CHUNK_ROWS, len(self))) for first in range(0, len(self), CHUNK_ROWS)]
+        for (first, end), poses in zip(bounds, prefetch(lambda rows: self.chunk(*rows), bounds), strict=True):
             yield first, end, poses
 
-    def oriented(self, first: int, end: int) -> Codes:
+    def orientation_between(self, first: int, end: int) -> Codes:
         """Column ``orientation`` of consecutive rows."""
         said = self.state.orientation.part(first, end)
-        vectors = (self.programmed[first:end] & int(Written.VECTOR)) != 0
-        return np.where(said == BY_WORDS, vectors, said).astype(np.uint8)
+        vectors = (self.programmed[first:end] & int(ProgrammedWord.VECTOR)) != 0
+        return np.where(said == ORIENTATION_FROM_WORDS, vectors, said).astype(np.uint8)
 
     # Whole columns
 
     @cached_property
-    def block(self) -> Lines:
-        return self.blocks.column(np.int32)
+    def line(self) -> Lines:
+        return self.lines.column(np.int32)
 
     @cached_property
-    def number(self) -> Ints:
-        return self.numbers.column(np.int64)
+    def block_number(self) -> Ints:
+        return self.block_numbers.column(np.int64)
 
     @cached_property
     def tip(self) -> Floats:
-        return self._worked_out("tip", 3)
+        return self._compute_column("tip", 3)
 
     @cached_property
     def axis(self) -> Floats:
-        return self._worked_out("axis", 3)
+        return self._compute_column("axis", 3)
 
     @cached_property
     def joints(self) -> Floats:
-        return self._worked_out("joints", 5)
+        return self._compute_column("joints", 5)
 
-    def _worked_out(self, name: str, width: int) -> Floats:
+    def _compute_column(self, name: str, width: int) -> Floats:
         column = np.empty((len(self), width))
-        for first, end, poses in self.stretches():
+        for first, end, poses in self.chunks():
             column[first:end] = getattr(poses, name)[1:]
         column.setflags(write=False)
         return column
 
     @cached_property
     def orientation(self) -> Codes:
-        column = self.oriented(0, len(self))
+        column = self.orientation_between(0, len(self))
         column.setflags(write=False)
         return column
 
@@ -362,8 +363,8 @@ class Run:
         return self.state.compensation.column()
 
     @cached_property
-    def offset(self) -> NDArray[np.uint16]:
-        return self.state.offset.column()
+    def work_offset(self) -> NDArray[np.uint16]:
+        return self.state.work_offset.column()
 
     @cached_property
     def tcp(self) -> Flags:

@@ -15,13 +15,13 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import forward
-from trunnion.machines.inverse import pack
-from trunnion.model import axis_positions as poses
+from trunnion.machines.inverse import kinematic_parameters
+from trunnion.model import axis_positions
 from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
 
 #: Start and end nearer than this, mm, make a full circle.
-FULL: float = 1e-6
+FULL_CIRCLE_GAP: float = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,23 +71,25 @@ def subdivide(run: Run, pieces: int | Ints, rows: slice = slice(None)) -> Sample
     joints = start + fraction[:, None] * (run.joints[row] - start)
     tip, axis = np.empty((len(row), 3)), np.empty((len(row), 3))
     arc = run.kind[row] == Kind.ARC
-    by_tip = (run.tcp[row] & ~run.machine_frame[row]) | arc
-    tip[by_tip] = _tips(run, row[by_tip], fraction[by_tip], before[row[by_tip] - first])
+    xyz_is_tip = (run.tcp[row] & ~run.machine_frame[row]) | arc
+    tip[xyz_is_tip] = _interpolated_tips(run, row[xyz_is_tip], fraction[xyz_is_tip], before[row[xyz_is_tip] - first])
     great = run.tcp[row] & ~run.machine_frame[row] & ~arc & (run.orientation[row] == Orientation.GREAT_CIRCLE)
     if great.any():
         _great_circle(run, row, fraction, before, first, great, joints)
-    if by_tip.any():
-        turned = joints[np.ix_(by_tip, run.machine.rotary)]
+    if xyz_is_tip.any():
+        turned = joints[np.ix_(xyz_is_tip, run.machine.rotary)]
         every = np.ones(len(turned), np.bool_)
-        joints[by_tip] = poses.joints_of(run.machine, pack(run.machine), every, tip[by_tip], turned)
+        joints[xyz_is_tip] = axis_positions.joints_from_rows(
+            run.machine, kinematic_parameters(run.machine), every, tip[xyz_is_tip], turned
+        )
     reached, axis = forward(run.machine, joints)
-    tip[~by_tip] = reached[~by_tip]
+    tip[~xyz_is_tip] = reached[~xyz_is_tip]
     ends = fraction == 1.0
     joints[ends], tip[ends], axis[ends] = run.joints[row[ends]], run.tip[row[ends]], run.axis[row[ends]]
     return Samples(row, fraction, joints, tip, axis)
 
 
-def _tips(run: Run, row: Ints, fraction: Floats, before: Floats) -> Floats:
+def _interpolated_tips(run: Run, row: Ints, fraction: Floats, before: Floats) -> Floats:
     """Tips on lines and circles, (k, 3)."""
     start = forward(run.machine, before)[0]
     end = run.tip[row]
@@ -96,18 +98,18 @@ def _tips(run: Run, row: Ints, fraction: Floats, before: Floats) -> Floats:
     on_arc = run.kind[row] == Kind.ARC
     if on_arc.any():
         k = which[on_arc]
-        tip[on_arc] = on_circle(
+        tip[on_arc] = circle_points(
             start[on_arc],
             end[on_arc],
             run.arcs.centre[k],
             run.arcs.normal[k],
-            run.arcs.turns[k],
+            run.arcs.full_turns[k],
             fraction[on_arc],
         )
     return np.asarray(tip)
 
 
-def on_circle(start: Floats, end: Floats, centre: Floats, normal: Floats, turns: Ints, fraction: Floats) -> Floats:
+def circle_points(start: Floats, end: Floats, centre: Floats, normal: Floats, turns: Ints, fraction: Floats) -> Floats:
     """Points of circles and helices, (k, 3) mm; the radius goes evenly from that of the start to that of the end."""
     rise = np.einsum("ij,ij->i", end - start, normal)
     a = start - centre
@@ -116,7 +118,7 @@ def on_circle(start: Floats, end: Floats, centre: Floats, normal: Floats, turns:
     b = b - np.einsum("ij,ij->i", b, normal)[:, None] * normal
     height = np.einsum("ij,ij->i", start - centre, normal)
     sweep = np.arctan2(np.einsum("ij,ij->i", np.cross(a, b), normal), np.einsum("ij,ij->i", a, b))
-    full = np.linalg.norm(a - b, axis=1) < FULL
+    full = np.linalg.norm(a - b, axis=1) < FULL_CIRCLE_GAP
     sweep = np.where(full, 2.0 * np.pi, np.where(sweep <= 0.0, sweep + 2.0 * np.pi, sweep)) + 2.0 * np.pi * turns
     first, last = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
     angle = fraction * sweep
@@ -150,5 +152,7 @@ def _great_circle(
         columns = np.array(run.machine.rotary)
         rotary = np.empty((len(at), 2))
         zero = np.zeros(len(at), np.uint8)
-        poses.angles(run.machine, rotary, zero, vector[stretch], before[row[at[0]] - first, columns], zero.copy())
+        axis_positions.resolve_angles(
+            run.machine, rotary, zero, vector[stretch], before[row[at[0]] - first, columns], zero.copy()
+        )
         joints[np.ix_(at, columns)] = rotary

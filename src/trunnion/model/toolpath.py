@@ -70,7 +70,7 @@ class Moves:
     def __len__(self) -> int:
         return len(self.tip)
 
-    def part(self, rows: slice | Ints | Flags) -> "Moves":
+    def select(self, rows: slice | Ints | Flags) -> "Moves":
         """Some of the rows."""
         return Moves(
             self.tip[rows], self.axis[rows], self.kind[rows], self.phase[rows], self.feed[rows], self.per_rev[rows],
@@ -86,21 +86,21 @@ class Arcs:
     centre   (m, 3) float64   mm
     normal   (m, 3) float64   unit vector; the tip turns about it by the right-hand rule
     radius   (m,)   float64   mm
-    turns    (m,)   int64     whole turns besides the arc from start to end; a full circle (start = end) has 0
+    full_turns (m,) int64     whole turns besides the arc from start to end; a full circle (start = end) has 0
     """
 
     row: Ints
     centre: Floats
     normal: Floats
     radius: Floats
-    turns: Ints
+    full_turns: Ints
 
     def __post_init__(self) -> None:
-        for column in (self.row, self.centre, self.normal, self.radius, self.turns):
+        for column in (self.row, self.centre, self.normal, self.radius, self.full_turns):
             column.setflags(write=False)
 
     @staticmethod
-    def none() -> "Arcs":
+    def empty() -> "Arcs":
         """No arcs at all."""
         return Arcs(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
 
@@ -238,14 +238,14 @@ class GoHome(Event):
 
 
 @dataclass(frozen=True, slots=True)
-class Mode(Event):
+class SetMode(Event):
     """SET/MODE and its kin, kept with the words that it carried."""
 
     words: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Unknown(Event):
+class UnknownStatement(Event):
     """A statement that nobody knows, kept as it stood."""
 
     text: str

@@ -4,14 +4,14 @@ In:     a toolpath, its motion on the machine, the control's definition and the 
 Out:    the NC program, through the block writer.
 """
 
-from trunnion.controls.words import count_column
+from trunnion.controls.words import round_column
 from trunnion.output.block_writer import write_blocks
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
-from trunnion.output.subprograms import Division
+from trunnion.output.subprograms import SubprogramOutput
 from trunnion.output.validation import check_program
 
 #: Kernels that every program needs.
-KERNELS = (count_column, write_blocks)
+KERNELS = (round_column, write_blocks)
 
-__all__ = ["KERNELS", "Division", "Program", "check_program", "write_program"]
+__all__ = ["KERNELS", "Program", "SubprogramOutput", "check_program", "write_program"]

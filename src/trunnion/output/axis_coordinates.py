@@ -18,38 +18,38 @@ from trunnion.machines import Machine, forward, slide_positions
 from trunnion.model.motion import Motion
 
 #: A tip that moves by less than this, mm, rests: a degree counts as a millimetre then.
-RESTS: Final = 1e-4
+TIP_AT_REST: Final = 1e-4
 
 #: The setting ``rotary_feed`` of controls that can be told that F is the tip's all the same.
-TIP: Final = "tip"
+FEED_AT_TIP: Final = "tip"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Slides:
+class AxisCoordinates:
     """A motion in words of the slides.
 
     motion    tips and centres of circles are positions of the slides X, Y and Z
-    turns     (n,) bool     a rotary axis turns on the way to the row
-    length    (n,) float64  of the way to the row that the feed means: mm of the tip, or degrees where it rests
-    alone     (n,) float64  of the way to the row of the slides X, Y and Z, mm, or degrees where they rest
-    together  (n,) float64  of the way to the row with all axes as one, a degree as a millimetre
-    shortest  (n, 2) bool   the rotary axis goes past the end of the turn that it displays
+    rotary_moves     (n,) bool     a rotary axis turns on the way to the row
+    tip_length    (n,) float64  of the way to the row that the feed means: mm of the tip, or degrees where it rests
+    linear_length     (n,) float64  of the way to the row of the slides X, Y and Z, mm, or degrees where they rest
+    all_axes_length  (n,) float64  of the way to the row with all axes as one, a degree as a millimetre
+    wraps  (n, 2) bool   the rotary axis goes past the end of the turn that it displays
     """
 
     motion: Motion
-    turns: Flags
-    length: Floats
-    alone: Floats
-    together: Floats
-    shortest: Flags
+    rotary_moves: Flags
+    tip_length: Floats
+    linear_length: Floats
+    all_axes_length: Floats
+    wraps: Flags
 
-    def at(self, rows: Ints | slice) -> "Slides":
+    def select(self, rows: Ints | slice) -> "AxisCoordinates":
         """Some rows, without their motion, which stays whole."""
-        lengths = self.length[rows], self.alone[rows], self.together[rows]
-        return Slides(self.motion, self.turns[rows], *lengths, self.shortest[rows])
+        lengths = self.tip_length[rows], self.linear_length[rows], self.all_axes_length[rows]
+        return AxisCoordinates(self.motion, self.rotary_moves[rows], *lengths, self.wraps[rows])
 
 
-def slides_of(machine: Machine, motion: Motion, decimals: int) -> Slides:
+def to_axis_coordinates(machine: Machine, motion: Motion, decimals: int) -> AxisCoordinates:
     """A motion without TCP in words of the slides; angles are printed with ``decimals``."""
     moves, arcs = motion.operation.moves, motion.operation.arcs
     rotary = np.round(motion.rotary, decimals)
@@ -57,7 +57,7 @@ def slides_of(machine: Machine, motion: Motion, decimals: int) -> Slides:
     zero = _work_offset(machine, columns)
     slides = slide_positions(machine, moves.tip, rotary)[:, columns] - zero
     if len(arcs.row):
-        about = np.sign(np.einsum("ij,ij->i", _third_slide(machine, rotary[arcs.row]), arcs.normal))
+        about = np.sign(np.einsum("ij,ij->i", _z_slide_direction(machine, rotary[arcs.row]), arcs.normal))
         normal = np.outer(about, [0.0, 0.0, 1.0])
         centre = slide_positions(machine, arcs.centre, rotary[arcs.row])[:, columns] - zero
         arcs = replace(arcs, centre=centre, normal=normal)
@@ -74,11 +74,11 @@ def slides_of(machine: Machine, motion: Motion, decimals: int) -> Slides:
     way = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
     apart = np.linalg.norm(np.diff(slides, axis=0, prepend=slides[:1]), axis=1)
     operation = replace(motion.operation, moves=replace(moves, tip=np.ascontiguousarray(slides)), arcs=arcs)
-    return Slides(
+    return AxisCoordinates(
         replace(motion, operation=operation, rotary=rotary),
         turned > 0.0,
-        np.where(way < RESTS, turned, way),
-        np.where(apart < RESTS, turned, apart),
+        np.where(way < TIP_AT_REST, turned, way),
+        np.where(apart < TIP_AT_REST, turned, apart),
         np.hypot(apart, np.linalg.norm(steps, axis=1)),
         jumps,
     )
@@ -97,7 +97,7 @@ def _work_offset(machine: Machine, columns: list[int]) -> Floats:
     return np.asarray(np.linalg.solve(ways, -tip[0]))
 
 
-def _third_slide(machine: Machine, rotary: Floats) -> Floats:
+def _z_slide_direction(machine: Machine, rotary: Floats) -> Floats:
     """(k, 3): the way of the tip in the workpiece as Z grows, at rotary positions (k, 2)."""
     joints = np.zeros((2, len(rotary), 5))
     joints[:, :, list(machine.rotary)] = rotary
@@ -107,8 +107,8 @@ def _third_slide(machine: Machine, rotary: Floats) -> Floats:
 
 
 def feed_rule(control: Control, settings: Mapping[str, str]) -> str:
-    """How the feed is said where rotary axes turn: one of ``FEEDS_WITHOUT_TCP``, or ``TIP`` by a setting."""
-    return TIP if settings.get("rotary_feed") == TIP else control.feed_without_tcp
+    """How the feed is said where rotary axes turn: one of ``FEEDS_WITHOUT_TCP``, or ``FEED_AT_TIP`` by a setting."""
+    return FEED_AT_TIP if settings.get("rotary_feed") == FEED_AT_TIP else control.feed_without_tcp
 
 
 def feed_format(rule: str) -> str:
@@ -116,7 +116,7 @@ def feed_format(rule: str) -> str:
     return "inverse_time" if rule == "inverse_time" else "feed"
 
 
-def feeds(slides: Slides, feed: Floats, rule: str, form: NumberFormat) -> tuple[Floats, Flags, Flags]:
+def feed_words(slides: AxisCoordinates, feed: Floats, rule: str, form: NumberFormat) -> tuple[Floats, Flags, Flags]:
     """What F is so that the tip has its feed: one over the minutes of the block, or what the control counts a minute.
 
     Parameters
@@ -137,7 +137,11 @@ def feeds(slides: Slides, feed: Floats, rule: str, form: NumberFormat) -> tuple[
         rows in which rotary axes turn mean anything.
     """
     ones = np.ones(len(feed))
-    ways: dict[str, Floats] = {"all_axes": slides.together, "slides": slides.alone, TIP: slides.length}
+    ways: dict[str, Floats] = {
+        "all_axes": slides.all_axes_length,
+        "slides": slides.linear_length,
+        FEED_AT_TIP: slides.tip_length,
+    }
     counted = ways.get(rule, ones)
-    rate = feed * counted / np.maximum(slides.length, 1e-12)
+    rate = feed * counted / np.maximum(slides.tip_length, 1e-12)
     return np.clip(rate, form.least, form.greatest), rate < form.least, rate > form.greatest

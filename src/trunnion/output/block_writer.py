@@ -11,7 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Flags, Ints
 from trunnion.controls.words import ABSENT, BlockNumbers, Word
-from trunnion.errors import Problem, Refused
+from trunnion.errors import Problem, RefusedError
 from trunnion.jit import ONE, njit, signed, unsigned
 
 #: Rows that a caller best hands over at a time: the table of one chunk stays in the processor's cache.
@@ -25,7 +25,7 @@ _LETTERS = 12
 _WIDEST_WORD = _DIGITS + _LETTERS + 2
 
 #: Bytes that a block number takes at most, with its blank and the sign of skipped blocks.
-ROOM_OF_NUMBER = 12
+BLOCK_NUMBER_BYTES = 12
 
 # columns of the table that describes the words to the kernel
 _MODAL, _DECIMALS, _SCALE, _POINT, _LEADING, _TRAILING, _PLUS, _LETTER_LENGTH, _ZERO_LENGTH, _CLOSING, _BARE = range(11)
@@ -88,7 +88,7 @@ def _put_number(
     out: Bytes,
     at: int,
 ) -> int:
-    """Write a count of last digits as ``NumberFormat.of_count`` does; returns where it ends."""
+    """Write a count of last digits as ``NumberFormat.text_of_count`` does; returns where it ends."""
     rest = count
     if count < 0:
         out[at] = 45
@@ -238,15 +238,15 @@ class BlockWriter:
     def __init__(self, sink: BinaryIO, words: Sequence[Word], numbers: BlockNumbers) -> None:
         self._numbers = numbers
         self._next_numbers: dict[BinaryIO, Ints] = {}
-        self.turn_to(sink)
+        self.switch_file(sink)
         self._letter = np.frombuffer(numbers.letter.encode(), np.uint8)
         self._skip = np.zeros(0, np.uint8)
         self._words: dict[str, Word] = {}
         self._keys: list[str] = []
         self._last = np.zeros(0, np.int64)
-        self.use(words)
+        self.use_words(words)
 
-    def turn_to(self, sink: BinaryIO) -> None:
+    def switch_file(self, sink: BinaryIO) -> None:
         """Write into another file from here on, whose block numbers go on where they were left, or begin.
 
         What was last printed stays known, whatever the file says.
@@ -260,9 +260,9 @@ class BlockWriter:
     @property
     def widest_row(self) -> int:
         """Bytes that the block of a row takes at most, without lines before it."""
-        return ROOM_OF_NUMBER + len(self._letter) + 2 + len(self._keys) * _WIDEST_WORD
+        return BLOCK_NUMBER_BYTES + len(self._letter) + 2 + len(self._keys) * _WIDEST_WORD
 
-    def in_force(self) -> dict[str, int]:
+    def modal_state(self) -> dict[str, int]:
         """Modal words that are known to be in force, with the counts that were last printed."""
         last = self._last.tolist()
         return {
@@ -271,7 +271,7 @@ class BlockWriter:
             if count != ABSENT and self._rule[k, _MODAL]
         }
 
-    def use(self, words: Sequence[Word]) -> None:
+    def use_words(self, words: Sequence[Word]) -> None:
         """Take up another set of words. What was last printed stays known for the words that print as before."""
         printed = dict(zip(self._keys, self._last, strict=True))
         kept = {word.key: printed[word.key] for word in words if self._words.get(word.key) == word}
@@ -298,27 +298,27 @@ class BlockWriter:
         """Take it that the word has just been printed with this count."""
         self._last[self._keys.index(key)] = count
 
-    def printed(self, key: str) -> int:
+    def last_count(self, key: str) -> int:
         """The count with which the word was last printed, ``ABSENT`` where that is not known."""
         return int(self._last[self._keys.index(key)])
 
-    def said(self, key: str, count: int) -> str:
+    def print_word(self, key: str, count: int) -> str:
         """The word as a text that the caller puts into a line of his own; it counts as printed."""
         word = self._words[key]
         _check_range(word, np.array([count], np.int64))
         self.remember(key, count)
-        return word.letter + word.format.of_count(count) + word.closing
+        return word.letter + word.format.text_of_count(count) + word.closing
 
     @property
-    def skips(self) -> bool:
+    def skips_blocks(self) -> bool:
         """Whether blocks begin with the block-skip sign."""
         return len(self._skip) > 0
 
-    def skip_blocks(self, on: bool) -> None:
+    def set_block_skip(self, on: bool) -> None:
         """Begin the blocks that follow with the block-skip sign, or no longer."""
         self._skip = np.frombuffer(b"/" if on else b"", np.uint8)
 
-    def lines(self, lines: Iterable[str]) -> None:
+    def write_lines(self, lines: Iterable[str]) -> None:
         """Write lines of text, a block each."""
         texts = list(lines)
         if not texts:
@@ -328,7 +328,7 @@ class BlockWriter:
         before = np.arange(len(texts) + 1)
         self._emit(no_words, none, before, before[:-1], texts, self._rule[:0], self._spelling[:0], self._last[:0])
 
-    def table(
+    def write_table(
         self,
         columns: Mapping[str, Ints],
         forced: Mapping[str, bool | Ints] | None = None,
@@ -380,7 +380,7 @@ class BlockWriter:
         encoded = [text.encode() for text in texts]
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
-        heads = ROOM_OF_NUMBER + len(self._letter) + 1
+        heads = BLOCK_NUMBER_BYTES + len(self._letter) + 1
         width = heads + len(rule) * _WIDEST_WORD + 1
         text_room = sum(len(encoded[k]) + heads + 1 for k in line_of)
         out = np.empty(table.shape[1] * width + text_room, np.uint8)
@@ -432,7 +432,7 @@ def _check_range(word: Word, column: Ints) -> None:
     ):
         if beyond and count != ABSENT:
             what = f"word {word.letter}{count / scale:g} is beyond {limit:g}"
-            raise Refused(Problem("program", 0, what, "see the limits of the word's format in the definition"))
+            raise RefusedError(Problem("program", 0, what, "see the limits of the word's format in the definition"))
 
 
 def _rule(word: Word) -> list[int]:

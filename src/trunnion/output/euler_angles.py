@@ -5,7 +5,7 @@ import math
 from trunnion.arrays import Floats
 
 
-def about_three(matrix: Floats, order: tuple[int, int, int]) -> tuple[float, float, float]:
+def tait_bryan_angles(matrix: Floats, order: tuple[int, int, int]) -> tuple[float, float, float]:
     """Three angles, degrees, that turn the program's axes into those of a plane, each about an axis already turned.
 
     Parameters
@@ -30,7 +30,7 @@ def about_three(matrix: Floats, order: tuple[int, int, int]) -> tuple[float, flo
     return math.degrees(a), math.degrees(b), math.degrees(c)
 
 
-def about_first_and_third(matrix: Floats) -> tuple[float, float, float]:
+def euler_zxz_angles(matrix: Floats) -> tuple[float, float, float]:
     """Three angles, degrees, about Z, the X that has turned with it, and the Z that has turned with both.
 
     The product of the three turns has in its last column sin a sin b, -cos a sin b, cos b and in its last row

@@ -11,12 +11,12 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind
-from trunnion.planning.holes.cycles import cycle_of
+from trunnion.planning.holes.cycles import cycle_from_event
 
 
 def extents(motions: Sequence[Motion]) -> tuple[Floats, Floats] | None:
     """Lower and upper corner, (3,) each, the upper one higher in all coordinates; None where nothing is cut."""
-    places = [place for motion in motions for place in _places(motion)]
+    places = [place for motion in motions for place in _cut_points(motion)]
     cut = np.concatenate(places) if places else np.zeros((0, 3))
     if not len(cut):
         return None
@@ -24,7 +24,7 @@ def extents(motions: Sequence[Motion]) -> tuple[Floats, Floats] | None:
     return low, np.maximum(high, low + 1.0)
 
 
-def _places(motion: Motion) -> list[Floats]:
+def _cut_points(motion: Motion) -> list[Floats]:
     """Where the tip cuts: ends of cuts with the points before them, all of a circle's box, holes from top to bottom."""
     moves, arcs = motion.operation.moves, motion.operation.arcs
     cuts = np.flatnonzero(moves.kind != Kind.RAPID)
@@ -35,5 +35,5 @@ def _places(motion: Motion) -> list[Floats]:
     for event in motion.operation.events:
         if isinstance(event, CycleOn):
             holes = slice(event.row, min(row for row in ends if row > event.row or row == len(moves)))
-            places += [moves.tip[holes], moves.tip[holes] - cycle_of(event).depth * moves.axis[holes]]
+            places += [moves.tip[holes], moves.tip[holes] - cycle_from_event(event).depth * moves.axis[holes]]
     return places

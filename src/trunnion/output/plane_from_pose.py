@@ -12,65 +12,65 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.controls.words import counts
+from trunnion.controls.words import round_to_counts
 from trunnion.machines import Machine, forward, inverse, slide_positions
-from trunnion.model.frames import frame_of
+from trunnion.model.frames import frame_from_vectors
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Frame
-from trunnion.output.euler_angles import about_first_and_third, about_three
+from trunnion.output.euler_angles import euler_zxz_angles, tait_bryan_angles
 
 #: Decimals of vectors that say a plane.
-_VECTOR: Final = 7
+_VECTOR_DECIMALS: Final = 7
 
 #: A position is surely within a limit up to this beyond it, degrees; and is the one that is meant up to this off it.
-_SURE, _NEAR = 5e-7, 0.1
+_LIMIT_TOLERANCE, _SOLUTION_TOLERANCE = 5e-7, 0.1
 
 
-def on_its_pose(machine: Machine, motion: Motion, decimals: int) -> Motion:
+def with_plane_of_pose(machine: Machine, motion: Motion, decimals: int) -> Motion:
     """A motion in a tilted plane, in the plane of its rotary position printed with so many decimals."""
-    rotary = counts(np.ascontiguousarray(motion.rotary[0]), decimals) / 10.0**decimals
+    rotary = round_to_counts(np.ascontiguousarray(motion.rotary[0]), decimals) / 10.0**decimals
     return replace(motion, plane=plane_of_pose(machine, rotary), rotary=np.tile(rotary, (len(motion.rotary), 1)))
 
 
-def inside_limits(machine: Machine, motion: Motion, decimals: int) -> Motion:
+def with_plane_inside_limits(machine: Machine, motion: Motion, decimals: int) -> Motion:
     """A motion whose tilted plane asks for no position beyond a limit when its angles are rounded; itself if it is one.
 
     Where it stands so near to a limit of a rotary axis, the axis keeps from it what rounding three angles comes to, and
     the plane turns along.
     """
-    if motion.plane is None or not _asks_beyond(machine, motion.plane, motion.rotary[0], decimals):
+    if motion.plane is None or not _exceeds_limits(machine, motion.plane, motion.rotary[0], decimals):
         return motion
     margin = 1.5 * 10.0**-decimals
     low, high = machine.limits[list(machine.rotary)].T
     rotary = np.clip(motion.rotary[0], low + margin, high - margin)
     turn = plane_of_pose(machine, rotary).matrix() @ plane_of_pose(machine, motion.rotary[0]).matrix().T
     matrix = turn @ motion.plane.matrix()
-    plane = frame_of(np.array(motion.plane.origin), matrix[:, 0], matrix[:, 1])
+    plane = frame_from_vectors(np.array(motion.plane.origin), matrix[:, 0], matrix[:, 1])
     return replace(motion, plane=plane, rotary=np.tile(rotary, (len(motion.rotary), 1)))
 
 
-def _asks_beyond(machine: Machine, plane: Frame, rotary: Floats, decimals: int) -> bool:
+def _exceeds_limits(machine: Machine, plane: Frame, rotary: Floats, decimals: int) -> bool:
     """Whether a plane asks for a position beyond a limit, said by any three angles or vectors of that many decimals."""
     matrix = plane.matrix()
     spatial, turns = (
-        np.round(about_three(matrix, (2, 1, 0)), decimals),
-        np.round(about_first_and_third(matrix), decimals),
+        np.round(tait_bryan_angles(matrix, (2, 1, 0)), decimals),
+        np.round(euler_zxz_angles(matrix), decimals),
     )
     normals = np.array([
-        (_about(2, spatial[0]) @ _about(1, spatial[1]) @ _about(0, spatial[2]))[:, 2],
-        (_about(2, turns[0]) @ _about(0, turns[1]))[:, 2],
-        np.round(matrix[:, 2], _VECTOR),
+        (_rotation(2, spatial[0]) @ _rotation(1, spatial[1]) @ _rotation(0, spatial[2]))[:, 2],
+        (_rotation(2, turns[0]) @ _rotation(0, turns[1]))[:, 2],
+        np.round(matrix[:, 2], _VECTOR_DECIMALS),
     ])  # fmt: skip
     asked = inverse(machine, np.zeros((3, 3)), normals).joints[..., list(machine.rotary)] - rotary
     asked -= 360.0 * np.rint(asked / 360.0)
     nearest = np.take_along_axis(asked, np.abs(asked).sum(axis=2, keepdims=True).argmin(axis=0)[None], axis=0)[0]
     low, high = machine.limits[list(machine.rotary)].T
-    near_pole = np.abs(nearest) > _NEAR  # there one angle is free, and no rounding has turned it so far
-    beyond = (rotary + nearest < low - _SURE) | (rotary + nearest > high + _SURE)
+    near_pole = np.abs(nearest) > _SOLUTION_TOLERANCE  # there one angle is free, and no rounding has turned it so far
+    beyond = (rotary + nearest < low - _LIMIT_TOLERANCE) | (rotary + nearest > high + _LIMIT_TOLERANCE)
     return bool((beyond & ~near_pole).any())
 
 
-def _about(axis: int, angle: float) -> Floats:
+def _rotation(axis: int, angle: float) -> Floats:
     """(3, 3): a turn about X, Y or Z (0, 1, 2) by degrees."""
     cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     one, two = (axis + 1) % 3, (axis + 2) % 3
@@ -88,10 +88,10 @@ def plane_of_pose(machine: Machine, rotary: Floats) -> Frame:
         forward(replace(machine, spindle_direction=direction), joints)[1][0]
         for direction in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     )
-    return frame_of(np.zeros(3), x, y)
+    return frame_from_vectors(np.zeros(3), x, y)
 
 
-def carried_along(machine: Machine, place: Floats, before: Motion, after: Motion) -> Floats:
+def tip_after_turn(machine: Machine, place: Floats, before: Motion, after: Motion) -> Floats:
     """Where a tool at ``place`` (3,) of one motion's plane is in that of the next, once the rotary axes have turned.
 
     The slides stand still meanwhile, mm.

@@ -8,40 +8,40 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.controls.family import FamilyWriter
+from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.template import Value
 from trunnion.errors import InputError, Problem
 from trunnion.machines import inverse
-from trunnion.machines.motion_time import clock
+from trunnion.machines.motion_time import format_duration
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import LoadTool, Sense, SpindleOn
 from trunnion.output.extents import extents
-from trunnion.output.program import Program, angle_counts, setting_of, words_of
-from trunnion.planning import seconds
+from trunnion.output.program import Program, effective_setting, motion_block_words, rotary_counts
+from trunnion.planning import operation_seconds
 
-_UNKNOWN = (None, None, None)
+_NO_POSITION = (None, None, None)
 
 #: The setting ``blank`` of controls with a block form: the box round all that is cut.
 EXTENTS = "extents"
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class LoadedTool:
     """The tool in the spindle: how the program calls it, and its name; both empty before the first."""
 
     call: str = ""
     name: str = ""
 
 
-class Printed:
+class TemplateValues:
     """Works the values out; keeps the times of operations, which take long."""
 
     def __init__(self, program: Program) -> None:
         self._program = program
         self._family: FamilyWriter = program.control.family
-        self._seconds: list[float] = []
+        self._second_angle_ranges: list[float] = []
 
-    def values(self, motion: Motion, number: int, held: Held, spindle: SpindleOn | None) -> dict[str, Value]:
+    def values(self, motion: Motion, number: int, loaded: LoadedTool, spindle: SpindleOn | None) -> dict[str, Value]:
         """What templates may print in this operation.
 
         Parameters
@@ -64,69 +64,77 @@ class Printed:
         machine, control, tool = program.machine, program.control, operation.tool
         values: dict[str, Value] = {**control.settings, **program.settings}
         if values.get("blank") == EXTENTS:
-            values["blank"] = self._box()
-        values |= self._family.values(values, None if motion.plane is None else motion.plane.matrix())
+            values["blank"] = self._cut_extents()
+        values |= self._family.template_values(values, None if motion.plane is None else motion.plane.matrix())
         if not values.get("tolerance"):
             given = operation.intol is not None and operation.outtol is not None
             values["tolerance"] = (
                 (operation.intol or 0.0) + (operation.outtol or 0.0) if given else values.get("fallback_tolerance")
             )
-        for setting in control.by_method:
-            values[setting] = values[setting] or control.usual(setting, str(values.get("method", "")))
+        for setting in control.method_defaults:
+            values[setting] = values[setting] or control.default_for_method(setting, str(values.get("method", "")))
         ball = tool.kind == "MILL" and tool.diameter > 0 and abs(2 * tool.corner_radius - tool.diameter) < 1e-6
         known = tool.kind != "UNKNOWN"
-        formats = {word.key: word for word in words_of(program, motion)}
+        formats = {word.key: word for word in motion_block_words(program, motion)}
         rotary = {}
         for word, column in (("primary", machine.primary), ("secondary", machine.secondary)):
             angle = motion.rotary[:1, machine.rotary.index(column)]
-            count = int(angle_counts(machine, column, angle, formats[word].format.decimals)[0])
+            count = int(rotary_counts(machine, column, angle, formats[word].format.decimals)[0])
             rotary[word] = machine.axes[column].name
-            rotary[f"{word}_word"] = formats[word].letter + formats[word].format.of_count(count)
+            rotary[f"{word}_word"] = formats[word].letter + formats[word].format.text_of_count(count)
         found: dict[str, Value] = {
             **values,
             **rotary,
-            **self._times(number),
-            **self._plane(motion),
+            **self._machining_times(number),
+            **self._plane_values(motion),
             **spindle_values(program, spindle),
             "subprogram": None,
             "machine": machine.name,
-            **self._home(),
+            **self._home_values(),
             "operation": operation.name,
-            "tool": self._tool_call(motion, held),
+            "tool": self._tool_call(motion, loaded),
             "tool_name": tool.name or None,
             "tool_type": control.tool_types["BALL" if ball else tool.kind] if known else None,
             "tool_diameter": tool.diameter if known else None,
             "tool_length": tool.length if known else None,
             "tool_corner_radius": tool.corner_radius if known else None,
             "gauge_length": machine.tool_length,
-            **dict(zip(("zero_x", "zero_y", "zero_z"), machine.workpiece_zero or _UNKNOWN, strict=True)),
+            **dict(zip(("zero_x", "zero_y", "zero_z"), machine.workpiece_zero or _NO_POSITION, strict=True)),
             "intol": operation.intol,
             "outtol": operation.outtol,
         }
-        return {name: self._family.inside(value) if isinstance(value, str) else value for name, value in found.items()}
+        return {
+            name: self._family.escape_comment(value) if isinstance(value, str) else value
+            for name, value in found.items()
+        }
 
-    def _box(self) -> str:
+    def _cut_extents(self) -> str:
         """The corners of the block form round all that is cut; empty where nothing is."""
         found = extents(self._program.motions)
         return "" if found is None else ",".join(f"{value:g}" for value in np.concatenate(found).tolist())
 
-    def _times(self, number: int) -> dict[str, Value]:
+    def _machining_times(self, number: int) -> dict[str, Value]:
         """What the operation and all of them take, as people read it; worked out only where a template prints it."""
         fields = {name for template in self._program.control.templates.values() for name, _ in template.fields()}
         if not fields & {"time", "total_time"}:
             return {"time": None, "total_time": None}
-        if not self._seconds:
-            self._seconds = [seconds(self._program.machine, each) for each in self._program.motions]
-        return {"time": clock(self._seconds[number]), "total_time": clock(sum(self._seconds))}
+        if not self._second_angle_ranges:
+            self._second_angle_ranges = [
+                operation_seconds(self._program.machine, each) for each in self._program.motions
+            ]
+        return {
+            "time": format_duration(self._second_angle_ranges[number]),
+            "total_time": format_duration(sum(self._second_angle_ranges)),
+        }
 
-    def _tool_call(self, motion: Motion, held: Held) -> str:
+    def _tool_call(self, motion: Motion, loaded: LoadedTool) -> str:
         """The tool as ``T=`` takes it: the run's setting, the number of LOAD/TOOL, or else the tool's name."""
         operation = motion.operation
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
-        number, name = setting_of(self._program, "tool"), operation.tool.name
-        if held.call and not loads and name == held.name:
-            return held.call
-        if name and (setting_of(self._program, "tool_call") == "name" or not (number or loads)):
+        number, name = effective_setting(self._program, "tool"), operation.tool.name
+        if loaded.call and not loads and name == loaded.name:
+            return loaded.call
+        if name and (effective_setting(self._program, "tool_call") == "name" or not (number or loads)):
             return self._family.tool_call(0, name, by_name=True)
         if number:
             return number
@@ -135,7 +143,7 @@ class Printed:
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(Problem(self._program.file, operation.line, what, "write --set tool=NUMBER"))
 
-    def _plane(self, motion: Motion) -> dict[str, Value]:
+    def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """What templates of all families may print of a tilted plane: its origin and the side of the machine.
 
         The side is -1 or 1: of the two solutions that stand the tool on the plane, the one with the lower or the higher
@@ -154,7 +162,7 @@ class Printed:
         sign = "-" if motion.rotary[0, 1] < 0.0 else "+"
         return {**dict(zip(names, motion.plane.origin, strict=True)), "plane_side": side, "plane_sign": sign}
 
-    def _home(self) -> dict[str, Value]:
+    def _home_values(self) -> dict[str, Value]:
         """The machine's home, for templates that say it in positions of the machine."""
         machine = self._program.machine
         axes = machine.axes

@@ -5,11 +5,11 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from trunnion.controls.definition import Control
-from trunnion.controls.family import HOLES, IN_PLANES, UnsayableError
+from trunnion.controls.family_writer import HOLES_IN_PLANES, HOLES_SETTING, UnsupportedFeatureError
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import Problem, Severity
-from trunnion.machines import Carries
-from trunnion.model.motion import Manner, Motion
+from trunnion.machines import Mount
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -20,24 +20,32 @@ from trunnion.model.toolpath import (
     GoHome,
     Kind,
     LoadTool,
-    Mode,
     SelectTool,
     Sense,
+    SetMode,
     SpindleOff,
     SpindleOn,
 )
-from trunnion.output.axis_coordinates import TIP, feed_format, feed_rule, feeds, slides_of
-from trunnion.output.hole_positions import check_positions
-from trunnion.output.program import Program, kind_of, setting_of, settings_of, words_of
-from trunnion.output.tool_vectors import first_elsewhere
-from trunnion.planning.holes.cycles import Cycle, CycleError, Turning, UnsaidError, cycle_of, feed_of, turning
+from trunnion.output.axis_coordinates import FEED_AT_TIP, feed_format, feed_rule, feed_words, to_axis_coordinates
+from trunnion.output.hole_positions import check_holes_under_tcp
+from trunnion.output.program import Program, effective_setting, effective_settings, motion_block_words, template_suffix
+from trunnion.output.tool_vectors import first_row_at_other_pose
+from trunnion.planning.holes.cycles import (
+    Cycle,
+    HoleCycleError,
+    SpindleState,
+    UnsupportedCycleError,
+    cycle_feed,
+    cycle_from_event,
+    spindle_state_at,
+)
 
 #: A feed that is off by more than this part of itself for being rounded is told.
-_COARSE = 0.01
+_ROUNDING_LIMIT = 0.01
 
 
 #: Statements about the form of a program that every program meets.
-_FOLLOWED = {("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULTAX",), ("MULTAX", "ON")}
+_DEFAULT_MODES = {("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULTAX",), ("MULTAX", "ON")}
 
 
 def check_program(program: Program) -> list[Problem]:
@@ -45,19 +53,19 @@ def check_program(program: Program) -> list[Problem]:
     problems = []
     spindle, in_spindle = False, ""
     rpm: float | None = None
-    held = Turning(1.0, Sense.CLW)  # where nobody says otherwise
+    held = SpindleState(1.0, Sense.CLW)  # where nobody says otherwise
     for motion in program.motions:
         operation = motion.operation
         moves = operation.moves
         problems += _hole_problems(program, motion, held)
-        held = turning(operation.events, len(moves), held) or held
+        held = spindle_state_at(operation.events, len(moves), held) or held
         for event in operation.events:
             rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
             problems += _event_problems(program, motion, event, rpm)
-        if motion.manner is Manner.TCP and program.control.only_vectors:
-            problems += _not_by_vectors(program, motion)
+        if motion.mode is MachiningMode.TCP and program.control.vectors_exclude_angles:
+            problems += _tool_vector_problems(program, motion)
         problems += _normal_problems(program, motion)
-        if motion.manner is Manner.WITHOUT_TCP and kind_of(program, motion):
+        if motion.mode is MachiningMode.WITHOUT_TCP and template_suffix(program, motion):
             problems += _problems_without_tcp(program, motion)
         unfed = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
         if len(unfed):
@@ -66,61 +74,61 @@ def check_program(program: Program) -> list[Problem]:
                     program.file, int(moves.line[unfed[0]]), "cutting motion without a feed", "put FEDRAT before it"
                 )
             )
-        problems += _coarse_feeds(program, motion)
-        refused = program.control.family.refused(operation, spindle)
-        problems += [Problem(program.file, line, why.what, why.cure) for line, why in refused]
-        if not motion.begins:
-            problems += _no_way_on(program, motion)
+        problems += _rounded_feed_problems(program, motion)
+        unsupported = program.control.family.validate_operation(operation, spindle)
+        problems += [Problem(program.file, line, why.what, why.cure) for line, why in unsupported]
+        if not motion.starts_operation:
+            problems += _next_axis_problems(program, motion)
             continue
         spindle = spindle or any(isinstance(e, SpindleOn) for e in operation.events)
         if not spindle:
             what = f"operation {operation.name} has no spindle speed"
             problems.append(Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING))
-        loaded = any(isinstance(e, LoadTool) for e in operation.events) or setting_of(program, "tool")
+        loaded = any(isinstance(e, LoadTool) for e in operation.events) or effective_setting(program, "tool")
         stays = not loaded and operation.tool.name == in_spindle
         if not loaded and operation.tool.name and not stays:
             what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
             problems.append(
                 Problem(program.file, operation.line, what, "--set tool=NUMBER calls it by number", Severity.WARNING)
             )
-        if operation.tool.name and (not (loaded or stays) or setting_of(program, "tool_call") == "name"):
-            problems += _unsaid(program, operation.line, _call_by_name, program.control, operation.tool.name)
+        if operation.tool.name and (not (loaded or stays) or effective_setting(program, "tool_call") == "name"):
+            problems += _unsupported(program, operation.line, _call_by_name, program.control, operation.tool.name)
         in_spindle = operation.tool.name
-        if not kind_of(program, motion):
-            what = f"operation {operation.name}: {program.control.name} has no words for {motion.manner}"
-            problems.append(Problem(program.file, operation.line, what, "--set manner=… says another manner"))
+        if not template_suffix(program, motion):
+            what = f"operation {operation.name}: {program.control.name} has no words for {motion.mode}"
+            problems.append(Problem(program.file, operation.line, what, "--set mode=… sets another mode"))
         tolerance = operation.intol is not None and operation.outtol is not None
-        if _asks_tolerance(program, motion) and not tolerance and not setting_of(program, "tolerance"):
-            fallback = setting_of(program, "fallback_tolerance")
+        if _needs_tolerance(program, motion) and not tolerance and not effective_setting(program, "tolerance"):
+            fallback = effective_setting(program, "fallback_tolerance")
             what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
             problems.append(Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING))
-    return [*problems, *_left_skipping(program)]
+    return [*problems, *_block_skip_problems(program)]
 
 
-def _coarse_feeds(program: Program, motion: Motion) -> list[Problem]:
+def _rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     """The first feed of an operation that prints as none, and the first that its last digit makes quite another one."""
     moves, form = motion.operation.moves, program.control.number_formats(motion.three_axis)["feed"]
-    if motion.manner is Manner.WITHOUT_TCP or not len(moves):
+    if motion.mode is MachiningMode.WITHOUT_TCP or not len(moves):
         return []
     anew = np.flatnonzero(np.diff(moves.feed, prepend=np.nan) != 0.0)
     said = anew[(moves.kind[anew] != Kind.RAPID) & (moves.feed[anew] > 0.0)]
-    each = (_coarse(form, float(moves.feed[k]), bool(moves.per_rev[k])) for k in said.tolist())
+    each = (_rounding_problem(form, float(moves.feed[k]), bool(moves.per_rev[k])) for k in said.tolist())
     problems = [Problem(program.file, int(moves.line[k]), *why) for k, why in zip(said, each, strict=True) if why]
     return sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)[:1]
 
 
-def _coarse(form: NumberFormat, feed: float, per_rev: bool) -> tuple[str, str, Severity] | None:
+def _rounding_problem(form: NumberFormat, feed: float, per_rev: bool) -> tuple[str, str, Severity] | None:
     """What a format makes of a feed: none, or quite another one; None where it says the feed."""
     printed = round(feed, form.decimals)
     cure = "say it in mm/min (MMPM)" if per_rev else "raise it"
     if printed < form.least:
         return f"a feed of {feed:g} is less than the control can be told", cure, Severity.ERROR
-    if abs(printed - feed) > _COARSE * feed:
+    if abs(printed - feed) > _ROUNDING_LIMIT * feed:
         return f"a feed of {feed:g} prints as {printed:g}", cure, Severity.WARNING
     return None
 
 
-def _left_skipping(program: Program) -> list[Problem]:
+def _block_skip_problems(program: Program) -> list[Problem]:
     """Operations that end, or turn to another plane, while blocks are marked to be skipped.
 
     What leads away from an operation is for every run. A turn is not: without it the blocks behind are somewhere else.
@@ -132,7 +140,7 @@ def _left_skipping(program: Program) -> list[Problem]:
         for event in motion.operation.events:
             if isinstance(event, BlockSkip):
                 on = event if event.on else None
-        if on is not None and (k + 1 == len(motions) or motions[k + 1].begins):
+        if on is not None and (k + 1 == len(motions) or motions[k + 1].starts_operation):
             what = f"OPSKIP/ON ends with operation {motion.operation.name}: the way home cannot be skipped"
             problems.append(Problem(program.file, on.line, what, "write OPSKIP/OFF", Severity.WARNING))
             on = None
@@ -143,30 +151,30 @@ def _left_skipping(program: Program) -> list[Problem]:
     return problems
 
 
-def _no_way_on(program: Program, motion: Motion) -> list[Problem]:
+def _next_axis_problems(program: Program, motion: Motion) -> list[Problem]:
     """What is lacking where an operation goes on from home under another tool axis."""
-    kind = kind_of(program, motion)
+    kind = template_suffix(program, motion)
     if motion.plane is not None or not kind or f"next_axis_{kind}" in program.control.templates:
         return []
     moves, name = motion.operation.moves, program.control.name
-    what = f"holes along another axis than the one before, {motion.manner}: {name} is not told how to go on from home"
+    what = f"holes along another axis than the one before, {motion.mode}: {name} is not told how to go on from home"
     cure = f"write the template next_axis_{kind} into the control's definition, or split the operation"
     return [Problem(program.file, int(moves.line[0]), what, cure)]
 
 
-def _asks_tolerance(program: Program, motion: Motion) -> bool:
+def _needs_tolerance(program: Program, motion: Motion) -> bool:
     """Whether an operation's beginning depends on its tolerance, and has none of its own."""
-    names = "operation_start", f"approach_{kind_of(program, motion)}"
+    names = "operation_start", f"approach_{template_suffix(program, motion)}"
     templates = [program.control.templates[name] for name in names if name in program.control.templates]
     fields = {name for each in templates for name, _ in each.fields()}
     return "tolerance" in fields and "three_axis_tolerance" not in fields
 
 
-def _unsaid(program: Program, line: int, say: Callable[..., object], *arguments: object) -> list[Problem]:
+def _unsupported(program: Program, line: int, say: Callable[..., object], *arguments: object) -> list[Problem]:
     """Why the control cannot say something; empty where it can."""
     try:
         say(*arguments)
-    except UnsayableError as why:
+    except UnsupportedFeatureError as why:
         return [Problem(program.file, line, why.what, why.cure)]
     return []
 
@@ -181,8 +189,8 @@ def _event_problems(program: Program, motion: Motion, event: Event, rpm: float |
     rows = len(operation.moves)
     if isinstance(event, Dwell):
         formats = control.number_formats(motion.three_axis)
-        return _unsaid(program, event.line, control.family.dwell, event, rpm, formats)
-    if isinstance(event, LoadTool) and (event.row > 0 or not motion.begins):
+        return _unsupported(program, event.line, control.family.dwell, event, rpm, formats)
+    if isinstance(event, LoadTool) and (event.row > 0 or not motion.starts_operation):
         return [Problem(*place, "tool change within an operation", "begin a new operation with the new tool")]
     if isinstance(event, CutterComp) and event.side == "ON":
         return [Problem(*place, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
@@ -191,7 +199,7 @@ def _event_problems(program: Program, motion: Motion, event: Event, rpm: float |
     if isinstance(event, SelectTool):
         what = f"SELECT/TOOL,{event.number} is not written: the control is told of a tool when it is changed to"
         return [Problem(*place, what, "INSERT/ says what the tool changer wants", Severity.WARNING)]
-    if isinstance(event, Mode) and event.words not in _FOLLOWED:
+    if isinstance(event, SetMode) and event.words not in _DEFAULT_MODES:
         what = f"{event.words[0]}/{','.join(event.words[1:])} is not followed: the control's definition has the form"
         return [Problem(*place, what, "compare the program with what it asks for", Severity.WARNING)]
     if isinstance(event, Coolant) and event.kind not in program.control.coolant:
@@ -200,11 +208,11 @@ def _event_problems(program: Program, motion: Motion, event: Event, rpm: float |
     return []
 
 
-def _not_by_vectors(program: Program, motion: Motion) -> list[Problem]:
+def _tool_vector_problems(program: Program, motion: Motion) -> list[Problem]:
     """That an operation is said by rotary positions, though vectors are wanted: why, and where."""
-    if not program.control.by_vectors(program.settings):
+    if not program.control.uses_tool_vectors(program.settings):
         return []
-    row = first_elsewhere(program.machine, motion, words_of(program, motion))
+    row = first_row_at_other_pose(program.machine, motion, motion_block_words(program, motion))
     if row < 0:
         return []
     what = "for the tool's vector here the control could choose another rotary position than the planned one: operation"
@@ -221,10 +229,10 @@ def _normal_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     place, name = (program.file, operation.line), operation.name
     off = "leave the setting normals out"
-    if motion.manner is Manner.WITHOUT_TCP:
+    if motion.mode is MachiningMode.WITHOUT_TCP:
         what = f"operation {name}: surface normals without TCP, where X, Y and Z are slides"
         problems.append(Problem(*place, what, off))
-    if motion.manner is Manner.TCP and setting_of(program, "orientation") != "vector":
+    if motion.mode is MachiningMode.TCP and effective_setting(program, "orientation") != "vector":
         what = f"operation {name}: with TCP the control would stand the tool on the surface's normal"
         problems.append(Problem(*place, what, "--set orientation=vector says the tool axis beside it"))
     if len(operation.arcs.row):
@@ -251,19 +259,19 @@ def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
         what = "cutter radius compensation without TCP would be that of the slides"
         problems.append(Problem(program.file, operation.line, what, "output the path without CUTCOM"))
     formats = program.control.number_formats(motion.three_axis)
-    slides = slides_of(program.machine, motion, formats["angle"].decimals)
-    cuts = slides.turns & (moves.kind != Kind.RAPID) & (moves.feed > 0)
+    slides = to_axis_coordinates(program.machine, motion, formats["angle"].decimals)
+    cuts = slides.rotary_moves & (moves.kind != Kind.RAPID) & (moves.feed > 0)
     turned = np.flatnonzero(cuts & moves.per_rev)
     if len(turned):
         what = "a feed per revolution without TCP while rotary axes turn"
         problems.append(Problem(program.file, int(moves.line[turned[0]]), what, "output it in mm/min (FEDRAT/MMPM)"))
     rows = np.flatnonzero(cuts)
-    rule = feed_rule(program.control, settings_of(program))
+    rule = feed_rule(program.control, effective_settings(program))
     form = formats[feed_format(rule)]
-    _, slow, fast = feeds(slides.at(rows), moves.feed[rows], rule, form)
+    _, slow, fast = feed_words(slides.select(rows), moves.feed[rows], rule, form)
     if slow.any():
         row = int(rows[np.argmax(slow)])
-        took = slides.length[row] / moves.feed[row]
+        took = slides.tip_length[row] / moves.feed[row]
         what = f"a block takes {took:.0f} minutes; inverse time has room for {1.0 / form.least:g}"
         cure = "output the toolpath with points nearer to each other, or a higher feed"
         if rule != "inverse_time":
@@ -273,11 +281,11 @@ def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
         what = f"{int(fast.sum())} blocks so short that F would be above {form.greatest:g}: they take as long as that"
         place = program.file, int(moves.line[rows[np.argmax(fast)]])
         problems.append(Problem(*place, what, "a wider tolerance puts fewer points in", Severity.WARNING))
-    heads = [axis.name for axis in program.machine.axes if axis.is_rotary and axis.carries is Carries.TOOL]
-    if rule == TIP and heads:
+    heads = [axis.name for axis in program.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
+    if rule == FEED_AT_TIP and heads:
         what = f"rotary_feed is tip, and {' and '.join(heads)} turns in the head, which the control leaves out"
         problems.append(Problem(program.file, operation.line, what, "leave the setting rotary_feed out"))
-    shorter = np.flatnonzero(slides.shortest.any(axis=1))
+    shorter = np.flatnonzero(slides.wraps.any(axis=1))
     if len(shorter) and "primary_shortest" not in program.control.family.WORDS and not program.control.shorter_way:
         what = "a rotary axis goes past the end of the turn that it displays, and would go the longer way"
         cure = 'write output = "none" for the axis in the machine\'s definition'
@@ -285,64 +293,66 @@ def _problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
     return problems
 
 
-def why_unsaid(control: Control, settings: Mapping[str, str]) -> Callable[[Cycle, Turning | None], str]:
+def unsupported_cycle_reasons(
+    control: Control, settings: Mapping[str, str]
+) -> Callable[[Cycle, SpindleState | None], str]:
     """Why a control has no cycle for a hole; empty where it has, or where the CL file leaves something out."""
     known = {**control.settings, **{key: value for key, value in settings.items() if value}}
     formats = control.number_formats(three_axis=True)
 
-    def why(cycle: Cycle, spindle: Turning | None) -> str:
+    def why(cycle: Cycle, spindle: SpindleState | None) -> str:
         try:
-            control.family.hole_call(cycle, 0.0, spindle, known, formats)
-        except UnsaidError as error:
+            control.family.cycle_call(cycle, 0.0, spindle, known, formats)
+        except UnsupportedCycleError as error:
             return error.what
-        except CycleError:
+        except HoleCycleError:
             pass
         return ""
 
     return why
 
 
-def _hole_problems(program: Program, motion: Motion, held: Turning) -> list[Problem]:
+def _hole_problems(program: Program, motion: Motion, held: SpindleState) -> list[Problem]:
     """What the cycles of a motion ask for and this control cannot be told; ``held``: the spindle before it."""
     if not any(isinstance(event, CycleOn) for event in motion.operation.events):
         return []
     operation, problems = motion.as_written(), list[Problem]()
-    moves, settings = operation.moves, settings_of(program)
-    turns = motion.manner is Manner.TCP and program.control.turns_between_holes(settings)
-    level = {} if turns else {HOLES: IN_PLANES}
+    moves, settings = operation.moves, effective_settings(program)
+    turns = motion.mode is MachiningMode.TCP and program.control.turns_between_holes(settings)
+    level = {} if turns else {HOLES_SETTING: HOLES_IN_PLANES}
     told: list[Problem] = []
     for event in operation.events:
         if not isinstance(event, CycleOn):
             continue
         try:
-            cycle = cycle_of(event)
-            if motion.manner in (Manner.TCP, Manner.WITHOUT_TCP) and not turns:
-                how = "with TCP" if motion.manner is Manner.TCP else "without TCP"
-                what = f"CYCLE/{cycle.making} {how}: no cycle goes along a tilted axis there, and no motion can make it"
-                planes = Manner.TILTED in program.control.manners(settings_of(program))
+            cycle = cycle_from_event(event)
+            if motion.mode in (MachiningMode.TCP, MachiningMode.WITHOUT_TCP) and not turns:
+                how = "with TCP" if motion.mode is MachiningMode.TCP else "without TCP"
+                what = f"CYCLE/{cycle.method} {how}: no cycle goes along a tilted axis there, and no motion can make it"
+                planes = MachiningMode.TILTED in program.control.modes(effective_settings(program))
                 cure = (
-                    "leave the setting manner out, or end the cut before the tool axis changes"
+                    "leave the setting mode out, or end the cut before the tool axis changes"
                     if planes
                     else "clamp the part so that these holes stand along +Z, or post for a control with tilted planes"
                 )
-                if HOLES in settings and motion.manner is Manner.TCP:
-                    cure += f", or turn the tool from hole to hole (--set {HOLES}=…)"
-                raise CycleError(what, cure)
-            spindle = turning(operation.events, event.row, held)
+                if HOLES_SETTING in settings and motion.mode is MachiningMode.TCP:
+                    cure += f", or turn the tool from hole to hole (--set {HOLES_SETTING}=…)"
+                raise HoleCycleError(what, cure)
+            spindle = spindle_state_at(operation.events, event.row, held)
             formats = program.control.number_formats(motion.three_axis)
-            program.control.family.hole_call(cycle, 0.0, spindle, settings | level, formats)
-            feed, per_rev = feed_of(cycle, spindle, float(moves.feed[event.row]), False)
+            program.control.family.cycle_call(cycle, 0.0, spindle, settings | level, formats)
+            feed, per_rev = cycle_feed(cycle, spindle, float(moves.feed[event.row]), False)
             if not feed > 0.0:
-                raise CycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
-            coarse = _coarse(formats["feed"], feed, per_rev) if not cycle.making.startswith("TAP") else None
+                raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
+            coarse = _rounding_problem(formats["feed"], feed, per_rev) if not cycle.method.startswith("TAP") else None
             if coarse:
                 told.append(Problem(program.file, event.line, *coarse))
-            low = event.row > 0 and moves.tip[event.row - 1, 2] < moves.tip[event.row, 2] + cycle.above - 1e-6
+            low = event.row > 0 and moves.tip[event.row - 1, 2] < moves.tip[event.row, 2] + cycle.rapid_height - 1e-6
             if low and not turns and moves.kind[event.row - 1] != Kind.RAPID:
                 cure = "draw the tool back before the cycle"
-                raise CycleError("CYCLE while the tool is below the height of RAPTO", cure)
-        except CycleError as error:
+                raise HoleCycleError("CYCLE while the tool is below the height of RAPTO", cure)
+        except HoleCycleError as error:
             problems.append(Problem(program.file, event.line, error.what, error.cure))
     if turns and not problems:
-        problems = [Problem(program.file, e.line, e.what, e.cure) for e in check_positions(operation)]
+        problems = [Problem(program.file, e.line, e.what, e.cure) for e in check_holes_under_tcp(operation)]
     return [*problems, *told]

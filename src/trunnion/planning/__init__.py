@@ -6,13 +6,13 @@ Out:    ``Motion``: the same operations in the program's coordinate system, with
 Knows nothing of text, neither of CL files nor of NC programs.
 """
 
-from trunnion.planning.options import Wishes
+from trunnion.planning.options import PlanOptions
 from trunnion.planning.planner import plan
-from trunnion.planning.poses.placement import lean, straight_on
-from trunnion.planning.retracts.clearance import Clearance, Surface
-from trunnion.planning.speed.operation_time import seconds
+from trunnion.planning.poses.placement import follow_nearest, solve_rotary
+from trunnion.planning.retracts.clearance import Clearance, ClearanceSurface
+from trunnion.planning.speed.operation_time import operation_seconds
 
 #: Kernels that most programs need.
-KERNELS = (lean, straight_on)
+KERNELS = (solve_rotary, follow_nearest)
 
-__all__ = ["KERNELS", "Clearance", "Surface", "Wishes", "plan", "seconds"]
+__all__ = ["KERNELS", "Clearance", "ClearanceSurface", "PlanOptions", "operation_seconds", "plan"]

@@ -17,38 +17,41 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine, forward
-from trunnion.model.frames import frame_of
-from trunnion.model.motion import Manner
+from trunnion.model.frames import frame_from_vectors
+from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import Frame, Operation
-from trunnion.planning.options import Wishes
+from trunnion.planning.options import PlanOptions
 
 _UP: Final = np.array([0.0, 0.0, 1.0])
 
 #: Tool axes are the same when no component differs by more than this; CL files print seven decimals or more.
-_SAME = 1e-7
+_SAME_AXIS = 1e-7
 
 #: A coordinate system stands on the tool axis when they differ by no more than this sine; seven decimals twice.
-_ALONG = 1e-6
+_PARALLEL_SINE = 1e-6
 
 #: Decimals of a plane's origin, mm: any point of the plane serves, so that it is one which prints whole.
-_WHOLE = 4
+_ORIGIN_DECIMALS = 4
 
 #: X of the program is too close to the tool axis to point the way in the plane below this sine.
-_CLOSE = 1e-3
+_MIN_SINE = 1e-3
 
 
-def manner_of(operation: Operation, wish: Manner | None, level: float = 0.0) -> Manner:
-    """How an operation is to be made; ``wish``: the user's word, or None; ``level`` as in ``Wishes``."""
-    if wish is not None:
-        return wish
+def mode_of(operation: Operation, requested: MachiningMode | None, negligible_tilt: float = 0.0) -> MachiningMode:
+    """How an operation is to be made; ``requested``: the user's word, or None; ``negligible_tilt`` as in
+    ``PlanOptions``."""
+    if requested is not None:
+        return requested
     axis = operation.moves.axis
-    if not _steady(axis, axis[0]):
-        return Manner.TCP
-    upright = _steady(axis[:1], _UP) or (axis[0, 2] > 0.0 and float(np.hypot(axis[0, 0], axis[0, 1])) < level)
-    return Manner.THREE_AXIS if upright else Manner.TILTED
+    if not _is_constant(axis, axis[0]):
+        return MachiningMode.TCP
+    upright = _is_constant(axis[:1], _UP) or (
+        axis[0, 2] > 0.0 and float(np.hypot(axis[0, 0], axis[0, 1])) < negligible_tilt
+    )
+    return MachiningMode.THREE_AXIS if upright else MachiningMode.TILTED
 
 
-def uprighted(operation: Operation) -> Operation:
+def with_exact_upright_axis(operation: Operation) -> Operation:
     """A three-axis operation with its tool axis right on +Z, from which it is off by what nobody prints."""
     moves = operation.moves
     if (moves.axis[0] == _UP).all() and (moves.axis == _UP).all():
@@ -56,38 +59,40 @@ def uprighted(operation: Operation) -> Operation:
     return replace(operation, moves=replace(moves, axis=np.tile(_UP, (len(moves), 1))))
 
 
-def in_other_words(file: str, operation: Operation, manner: Manner, wishes: Wishes) -> tuple[Manner, list[Problem]]:
+def supported_mode(
+    file: str, operation: Operation, mode: MachiningMode, options: PlanOptions
+) -> tuple[MachiningMode, list[Problem]]:
     """The manner that the control has words for, and what there is to say when it is not the one that the rule has."""
-    simultaneous = Manner.TCP if wishes.tcp else Manner.WITHOUT_TCP
-    open_ = wishes.manner is None and simultaneous in wishes.manners
-    if manner is Manner.TILTED and manner not in wishes.manners and open_:
-        what = f"operation {operation.name} stands in a {manner}, for which the control has no words"
-        how = f"it is made {'with TCP' if wishes.tcp else 'without TCP'}"
+    simultaneous = MachiningMode.TCP if options.tcp else MachiningMode.WITHOUT_TCP
+    replaceable = options.mode is None and simultaneous in options.modes
+    if mode is MachiningMode.TILTED and mode not in options.modes and replaceable:
+        what = f"operation {operation.name} stands in a {mode}, for which the control has no words"
+        how = f"it is made {'with TCP' if options.tcp else 'without TCP'}"
         return simultaneous, [Problem(file, operation.line, what, how, Severity.WARNING)]
-    return simultaneous if manner is Manner.TCP else manner, []
+    return simultaneous if mode is MachiningMode.TCP else mode, []
 
 
-def contradictions(file: str, operation: Operation, manner: Manner, wishes: Wishes) -> list[Problem]:
+def mode_conflicts(file: str, operation: Operation, mode: MachiningMode, options: PlanOptions) -> list[Problem]:
     """Why an operation cannot be made in a manner, be it the user's wish or the control's words."""
-    manners, level = wishes.manners, wishes.level
+    modes, negligible_tilt = options.modes, options.negligible_tilt
     axis, line = operation.moves.axis, operation.moves.line
-    if manner not in manners:
-        what = f"operation {operation.name}: the control has no words for {manner}"
-        cure = wishes.cures.get(manner, f"it has words for {', '.join(sorted(manners))}")
+    if mode not in modes:
+        what = f"operation {operation.name}: the control has no words for {mode}"
+        cure = options.mode_remedies.get(mode, f"it has words for {', '.join(sorted(modes))}")
         return [Problem(file, operation.line, what, cure)]
-    if manner is Manner.THREE_AXIS:
-        wanted, what = _UP, "the tool axis is not +Z of the program, and manner is three-axis"
-    elif manner is Manner.TILTED:
-        wanted, what = axis[0], "the tool axis changes, and manner is tilted"
+    if mode is MachiningMode.THREE_AXIS:
+        expected, what = _UP, "the tool axis is not +Z of the program, and mode is three-axis"
+    elif mode is MachiningMode.TILTED:
+        expected, what = axis[0], "the tool axis changes, and mode is tilted"
     else:
         return []
-    off = max(_SAME, level if manner is Manner.THREE_AXIS else 0.0)
-    wrong = np.flatnonzero(np.abs(axis - wanted).max(axis=1) > off)
-    cure = "leave the setting manner out, or split the operation"
+    off = max(_SAME_AXIS, negligible_tilt if mode is MachiningMode.THREE_AXIS else 0.0)
+    wrong = np.flatnonzero(np.abs(axis - expected).max(axis=1) > off)
+    cure = "leave the setting mode out, or split the operation"
     return [Problem(file, int(line[wrong[0]]), f"operation {operation.name}: {what}", cure)] if len(wrong) else []
 
 
-def plane_of(axis: Floats, own: Frame, along: Floats | None = None) -> Frame:
+def tilted_plane(axis: Floats, own_frame: Frame, along: Floats | None = None) -> Frame:
     """The tilted plane under a tool axis, in the program's coordinate system.
 
     Parameters
@@ -100,17 +105,20 @@ def plane_of(axis: Floats, own: Frame, along: Floats | None = None) -> Frame:
     along : (3,) float64, optional
         A direction; without it that of the program's X.
     """
-    if float(np.linalg.norm(np.cross(own.matrix()[:, 2], axis))) < _ALONG and own.matrix()[:, 2] @ axis > 0.0:
-        y, origin = np.cross(axis, np.array(own.x)), np.array(own.origin)
+    if (
+        float(np.linalg.norm(np.cross(own_frame.matrix()[:, 2], axis))) < _PARALLEL_SINE
+        and own_frame.matrix()[:, 2] @ axis > 0.0
+    ):
+        y, origin = np.cross(axis, np.array(own_frame.x)), np.array(own_frame.origin)
     else:
         y, origin = np.cross(axis, [1.0, 0.0, 0.0] if along is None else along), np.zeros(3)
-        if float(np.linalg.norm(y)) < _CLOSE:
+        if float(np.linalg.norm(y)) < _MIN_SINE:
             y = np.cross(axis, [0.0, 0.0, -1.0])
     y = y / np.linalg.norm(y)
-    return frame_of(np.round(origin, _WHOLE) + 0.0, np.cross(y, axis), y)
+    return frame_from_vectors(np.round(origin, _ORIGIN_DECIMALS) + 0.0, np.cross(y, axis), y)
 
 
-def machine_x(machine: Machine, rotary: Floats) -> Floats:
+def machine_x_direction(machine: Machine, rotary: Floats) -> Floats:
     """(3,): the machine's X as the workpiece sees it, with the rotary axes at positions (2,), degrees."""
     joints = np.zeros((2, len(machine.axes)))
     joints[:, list(machine.rotary)] = rotary
@@ -119,7 +127,7 @@ def machine_x(machine: Machine, rotary: Floats) -> Floats:
     return np.asarray(tip[1] - tip[0])
 
 
-def _steady(axis: Floats, wanted: Floats) -> bool:
-    if np.abs(axis[-1] - wanted).max() > _SAME:  # the usual case decides itself without looking at all rows
+def _is_constant(axis: Floats, expected: Floats) -> bool:
+    if np.abs(axis[-1] - expected).max() > _SAME_AXIS:  # the usual case decides itself without looking at all rows
         return False
-    return bool(np.abs(axis - wanted).max() <= _SAME)
+    return bool(np.abs(axis - expected).max() <= _SAME_AXIS)

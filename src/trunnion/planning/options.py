@@ -6,22 +6,22 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
 
-from trunnion.model.motion import Manner, Pole
-from trunnion.planning.holes.cycles import Cycle, Turning
+from trunnion.model.motion import MachiningMode, PoleStrategy
+from trunnion.planning.holes.cycles import Cycle, SpindleState
 from trunnion.planning.retracts.clearance import Clearance
 
 #: How far the tool axis may be off between CL points without TCP, degrees, unless something else is asked.
 AXIS_WITHOUT_TCP: Final = 0.05
 
 
-def _never(cycle: Cycle, spindle: Turning | None) -> str:
+def _never(cycle: Cycle, spindle: SpindleState | None) -> str:
     """Nothing is unsaid."""
     return ""
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
-    """Wishes with their defaults.
+class PlanOptions:
+    """What is asked of a plan, and what the control can do, with defaults.
 
     rewind          insert retreats where an axis must wind back in the cut; False: refuse the program
     clearance       how far the tool draws back along its axis for that
@@ -54,39 +54,39 @@ class Wishes:
                     not looked at, without TCP it is ``AXIS_WITHOUT_TCP``
     """
 
-    rewind: bool = True
+    allow_rewinds: bool = True
     clearance: Clearance = field(default_factory=partial(Clearance, 50.0))
-    engage: float = 0.5
+    reengage_feed_share: float = 0.5
     explain: bool = False
-    manner: Manner | None = None
-    own_manner: Mapping[str, Manner | None] = field(default_factory=dict)
-    manners: frozenset[Manner] = frozenset(Manner)
-    level: float = 0.0
-    cures: Mapping[Manner, str] = field(default_factory=dict)
-    arcs_about_z: bool = False
+    mode: MachiningMode | None = None
+    mode_by_operation: Mapping[str, MachiningMode | None] = field(default_factory=dict)
+    modes: frozenset[MachiningMode] = frozenset(MachiningMode)
+    negligible_tilt: float = 0.0
+    mode_remedies: Mapping[MachiningMode, str] = field(default_factory=dict)
+    only_arcs_about_z: bool = False
     helices_by_angle: bool = False
-    machine_x: bool = False
-    absolute: bool = False
-    pole: Pole = Pole.OFF
+    plane_x_from_machine: bool = False
+    absolute_frame: bool = False
+    pole_strategy: PoleStrategy = PoleStrategy.OFF
     pole_angle: float = 0.1
     lower_feed: bool = False
     helices: bool = True
-    turns: bool = True
+    multi_turn_arcs: bool = True
     arcs_with_tcp: bool = True
-    pose_planes: bool = False
+    planes_from_pose: bool = False
     turns_between_holes: bool = False
     tcp: bool = True
     tip_tolerance: float = 0.005
-    unsaid: Callable[[Cycle, Turning | None], str] = _never
+    unsupported_cycle_reason: Callable[[Cycle, SpindleState | None], str] = _never
     holes_as_motion: bool = False
     axis_tolerance: float | None = None
 
-    def of(self, operation: str) -> "Wishes":
-        """The wishes for the operation of this name."""
-        return replace(self, manner=self.own_manner.get(operation, self.manner))
+    def for_operation(self, operation: str) -> "PlanOptions":
+        """The options for the operation of this name."""
+        return replace(self, mode=self.mode_by_operation.get(operation, self.mode))
 
     @property
-    def axis_between(self) -> float:
+    def axis_tolerance_between_points(self) -> float:
         """How far the tool axis may be off between CL points, degrees; infinite where nobody asks."""
         if self.axis_tolerance is not None:
             return self.axis_tolerance

@@ -3,10 +3,10 @@
 The readers are written from the language of the controls. They share nothing with what writes programs but the machine.
 """
 
-from trunnion.model.axis_positions import joint_rows, wind
-from trunnion.readers.registry import can_read, numbers_lengths, reader_of, run_program
+from trunnion.model.axis_positions import resolve_turns, write_joints
+from trunnion.readers.registry import can_read, reader_of, run_program, uses_length_numbers
 
 #: Kernels that every program needs.
-KERNELS = (wind, joint_rows)
+KERNELS = (resolve_turns, write_joints)
 
-__all__ = ["KERNELS", "can_read", "numbers_lengths", "reader_of", "run_program"]
+__all__ = ["KERNELS", "can_read", "reader_of", "run_program", "uses_length_numbers"]

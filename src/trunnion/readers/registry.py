@@ -6,10 +6,10 @@ from typing import Any
 
 from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES, load_interpreter
-from trunnion.files import Growing
+from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.model.run import Run
-from trunnion.readers.common.interpreter import STEPS, Interpreter
+from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, Interpreter
 from trunnion.readers.common.settings import family_of
 
 
@@ -19,10 +19,10 @@ def run_program(
     *,
     subprograms: Sequence[Path] = (),
     family: str | None = None,
-    step_limit: int = STEPS,
+    step_limit: int = DEFAULT_STEP_LIMIT,
     skip: bool = False,
     shortest: bool | None = None,
-    growing: Growing | None = None,
+    write_progress: WriteProgress | None = None,
 ) -> Run:
     """Read a program and run it on a machine.
 
@@ -58,7 +58,7 @@ def run_program(
     reader = reader_of(machine, family)
     named = tuple(subprograms)
     return reader(Path(path), machine, subprograms=named, step_limit=step_limit, skip=skip, shortest=shortest).run(
-        growing
+        write_progress
     )
 
 
@@ -79,7 +79,7 @@ def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Inte
     return load_interpreter(name)
 
 
-def numbers_lengths(machine: Machine) -> bool:
+def uses_length_numbers(machine: Machine) -> bool:
     """Whether a machine's programs call the length of the tool by a number (H), which is then the column ``edge``."""
     return family_of(machine) in ("fanuc_30i", "linuxcnc")
 

@@ -8,16 +8,16 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem
-from trunnion.files import whole
-from trunnion.reporting.data import data
-from trunnion.reporting.facts import Decided, Facts, facts
-from trunnion.reporting.page import page
-from trunnion.reporting.series import Series, series
+from trunnion.files import atomic_file
+from trunnion.reporting.content import PlanDecision, ReportContent, collect_content
+from trunnion.reporting.html_page import render_page
+from trunnion.reporting.json_report import render_json
+from trunnion.reporting.plot_series import PlotSeries, collect_series
 from trunnion.verification.results import Verification
 
 
 def write_report(
-    verification: Verification, path: Path, *, control: str = "", made: str = "", decisions: Sequence[Decided] = ()
+    verification: Verification, path: Path, *, control: str = "", made: str = "", decisions: Sequence[PlanDecision] = ()
 ) -> None:
     """Write a report: a page for ``.html``, data for ``.json``. The same input makes the same bytes.
 
@@ -39,13 +39,16 @@ def write_report(
     InputError
         When the suffix is another, or the file cannot be written.
     """
-    form = FORMS.get(path.suffix.lower())
-    if form is None:
+    render = RENDERERS.get(path.suffix.lower())
+    if render is None:
         raise InputError(Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json"))
-    with whole(str(path)) as sink:
-        for piece in form(facts(verification, control, made, decisions), series(verification)):
+    with atomic_file(str(path)) as sink:
+        for piece in render(collect_content(verification, control, made, decisions), collect_series(verification)):
             sink.write(piece)
 
 
 #: Suffix -> what makes the bytes, piece by piece.
-FORMS: dict[str, Callable[[Facts, Series], Iterator[bytes]]] = {".html": page, ".json": data}
+RENDERERS: dict[str, Callable[[ReportContent, PlotSeries], Iterator[bytes]]] = {
+    ".html": render_page,
+    ".json": render_json,
+}

@@ -1,36 +1,36 @@
 """Verification: a program, read back and run by itself, against what was wanted of it."""
 
-from trunnion.machines.forward import axis_rows
+from trunnion.machines.forward import tool_axis_rows
 from trunnion.verification.comparison import Comparison, Difference, compare
 from trunnion.verification.context import Settings
-from trunnion.verification.kinematics.axis_motion import walk_rows
-from trunnion.verification.kinematics.point_deviations import compare_rows
-from trunnion.verification.kinematics.rapid_feeds import with_rapids
-from trunnion.verification.matching.expected_path import Agreed, Allowed
-from trunnion.verification.results import Check, Place, Share, Verification
+from trunnion.verification.deviations.point_deviations import compare_rows
+from trunnion.verification.expected.path import DeclaredDeviations, Tolerances
+from trunnion.verification.kinematics.axis_motion import axis_motion_rows
+from trunnion.verification.kinematics.rapid_feeds import restore_rapids
+from trunnion.verification.results import Check, OperationRows, Place, Verification
 from trunnion.verification.text import check_lines, failures, place_line, place_lines, time_lines
 from trunnion.verification.verifier import verify
 
 #: Kernels that every program needs.
-KERNELS = (axis_rows, walk_rows, compare_rows)
+KERNELS = (tool_axis_rows, axis_motion_rows, compare_rows)
 
 __all__ = [
     "KERNELS",
-    "Agreed",
-    "Allowed",
     "Check",
     "Comparison",
+    "DeclaredDeviations",
     "Difference",
+    "OperationRows",
     "Place",
     "Settings",
-    "Share",
+    "Tolerances",
     "Verification",
     "check_lines",
     "compare",
     "failures",
     "place_line",
     "place_lines",
+    "restore_rapids",
     "time_lines",
     "verify",
-    "with_rapids",
 ]

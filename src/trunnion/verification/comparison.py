@@ -15,10 +15,10 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import forward
-from trunnion.model.feed_path import counted
+from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.matching.path_matching import CHUNK, answers, first_meeting
+from trunnion.verification.matching.path_matching import CHUNK, find_resync, workpiece_rows
 
 #: How far ahead the two are searched for a place at which they are the same again.
 _WINDOWS = (8, 64, 512)
@@ -58,19 +58,19 @@ class Comparison:
     count: int
     first: Difference | None
     worst: Difference | None
-    doubts: tuple[str, ...] = ()
+    unknown_words: tuple[str, ...] = ()
 
     @property
     def same(self) -> bool:
         """Whether both programs make the tool do the same."""
-        return self.count == 0 and not self.doubts
+        return self.count == 0 and not self.unknown_words
 
     def lines(self) -> Iterator[str]:
         """What came out, for a terminal."""
         if self.same:
             yield f"same: {self.points} points, tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
             return
-        yield from self.doubts[:5]
+        yield from self.unknown_words[:5]
         yield f"different: {self.count} places, {self.points} points are the same"
         for name, what in (("first", self.first), ("worst", self.worst)):
             if what is not None and (name == "first" or what != self.first):
@@ -95,10 +95,10 @@ class _Side:
 
     def __init__(self, run: Run, with_machine_frame: bool, coolants: dict[str, int], tools: dict[str, int]) -> None:
         self.run = run
-        answering = answers(run)
+        answering = workpiece_rows(run)
         rows = answering.part(0, len(answering))
         if with_machine_frame:
-            rows = np.union1d(rows, run.state.machine_frame.where(True))
+            rows = np.union1d(rows, run.state.machine_frame.rows_with(True))
         self.coolant = _coolant(run, coolants)
         numbers = [tools.setdefault(_tool_name(name), len(tools)) for name in run.tools]
         self.tool = np.array(numbers, np.int64)[run.tool]
@@ -129,7 +129,7 @@ class _Side:
         """Feeds in mm/min, 0 for rapids."""
         run = self.run
         rate = np.where(run.feed_mode[rows] == 95, run.feed[rows] * run.rpm[rows], run.feed[rows])
-        inverse, way = run.feed_mode[rows] == 93, counted(run, rows)
+        inverse, way = run.feed_mode[rows] == 93, row_feed_path_lengths(run, rows)
         free = ~np.isnan(way)
         if inverse.any() or free.any():
             before = np.maximum(rows - 1, 0)
@@ -149,16 +149,16 @@ class _Side:
     def turns(self, k: int) -> int:
         """Whole turns of the circle that motion ``k`` is."""
         m = int(np.searchsorted(self.run.arcs.row, self.rows[k]))
-        return int(self.run.arcs.turns[m])
+        return int(self.run.arcs.full_turns[m])
 
     def name(self, k: int) -> str:
         """Line and block number of a motion, or where the program ends."""
         if not len(self.run):
             return "0"
         row = int(self.rows[k]) if k < len(self.rows) else len(self.run) - 1
-        number = int(self.run.number[row])
+        number = int(self.run.block_number[row])
         end = "" if k < len(self.rows) else ", after its last motion"
-        return f"{int(self.run.block[row])}" + (f" (N{number}{end})" if number >= 0 else f"{end}")
+        return f"{int(self.run.line[row])}" + (f" (N{number}{end})" if number >= 0 else f"{end}")
 
 
 def _tool_name(name: str) -> str:
@@ -317,7 +317,7 @@ class _Comparer:
             if fits[0, 0]:
                 self._note(i, j, 0.0, self._how(int(a[0]), int(b[0]), i, j))
                 return i + 1, j + 1
-            found = first_meeting(fits, (len(a) < window, len(b) < window))
+            found = find_resync(fits, (len(a) < window, len(b) < window))
             if found is not None:
                 break
         else:

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from trunnion.model.run import Happening, Run, Written
-from trunnion.verification.matching.expected_path import Wanted
-from trunnion.verification.matching.path_matching import Pairs
+from trunnion.model.run import ProgrammedWord, Run, RunEvent
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.matching.path_matching import Matching
 from trunnion.verification.results import Check, Place
 
 #: Places that are named one by one in each check.
-NAMED = 8
+MAX_PLACES = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,17 +37,17 @@ class Settings:
     span_tip: float | None = None
     absolute: bool = False
     rapid_feed: float | None = None
-    top_rate: float | None = None
-    top_feed: float | None = None
+    max_inverse_time_feed: float | None = None
+    max_feed: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Case:
-    """One verification; ``wanted`` and ``pairs`` are None without a CL file."""
+class Context:
+    """One verification; ``expected`` and ``matching`` are None without a CL file."""
 
     run: Run
-    wanted: Wanted | None
-    pairs: Pairs | None
+    expected: ExpectedPath | None
+    matching: Matching | None
     settings: Settings
 
     def place(self, row: int, value: float, text: str, cl: int | None = None) -> Place:
@@ -56,38 +56,38 @@ class Case:
         file = run.state.file[row]
         if file:
             text = f"{Path(run.files[file]).name}: {text}"
-        line, number = run.blocks[row], run.numbers[row]
-        if cl is None or self.wanted is None:
+        line, number = run.lines[row], run.block_numbers[row]
+        if cl is None or self.expected is None:
             return Place(line, number, value, text)
-        return Place(line, number, value, text, self.wanted.part_of(cl).file, self.wanted.point(cl).line)
+        return Place(line, number, value, text, self.expected.section_at(cl).file, self.expected.point(cl).line)
 
-    def answering(self, cl: int, value: float, text: str) -> Place:
+    def place_at_cl(self, cl: int, value: float, text: str) -> Place:
         """A place by its row of the CL files, at the motion that answers to it."""
-        assert self.pairs is not None
-        if cl not in self.pairs.cl:
-            return replace(self.missing(cl, text), value=value)
-        return self.place(self.pairs.nc[self.pairs.cl.before(cl)], value, text, cl)
+        assert self.matching is not None
+        if cl not in self.matching.cl:
+            return replace(self.place_of_missing(cl, text), value=value)
+        return self.place(self.matching.nc[self.matching.cl.before(cl)], value, text, cl)
 
-    def missing(self, cl: int, text: str) -> Place:
+    def place_of_missing(self, cl: int, text: str) -> Place:
         """A place by its row of the CL files, where no motion answers to it: the block before which it should stand."""
-        assert self.pairs is not None
-        k = self.pairs.cl.before(cl)
+        assert self.matching is not None
+        k = self.matching.cl.before(cl)
         ends = [event for event in self.run.events if event.kind == "end"]
-        if not len(self.pairs.nc) and ends:
+        if not len(self.matching.nc) and ends:
             # The program ends before the first of them.
             end = self.at(ends[0], 0.0, text)
-            assert self.wanted is not None
-            return replace(end, cl_file=self.wanted.part_of(cl).file, cl_line=self.wanted.point(cl).line)
+            assert self.expected is not None
+            return replace(end, cl_file=self.expected.section_at(cl).file, cl_line=self.expected.point(cl).line)
         if not len(self.run):
             return Place(0, -1, 0.0, text)
-        row = self.pairs.nc[k] if k < len(self.pairs.nc) else self.after(self.pairs.nc[-1] if k else 0)
+        row = self.matching.nc[k] if k < len(self.matching.nc) else self.after(self.matching.nc[-1] if k else 0)
         return self.place(row, 0.0, text, cl)
 
     def after(self, row: int) -> int:
         """The row after a row, or the last one."""
         return min(row + 1, len(self.run) - 1)
 
-    def at(self, event: Happening, value: float, text: str) -> Place:
+    def at(self, event: RunEvent, value: float, text: str) -> Place:
         """A place by something that happened."""
         if event.file:
             text = f"{Path(self.run.files[event.file]).name}: {text}"
@@ -99,25 +99,25 @@ class Case:
         lines = [e.line for e in self.run.events if not e.file] + [c.line for c in self.run.comments if not c.file]
         return max(lines, default=0)
 
-    def turned_by(self, row: int) -> Place | None:
+    def rotary_positioning_block(self, row: int) -> Place | None:
         """The block that put the rotary axes where they stand in a row, if it is another one that is no cut itself."""
         run = self.run
-        bits = int(Written.FIRST | Written.SECOND | Written.VECTOR)
+        bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
         written = np.flatnonzero((run.programmed[max(row - 64, 0) : row + 1] & bits) != 0)
         if not len(written):
             return None
         by = max(row - 64, 0) + int(written[-1])
-        if by == row or self.pairs is None or by in self.pairs.nc:
+        if by == row or self.matching is None or by in self.matching.nc:
             return None
         return self.place(by, 0.0, f"this is where the rotary axes were put for {self.block(row)}")
 
     def block(self, row: int) -> str:
         """How a programmer names a row's block: ``N120``, or its line where it has no number."""
-        number = self.run.numbers[row]
-        return f"N{number}" if number >= 0 else f"line {self.run.blocks[row]}"
+        number = self.run.block_numbers[row]
+        return f"N{number}" if number >= 0 else f"line {self.run.lines[row]}"
 
 
-def judged(key: str, title: str, places: Sequence[Place], good: str, count: int | None = None) -> Check:
+def check_from_places(key: str, title: str, places: Sequence[Place], good: str, count: int | None = None) -> Check:
     """A check that is passed when there is nothing to say: ``good`` says so, else the first place does."""
     count = len(places) if count is None else count
     if not places:
@@ -125,4 +125,4 @@ def judged(key: str, title: str, places: Sequence[Place], good: str, count: int 
     first = places[0]
     block = f"N{first.number}" if first.number >= 0 else f"line {first.nc_line}"
     more = f", and {count - 1} more" if count > 1 else ""
-    return Check(key, title, False, f"{block}: {first.text}{more}", places=tuple(places[:NAMED]))
+    return Check(key, title, False, f"{block}: {first.text}{more}", places=tuple(places[:MAX_PLACES]))

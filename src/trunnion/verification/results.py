@@ -46,7 +46,7 @@ class Check:
 
 
 @dataclass(frozen=True, slots=True)
-class Share:
+class OperationRows:
     """The rows ``first`` to ``end`` (left out) of a run that belong to one operation of a CL file.
 
     What leads to an operation (home, tool change, placing) belongs to it, the way home at last to the last one.
@@ -79,7 +79,7 @@ class Verification:
     seconds: Floats
     tip_feed: Floats
     cl_line: Lines
-    operations: tuple[Share, ...] = ()
+    operations: tuple[OperationRows, ...] = ()
 
     @property
     def passed(self) -> bool:

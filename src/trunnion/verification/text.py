@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.machines.motion_time import clock
+from trunnion.machines.motion_time import format_duration
 from trunnion.model.toolpath import Kind
 from trunnion.verification.results import Check, Place, Verification
 
@@ -37,9 +37,10 @@ def time_lines(verification: Verification) -> Iterator[str]:
     seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
     if len(seconds):
         cuts = verification.run.kind != Kind.RAPID
-        yield f"time: {clock(float(seconds.sum()))}, {clock(float(seconds[cuts].sum()))} of it in cuts"
+        whole, cutting = (format_duration(float(part.sum())) for part in (seconds, seconds[cuts]))
+        yield f"time: {whole}, {cutting} of it in cuts"
         for share in verification.operations:
-            yield f"time: {clock(float(seconds[share.first : share.end].sum()))} for {share.name}"
+            yield f"time: {format_duration(float(seconds[share.first : share.end].sum()))} for {share.name}"
 
 
 def failures(verification: Verification) -> list[Check]:

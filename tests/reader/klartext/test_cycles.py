@@ -8,8 +8,8 @@ from tests.reader.conftest import Runner, close
 from trunnion.errors import Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common.drilling import CycleError
-from trunnion.readers.families.heidenhain.cycles import infeeds
+from trunnion.readers.common.hole_motion import CycleExecutionError
+from trunnion.readers.families.heidenhain.cycles import peck_depths
 
 BEFORE = "TOOL CALL 1 Z S1000\nL X+3 Y+4 Z+100 R0 FMAX M3\n"
 
@@ -56,7 +56,7 @@ DRILL = {"Q200": 2, "Q201": -15, "Q206": 150, "Q202": 6, "Q210": 0, "Q203": 10, 
 )  # fmt: skip
 def test_cycles_of_the_200_series(number: int, values: dict[str, float], expected: str, run: Runner) -> None:
     found = run(BEFORE + define(number, **{**DRILL, **values}) + "CYCL CALL")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
     close(found.tip[-1, :2], [3, 4])
 
@@ -73,15 +73,15 @@ def test_cycles_of_the_200_series(number: int, values: dict[str, float], expecte
 def test_out_of_the_hole_at_rapid(number: int, values: dict[str, float], expected: str, word: str, run: Runner) -> None:
     text = define(number, **{**DRILL, **values}).rstrip("\n") + f" ~\nQ208={word}\n"
     found = run(BEFORE + text + "CYCL CALL")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
-    assert run(BEFORE + text.replace("Q208", "Q206") + "CYCL CALL").findings
+    assert run(BEFORE + text.replace("Q208", "Q206") + "CYCL CALL").diagnostics
 
 
 def test_feeds_of_cycles(run: Runner) -> None:
     def feeds(number: int, **values: float) -> list[float]:
         found = run(BEFORE + "L Z+90 F888\n" + define(number, **{**DRILL, "Q202": 15, **values}) + "CYCL CALL\nL Z+1")
-        assert found.findings == ()
+        assert found.diagnostics == ()
         # What was in force before is in force again.
         assert found.feed[-1] == 888
         return [feed for kind, _, feed in motions(found)[1:-1] if kind == "F"]
@@ -106,7 +106,7 @@ def test_a_bored_hole_is_left_beside_its_wall(run: Runner) -> None:
 @pytest.mark.parametrize("call", ["CYCL CALL", "CYCL CALL M8", "L FMAX M99", "M99"])
 def test_ways_to_call(call: str, run: Runner) -> None:
     found = run(BEFORE + define(200, **DRILL) + call)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert len(found) == 11
 
 
@@ -114,7 +114,7 @@ def test_m99_calls_after_the_motion_and_m89_until_m99(run: Runner) -> None:
     short = define(200, **{**DRILL, "Q202": 15, "Q204": 0})
     text = BEFORE + short + "L X+1 FMAX M99\nL X+2 FMAX\nL X+3 FMAX M89\nL X+4 FMAX\nL X+5 FMAX M99\nL X+6 FMAX"
     found = run(text)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     deep = found.tip[found.tip[:, 2] == -5.0]
     assert deep[:, 0].tolist() == [1, 3, 4, 5]
     assert found.tip[-1, 0] == 6
@@ -122,7 +122,7 @@ def test_m99_calls_after_the_motion_and_m89_until_m99(run: Runner) -> None:
 
 def test_a_call_at_a_position(run: Runner) -> None:
     found = run(BEFORE + define(200, **{**DRILL, "Q202": 15}) + "CYCL CALL POS X+30 Y+40 Z+70 FMAX")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip[1], [30, 40, 70])
     close(found.tip[3], [30, 40, -5])
 
@@ -134,7 +134,7 @@ def test_parameters_of_cycles_are_parameters(run: Runner) -> None:
         + "Q2 = Q201 + Q1\nCYCL DEF 200 Q201=Q2 Q203=-Q1 Q200=1 Q206=9 Q202=50\n"
     )
     found = run(BEFORE + text + "CYCL CALL")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert found.tip[:, 2].min() == -15.0
 
 
@@ -157,7 +157,7 @@ CYCL DEF 1.5 F364
 )
 def test_pecking_from_where_the_tool_stands(distance: str, depth: str, peck: str, expected: str, run: Runner) -> None:
     found = run(BEFORE + PECK.format(distance, depth, peck) + "L FMAX M99")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
     assert {feed for kind, _, feed in motions(found) if kind == "F"} == {364.0}
 
@@ -181,12 +181,12 @@ def test_other_cycles_from_where_the_tool_stands(run: Runner) -> None:
 def test_cycles_that_make_no_sense_are_named_and_not_executed(text: str, run: Runner) -> None:
     found = run(BEFORE + text + "CYCL CALL")
     assert len(found) == 1
-    assert [f.severity for f in found.findings] == ["error"]
+    assert [f.severity for f in found.diagnostics] == ["error"]
 
 
 def test_a_cycle_beside_the_tool_axis_is_named(run: Runner) -> None:
     text = "PLANE SPATIAL SPA-45 SPB+0 SPC+0 STAY\n" + BEFORE + define(200, **DRILL) + "CYCL CALL"
-    assert any("not the tool axis" in f.text for f in run(text).findings)
+    assert any("not the tool axis" in f.text for f in run(text).diagnostics)
 
 
 def test_cycles_drill_along_a_tilted_tool(run: Runner) -> None:
@@ -197,7 +197,7 @@ def test_cycles_drill_along_a_tilted_tool(run: Runner) -> None:
         + "CYCL CALL"
     )
     found = run(text)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     drilled = found.tip[-3] - found.tip[-4]
     close(drilled, -17.0 * found.axis[-1], atol=1e-9)
 
@@ -212,7 +212,7 @@ def test_cycles_drill_along_a_tilted_tool(run: Runner) -> None:
 def test_infeeds_shrink_to_the_least_and_end_at_the_depth(
     total: float, first: float, less: float, least: float
 ) -> None:
-    depths = infeeds(total, first, less, least)
+    depths = peck_depths(total, first, less, least)
     assert depths[-1] == total
     strokes = [b - a for a, b in zip([0.0, *depths], depths, strict=False)]
     assert all(stroke > 0.0 for stroke in strokes)
@@ -224,8 +224,8 @@ def test_infeeds_shrink_to_the_least_and_end_at_the_depth(
 
 
 def test_pecks_without_end_are_refused() -> None:
-    with pytest.raises(CycleError, match="more than"):
-        infeeds(100.0, 0.01, 0.0, 0.01)
+    with pytest.raises(CycleExecutionError, match="more than"):
+        peck_depths(100.0, 0.01, 0.0, 0.01)
 
 
 # Bore milling, whose tool goes round: what is simulated is the wall
@@ -239,12 +239,12 @@ def test_a_bore_is_milled_in_helices_and_once_round_at_its_bottom(
     values: dict[str, float], turns: int, sense: float, run: Runner
 ) -> None:
     found = run(BEFORE + define(208, **{**DRILL, "Q334": 3, "Q335": 20, "Q342": 0, **values}) + "CYCL CALL")
-    assert [finding.severity for finding in found.findings] == [Severity.WARNING]
+    assert [finding.severity for finding in found.diagnostics] == [Severity.WARNING]
     place = [[3, 4, 12], [13, 4, 12], [13, 4, -5], [13, 4, -5], [3, 4, -5], [3, 4, 12], [3, 4, 60]]
     close(found.tip[1:], place)
     kinds = [Kind.RAPID, Kind.LINEAR, Kind.ARC, Kind.ARC, Kind.LINEAR, Kind.RAPID, Kind.RAPID]
     assert found.kind[1:].tolist() == kinds
-    assert found.arcs.turns.tolist() == [turns - 1, 0]  # besides the turn that comes back to its start
+    assert found.arcs.full_turns.tolist() == [turns - 1, 0]  # besides the turn that comes back to its start
     close(found.arcs.centre[:, :2], [[3, 4], [3, 4]])
     close(found.arcs.normal, [[0, 0, sense]] * 2)
     close(found.arcs.radius, [10, 10])
@@ -255,4 +255,4 @@ def test_a_bore_is_milled_in_helices_and_once_round_at_its_bottom(
 def test_a_bore_that_cannot_be_milled_is_named(values: dict[str, float], run: Runner) -> None:
     found = run(BEFORE + define(208, **{**DRILL, "Q334": 3, "Q335": 20, **values}) + "CYCL CALL")
     assert len(found) == 1
-    assert Severity.ERROR in [finding.severity for finding in found.findings]
+    assert Severity.ERROR in [finding.severity for finding in found.diagnostics]

@@ -26,7 +26,7 @@ def test_subprograms_and_repeats(run: Runner) -> None:
         'LBL 7\nL X+2\nLBL 0\nLBL "up"\nCALL LBL 7\nL X+5\nLBL 0\nL X+66'
     )
     found = run(text)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert xs(found) == [1, 2, 3, 2, 5, 15, 25, 35, 99]
 
 
@@ -56,14 +56,14 @@ def test_a_missing_label_ends_the_program(text: str, run: Runner) -> None:
 )  # fmt: skip
 def test_jumps(condition: str, holds: bool, run: Runner) -> None:
     found = run(f'Q1 = 7\n{condition}\nL X+1\nLBL 1\nLBL "A"\nL X+2')
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert xs(found) == ([2] if holds else [1, 2])
 
 
 def test_a_condition_of_something_unknown_does_not_hold_and_is_named(run: Runner) -> None:
     found = run("FN 18: SYSREAD Q1 = ID270 NR1 IDX1\nFN 9: IF +Q1 EQU +0 GOTO LBL 1\nL X+1\nLBL 1\nL X+Q1")
     assert xs(found) == [1]
-    assert [(f.line, str(f.severity)) for f in found.findings] == [(1, "warning"), (2, "error"), (5, "error")]
+    assert [(f.line, str(f.severity)) for f in found.diagnostics] == [(1, "warning"), (2, "error"), (5, "error")]
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_a_condition_of_something_unknown_does_not_hold_and_is_named(run: Runner
 )  # fmt: skip
 def test_parameters(text: str, value: float, run: Runner) -> None:
     found = run(f"Q1 = 3\n{text}\nL X+Q5")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert xs(found) == [pytest.approx(value, abs=1e-12)]
 
 
@@ -132,7 +132,7 @@ def test_a_program_calls_another_that_is_named(run: Runner) -> None:
     assert [f.line for f in found.errors] == [5]
     assert [Path(name).name for name in found.files] == ["MAIN.H", "SUB.H"]
     assert found.file.tolist() == [1, 0, 1]
-    assert found.block.tolist() == [2, 3, 2]
+    assert found.line.tolist() == [2, 3, 2]
 
 
 def test_m30_in_a_called_program_ends_all(run: Runner) -> None:

@@ -43,7 +43,7 @@ def axes(run: Run, row: int) -> tuple[float, float]:
 def test_planes_that_ran_stand_the_tool_where_the_cl_file_has_it(name: str, block: str, run: Runner) -> None:
     operation = read_cl(GOLDEN / f"{name}.cls").operations[0]
     found = run(f"{block}\nL X+0 Y+0 Z+0")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.axis[-1], operation.moves.axis[-1], atol=1e-5)
     assert axes(found, -1)[0] < 0.0
 
@@ -86,7 +86,7 @@ def test_one_plane_in_every_spelling_is_one_plane(
         x, y, z = point
         shift = "CYCL DEF 7.1 X+10\nCYCL DEF 7.2 Y-20\nCYCL DEF 7.3 Z+5"
         run = ran(f"{shift}\n{text} TURN FMAX SEQ-\nL X{x} Y{y} Z{z} F100", tmp_path_factory)
-        assert run.findings == ()
+        assert run.diagnostics == ()
         close(run.axis[-1], wanted[:, 2], atol=1e-7)
         close(run.tip[-1], wanted @ np.array(point) + [10, -20, 5], atol=1e-7)
 
@@ -98,7 +98,7 @@ def test_turn_keeps_the_slides_and_move_the_point(
 ) -> None:
     text = f"L X+7 Y-8 Z+30 F100\nPLANE SPATIAL SPA{a:+.3f} SPB{b:+.3f} SPC{c:+.3f} {manner} FMAX SEQ-\nL IX+0"
     run = ran(text, tmp_path_factory)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     if manner == "STAY":
         close(run.joints[-1], run.joints[0], atol=1e-9)
         return
@@ -119,7 +119,7 @@ def test_a_sequence_is_the_sign_of_the_axis_next_to_the_tool(
 ) -> None:
     # B30: the tool leans towards X. A-30 C-90 does it; A30 C90 is outside the travel.
     found = run(f"PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX {sequence}")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(axes(found, -1), expected, atol=1e-9)
 
 
@@ -142,14 +142,14 @@ def test_both_sequences_where_both_are_in_the_travel(run: Runner) -> None:
 def test_a_free_table_axis_turns_for_table_rot_only(run: Runner) -> None:
     for word, angle_of_c in (("TABLE ROT", 40.0), ("COORD ROT", 0.0), ("", 0.0)):
         found = run(f"PLANE SPATIAL SPA+0 SPB+0 SPC+40 TURN FMAX {word}\nL X+10 Y+0 Z+0")
-        assert found.findings == ()
+        assert found.diagnostics == ()
         assert axes(found, -1)[1] == pytest.approx(angle_of_c, abs=1e-9)
         close(found.tip[-1], [10 * math.cos(math.radians(40)), 10 * math.sin(math.radians(40)), 0], atol=1e-9)
 
 
 def test_the_rotary_position_of_a_plane_that_stays_is_in_q120_to_q122(run: Runner) -> None:
     found = run("PLANE SPATIAL SPA-45 SPB+0 SPC-90 STAY SEQ-\nL X+1 Y+2 Z+3\nL A+Q120 C+Q122 R0 FMAX\nL Z+10")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(axes(found, -1), (-45, -90), atol=1e-9)
     # Only the rotary axes turned: the slides stood, and the tip is called anew.
     close(slides(found)[1], slides(found)[0], atol=1e-9)
@@ -164,7 +164,7 @@ def test_a_rotary_word_beside_positions_of_a_tilted_plane(run: Runner) -> None:
 
 def test_axial_planes_are_those_that_the_tool_stands_on(run: Runner) -> None:
     found = run("PLANE AXIAL A-30 C+50 TURN FMAX\nL X+1 Y+2 Z+3")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip[-1], matrix(-30, 0, 50) @ [1, 2, 3], atol=1e-9)
     close(found.axis[-1], matrix(-30, 0, 50)[:, 2], atol=1e-9)
 
@@ -173,14 +173,14 @@ def test_axial_planes_are_those_that_the_tool_stands_on(run: Runner) -> None:
 def test_a_reset_leaves_the_shift_from_before_the_plane(reset: str, run: Runner) -> None:
     text = "CYCL DEF 7.1 X+10\nPLANE SPATIAL SPA-45 SPB+0 SPC+0 TURN FMAX SEQ-\nCYCL DEF 7.1 X+5\nL X+1 Y+0 Z+0\n"
     found = run(text + reset + "\nL A+0 C+0 FMAX\nL X+1 Y+0 Z+0")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip[1], [16, 0, 0], atol=1e-9)
     close(found.tip[-1], [11, 0, 0], atol=1e-9)
 
 
 def test_cycle_19_is_a_plane_without_a_motion(run: Runner) -> None:
     found = run("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A-45 B+0 C-90\nL A+Q120 C+Q122 FMAX\nL X+0 Y+0 Z+10")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip[-1], matrix(-45, 0, -90) @ [0, 0, 10], atol=1e-9)
     close(found.axis[-1], matrix(-45, 0, -90)[:, 2], atol=1e-9)
 
@@ -198,13 +198,13 @@ def test_cycle_19_is_a_plane_without_a_motion(run: Runner) -> None:
 )
 def test_datums_are_mirrored_turned_and_scaled(text: str, expected: object, run: Runner) -> None:
     found = run(text + "\nL X+3 Y+4 Z+5")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip[-1], expected(np.array([3.0, 4.0, 5.0])), atol=1e-12)  # type: ignore[operator]
 
 
 def test_m140_goes_back_along_the_tool(run: Runner) -> None:
     found = run("PLANE SPATIAL SPA-45 SPB+0 SPC+0 TURN FMAX SEQ-\nL X+0 Y+0 Z+5\nL M140 MB20 F500\nL M140 MB MAX")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip[2] - found.tip[1], 20.0 * found.axis[1], atol=1e-9)
     assert found.feed[2] == 500.0
     limits = np.array([[a.low, a.high] for a in DMU65.axes])[[DMU65.column(n) for n in "XYZ"]]
@@ -247,7 +247,7 @@ def test_a_plane_that_is_not_understood_is_named_and_the_old_one_stays(text: str
 def test_vectors_of_ln_are_the_tool_axis(run: Runner) -> None:
     text = "M128\nLN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 TX+0.6 TY+0 TZ+0.8 F500\nLN X+2 Y+2 Z+3 TX+0 TY-0.6 TZ+0.8"
     found = run(text)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.axis, [[0.6, 0, 0.8], [0, -0.6, 0.8]], atol=1e-9)
     close(found.tip, [[1, 2, 3], [2, 2, 3]], atol=1e-9)
 
@@ -259,7 +259,7 @@ def test_spatial_angles_of_tcpm_are_the_tool_axis(
 ) -> None:
     text = f"FUNCTION TCPM F TCP AXIS SPAT PATHCTRL VECTOR\nL X+1 Y+2 Z+3 A{a:+.3f} B{b:+.3f} C{c:+.3f} F500\nL X+2"
     run = ran(text, tmp_path_factory)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     wanted: Floats = matrix(a, b, c)[:, 2]
     close(run.axis, [wanted, wanted], atol=1e-7)
     close(run.tip, [[1, 2, 3], [2, 2, 3]], atol=1e-9)

@@ -31,7 +31,7 @@ def ran(text: str, factory: pytest.TempPathFactory) -> Run:
 @given(program=naive.programs())
 def test_blocks_lead_where_the_twin_says(program: naive.Program, tmp_path_factory: pytest.TempPathFactory) -> None:
     run = ran("\n".join(program.lines), tmp_path_factory)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     assert len(run) == len(program.rows)
     if not len(run):
         return
@@ -60,7 +60,7 @@ def test_with_tcp_the_tip_is_what_is_programmed(
     lines = ["M126" if shorter else "M127", word]
     lines += [f"L X{x:+.3f} Y{y:+.3f} Z{z:+.3f} A{a:+.3f} C{c:+.3f} F900" for x, y, z, a, c in poses]
     run = ran("\n".join(lines), tmp_path_factory)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     table = np.array(poses)
     close(run.tip, table[:, :3], atol=1e-9)
     held = 0.0
@@ -105,10 +105,10 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(HeidenhainInterpreter, "_may_be_plain", lambda *_: False)
         slow = ran(text, tmp_path_factory)
-    assert fast.findings == slow.findings
+    assert fast.diagnostics == slow.diagnostics
     assert fast.events == slow.events
     assert fast.comments == slow.comments
-    for name in ("block", "number", "kind", "programmed", "place", "rotary", "tip", "axis", "joints", "feed", "tcp"):
+    for name in ("line", "block_number", "kind", "programmed", "xyz", "rotary", "tip", "axis", "joints", "feed", "tcp"):
         np.testing.assert_array_equal(getattr(fast, name), getattr(slow, name), err_msg=name)
 
 
@@ -126,8 +126,8 @@ def test_chunks_of_a_long_program_are_one_program(tmp_path: Path) -> None:
     path = tmp_path / "LONG.H"
     path.write_text("".join(f"{k} L X{k % 97} Y{k % 89} F{k % 7 + 1}\n" for k in range(60_000)))
     run = run_program(path, DMU65)
-    assert run.findings == ()
+    assert run.diagnostics == ()
     k = np.arange(60_000)
     np.testing.assert_array_equal(run.tip[:, 0], k % 97)
-    np.testing.assert_array_equal(run.number, k)
+    np.testing.assert_array_equal(run.block_number, k)
     np.testing.assert_array_equal(run.feed, k % 7 + 1)

@@ -32,12 +32,12 @@ def names() -> list[str]:
 @pytest.mark.parametrize("name", names())
 def test_every_block_is_known_or_named(name: str) -> None:
     run = run_program(FOLDER / name, DMU65)
-    odd = [f for f in run.findings if not any(text in f.text for text in EXPECTED)]
+    odd = [f for f in run.diagnostics if not any(text in f.text for text in EXPECTED)]
     # Pecking is called where a position is no number.
     assert [f for f in odd if "the cycle" not in f.text] == []
     assert np.isfinite(run.joints).all()
     if name in PLAIN:
-        assert run.findings == ()
+        assert run.diagnostics == ()
 
 
 @pytest.mark.parametrize("name", PLAIN)

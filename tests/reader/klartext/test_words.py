@@ -8,7 +8,7 @@ import pytest
 from tests.machines import at_zero
 from tests.reader.conftest import Runner, close, slides
 from trunnion.errors import Severity
-from trunnion.model.run import Orientation, Written
+from trunnion.model.run import Orientation, ProgrammedWord
 from trunnion.model.toolpath import Kind
 
 # Form
@@ -20,9 +20,9 @@ def test_block_numbers_comments_structure_and_both_separators(run: Runner) -> No
         "5 END PGM 11 MM\nL X+99"
     )
     found = run(text)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip, [[1.5, -2.25, 0], [1.5, -2.25, 25], [2, -2.25, 25], [2, 3, 25]])
-    assert found.number.tolist() == [1, -1, 4, -1]
+    assert found.block_number.tolist() == [1, -1, 4, -1]
     assert [(c.line, c.text, c.before_row) for c in found.comments] == [
         (2, "all", 0),
         (3, " - Face", 0),
@@ -42,14 +42,14 @@ def test_a_block_goes_on_over_several_lines(line_end: str, run: Runner) -> None:
         "8 CYCL CALL",
     ]
     found = run(line_end.join(lines))
-    assert found.findings == ()
-    assert set(found.number.tolist()) == {8}
+    assert found.diagnostics == ()
+    assert set(found.block_number.tolist()) == {8}
     assert found.tip[:, 2].min() == -8.0
 
 
 def test_a_block_that_goes_on_into_a_new_one_is_named(run: Runner) -> None:
     found = run("1 L X+1 ~\n2 L X+2\n3 L X+3")
-    assert [(f.line, f.severity) for f in found.findings] == [(2, Severity.ERROR)]
+    assert [(f.line, f.severity) for f in found.diagnostics] == [(2, Severity.ERROR)]
     assert found.tip[:, 0].tolist() == [1, 2, 3]
 
 
@@ -60,7 +60,7 @@ def test_skipped_blocks(run: Runner) -> None:
 
 def test_inches(run: Runner) -> None:
     found = run("BEGIN PGM A INCH\nL X+1 F100\nCC X+2 Y+0\nC X+3 DR+\nL IX-1\nEND PGM A INCH")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip[:, 0], [25.4, 76.2, 50.8], atol=1e-12)
     # Tenths of an inch a minute.
     close(found.feed, [254.0] * 3)
@@ -73,10 +73,10 @@ def test_inches(run: Runner) -> None:
 
 def test_rapids_last_one_block_and_feeds_stay(run: Runner) -> None:
     found = run("TOOL CALL 3 Z S900 F777\nL X+1 FMAX\nL X+2\nL X+3 F250\nL X+4 FMAX\nL X+5\nL X+6 F AUTO\nL X7 FAUTO")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert (found.kind == Kind.RAPID).tolist() == [True, False, False, True, False, False, False]
     assert found.feed.tolist() == [777, 777, 250, 250, 250, 777, 777]
-    assert found.programmed[2] == Written.X | Written.FEED
+    assert found.programmed[2] == ProgrammedWord.X | ProgrammedWord.FEED
 
 
 @pytest.mark.parametrize(
@@ -106,24 +106,24 @@ def test_circles(
     if "CTP" in block:
         # The end lies square to the direction: half a circle.
         close(found.tip[-1], end, atol=1e-9)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip[-1], end, atol=1e-9)
     close(found.arcs.centre[0], centre, atol=1e-9)
     close(found.arcs.normal[0], [0, 0, normal], atol=1e-12)
-    assert found.arcs.turns.tolist() == [turns]
+    assert found.arcs.full_turns.tolist() == [turns]
 
 
 def test_a_tangential_circle_goes_on_from_a_circle(run: Runner) -> None:
     found = run("L X+10 Y+0\nCC X+0 Y+0\nC X+0 Y+10 DR+\nCT X-6 Y+4")
     # At its end the first circle goes to -X; the second turns left about a centre below it.
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.arcs.centre[1], [0, 4, 0], atol=1e-9)
     close(found.arcs.normal[1], [0, 0, 1])
 
 
 def test_polar_lines(run: Runner) -> None:
     found = run("CC X+10 Y+20\nLP PR+10 PA+0\nLP PA+90 Z+3\nLP IPA+90\nLP IPR+5\nLP PR+2 PA-90 FMAX")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip, [[20, 20, 0], [10, 30, 3], [0, 20, 3], [-5, 20, 3], [10, 18, 3]], atol=1e-9)
 
 
@@ -131,7 +131,7 @@ def test_circles_in_the_planes_of_other_tool_axes(run: Runner) -> None:
     found = run(
         "TOOL CALL 1 Y S1\nL X+10 Y+0 Z+0\nCC X+0 Z+0\nC X+0 Z+10 DR-\nTOOL CALL 1 X\nCC Y+5 Z+10\nC Y+10 Z+10 DR+"
     )
-    assert found.findings == ()
+    assert found.diagnostics == ()
     # Seen from the tool, Y+: from Z to X is counter-clockwise.
     close(found.arcs.normal, [[0, -1, 0], [1, 0, 0]], atol=1e-12)
     close(found.arcs.centre, [[0, 0, 0], [0, 5, 10]], atol=1e-12)
@@ -151,7 +151,7 @@ def test_circles_that_are_none_are_named(block: str, run: Runner) -> None:
 
 def test_machine_positions(run: Runner) -> None:
     found = run("CYCL DEF 7.1 X+10\nL X+1 Y+2 Z+3 F100\nL Z+0 R0 FMAX M91\nL X+1\nL Z-5 FMAX M92")
-    assert [(f.line, f.severity) for f in found.findings] == [(5, Severity.WARNING)]
+    assert [(f.line, f.severity) for f in found.diagnostics] == [(5, Severity.WARNING)]
     close(slides(found), [[11, 2, 3], [11, 2, 0], [11, 2, 0], [11, 2, -5]])
     assert found.machine_frame.tolist() == [False, True, False, True]
     assert (found.kind[1], found.kind[2]) == (Kind.RAPID, Kind.LINEAR)
@@ -166,7 +166,7 @@ def test_rotary_words_take_the_shorter_way_with_m126_only(run: Runner) -> None:
 
 def test_one_axis_on_its_own_and_blocks_of_m_words(run: Runner) -> None:
     found = run("X+5 R0 F100\nC+30 FMAX\nM3 M8\nM5 M9")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.joints[-1, [found.machine.column("X"), found.machine.column("C")]], [5, 30])
     assert [(e.kind, e.value) for e in found.events] == [
         ("spindle", "clockwise"), ("coolant", "flood"), ("spindle", "off"), ("coolant", "off"),
@@ -182,7 +182,7 @@ def test_tools(run: Runner) -> None:
         "TOOL CALL Z S9000\nL X+3\nTOOL DEF 9 L+80 R+5\nTOOL CALL 0\nL X+4"
     )
     found = run(text)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert [found.tools[k] for k in found.tool] == ["5", "D10R05", "D10R05", "0"]
     assert found.rpm.tolist() == [3500, 8000, 9000, 9000]
     assert [e.value for e in found.events if e.kind == "delta"] == [(0.1, -0.05, None)]
@@ -191,7 +191,7 @@ def test_tools(run: Runner) -> None:
 
 def test_machine_functions_act_before_or_after_their_block(run: Runner) -> None:
     found = run("L X+1 M3 M8\nL X+2 M9 M5\nL X+3 M13\nL X+4 M0\nSTOP M1\nL X+5 M25\nM136\nL X+6\nM137\nL X7 M30\nL X+9")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert [(e.kind, e.value, e.before_row) for e in found.events] == [
         ("spindle", "clockwise", 0), ("coolant", "flood", 0), ("coolant", "off", 2), ("spindle", "off", 2),
         ("spindle", "clockwise", 2), ("coolant", "flood", 2), ("stop", None, 4), ("stop", None, 4),
@@ -204,7 +204,7 @@ def test_machine_functions_act_before_or_after_their_block(run: Runner) -> None:
 
 def test_words_of_a_function_are_not_those_of_the_path(run: Runner) -> None:
     found = run("L X+1 F500 M128 F3000\nL X+2 M118 X1 Y1\nL X+3 M138 A C\nM94 C\nM103 F20\nL M140 MB5 F77\nL X+4")
-    assert [(f.line, f.severity) for f in found.findings] == [(2, Severity.WARNING)]
+    assert [(f.line, f.severity) for f in found.diagnostics] == [(2, Severity.WARNING)]
     assert found.feed.tolist() == [500, 500, 500, 77, 500]
     close(found.tip[:, 1], 0.0, atol=1e-12)
 
@@ -212,21 +212,21 @@ def test_words_of_a_function_are_not_those_of_the_path(run: Runner) -> None:
 def test_how_the_tool_axis_moves(run: Runner) -> None:
     text = "FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR\nL A-10\nFUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL A-20"
     found = run(text)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert found.orientation.tolist() == [Orientation.GREAT_CIRCLE, Orientation.ANGLES]
     assert found.tcp.all()
 
 
 def test_presets_are_one(run: Runner) -> None:
     found = run("CYCL DEF 247 DATUM SETTING ~\nQ339=+2 ;DATUM\nL X+1\nCYCL DEF 247 DATUM SETTING Q339=3\nL X+1")
-    assert [(f.line, f.severity) for f in found.findings] == [(4, Severity.WARNING)]
-    assert found.offset.tolist() == [2, 3]
+    assert [(f.line, f.severity) for f in found.diagnostics] == [(4, Severity.WARNING)]
+    assert found.work_offset.tolist() == [2, 3]
 
 
 def test_tolerance_and_dwell(run: Runner) -> None:
     tolerance = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.02\nCYCL DEF 32.2 HSC-MODE:0 TA0.5\n"
     found = run(tolerance + "CYCL DEF 9.0 DWELL TIME\nCYCLE DEF 9.1 5")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert [(e.kind, e.value) for e in found.events] == [
         ("cycle32", "T0.02"), ("cycle32", "HSC-MODE:0 TA0.5"), ("dwell", 5.0),
     ]  # fmt: skip
@@ -248,7 +248,7 @@ def test_tolerance_and_dwell(run: Runner) -> None:
 )  # fmt: skip
 def test_what_is_not_understood_is_named_and_the_next_block_runs(block: str, run: Runner) -> None:
     found = run(f"L X+1 Y+1\n{block}\nL Z+7")
-    named = [f for f in found.findings if f.line in (2, 3) and f.text]
+    named = [f for f in found.diagnostics if f.line in (2, 3) and f.text]
     if block in ("FN 26: TABOPEN TNC:A",):
         assert [f.severity for f in named] == [Severity.WARNING]
     else:
@@ -258,14 +258,14 @@ def test_what_is_not_understood_is_named_and_the_next_block_runs(block: str, run
 
 def test_radius_compensation_is_a_warning(run: Runner) -> None:
     found = run("L X+1 RL F100\nL X+2\nL X+3 R0")
-    assert [(f.line, f.severity) for f in found.findings] == [(1, Severity.WARNING)]
+    assert [(f.line, f.severity) for f in found.diagnostics] == [(1, Severity.WARNING)]
     close(found.tip[:, 0], [1, 2, 3])
 
 
 def test_another_machine(run: Runner) -> None:
     machine = at_zero("mikron_600u")
     found = run("M128\nL X+1 Y+2 Z+3 B-30 C+45", machine=machine)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     sine, cosine, half = math.sin(math.radians(-30)), math.cos(math.radians(-30)), math.sqrt(0.5)
     close(found.axis[0], [sine * half, sine * half, cosine], atol=1e-12)
     close(found.tip[0], [1, 2, 3], atol=1e-9)
@@ -294,4 +294,4 @@ def test_normals_of_many_blocks_are_all_kept(run: Runner) -> None:
     wanted = [k for k in rows if k % 3]
     assert found.normals.row.tolist() == [k + 1 for k in wanted]
     assert found.normals.vector[:, 1].tolist() == wanted
-    assert found.findings == ()
+    assert found.diagnostics == ()

@@ -37,14 +37,14 @@ CYCLES: dict[str, tuple[list[tuple[int, float]], list[float]]] = {
 @pytest.mark.parametrize("block", CYCLES)
 def test_cycles_make_the_motions_of_the_manual(block: str, run: Runner) -> None:
     got = run(f"G21 G90 G17 G94 G0 X0 Y0 Z30 S1000 M3\n{block}\nG80\nM2\n")
-    rows = got.block == 2
+    rows = got.line == 2
     motions, dwells = CYCLES[block]
     heights = slides(got)[rows][:, 2].round(9).tolist()
     assert list(zip(got.kind[rows].tolist(), heights, strict=True)) == [(kind, float(z)) for kind, z in motions]
     assert [event.value for event in got.events if event.kind == "dwell"] == dwells
-    assert got.findings == ()
+    assert got.diagnostics == ()
 
 
 def test_a_rigid_tap_goes_by_its_pitch(run: Runner) -> None:
     got = run("G21 G90 G17 G94 G0 X0 Y0 Z30 S1000 M3\nG33.1 Z-10 K1.25\nG0 Z5\nM2\n")
-    assert got.feed[got.block == 2].tolist() == [1250.0, 1250.0]
+    assert got.feed[got.line == 2].tolist() == [1250.0, 1250.0]

@@ -10,9 +10,9 @@ from trunnion.model.toolpath import Kind
 def test_form(run: Runner) -> None:
     text = "%\n(all)\nN10 G 0 x 1.5 (there) Y-2 ;end\ng1z+.5f100\n/X9\nN20X[1+2*3]\n(MSG, look)\n%\nX99"
     found = run(text)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.tip, [[1.5, -2, 0], [1.5, -2, 0.5], [9, -2, 0.5], [7, -2, 0.5]])
-    assert found.number.tolist() == [10, -1, -1, 20]
+    assert found.block_number.tolist() == [10, -1, -1, 20]
     assert [c.text for c in found.comments] == ["all", "there", "end", "MSG, look"]
     assert [(e.kind, e.value) for e in found.events] == [("message", " look")]
     assert run(text, skip=True).tip[:, 0].tolist() == [1.5, 1.5, 7]
@@ -29,7 +29,7 @@ def test_form(run: Runner) -> None:
 )  # fmt: skip
 def test_expressions(text: str, value: float, run: Runner) -> None:
     found = run(f"#1=3 #2=1\n#<depth>=-4.5\nG0 X{text}")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     assert found.tip[0, 0] == pytest.approx(value, abs=1e-12)
 
 
@@ -48,15 +48,15 @@ def test_parameters_are_set_after_their_block(run: Runner) -> None:
 )  # fmt: skip
 def test_circles(block: str, centre: tuple[float, ...], normal: tuple[float, ...], turns: int, run: Runner) -> None:
     found = run(f"G0 X10 Y0 Z5\nF100 {block}")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.arcs.centre[0], centre, atol=1e-9)
     close(found.arcs.normal[0], normal, atol=1e-12)
-    assert found.arcs.turns.tolist() == [turns]
+    assert found.arcs.full_turns.tolist() == [turns]
 
 
 def test_inverse_time_counts_no_inches(run: Runner) -> None:
     found = run("G20 G93 G1 X1 F7\nX2 F8\nX[3] F9\nG94 X4 F10")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     close(found.feed, [7, 8, 9, 254])
 
 
@@ -83,7 +83,7 @@ BEFORE = "S1000 M3\nG0 X3 Y4 Z50\nF150\n"
 )
 def test_cycles(block: str, expected: str, run: Runner) -> None:
     found = run(BEFORE + "G98\n" + block)
-    assert found.findings == ()
+    assert found.diagnostics == ()
     rapid = (found.kind == Kind.RAPID).tolist()[1:]
     heights = np.round(found.tip[1:, 2], 6).tolist()
     assert " ".join(f"{'R' if r else 'F'}{z:g}" for r, z in zip(rapid, heights, strict=True)) == expected
@@ -91,6 +91,6 @@ def test_cycles(block: str, expected: str, run: Runner) -> None:
 
 def test_cycles_go_on_until_they_are_cancelled(run: Runner) -> None:
     found = run(BEFORE + "G99 G81 X1 Y1 Z-10 R2\nX2\nY5 Z-12\nG80\nG0 X9\nG91 G98 G81 X1 Z-4 R-3 L3\nG80")
-    assert found.findings == ()
+    assert found.diagnostics == ()
     deep = found.tip[found.kind == Kind.LINEAR]
     close(deep, [[1, 1, -10], [2, 1, -10], [2, 5, -12], [10, 5, -5], [11, 5, -5], [12, 5, -5]])

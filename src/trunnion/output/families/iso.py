@@ -3,8 +3,8 @@
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.controls.family import ArcWords, Codes, Formats, UnsayableError, WordEvent
-from trunnion.controls.words import ABSENT, counts
+from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
+from trunnion.controls.words import ABSENT, round_to_counts
 from trunnion.model.toolpath import Arcs, Coolant, Kind, Operation, Sense, SpindleOff, SpindleOn
 
 WORDS: tuple[str, ...] = (
@@ -18,11 +18,11 @@ CODES: tuple[str, ...] = (
     "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop", "optional_stop",
 )  # fmt: skip
 
-_PLANES = ("plane_yz", "plane_zx", "plane_xy")
+_PLANE_CODES = ("plane_yz", "plane_zx", "plane_xy")
 _CENTRE_WORDS = (("J", "K"), ("K", "I"), ("I", "J"))
 _END_WORDS = (("Y", "Z"), ("Z", "X"), ("X", "Y"))
-_COMP = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
-_COMP_PLANE = {"XYPLAN": "plane_xy", "ZXPLAN": "plane_zx", "YZPLAN": "plane_yz"}
+_COMP_CODES = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
+_COMP_PLANE_CODES = {"XYPLAN": "plane_xy", "ZXPLAN": "plane_zx", "YZPLAN": "plane_yz"}
 
 
 def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
@@ -34,13 +34,13 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
         return {"spindle": codes["spindle_off"]}
     if isinstance(event, Coolant):
         return {"coolant": coolant[event.kind]}
-    words: dict[str, float] = {"cutter_comp": codes[_COMP[event.side]]} if event.side in _COMP else {}
-    if event.plane in _COMP_PLANE:
-        words["plane"] = codes[_COMP_PLANE[event.plane]]
+    words: dict[str, float] = {"cutter_comp": codes[_COMP_CODES[event.side]]} if event.side in _COMP_CODES else {}
+    if event.plane in _COMP_PLANE_CODES:
+        words["plane"] = codes[_COMP_PLANE_CODES[event.plane]]
     return words
 
 
-def too_early_per_turn(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
+def feed_per_rev_before_spindle(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
     """A feed per revolution before the spindle has a speed; as ``FamilyWriter.refused``."""
     rows = [event.row for event in operation.events if isinstance(event, SpindleOn)]
     moves = operation.moves
@@ -48,7 +48,7 @@ def too_early_per_turn(operation: Operation, spindle_known: bool) -> list[tuple[
     early = np.flatnonzero(moves.per_rev[:first] & (moves.kind[:first] != Kind.RAPID))
     if not len(early):
         return []
-    why = UnsayableError("a feed per revolution before the spindle has a speed", "put SPINDL before it")
+    why = UnsupportedFeatureError("a feed per revolution before the spindle has a speed", "put SPINDL before it")
     return [(int(moves.line[early[0]]), why)]
 
 
@@ -72,14 +72,14 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Format
     positive = normal[np.arange(len(rows)), along] > 0
     columns = {
         "motion": np.where(positive, codes["arc_counterclockwise"], codes["arc_clockwise"]).astype(np.int64),
-        "plane": np.array([codes[p] for p in _PLANES], np.int64)[along],
-        "turns": np.where(arcs.turns[rows] > 0, arcs.turns[rows], ABSENT),
+        "plane": np.array([codes[p] for p in _PLANE_CODES], np.int64)[along],
+        "turns": np.where(arcs.full_turns[rows] > 0, arcs.full_turns[rows], ABSENT),
     }
     offset = arcs.centre[rows] - tip[arcs.row[rows] - 1]
     decimals = formats["I"].decimals
     forced: dict[str, Ints] = {}
     for c, letter in enumerate("IJK"):
         wanted = np.array([letter in _CENTRE_WORDS[a] for a in range(3)])[along]
-        columns[letter] = np.where(wanted, counts(np.ascontiguousarray(offset[:, c]), decimals), ABSENT)
+        columns[letter] = np.where(wanted, round_to_counts(np.ascontiguousarray(offset[:, c]), decimals), ABSENT)
         forced["XYZ"[c]] = np.array(["XYZ"[c] in _END_WORDS[a] for a in range(3)], np.int64)[along]
     return ArcWords(columns, forced)

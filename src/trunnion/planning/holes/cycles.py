@@ -20,52 +20,52 @@ from trunnion.arrays import Flags, Ints
 from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Kind, Operation, Sense, SpindleOff, SpindleOn
 
 
-class Making(StrEnum):
+class HoleMethod(StrEnum):
     """How a hole is made."""
 
     DRILL = "DRILL"
-    DEEP = "DRILL,DEEP"
-    CHIPS = "DRILL,BRKCHP"
+    DEEP_DRILLING = "DRILL,DEEP"
+    CHIP_BREAKING = "DRILL,BRKCHP"
     TAP = "TAP"
-    TAP_CHUCK = "TAP,OPTION"
-    TAP_DEEP = "TAP,DEEP"
-    TAP_CHIPS = "TAP,BRKCHP"
+    FLOATING_TAP = "TAP,OPTION"
+    DEEP_TAP = "TAP,DEEP"
+    CHIP_BREAKING_TAP = "TAP,BRKCHP"
     REAM = "REAM"
-    DRAG = "BORE,DRAG"
-    LIFT = "BORE,NODRAG"
-    MANUAL = "BORE,MANUAL"
+    BORE = "BORE,DRAG"
+    BORE_WITH_LIFT = "BORE,NODRAG"
+    BORE_MANUAL = "BORE,MANUAL"
 
 
-_MAKINGS = {
-    ("DRILL",): Making.DRILL,
-    ("FACE",): Making.DRILL,
-    ("DRILL", "FACE"): Making.DRILL,
-    ("DRILL", "CSINK"): Making.DRILL,
-    ("CSINK",): Making.DRILL,
-    ("DRILL", "DEEP"): Making.DEEP,
-    ("DRILL", "BRKCHP"): Making.CHIPS,
-    ("TAP",): Making.TAP,
-    ("TAP", "DEEP"): Making.TAP_DEEP,
-    ("TAP", "BRKCHP"): Making.TAP_CHIPS,
-    ("BORE",): Making.REAM,
-    ("REAM",): Making.REAM,
-    ("BORE", "DRAG"): Making.DRAG,
-    ("BORE", "NODRAG"): Making.LIFT,
-    ("BORE", "MANUAL"): Making.MANUAL,
+_METHODS = {
+    ("DRILL",): HoleMethod.DRILL,
+    ("FACE",): HoleMethod.DRILL,
+    ("DRILL", "FACE"): HoleMethod.DRILL,
+    ("DRILL", "CSINK"): HoleMethod.DRILL,
+    ("CSINK",): HoleMethod.DRILL,
+    ("DRILL", "DEEP"): HoleMethod.DEEP_DRILLING,
+    ("DRILL", "BRKCHP"): HoleMethod.CHIP_BREAKING,
+    ("TAP",): HoleMethod.TAP,
+    ("TAP", "DEEP"): HoleMethod.DEEP_TAP,
+    ("TAP", "BRKCHP"): HoleMethod.CHIP_BREAKING_TAP,
+    ("BORE",): HoleMethod.REAM,
+    ("REAM",): HoleMethod.REAM,
+    ("BORE", "DRAG"): HoleMethod.BORE,
+    ("BORE", "NODRAG"): HoleMethod.BORE_WITH_LIFT,
+    ("BORE", "MANUAL"): HoleMethod.BORE_MANUAL,
 }
 
 
 #: Those that say the length of a stroke.
-_IN_STROKES = (Making.DEEP, Making.CHIPS, Making.TAP_DEEP, Making.TAP_CHIPS)
+_IN_STROKES = (HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING, HoleMethod.DEEP_TAP, HoleMethod.CHIP_BREAKING_TAP)
 
 #: Threads.
-_TAPS = (Making.TAP, Making.TAP_CHUCK, Making.TAP_DEEP, Making.TAP_CHIPS)
+_TAPS = (HoleMethod.TAP, HoleMethod.FLOATING_TAP, HoleMethod.DEEP_TAP, HoleMethod.CHIP_BREAKING_TAP)
 
 #: No length, feed or angle of a cycle is so large.
 _FARTHEST = 1e6
 
 
-class CycleError(Exception):
+class HoleCycleError(Exception):
     """Why a cycle cannot be made: what, and what would put it right. ``line``: where, if that is known."""
 
     def __init__(self, what: str, cure: str, line: int = 0) -> None:
@@ -73,7 +73,7 @@ class CycleError(Exception):
         self.what, self.cure, self.line = what, cure, line
 
 
-class UnsaidError(CycleError):
+class UnsupportedCycleError(HoleCycleError):
     """A control has no words for a cycle that says all that it must; motion may make its holes."""
 
 
@@ -81,70 +81,74 @@ class UnsaidError(CycleError):
 class Cycle:
     """What a cycle asks for at each hole.
 
-    above    height to which the tool goes at rapid
+    rapid_height    height to which the tool goes at rapid
     depth    how far below the point it drills
-    retract  height to which it is drawn back, no lower than ``above``; None: as high as it was before the first hole
-    steps    strokes: the first, how much each next is shorter, the shortest
+    retract  height to which it is drawn back, no lower than ``rapid_height``; None: as high as it was before the first
+    hole steps    strokes: the first, how much each next is shorter, the shortest
     dwell    seconds at the bottom, or spindle turns
     feed     mm/min, or mm/rev; None: the modal one
     angle    of the spindle for BORE,NODRAG, degrees
     """
 
-    making: Making
-    above: float
+    method: HoleMethod
+    rapid_height: float
     depth: float
-    retract: float | None
-    steps: tuple[float, float, float]
+    retract_height: float | None
+    strokes: tuple[float, float, float]
     dwell: float
-    dwell_turns: bool
+    dwell_in_revolutions: bool
     feed: float | None
     per_rev: bool
-    angle: float
+    spindle_angle: float
 
 
-def cycle_of(event: CycleOn) -> Cycle:
+def cycle_from_event(event: CycleOn) -> Cycle:
     """What a CYCLE statement asks for.
 
     Raises
     ------
-    CycleError
+    HoleCycleError
         When it asks for what is not known, or leaves out what must be said.
     """
     values, words = dict(event.values), dict(event.words)
     if any(not abs(number) < _FARTHEST for given in values.values() for number in given):
-        raise CycleError("CYCLE with a number that no machine has", "write lengths in mm or inches, feeds per minute")
-    making = _MAKINGS.get(event.mode)
+        raise HoleCycleError(
+            "CYCLE with a number that no machine has", "write lengths in mm or inches, feeds per minute"
+        )
+    method = _METHODS.get(event.mode)
     if event.mode == ("BORE", "BACK"):
         what = "CYCLE/BORE,BACK does not say how far the tool must move off its axis to pass the hole, nor where to"
-        raise CycleError(what, "output the holes as motion")
-    if making is None:
+        raise HoleCycleError(what, "output the holes as motion")
+    if method is None:
         what = f"CYCLE/{','.join(event.mode)} is a cycle that cannot be written"
-        raise CycleError(what, "output the holes as motion")
-    if making is Making.TAP and "OPTION" in words:
-        making = Making.TAP_CHUCK
-    if making in (Making.TAP_DEEP, Making.TAP_CHIPS) and "OPTION" in words:
-        raise CycleError(f"CYCLE/{making} with OPTION, a compensating chuck", "leave OPTION out, or tap in one stroke")
+        raise HoleCycleError(what, "output the holes as motion")
+    if method is HoleMethod.TAP and "OPTION" in words:
+        method = HoleMethod.FLOATING_TAP
+    if method in (HoleMethod.DEEP_TAP, HoleMethod.CHIP_BREAKING_TAP) and "OPTION" in words:
+        raise HoleCycleError(
+            f"CYCLE/{method} with OPTION, a compensating chuck", "leave OPTION out, or tap in one stroke"
+        )
     above = _one(values, "RAPTO", _one(values, "CLEAR", math.nan))
     if not above >= 0.0:
-        raise CycleError("CYCLE without RAPTO, or with one below the hole", "write RAPTO,distance above the point")
+        raise HoleCycleError("CYCLE without RAPTO, or with one below the hole", "write RAPTO,distance above the point")
     steps = (*values.get("STEP", ()), 0.0, 0.0, 0.0)[:3]
-    if making in _IN_STROKES and not steps[0] > 0.0:
-        raise CycleError(f"CYCLE/{making} without STEP", "write STEP,first stroke")
+    if method in _IN_STROKES and not steps[0] > 0.0:
+        raise HoleCycleError(f"CYCLE/{method} without STEP", "write STEP,first stroke")
     if words.get("RTRCTO") == "MANUAL":
-        raise CycleError("RTRCTO,MANUAL does not say how far", "write RTRCTO,distance or RTRCTO,AUTO")
+        raise HoleCycleError("RTRCTO,MANUAL does not say how far", "write RTRCTO,distance or RTRCTO,AUTO")
     retract = None if words.get("RTRCTO") == "AUTO" else max(_one(values, "RTRCTO", above), above)
     per_rev = "MMPR" in values
     return Cycle(
-        making=making,
-        above=above,
+        method=method,
+        rapid_height=above,
         depth=_depth(event.mode, values),
-        retract=retract,
-        steps=(steps[0], steps[1], steps[2]),
+        retract_height=retract,
+        strokes=(steps[0], steps[1], steps[2]),
         dwell=_one(values, "DWELL", 0.0),
-        dwell_turns=words.get("DWELL") == "REV",
+        dwell_in_revolutions=words.get("DWELL") == "REV",
         feed=_one(values, "MMPR" if per_rev else "MMPM", math.nan) if per_rev or "MMPM" in values else None,
         per_rev=per_rev,
-        angle=_one(values, "NODRAG", 0.0),
+        spindle_angle=_one(values, "NODRAG", 0.0),
     )
 
 
@@ -159,18 +163,18 @@ def _depth(mode: Sequence[str], values: dict[str, tuple[float, ...]]) -> float:
     if "CSINK" in mode and "CSKDIA" in values:
         angle = _one(values, "TLANGL", 0.0)
         if not 0.0 < angle < 180.0:
-            raise CycleError("CYCLE/DRILL,CSINK without the angle of the tool", "write TLANGL,angle")
+            raise HoleCycleError("CYCLE/DRILL,CSINK without the angle of the tool", "write TLANGL,angle")
         depth = 0.5 * values["CSKDIA"][0] / math.tan(math.radians(0.5 * angle))
         if given and abs(given - depth) > 0.01:
             what = f"CYCLE/DRILL,CSINK asks for {given:g} mm by FEDTO and for {depth:.4f} mm by CSKDIA and TLANGL"
-            raise CycleError(what, "leave one of them out")
+            raise HoleCycleError(what, "leave one of them out")
         given = depth
     if not given > 0.0:
-        raise CycleError("CYCLE without a depth", "write FEDTO,depth")
+        raise HoleCycleError("CYCLE without a depth", "write FEDTO,depth")
     return given
 
 
-def holes_of(operation: Operation) -> Flags:
+def hole_rows(operation: Operation) -> Flags:
     """(n,) bool: the row is a hole, for it stands under a cycle and is no rapid."""
     under = np.zeros(len(operation.moves), bool)
     for event in operation.events:
@@ -179,17 +183,17 @@ def holes_of(operation: Operation) -> Flags:
     return np.asarray(under & (operation.moves.kind != Kind.RAPID))
 
 
-def with_holes(operation: Operation) -> Operation:
+def normalize_cycles(operation: Operation) -> Operation:
     """The operation with its cycles around holes only, the way to each of them a rapid, and RTRCTO,AUTO as a number.
 
     Raises
     ------
-    CycleError
+    HoleCycleError
         When AUTO means the height before the cycle, and there is no point before it.
     """
     if not any(isinstance(event, CycleOn) for event in operation.events):
         return operation
-    holes, moves = holes_of(operation), operation.moves
+    holes, moves = hole_rows(operation), operation.moves
     events: list[Event] = []
     cycle: CycleOn | None = None
     edges = np.flatnonzero(np.diff(holes, prepend=False, append=False)).tolist()
@@ -208,8 +212,8 @@ def with_holes(operation: Operation) -> Operation:
     return replace(operation, moves=replace(moves, kind=kind), events=tuple(events))
 
 
-def holes_of_cycles(operation: Operation) -> Iterator[tuple[CycleOn, int]]:
-    """The cycles of an operation as ``with_holes`` leaves it, each with the row after its last hole."""
+def cycle_row_ranges(operation: Operation) -> Iterator[tuple[CycleOn, int]]:
+    """The cycles of an operation as ``normalize_cycles`` leaves it, each with the row after its last hole."""
     begun: CycleOn | None = None
     for event in operation.events:
         if isinstance(event, CycleOn | CycleOff) and begun is not None:
@@ -231,59 +235,59 @@ def _resolved(operation: Operation, event: CycleOn) -> CycleOn:
     moves = operation.moves
     if event.row == 0:
         cure = "put a point before the cycle, or write RTRCTO,distance"
-        raise CycleError("RTRCTO,AUTO before any point", cure, event.line)
+        raise HoleCycleError("RTRCTO,AUTO before any point", cure, event.line)
     height = float((moves.tip[event.row - 1] - moves.tip[event.row]) @ moves.axis[event.row])
     words.pop("RTRCTO")
     return replace(event, values=(*event.values, ("RTRCTO", (height,))), words=tuple(words.items()))
 
 
 @dataclass(frozen=True, slots=True)
-class Turning:
+class SpindleState:
     """The spindle at a hole."""
 
     rpm: float
     sense: Sense
 
 
-def turning(events: Sequence[Event], row: int, before: Turning | None) -> Turning | None:
+def spindle_state_at(events: Sequence[Event], row: int, before: SpindleState | None) -> SpindleState | None:
     """The spindle at a row of an operation; ``before``: at its beginning. None: it stands still."""
     for event in events:
         if event.row > row:
             break
         if isinstance(event, SpindleOn):
-            before = Turning(event.rpm, event.sense)
+            before = SpindleState(event.rpm, event.sense)
         elif isinstance(event, SpindleOff):
             before = None
     return before
 
 
-def by_axis(operation: Operation) -> list[tuple[int, int]] | None:
+def split_by_axis(operation: Operation) -> list[tuple[int, int]] | None:
     """Rows from, to, for each stretch of one tool axis of an operation with holes.
 
     None if it has none, or if it cannot be parted there: for arcs, or because the axis changes in a cut.
     """
     if not any(isinstance(event, CycleOn) for event in operation.events) or len(operation.arcs.row):
         return None
-    turns = turned(operation)
+    turns = axis_change_rows(operation)
     if (operation.moves.kind[turns] != Kind.RAPID).any():
         return None
-    return between(turns, len(operation.moves))
+    return row_ranges(turns, len(operation.moves))
 
 
-def turned(operation: Operation) -> Ints:
+def axis_change_rows(operation: Operation) -> Ints:
     """The rows under another tool axis than the row before them."""
     return np.flatnonzero(np.abs(np.diff(operation.moves.axis, axis=0)).max(axis=1, initial=0.0) > 1e-7) + 1
 
 
-def between(starts: Ints, count: int) -> list[tuple[int, int]]:
+def row_ranges(starts: Ints, count: int) -> list[tuple[int, int]]:
     """Rows from, to, for each part of ``count`` rows of which all but the first begin at ``starts``."""
     return list(pairwise([0, *starts.tolist(), count]))
 
 
-def part_of(operation: Operation, first: int, end: int) -> Operation:
+def extract_rows(operation: Operation, first: int, end: int) -> Operation:
     """Rows ``first`` to ``end`` of an operation, with the cycle that holds where they begin. No arc leads there."""
     moves, arcs = operation.moves, operation.arcs
-    cut = moves.part(slice(first, end))
+    cut = moves.select(slice(first, end))
     last = end == len(moves)
     inside = [e for e in operation.events if first <= e.row < end or (last and e.row == end)]
     held = [e for e in operation.events if isinstance(e, CycleOn | CycleOff) and e.row < first]
@@ -291,14 +295,14 @@ def part_of(operation: Operation, first: int, end: int) -> Operation:
     if held and isinstance(held[-1], CycleOn) and not any(isinstance(e, CycleOff) and e.row == 0 for e in events):
         events.insert(0, replace(held[-1], row=0))
     here = (arcs.row >= first) & (arcs.row < end)
-    kept = Arcs(arcs.row[here] - first, arcs.centre[here], arcs.normal[here], arcs.radius[here], arcs.turns[here])
+    kept = Arcs(arcs.row[here] - first, arcs.centre[here], arcs.normal[here], arcs.radius[here], arcs.full_turns[here])
     return replace(operation, moves=cut, arcs=kept, events=tuple(events))
 
 
-def feed_of(cycle: Cycle, turning: Turning | None, modal: float, modal_per_rev: bool) -> tuple[float, bool]:
+def cycle_feed(cycle: Cycle, spindle: SpindleState | None, modal: float, modal_per_rev: bool) -> tuple[float, bool]:
     """The feed that is in force in the cycle, and whether it is per turn: the cycle's own, or the modal one."""
     if cycle.feed is None:
         return modal, modal_per_rev
-    if cycle.making in _TAPS and cycle.per_rev and turning is not None:
-        return cycle.feed * turning.rpm, False
+    if cycle.method in _TAPS and cycle.per_rev and spindle is not None:
+        return cycle.feed * spindle.rpm, False
     return cycle.feed, cycle.per_rev

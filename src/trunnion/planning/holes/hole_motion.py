@@ -1,7 +1,7 @@
 """Holes as motion: rapids, strokes and dwells in place of a cycle that the control cannot say.
 
-In:     an operation whose cycles are around holes only, as ``trunnion.planning.holes.cycles.with_holes`` leaves it.
-Out:    the same operation with the rows of these holes in place of their points, and without their cycles.
+In:     an operation whose cycles are around holes only, as ``trunnion.planning.holes.cycles.normalize_cycles`` leaves
+it. Out:    the same operation with the rows of these holes in place of their points, and without their cycles.
 
 Heights are distances along the tool axis from the point of the hole, mm; docs/cl.md says which motions these are. A
 thread needs a spindle that is held to the feed, and a tool that lifts off aside one that is oriented: no motion says
@@ -19,25 +19,27 @@ from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.model.toolpath import CycleOff, CycleOn, Dwell, Event, Kind, Operation, SpindleOff, SpindleOn
 from trunnion.planning.holes.cycles import (
     Cycle,
-    CycleError,
-    Making,
-    Turning,
-    cycle_of,
-    feed_of,
-    holes_of_cycles,
-    turning,
+    HoleCycleError,
+    HoleMethod,
+    SpindleState,
+    cycle_feed,
+    cycle_from_event,
+    cycle_row_ranges,
+    spindle_state_at,
 )
-from trunnion.planning.linearization.row_insertion import with_copies
-from trunnion.planning.options import Wishes
+from trunnion.planning.linearization.row_insertion import insert_rows
+from trunnion.planning.options import PlanOptions
 
 #: Why holes are made as motion whose cycles could be said.
-ASKED: Final = "it is asked for"
+REQUESTED: Final = "it is asked for"
 
 #: Holes that motion can make.
-RESOLVED: Final = frozenset({Making.DRILL, Making.DEEP, Making.CHIPS, Making.REAM, Making.DRAG})
+CONVERTIBLE: Final = frozenset(
+    {HoleMethod.DRILL, HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING, HoleMethod.REAM, HoleMethod.BORE}
+)
 
 #: A rapid back into the hole ends this far above what is drilled; a stroke that breaks chips is drawn back as far, mm.
-CLEAR: Final = 0.5
+REENTRY_CLEARANCE: Final = 0.5
 
 #: Heights are the same when they differ by no more than this, mm.
 _SAME: Final = 1e-9
@@ -54,17 +56,17 @@ _LEADING: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Resolved:
+class ConvertedCycles:
     """Cycles of one kind that became motion: how many holes, the line of the first one's cycle, and why."""
 
-    making: Making
+    method: HoleMethod
     line: int
     holes: int
     why: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Drilled:
+class HolesAsMotion:
     """An operation with holes as motion.
 
     first     (n + 1,) int64  the new row with which each row of the operation before begins
@@ -73,7 +75,7 @@ class Drilled:
 
     operation: Operation
     first: Ints
-    resolved: tuple[Resolved, ...] = ()
+    converted: tuple[ConvertedCycles, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,10 +90,12 @@ class _Holes:
     event: CycleOn
     cycle: Cycle
     why: str
-    spindle: Turning | None
+    spindle: SpindleState | None
 
 
-def as_motion(operation: Operation, wishes: Wishes, held: Turning | None, home: Flags, why: str) -> Drilled:
+def convert_holes_to_motion(
+    operation: Operation, options: PlanOptions, held: SpindleState | None, home: Flags, why: str
+) -> HolesAsMotion:
     """Make holes as motion where the control cannot say their cycles.
 
     Parameters
@@ -109,19 +113,19 @@ def as_motion(operation: Operation, wishes: Wishes, held: Turning | None, home: 
 
     Raises
     ------
-    CycleError
+    HoleCycleError
         When a cycle that would be made as motion leaves out what must be said.
     """
-    every = list(_cycles(operation, wishes, held, why))
+    every = list(_cycles(operation, options, held, why))
     wanted = [holes for holes in every if holes.why]
     rows = np.arange(len(operation.moves) + 1)
     if not wanted:
-        return Drilled(operation, rows)
+        return HolesAsMotion(operation, rows)
     moves = operation.moves
     lift = np.zeros(len(moves))
     for holes in every:
-        assert holes.cycle.retract is not None
-        lift[holes.first : holes.end] = holes.cycle.retract
+        assert holes.cycle.retract_height is not None
+        lift[holes.first : holes.end] = holes.cycle.retract_height
     came = np.roll(moves.tip + lift[:, None] * moves.axis, 1, axis=0)
     from_home = home.copy()
     from_home[0] = True
@@ -130,7 +134,7 @@ def as_motion(operation: Operation, wishes: Wishes, held: Turning | None, home: 
     for holes, piece in zip(wanted, pieces, strict=True):
         copies[holes.first : holes.end] = piece.keep.sum(axis=1)
     if copies.sum() > _MOST_ROWS:
-        raise CycleError(f"holes of {copies.sum()} motions", "output longer strokes", wanted[0].event.line)
+        raise HoleCycleError(f"holes of {copies.sum()} motions", "output longer strokes", wanted[0].event.line)
     first = np.concatenate(([0], np.cumsum(copies)))
     tip, kind = np.repeat(moves.tip, copies, axis=0), np.repeat(moves.kind, copies)
     feed, per_rev = np.repeat(moves.feed, copies), np.repeat(moves.per_rev, copies)
@@ -142,74 +146,76 @@ def as_motion(operation: Operation, wishes: Wishes, held: Turning | None, home: 
         feed[lines], per_rev[lines] = piece.feed, piece.per_rev
         events += _at_the_bottom(holes, at[:, _LEADING + piece.bottom] + 1, first[holes.first + 1 : holes.end + 1])
     events = [event for event in events if event.row < len(tip)]
-    made = with_copies(_without_cycles(operation, wanted), copies, tip, np.repeat(moves.axis, copies, axis=0), kind)
+    made = insert_rows(_without_cycles(operation, wanted), copies, tip, np.repeat(moves.axis, copies, axis=0), kind)
     made = replace(
         made,
         moves=replace(made.moves, feed=feed, per_rev=per_rev),
         events=tuple(sorted([*events, *made.events], key=lambda event: event.row)),
     )
-    return Drilled(made, first, tuple(_told(wanted)))
+    return HolesAsMotion(made, first, tuple(_told(wanted)))
 
 
-def _cycles(operation: Operation, wishes: Wishes, held: Turning | None, why: str) -> Iterator[_Holes]:
+def _cycles(operation: Operation, options: PlanOptions, held: SpindleState | None, why: str) -> Iterator[_Holes]:
     """The holes of an operation, cycle by cycle; what is wrong with a cycle is left to whoever says it."""
     changes = [event.row for event in operation.events if isinstance(event, SpindleOn | SpindleOff)]
-    for event, end in holes_of_cycles(operation):
+    for event, end in cycle_row_ranges(operation):
         try:
-            cycle = cycle_of(event)
-        except CycleError:
+            cycle = cycle_from_event(event)
+        except HoleCycleError:
             continue
-        spindle = turning(operation.events, event.row, held)
-        reason = why or wishes.unsaid(cycle, spindle) or (ASKED if wishes.holes_as_motion else "")
-        reason = reason if cycle.making in RESOLVED else ""
+        spindle = spindle_state_at(operation.events, event.row, held)
+        reason = (
+            why or options.unsupported_cycle_reason(cycle, spindle) or (REQUESTED if options.holes_as_motion else "")
+        )
+        reason = reason if cycle.method in CONVERTIBLE else ""
         rows = sorted({event.row, *(row for row in changes if event.row < row < end), end})
         for first, last in pairwise(rows):
-            yield _Holes(first, last, event, cycle, reason, turning(operation.events, first, held))
+            yield _Holes(first, last, event, cycle, reason, spindle_state_at(operation.events, first, held))
 
 
-def strokes(cycle: Cycle) -> list[float]:
+def stroke_depths(cycle: Cycle) -> list[float]:
     """The depths below the point of the hole, mm, that are drilled to one after another.
 
     Raises
     ------
-    CycleError
+    HoleCycleError
         When the strokes never get there.
     """
-    if cycle.making not in (Making.DEEP, Making.CHIPS):
+    if cycle.method not in (HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING):
         return [cycle.depth]
-    stroke, less, least = cycle.steps
+    stroke, less, least = cycle.strokes
     if less < 0.0 or least < 0.0:
-        raise CycleError("STEP with a number below 0", "write STEP,first,less,shortest")
+        raise HoleCycleError("STEP with a number below 0", "write STEP,first,less,shortest")
     depths = [min(stroke, cycle.depth)]
     while cycle.depth - depths[-1] > _SAME:
         stroke = max(stroke - less, min(least, stroke))
         if not stroke > 0.0:
-            raise CycleError("STEP without a shortest stroke", "write STEP,first,less,shortest")
+            raise HoleCycleError("STEP without a shortest stroke", "write STEP,first,less,shortest")
         if len(depths) >= _MOST_STROKES:
-            raise CycleError(f"a hole in more than {_MOST_STROKES} strokes", "write longer ones")
+            raise HoleCycleError(f"a hole in more than {_MOST_STROKES} strokes", "write longer ones")
         depths.append(min(depths[-1] + stroke, cycle.depth))
     return [*depths[:-1], cycle.depth]
 
 
-def steps(cycle: Cycle) -> tuple[list[float], list[Kind], int]:
+def cycle_motions(cycle: Cycle) -> tuple[list[float], list[Kind], int]:
     """The motions from RAPTO on: heights to which they go, mm, how, and which of them reaches the bottom."""
-    assert cycle.retract is not None
+    assert cycle.retract_height is not None
     made: list[tuple[float, Kind]] = []
     before = 0.0
-    for number, depth in enumerate(strokes(cycle)):
-        if number and cycle.making is Making.DEEP:
-            made.append((cycle.above, Kind.RAPID))
-            if CLEAR - before < cycle.above - _SAME:
-                made.append((CLEAR - before, Kind.RAPID))
+    for number, depth in enumerate(stroke_depths(cycle)):
+        if number and cycle.method is HoleMethod.DEEP_DRILLING:
+            made.append((cycle.rapid_height, Kind.RAPID))
+            if REENTRY_CLEARANCE - before < cycle.rapid_height - _SAME:
+                made.append((REENTRY_CLEARANCE - before, Kind.RAPID))
         elif number:
-            made.append((min(CLEAR, 0.5 * before) - before, Kind.RAPID))
+            made.append((min(REENTRY_CLEARANCE, 0.5 * before) - before, Kind.RAPID))
         made.append((-depth, Kind.LINEAR))
         before = depth
     bottom = len(made) - 1
-    if cycle.making is Making.REAM:
-        made.append((cycle.above, Kind.LINEAR))
-    if cycle.making is not Making.REAM or cycle.retract > cycle.above + _SAME:
-        made.append((cycle.retract, Kind.RAPID))
+    if cycle.method is HoleMethod.REAM:
+        made.append((cycle.rapid_height, Kind.LINEAR))
+    if cycle.method is not HoleMethod.REAM or cycle.retract_height > cycle.rapid_height + _SAME:
+        made.append((cycle.retract_height, Kind.RAPID))
     return [height for height, _ in made], [kind for _, kind in made], bottom
 
 
@@ -231,34 +237,34 @@ class _Rows:
 def _rows_of(operation: Operation, holes: _Holes, came: Floats, from_home: Flags) -> _Rows:
     """The rows of holes of one cycle; ``came`` (n, 3): where the tool is before each row."""
     cycle, moves, part = holes.cycle, operation.moves, slice(holes.first, holes.end)
-    assert cycle.retract is not None
-    feed, per_rev = feed_of(cycle, holes.spindle, float(moves.feed[holes.first]), bool(moves.per_rev[holes.first]))
+    assert cycle.retract_height is not None
+    feed, per_rev = cycle_feed(cycle, holes.spindle, float(moves.feed[holes.first]), bool(moves.per_rev[holes.first]))
     try:
-        heights, kinds, bottom = steps(cycle)
+        heights, kinds, bottom = cycle_motions(cycle)
         if not feed > 0.0:
-            raise CycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
-        if cycle.dwell_turns and holes.spindle is None:
-            raise CycleError("DWELL,REV while the spindle stands still", "put SPINDL before the cycle")
-        if cycle.making is Making.DRAG and holes.spindle is None:
-            raise CycleError("CYCLE/BORE,DRAG while the spindle stands still", "put SPINDL before the cycle")
-    except CycleError as error:
-        raise CycleError(error.what, error.cure, holes.event.line) from None
+            raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
+        if cycle.dwell_in_revolutions and holes.spindle is None:
+            raise HoleCycleError("DWELL,REV while the spindle stands still", "put SPINDL before the cycle")
+        if cycle.method is HoleMethod.BORE and holes.spindle is None:
+            raise HoleCycleError("CYCLE/BORE,DRAG while the spindle stands still", "put SPINDL before the cycle")
+    except HoleCycleError as error:
+        raise HoleCycleError(error.what, error.cure, holes.event.line) from None
     point, axis = moves.tip[part], moves.axis[part]
-    high = np.where(from_home[part], cycle.retract, np.einsum("ij,ij->i", came[part] - point, axis))
-    low = high < cycle.above - _SAME
+    high = np.where(from_home[part], cycle.retract_height, np.einsum("ij,ij->i", came[part] - point, axis))
+    low = high < cycle.rapid_height - _SAME
     first = holes.first
     if low[0] and moves.kind[first - 1] != Kind.RAPID:
         what, cure = "CYCLE while the tool is below the height of RAPTO", "draw the tool back before the cycle"
-        raise CycleError(what, cure, holes.event.line)
-    travel = np.maximum(high, cycle.above)
+        raise HoleCycleError(what, cure, holes.event.line)
+    travel = np.maximum(high, cycle.rapid_height)
     over = point + travel[:, None] * axis
-    up = came[part] + (cycle.above - high)[:, None] * axis
-    comes_down = travel > cycle.above + _SAME
+    up = came[part] + (cycle.rapid_height - high)[:, None] * axis
+    comes_down = travel > cycle.rapid_height + _SAME
     away = np.abs(over - np.where(low[:, None], up, came[part])).max(axis=1)
     stands = ~from_home[part] & (away <= np.where(comes_down, _OVER, _SAME))
     count = _LEADING + len(heights)
     tip = np.empty((len(point), count, 3))
-    tip[:, 0], tip[:, 1], tip[:, 2] = up, over, point + cycle.above * axis
+    tip[:, 0], tip[:, 1], tip[:, 2] = up, over, point + cycle.rapid_height * axis
     tip[:, _LEADING:] = point[:, None] + np.array(heights)[None, :, None] * axis[:, None]
     keep = np.ones((len(point), count), np.bool_)
     keep[:, 0], keep[:, 1], keep[:, 2] = low, ~stands, comes_down
@@ -271,8 +277,8 @@ def _at_the_bottom(holes: _Holes, after: Ints, end: Ints) -> Iterator[Event]:
     cycle, line, spindle = holes.cycle, holes.event.line, holes.spindle
     for out, beyond in zip(after.tolist(), end.tolist(), strict=True):
         if cycle.dwell:
-            yield Dwell(out, line, cycle.dwell, cycle.dwell_turns)
-        if cycle.making is Making.DRAG and spindle is not None:
+            yield Dwell(out, line, cycle.dwell, cycle.dwell_in_revolutions)
+        if cycle.method is HoleMethod.BORE and spindle is not None:
             yield SpindleOff(out, line)
             yield SpindleOn(beyond, line, spindle.rpm, spindle.sense)
 
@@ -293,10 +299,10 @@ def _without_cycles(operation: Operation, made: list[_Holes]) -> Operation:
     return replace(operation, events=tuple(events))
 
 
-def _told(made: list[_Holes]) -> Iterator[Resolved]:
+def _told(made: list[_Holes]) -> Iterator[ConvertedCycles]:
     """One entry for each kind of cycle and reason."""
-    found: dict[tuple[Making, str], list[_Holes]] = {}
+    found: dict[tuple[HoleMethod, str], list[_Holes]] = {}
     for holes in made:
-        found.setdefault((holes.cycle.making, holes.why), []).append(holes)
-    for (making, why), each in found.items():
-        yield Resolved(making, each[0].event.line, sum(holes.end - holes.first for holes in each), why)
+        found.setdefault((holes.cycle.method, holes.why), []).append(holes)
+    for (method, why), each in found.items():
+        yield ConvertedCycles(method, each[0].event.line, sum(holes.end - holes.first for holes in each), why)

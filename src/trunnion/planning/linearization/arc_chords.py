@@ -10,19 +10,19 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.toolpath import Arcs, Kind, Operation
-from trunnion.planning.linearization.row_insertion import with_copies
+from trunnion.planning.linearization.row_insertion import insert_rows
 
 #: Directions are taken as along a coordinate axis within this sine; seven printed decimals give 1e-7.
-_ALONG = 1e-6
+_PARALLEL_SINE = 1e-6
 
 #: Start and end of an arc that lie nearer to each other than this, mm, could print as the same point.
-_CLEAR = 0.005
+_DISTINCT = 0.005
 
 #: What four decimals of start, end and centre come to in the radius of an arc, mm.
-_ROUNDED = 3e-4
+_PRINTED_RADIUS_ERROR = 3e-4
 
 #: An arc that rises by less than this, mm, is flat: nobody prints so many digits.
-_LEVEL = 1e-5
+_FLAT = 1e-5
 
 
 def arc_sweeps(operation: Operation) -> Floats:
@@ -41,10 +41,10 @@ def arc_sweeps(operation: Operation) -> Floats:
     angle = np.mod(np.arctan2(across, along), 2.0 * np.pi)
     # start = end in the plane is a full circle; rounding of the file may put the end a hair before or after it
     closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < 1e-4
-    return np.asarray(np.where(closed, 2.0 * np.pi, angle) + 2.0 * np.pi * arcs.turns)
+    return np.asarray(np.where(closed, 2.0 * np.pi, angle) + 2.0 * np.pi * arcs.full_turns)
 
 
-def off_circle(operation: Operation) -> Floats:
+def radius_change(operation: Operation) -> Floats:
     """(m,) float64: how much farther from the axis of its arc an arc ends than it starts, mm."""
     arcs, tip = operation.arcs, operation.moves.tip
     start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
@@ -52,7 +52,7 @@ def off_circle(operation: Operation) -> Floats:
     return np.asarray(away[1] - away[0])
 
 
-def plain_arcs(operation: Operation, only_about_z: bool = False, by_angle: bool = False) -> Flags:
+def arcs_a_control_takes(operation: Operation, only_about_z: bool = False, by_angle: bool = False) -> Flags:
     """(m,) bool: the arc may be left to a control.
 
     It turns about X, Y or Z, and the tool axis is the same at its start and its end. It also ends clear of its start,
@@ -62,15 +62,15 @@ def plain_arcs(operation: Operation, only_about_z: bool = False, by_angle: bool 
     """
     arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
     aside = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
-    about_axis = (aside if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _ALONG
-    steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _ALONG
+    about_axis = (aside if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _PARALLEL_SINE
+    steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _PARALLEL_SINE
     if by_angle:
-        rises = (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.0) | (arcs.turns > 0)
-        steady &= ~rises | (np.abs(off_circle(operation)) < _ROUNDED)
+        rises = (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.0) | (arcs.full_turns > 0)
+        steady &= ~rises | (np.abs(radius_change(operation)) < _PRINTED_RADIUS_ERROR)
     apart = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
     in_plane = np.linalg.norm(np.cross(tip[arcs.row] - tip[arcs.row - 1], arcs.normal), axis=1)
     return np.asarray(
-        about_axis & steady & ((in_plane > _CLEAR) | (apart == 0.0) | ((in_plane == 0.0) & (apart > _CLEAR)))
+        about_axis & steady & ((in_plane > _DISTINCT) | (apart == 0.0) | ((in_plane == 0.0) & (apart > _DISTINCT)))
     )
 
 
@@ -78,14 +78,14 @@ def flat_arcs(operation: Operation) -> Flags:
     """(m,) bool: the arc ends at the height of its start along its normal, and makes no whole turns besides."""
     arcs, tip = operation.arcs, operation.moves.tip
     rise = np.einsum("ij,ij->i", tip[arcs.row] - tip[arcs.row - 1], arcs.normal)
-    return np.asarray((np.abs(rise) < _LEVEL) & (arcs.turns == 0))
+    return np.asarray((np.abs(rise) < _FLAT) & (arcs.full_turns == 0))
 
 
 def arcs_about_tool(operation: Operation) -> Flags:
     """(m,) bool: the arc turns about the tool axis at its end."""
     arcs = operation.arcs
     across = np.cross(arcs.normal, operation.moves.axis[arcs.row])
-    return np.asarray(np.linalg.norm(across, axis=1) < _ALONG)
+    return np.asarray(np.linalg.norm(across, axis=1) < _PARALLEL_SINE)
 
 
 def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:
@@ -109,7 +109,7 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
         return operation
     moves, arcs = operation.moves, operation.arcs
     sweep = arc_sweeps(operation)
-    copies = arc_pieces(operation, keep, chord_tolerance)
+    copies = arc_piece_counts(operation, keep, chord_tolerance)
     source = np.repeat(np.arange(len(moves)), copies)
     new_row = np.cumsum(copies) - 1  # where each old row ends up: the last of its copies
     tip, axis = moves.tip[source], moves.axis[source]
@@ -119,11 +119,11 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
         part = slice(new_row[row] - copies[row] + 1, new_row[row] + 1)
         tip[part], axis[part] = _points_on_arc(operation, int(m), float(sweep[m]), int(copies[row]))
         kind[part] = Kind.LINEAR
-    kept = Arcs(arcs.row[keep], arcs.centre[keep], arcs.normal[keep], arcs.radius[keep], arcs.turns[keep])
-    return with_copies(replace(operation, arcs=kept), copies, tip, axis, kind)
+    kept = Arcs(arcs.row[keep], arcs.centre[keep], arcs.normal[keep], arcs.radius[keep], arcs.full_turns[keep])
+    return insert_rows(replace(operation, arcs=kept), copies, tip, axis, kind)
 
 
-def arc_pieces(operation: Operation, keep: Flags, chord_tolerance: float) -> Ints:
+def arc_piece_counts(operation: Operation, keep: Flags, chord_tolerance: float) -> Ints:
     """(n,) int64: into how many lines the move to each row is cut; 1 for all but the arcs that are not kept."""
     arcs = operation.arcs
     half = np.sqrt(np.minimum(chord_tolerance / (2.0 * np.maximum(arcs.radius, chord_tolerance)), 0.25))
@@ -147,10 +147,10 @@ def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> t
     # the file rounds centre and end: spread what is missing at the end over the arc, so that the end is met
     tip += part[:, None] * (moves.tip[row] - tip[-1])
     tip[-1] = moves.tip[row]  # to the last digit, too
-    return tip, turned_evenly(moves.axis[row - 1], moves.axis[row], part)
+    return tip, great_circle_points(moves.axis[row - 1], moves.axis[row], part)
 
 
-def turned_evenly(first: Floats, last: Floats, part: Floats) -> Floats:
+def great_circle_points(first: Floats, last: Floats, part: Floats) -> Floats:
     """Great-circle turn from ``first`` to ``last`` (unit vectors), at the fractions ``part``."""
     angle = float(np.arctan2(np.linalg.norm(np.cross(first, last)), first @ last))
     if angle < 1e-12:

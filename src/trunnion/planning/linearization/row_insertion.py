@@ -8,7 +8,7 @@ from trunnion.arrays import Codes, Floats, Ints
 from trunnion.model.toolpath import Moves, Operation
 
 
-def with_copies(operation: Operation, copies: Ints, tip: Floats, axis: Floats, kind: Codes) -> Operation:
+def insert_rows(operation: Operation, copies: Ints, tip: Floats, axis: Floats, kind: Codes) -> Operation:
     """An operation each of whose rows becomes ``copies`` (n,) rows, of which the last is the row itself.
 
     ``tip``, ``axis`` and ``kind`` are those of the new rows; all else the new ones have of the row that they lead to,

@@ -10,8 +10,8 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, inverse, slide_positions
 from trunnion.model.toolpath import Moves
-from trunnion.planning.poses.optimizer import IDLE
-from trunnion.planning.poses.selection import cutting
+from trunnion.planning.poses.optimizer import NO_CONTACT
+from trunnion.planning.poses.selection import contact_of
 from trunnion.planning.poses.states import LIMIT_TOLERANCE, limits_of
 
 #: Rows looked at together, at first; then twice as many each time.
@@ -19,19 +19,19 @@ _CHUNK = 256
 
 
 @dataclass(frozen=True, slots=True)
-class DeadEnd:
+class LimitHit:
     """The first row at which an axis would leave its limits, the column of the axis, and where it would go."""
 
     row: int
     column: int
     value: float
 
-    def words(self, machine: Machine, moves: Moves) -> str:
+    def describe(self, machine: Machine, moves: Moves) -> str:
         """Axis, value, limit and line, as the end of a sentence."""
-        return f"{beyond_words(machine, self.column, self.value)} in line {int(moves.line[self.row])}"
+        return f"{limit_violation_text(machine, self.column, self.value)} in line {int(moves.line[self.row])}"
 
 
-def beyond_words(machine: Machine, column: int, value: float) -> str:
+def limit_violation_text(machine: Machine, column: int, value: float) -> str:
     """``axis B would go to 110.00000, above its limit 100 degrees``."""
     axis = machine.axes[column]
     limit, word = (axis.low, "below") if value < axis.low else (axis.high, "above")
@@ -39,7 +39,7 @@ def beyond_words(machine: Machine, column: int, value: float) -> str:
     return f"axis {axis.name} would go to {value:.5f}, {word} its limit {limit:g} {unit}"
 
 
-def cure_words(machine: Machine, column: int, value: float, other: str = "") -> str:
+def limit_remedy(machine: Machine, column: int, value: float, other: str = "") -> str:
     """What puts an axis back within its limits; ``other`` says why the other pose does not."""
     axis = machine.axes[column]
     lacking = axis.low - value if value < axis.low else value - axis.high
@@ -48,7 +48,7 @@ def cure_words(machine: Machine, column: int, value: float, other: str = "") -> 
     return f"move the workpiece so that {axis.name} has {lacking:.3f} mm more{other}, or tilt it"
 
 
-def out_of_reach_by(machine: Machine, axis: Floats) -> float:
+def degrees_out_of_reach(machine: Machine, axis: Floats) -> float:
     """Degrees by which a tool axis (3,) lies outside of what the rotary axes reach.
 
     The tool axis, the first rotary axis and the second are corners of a spherical triangle whose other two sides are
@@ -65,31 +65,33 @@ def _between(a: Floats, b: Floats) -> float:
     return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
 
 
-def dead_end(machine: Machine, moves: Moves, row: int, branch: int, pose: Floats, keep_slides: bool) -> DeadEnd | None:
+def first_limit_hit(
+    machine: Machine, moves: Moves, row: int, branch: int, pose: Floats, keep_slides: bool
+) -> LimitHit | None:
     """Follow one branch from ``pose`` (2,), degrees, into ``row`` and on, until a limit is left or the cut ends."""
     low, high = limits_of(machine, keep_slides)
     last, first, count = pose, row, _CHUNK
     while first < len(moves):
-        touches = cutting(moves, slice(first, first + count)) != IDLE
+        touches = contact_of(moves, slice(first, first + count)) != NO_CONTACT
         touches[0] |= first == row
         part = slice(first, first + (len(touches) if touches.all() else int(np.argmin(touches))))
         if part.stop == first:
             return None
-        values = continued(machine, moves, part, branch, last)
+        values = continue_in_branch(machine, moves, part, branch, last)
         joints = slide_positions(machine, moves.tip[part], values)
         joints[:, list(machine.rotary)] = values
         outside = (joints < low - LIMIT_TOLERANCE) | (joints > high + LIMIT_TOLERANCE)
         if outside.any():
             k = int(np.argmax(outside.any(axis=1)))
             column = int(np.argmax(outside[k]))
-            return DeadEnd(first + k, column, float(joints[k, column]))
+            return LimitHit(first + k, column, float(joints[k, column]))
         if not touches.all():
             return None
         last, first, count = values[-1], part.stop, 2 * count
     return None
 
 
-def continued(machine: Machine, moves: Moves, rows: slice | Ints, branch: int, last: Floats) -> Floats:
+def continue_in_branch(machine: Machine, moves: Moves, rows: slice | Ints, branch: int, last: Floats) -> Floats:
     """Rotary values, degrees, (k, 2), of consecutive rows in one branch, each the nearer way from the one before.
 
     last : (2,) float64

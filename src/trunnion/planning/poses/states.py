@@ -16,12 +16,12 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Axis, Machine
-from trunnion.machines.inverse import Numbers
+from trunnion.machines.inverse import FlatArray
 
 #: Bits of a backpointer: the state before; whether the step from there is a rewind; and one that is blocked.
-STATE: Final = 0x3F
-REWOUND: Final = 0x80
-STUCK_FAST: Final = 0x40
+STATE_BITS: Final = 0x3F
+REWIND_STEP: Final = 0x80
+BLOCKED_STEP: Final = 0x40
 
 #: A value beyond a limit by less than this, mm or degrees, prints as the limit and is put onto it.
 LIMIT_TOLERANCE: Final = 1e-5
@@ -30,7 +30,7 @@ LIMIT_TOLERANCE: Final = 1e-5
 MOST_TURNS: Final = 32
 
 #: Degrees by which a step in the cut may bend the tool axis half-way off its great circle before it is a rewind.
-BEND: Final = 1.0
+MAX_BEND: Final = 1.0
 
 #: A change of branch in which the joints move by less than this, degrees, and the tool axis does not bend, goes through
 #: the pole.
@@ -41,22 +41,22 @@ POLE_JUMP: Final = 90.0
 #: Change to the other branch, unless it goes through the pole. More than the 180 degrees that a change can save: the
 #: side is changed where the path forces it, never to save travel, so that equal tool axes have the same pose in every
 #: pass.
-SIDE_CHANGE: Final = 200.0
+BRANCH_CHANGE_COST: Final = 200.0
 
 #: The same through the pole; more than two reversals, so that these alone are no reason for it.
-POLE_PASS: Final = 0.5
+POLE_PASSAGE_COST: Final = 0.5
 
 #: A cutting stretch begun on the side that is not preferred.
-OTHER_SIDE: Final = 400.0
+NON_PREFERRED_COST: Final = 400.0
 
 #: An axis turns back.
-REVERSAL: Final = 0.1
+REVERSAL_COST: Final = 0.1
 
 #: A rewind between cutting rows, over one between rows that engage or step over.
-IN_CUT: Final = 1.0
+REWIND_IN_CUT_COST: Final = 1.0
 
 #: All rows of an operation right at a limit, over all in the middle between both: this decides between equals only.
-AT_LIMITS: Final = 1e-6
+NEAR_LIMITS_COST: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,35 +68,35 @@ class States:
     """
 
     table: Ints
-    span: tuple[int, int, int, int]
+    turn_ranges: tuple[int, int, int, int]
 
     def __len__(self) -> int:
         return len(self.table)
 
 
-class Choice(NamedTuple):
+class SearchSpace(NamedTuple):
     """What there is to choose from, in numbers that a kernel keeps in registers.
 
     low, high  (5,) float  limits by column, infinite where none is to be kept
     slides     bool        a slide has a limit to be kept
-    span       (4,) int    ``States.span``
+    span       (4,) int    ``States.turn_ranges``
     start      (2,) float  rotary positions before the first row, degrees
     side       (2,) float  the sign that each rotary axis is to have, 0: either
     both       float       sum of the second angles of both branches, degrees, whole turns left out
     """
 
-    low: Numbers
-    high: Numbers
+    low: FlatArray
+    high: FlatArray
     slides: bool
-    span: tuple[int, ...]
-    start: Numbers
-    side: Numbers
-    both: float
+    turn_ranges: tuple[int, ...]
+    start: FlatArray
+    preferred_sign: FlatArray
+    second_angle_sum: float
 
 
 def states_of(machine: Machine) -> States:
     """All states in which both rotary axes can keep their limits."""
-    spans = [_span(machine.axes[column]) for column in machine.rotary]
+    spans = [_turn_range(machine.axes[column]) for column in machine.rotary]
     while _count(spans) > MOST_TURNS:
         most = 0 if spans[0][1] >= spans[1][1] else 1
         spans[most] = _narrower(*spans[most], machine.axes[machine.rotary[most]].home)
@@ -107,7 +107,7 @@ def states_of(machine: Machine) -> States:
     return States(table, (low_1, count_1, low_2, count_2))
 
 
-def _span(axis: Axis) -> tuple[int, int]:
+def _turn_range(axis: Axis) -> tuple[int, int]:
     """Least turn and number of turns with which an angle in (-180, 180] can lie within the limits."""
     if not math.isfinite(axis.low) and not math.isfinite(axis.high):
         return 0, 0

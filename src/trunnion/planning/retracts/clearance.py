@@ -8,13 +8,13 @@ import numpy as np
 from trunnion.arrays import Floats
 
 #: A tool axis that rises towards a plane by less than this share does not lead to it.
-_LEVEL = 0.05
+_MIN_RISE = 0.05
 
 #: The tool draws back by no less than this, mm, wherever it is.
-LEAST = 2.0
+MIN_RETRACT = 2.0
 
 
-class Surface(StrEnum):
+class ClearanceSurface(StrEnum):
     """What the tool draws back to."""
 
     DISTANCE = "distance"
@@ -31,13 +31,13 @@ class Clearance:
     """
 
     value: float
-    surface: Surface = Surface.DISTANCE
+    surface: ClearanceSurface = ClearanceSurface.DISTANCE
 
     def __str__(self) -> str:
         """Return it as the setting says it."""
-        return f"{self.value:g}" if self.surface is Surface.DISTANCE else f"{self.surface}:{self.value:g}"
+        return f"{self.value:g}" if self.surface is ClearanceSurface.DISTANCE else f"{self.surface}:{self.value:g}"
 
-    def way(self, tip: Floats, axis: Floats) -> float:
+    def retract_distance(self, tip: Floats, axis: Floats) -> float:
         """How far to draw back, mm; infinite where the tool axis does not lead there.
 
         Parameters
@@ -45,14 +45,14 @@ class Clearance:
         tip, axis : (3,) float64
             Where the tool cuts, in the program's coordinate system: mm, and the unit vector from tip to holder.
         """
-        if self.surface is Surface.DISTANCE:
+        if self.surface is ClearanceSurface.DISTANCE:
             return self.value
-        if self.surface is Surface.PLANE:
+        if self.surface is ClearanceSurface.PLANE:
             missing = self.value - float(tip[2])
             if missing <= 0.0:
-                return LEAST
-            return max(LEAST, missing / float(axis[2])) if axis[2] > _LEVEL else float("inf")
+                return MIN_RETRACT
+            return max(MIN_RETRACT, missing / float(axis[2])) if axis[2] > _MIN_RISE else float("inf")
         # |tip + t axis| = value: the way out is the larger root; there is none if the whole line passes outside.
         along = float(tip @ axis)
         under = along * along + self.value**2 - float(tip @ tip)
-        return max(LEAST, float(np.sqrt(under)) - along) if under > 0.0 else LEAST
+        return max(MIN_RETRACT, float(np.sqrt(under)) - along) if under > 0.0 else MIN_RETRACT

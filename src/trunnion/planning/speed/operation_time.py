@@ -8,30 +8,30 @@ from trunnion.machines.motion_time import row_seconds
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Kind, Stop
 from trunnion.planning.linearization.arc_chords import arc_sweeps
-from trunnion.planning.speed.rotary_speed import RESTS, rates, wound
+from trunnion.planning.speed.rotary_speed import REST_LENGTH, continuous_positions, tip_speeds
 
 
-def row_times(machine: Machine, motion: Motion) -> Floats:
+def row_durations(machine: Machine, motion: Motion) -> Floats:
     """(n,) float64: seconds of every row, the first one left out: nobody knows from where it comes.
 
     The axes stand still for dwells and stops, and where the tip begins or ceases to rest; dwells take no time here.
     """
     moves, arcs = motion.operation.moves, motion.operation.arcs
-    joints = slide_positions(machine, moves.tip, wound(machine, motion.rotary))
+    joints = slide_positions(machine, moves.tip, continuous_positions(machine, motion.rotary))
     steps = np.diff(joints, axis=0, prepend=joints[:1])
     length = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
     rise = np.einsum("ij,ij->i", moves.tip[arcs.row] - moves.tip[arcs.row - 1], arcs.normal)
     length[arcs.row] = np.hypot(arc_sweeps(motion.operation) * arcs.radius, rise)
-    rests = length < RESTS
+    rests = length < REST_LENGTH
     length = np.where(rests, np.abs(steps[:, list(machine.rotary)]).max(axis=1), length)
-    rate = rates(motion.operation)
+    rate = tip_speeds(motion.operation)
     rate = np.where((moves.kind == Kind.RAPID) | ~(rate > 0.0), np.inf, rate)
     stop = np.append(rests[1:] != rests[:-1], True)
     stop[[event.row - 1 for event in motion.operation.events if isinstance(event, Dwell | Stop) and event.row]] = True
     return row_seconds(machine, steps, length, rate, stop)
 
 
-def seconds(machine: Machine, motion: Motion) -> float:
+def operation_seconds(machine: Machine, motion: Motion) -> float:
     """What an operation takes from its first point to its last, dwells included where they are in seconds."""
     dwells = [e.amount for e in motion.operation.events if isinstance(e, Dwell) and not e.revolutions]
-    return float(row_times(machine, motion).sum()) + sum(dwells)
+    return float(row_durations(machine, motion).sum()) + sum(dwells)

@@ -16,17 +16,17 @@ from trunnion.machines import Machine
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 
 #: Share of an axis' rapid speed that is planned for: printed numbers are rounded, and steps may be small.
-USED: Final = 0.99
+USABLE_SHARE: Final = 0.99
 
 #: No feed is lowered below this, mm/min: what is printed of it must not become 0.
 _LEAST_FEED: Final = 0.1
 
 #: A tip that moves by less than this, mm, rests.
-RESTS: Final = 1e-9
+REST_LENGTH: Final = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Fastest:
+class FastestRow:
     """The row that asks most of a rotary axis' rapid speed, and how many rows ask for more than all of it.
 
     share  1: all of it
@@ -40,7 +40,7 @@ class Fastest:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Loose:
+class OffPartTurns:
     """Growing rows before which the axes turn off the part, row (k,) int64, and where they stand then, after (k, 2)."""
 
     row: Ints
@@ -48,10 +48,10 @@ class Loose:
 
 
 #: No such rows.
-TIED: Final = Loose(np.zeros(0, np.int64), np.zeros((0, 2)))
+NO_TURNS: Final = OffPartTurns(np.zeros(0, np.int64), np.zeros((0, 2)))
 
 
-def rates(operation: Operation) -> Floats:
+def tip_speeds(operation: Operation) -> Floats:
     """(n,) float64: programmed speed of the tip, mm/min, whatever its unit is; NaN where nobody says it."""
     moves = operation.moves
     if not moves.per_rev.any():
@@ -63,7 +63,7 @@ def rates(operation: Operation) -> Floats:
     return np.asarray(np.where(moves.per_rev, moves.feed * rpm, moves.feed))
 
 
-def fastest(machine: Machine, operation: Operation, rotary: Floats, loose: Loose) -> Fastest:
+def find_fastest_row(machine: Machine, operation: Operation, rotary: Floats, off_part: OffPartTurns) -> FastestRow:
     """Where the rotary axes would have to be fastest.
 
     Parameters
@@ -76,43 +76,46 @@ def fastest(machine: Machine, operation: Operation, rotary: Floats, loose: Loose
         Rows before which the axes turn off the part.
     """
     share = np.empty((0, 2))
-    return Fastest(*_scan(*_columns(machine, operation, rotary), loose.row, loose.after, share))
+    return FastestRow(*_speed_shares(*_kernel_columns(machine, operation, rotary), off_part.row, off_part.after, share))
 
 
-def shares(machine: Machine, operation: Operation, rotary: Floats, loose: Loose = TIED) -> Floats:
-    """(n, 2) float64: share of each rotary axis' rapid speed that each row asks for; arguments as for ``fastest``."""
+def speed_shares(machine: Machine, operation: Operation, rotary: Floats, off_part: OffPartTurns = NO_TURNS) -> Floats:
+    """(n, 2) float64: share of each rotary axis' rapid speed that each row asks for; arguments as for
+    ``find_fastest_row``."""
     share = np.zeros((len(rotary), 2))
-    _scan(*_columns(machine, operation, rotary), loose.row, loose.after, share)
+    _speed_shares(*_kernel_columns(machine, operation, rotary), off_part.row, off_part.after, share)
     return share
 
 
-def reach(machine: Machine, operation: Operation) -> tuple[Floats, Flags]:
+def max_rotary_steps(machine: Machine, operation: Operation) -> tuple[Floats, Flags]:
     """How far each rotary axis gets in each row, degrees, (n, 2); and which rows no feed binds, (n,) bool.
 
     The latter are rapids, rows in which the tip rests, and the first one, to which the axes are brought beforehand.
     """
     moves = operation.moves
     way = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
-    rate = rates(operation)
-    bound = (moves.kind != Kind.RAPID) & (way >= RESTS) & (rate > 0.0)
+    rate = tip_speeds(operation)
+    bound = (moves.kind != Kind.RAPID) & (way >= REST_LENGTH) & (rate > 0.0)
     bound[0] = False
     far = np.full((len(moves), 2), np.inf)
     for r, column in enumerate(machine.rotary):
         axis = machine.axes[column]
-        far[bound, r] = USED * (math.inf if axis.rapid is None else axis.rapid) * way[bound] / rate[bound]
+        far[bound, r] = USABLE_SHARE * (math.inf if axis.rapid is None else axis.rapid) * way[bound] / rate[bound]
     return far, ~bound
 
 
-def lowered(machine: Machine, operation: Operation, rotary: Floats, loose: Loose, together: Ints) -> tuple[Moves, Ints]:
+def lower_feeds(
+    machine: Machine, operation: Operation, rotary: Floats, off_part: OffPartTurns, together: Ints
+) -> tuple[Moves, Ints]:
     """The moves with feeds at which no rotary axis exceeds its rapid speed, and the rows whose feed is lower now.
 
     together : (n,) int64
         Rows with the same growing number are pieces of one arc, and get one feed.
     """
     moves = operation.moves
-    share = shares(machine, operation, rotary, loose).max(axis=1)
-    rate = rates(operation)
-    factor = np.where(share > 1.0, USED / np.maximum(share, 1.0), 1.0)
+    share = speed_shares(machine, operation, rotary, off_part).max(axis=1)
+    rate = tip_speeds(operation)
+    factor = np.where(share > 1.0, USABLE_SHARE / np.maximum(share, 1.0), 1.0)
     with np.errstate(invalid="ignore"):
         factor = np.where(factor < 1.0, np.minimum(np.maximum(factor, _LEAST_FEED / rate), 1.0), 1.0)
     first = np.flatnonzero(np.diff(together, prepend=together[:1] - 1))
@@ -121,16 +124,16 @@ def lowered(machine: Machine, operation: Operation, rotary: Floats, loose: Loose
     return replace(moves, feed=np.where(factor < 1.0, moves.feed * factor, moves.feed)), np.flatnonzero(factor < 1.0)
 
 
-def wound(machine: Machine, rotary: Floats) -> Floats:
+def continuous_positions(machine: Machine, rotary: Floats) -> Floats:
     """(n, 2) float64: displayed positions as the axes wind: endless ones go the shorter way, the others stay."""
     turning = np.array(rotary)
-    for r, free in enumerate(turns_freely(machine)):
+    for r, free in enumerate(is_endless(machine)):
         if free:
             turning[1:, r] -= 360.0 * np.cumsum(np.rint(np.diff(rotary[:, r]) / 360.0))
     return turning
 
 
-def displayed(machine: Machine, turning: Floats) -> Floats:
+def displayed_positions(machine: Machine, turning: Floats) -> Floats:
     """(n, 2) float64: positions as the axes display them."""
     shown = np.array(turning)
     for r, column in enumerate(machine.rotary):
@@ -140,31 +143,31 @@ def displayed(machine: Machine, turning: Floats) -> Floats:
     return shown
 
 
-def turns_freely(machine: Machine) -> tuple[bool, bool]:
+def is_endless(machine: Machine) -> tuple[bool, bool]:
     """Which rotary axes have no limits, and so go the shorter way."""
     first, second = (not np.isfinite(machine.limits[column]).any() for column in machine.rotary)
     return bool(first), bool(second)
 
 
-def _columns(
+def _kernel_columns(
     machine: Machine, operation: Operation, rotary: Floats
 ) -> tuple[Floats, Codes, Floats, Floats, Flags, Floats]:
     """What the kernel takes."""
     moves = operation.moves
     rapid = [machine.axes[column].rapid for column in machine.rotary]
     speeds = np.array([math.inf if speed is None else speed for speed in rapid])
-    return moves.tip, moves.kind, rates(operation), rotary, np.array(turns_freely(machine)), speeds
+    return moves.tip, moves.kind, tip_speeds(operation), rotary, np.array(is_endless(machine)), speeds
 
 
 @njit(cache=True)
-def _scan(
+def _speed_shares(
     tip: Floats,
     kind: Codes,
     rate: Floats,
     rotary: Floats,
     free: Flags,
     rapid: Floats,
-    loose: Ints,
+    off_part: Ints,
     after: Floats,
     share: Floats,
 ) -> tuple[float, int, int, int]:
@@ -172,12 +175,12 @@ def _scan(
     most, where, which, count = 0.0, -1, 0, 0
     skip = 0
     for row in range(1, tip.shape[0]):
-        while skip < len(loose) and loose[skip] < row:
+        while skip < len(off_part) and off_part[skip] < row:
             skip += 1
         if kind[row] == 0 or not rate[row] > 0.0:
             continue
         one, two = rotary[row, 0] - rotary[row - 1, 0], rotary[row, 1] - rotary[row - 1, 1]
-        if skip < len(loose) and loose[skip] == row:
+        if skip < len(off_part) and off_part[skip] == row:
             one, two = rotary[row, 0] - after[skip, 0], rotary[row, 1] - after[skip, 1]
         if one == 0.0 and two == 0.0:
             continue
@@ -188,9 +191,9 @@ def _scan(
         one, two = abs(one), abs(two)
         x, y, z = tip[row, 0] - tip[row - 1, 0], tip[row, 1] - tip[row - 1, 1], tip[row, 2] - tip[row - 1, 2]
         way = math.sqrt(x * x + y * y + z * z)
-        if way < RESTS:
+        if way < REST_LENGTH:
             way = max(one, two)
-            if way < RESTS:
+            if way < REST_LENGTH:
                 continue
         minutes = way / rate[row]
         one, two = one / minutes / rapid[0], two / minutes / rapid[1]

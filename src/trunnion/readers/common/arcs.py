@@ -15,10 +15,10 @@ from trunnion.arrays import Floats
 #: How much the radius may differ between start and end: an amount, mm, or a part of the radius, whichever is more.
 #: These are the values that a Sinumerik is delivered with.
 RADIUS_ERROR: Final = 0.01
-RADIUS_PART: Final = 0.001
+RADIUS_RATIO: Final = 0.001
 
 #: Points nearer than this are one point, mm.
-SAME: Final = 1e-9
+SAME_POINT: Final = 1e-9
 
 #: No machine makes circles with a larger radius, mm.
 LARGEST_RADIUS: Final = 1e7
@@ -40,7 +40,7 @@ class Arc:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Image:
+class ArcMap:
     """How circles come through an affine map: linear (3, 3), shift (3,), normals (3, 3) and scale."""
 
     linear: Floats
@@ -49,13 +49,13 @@ class Image:
     scale: float
 
     @staticmethod
-    def of(linear: Floats, shift: Floats) -> "Image":
+    def of(linear: Floats, shift: Floats) -> "ArcMap":
         """Return that of a map that keeps circles. Normals turn with the cofactors, which know mirrors."""
         volume = float(np.linalg.det(linear))
         scale = abs(volume) ** (1.0 / 3.0)
-        return Image(linear, shift, np.linalg.inv(linear).T * (scale * math.copysign(1.0, volume)), scale)
+        return ArcMap(linear, shift, np.linalg.inv(linear).T * (scale * math.copysign(1.0, volume)), scale)
 
-    def place(self, arc: Arc) -> tuple[Floats, Floats, float]:
+    def map_arc(self, arc: Arc) -> tuple[Floats, Floats, float]:
         """Return centre, normal and radius of an arc behind the map."""
         return self.linear @ arc.centre + self.shift, self.normals @ arc.normal, arc.radius * self.scale
 
@@ -75,9 +75,9 @@ def by_centre(start: Floats, end: Floats, centre: Floats, plane: int, clockwise:
     first[plane] = last[plane] = 0.0
     radius = float(np.linalg.norm(first))
     off = abs(float(np.linalg.norm(last)) - radius)
-    if radius < SAME:
+    if radius < SAME_POINT:
         raise ArcError("the circle has no radius")
-    if off > max(RADIUS_ERROR, RADIUS_PART * radius):
+    if off > max(RADIUS_ERROR, RADIUS_RATIO * radius):
         raise ArcError(f"the radius is {radius:.4f} at the start and {np.linalg.norm(last):.4f} at the end")
     return Arc(end, middle, normal_of(plane, clockwise), radius, turns)
 
@@ -86,26 +86,26 @@ def by_radius(start: Floats, end: Floats, radius: float, plane: int, clockwise: 
     """Radius and end point: a negative radius takes the longer way."""
     chord = _chord(start, end, plane)
     length = float(np.linalg.norm(chord))
-    if length < SAME:
+    if length < SAME_POINT:
         raise ArcError("a radius cannot make a full circle: start and end are the same")
     short = 0.5 * length - abs(radius)
-    if short > max(RADIUS_ERROR, RADIUS_PART * abs(radius)):
+    if short > max(RADIUS_ERROR, RADIUS_RATIO * abs(radius)):
         raise ArcError(f"a radius of {radius:g} is too small for a chord of {length:.4f}")
     height = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0)) * math.copysign(1.0, radius)
-    return _beside_chord(start, end, chord, height, plane, clockwise, turns)
+    return _from_chord(start, end, chord, height, plane, clockwise, turns)
 
 
 def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
     """Opening angle and end point."""
     chord = _chord(start, end, plane)
     length = float(np.linalg.norm(chord))
-    if length < SAME or not 0.0 < angle < 360.0:
+    if length < SAME_POINT or not 0.0 < angle < 360.0:
         raise ArcError(f"an opening angle of {angle:g} makes no circle here")
     half = math.radians(0.5 * angle)
     if length > 2.0 * LARGEST_RADIUS * math.sin(half):
         raise ArcError(f"an opening angle of {angle:g} needs a radius that no machine has")
     height = 0.5 * length * math.cos(half) / math.sin(half)
-    return _beside_chord(start, end, chord, height, plane, clockwise, turns)
+    return _from_chord(start, end, chord, height, plane, clockwise, turns)
 
 
 def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
@@ -126,11 +126,11 @@ def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
     a, b = through - start, end - start
     normal = np.cross(a, b)
     size = float(normal @ normal)
-    if size < SAME * max(float(a @ a), float(b @ b), SAME):
+    if size < SAME_POINT * max(float(a @ a), float(b @ b), SAME_POINT):
         raise ArcError("the three points of the circle lie on a line")
     centre = start + (np.cross(normal, a) * float(b @ b) + np.cross(b, normal) * float(a @ a)) / (2.0 * size)
     radius = float(np.linalg.norm(start - centre))
-    if not SAME < radius < LARGEST_RADIUS:
+    if not SAME_POINT < radius < LARGEST_RADIUS:
         raise ArcError("the three points of the circle make no circle that a machine has")
     return Arc(end, centre, normal / math.sqrt(size), radius, turns)
 
@@ -141,7 +141,7 @@ def _chord(start: Floats, end: Floats, plane: int) -> Floats:
     return np.asarray(chord)
 
 
-def _beside_chord(
+def _from_chord(
     start: Floats, end: Floats, chord: Floats, height: float, plane: int, clockwise: bool, turns: int
 ) -> Arc:
     """Centre at a height over the middle of the chord: to its left when turning counter-clockwise."""

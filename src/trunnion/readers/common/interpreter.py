@@ -11,55 +11,55 @@ from typing import Final, Generic, TypeVar
 
 from trunnion.arrays import Ints
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.files import Growing
+from trunnion.files import WriteProgress
 from trunnion.machines import Machine
-from trunnion.model.columns import Changes
-from trunnion.model.run import Comment, Finding, Run
+from trunnion.model.columns import StepColumnBuilder
+from trunnion.model.run import Comment, Diagnostic, Run
 from trunnion.readers.common.scan_buffers import COMMENTS, LINE, POSITION
-from trunnion.readers.common.text import Subprograms, Text, decode
-from trunnion.readers.common.virtual_control import Control
+from trunnion.readers.common.source_text import SourceText, Subprograms, decode
+from trunnion.readers.common.virtual_control import VirtualControl
 
 #: Blocks a program may execute besides going once through its files.
-STEPS: Final = 2_000_000
+DEFAULT_STEP_LIMIT: Final = 2_000_000
 
 #: Findings that are kept one by one; the rest is counted.
-MOST_FINDINGS: Final = 10_000
+MAX_DIAGNOSTICS: Final = 10_000
 
 #: So many characters of a block, or of a text that is kept, count as one more: real ones are shorter.
-LONG: Final = 128
+CHARACTERS_PER_STEP: Final = 128
 
 #: Subprograms that one program may call.
-MOST_FILES: Final = 1000
+MAX_SUBPROGRAMS: Final = 1000
 
 #: Subprograms inside subprograms.
-DEEPEST_CALL: Final = 16
+MAX_CALL_DEPTH: Final = 16
 
 #: Rows there is room for when the kernel starts, and fewer than which are too few.
-_ROOM: Final = 65536
+_FIRST_CAPACITY: Final = 65536
 _LEAST_ROOM: Final = 4096
 
 
-class End(Exception):  # noqa: N818 - the end of a program is no error
+class ProgramEnd(Exception):  # noqa: N818 - the end of a program is no error
     """The program has ended."""
 
 
 @dataclass(slots=True)
-class Activation:
+class ActiveProgram:
     """A program or subprogram being executed; file as in ``Run.file``."""
 
-    text: Text
+    text: SourceText
     file: int
     repeats: int = 1
 
 
-A = TypeVar("A", bound=Activation)
+A = TypeVar("A", bound=ActiveProgram)
 
 
 class Interpreter(ABC, Generic[A]):
     """Runs one program on one machine; ``run`` may be called once."""
 
     #: How texts of this language find their own places.
-    text_type: type[Text] = Text
+    source_type: type[SourceText] = SourceText
 
     def __init__(self, path: Path, machine: Machine, named: Subprograms, *, step_limit: int, skip: bool) -> None:
         slides = {machine.axes[column].name for column in machine.linear}
@@ -73,21 +73,21 @@ class Interpreter(ABC, Generic[A]):
         self._steps = 0
         self._kept = 0
         self._events = 0
-        self._findings: list[Finding] = []
+        self._findings: list[Diagnostic] = []
         self._more = 0
         self._comments: list[Comment] = []
-        self._texts: dict[Path, tuple[Text, int]] = {}
-        self._file = Changes(0)
+        self._texts: dict[Path, tuple[SourceText, int]] = {}
+        self._file = StepColumnBuilder(0)
         self._files = [str(path)]
         self._stack: list[A] = []
 
     @property
     @abstractmethod
-    def control(self) -> Control:
+    def control(self) -> VirtualControl:
         """The virtual control that does what blocks say."""
 
     @abstractmethod
-    def _first(self, text: Text) -> A:
+    def _first(self, text: SourceText) -> A:
         """Return the activation of the program itself."""
 
     @abstractmethod
@@ -95,39 +95,39 @@ class Interpreter(ABC, Generic[A]):
         """Execute a line."""
 
     @abstractmethod
-    def _may_be_plain(self, text: Text) -> bool:
+    def _may_be_plain(self, text: SourceText) -> bool:
         """Whether it is worth starting the kernel at the next line."""
 
     @abstractmethod
-    def _kernel(self, text: Text) -> None:
+    def _kernel(self, text: SourceText) -> None:
         """Let the kernel take plain blocks."""
 
-    def run(self, growing: Growing | None = None) -> Run:
-        """Execute the program; ``growing`` says how far its file has come if it is still being written."""
-        main = self.text_type(self._path)
-        if growing is not None:
-            main.follow(growing)
+    def run(self, write_progress: WriteProgress | None = None) -> Run:
+        """Execute the program; ``write_progress`` says how far its file has come if it is still being written."""
+        main = self.source_type(self._path)
+        if write_progress is not None:
+            main.follow(write_progress)
         try:
             self._stack.append(self._first(main))
             self._execute()
-        except End:
+        except ProgramEnd:
             pass
         finally:
             main.close()
             for text, _ in self._texts.values():
                 text.close()
-        self.control.settle()
-        findings = list(self._findings)
+        self.control.resolve_rows()
+        diagnostics = list(self._findings)
         if self._more:
-            findings.append(Finding(0, f"and {self._more} findings more", Severity.ERROR, self._files[0]))
-        return self.control.finish(self._files, self._comments, findings)
+            diagnostics.append(Diagnostic(0, f"and {self._more} findings more", Severity.ERROR, self._files[0]))
+        return self.control.finish(self._files, self._comments, diagnostics)
 
     def _note(self, text: str, severity: Severity) -> None:
-        if len(self._findings) >= MOST_FINDINGS:
+        if len(self._findings) >= MAX_DIAGNOSTICS:
             self._more += 1
             return
-        file = self._files[self._file.now]
-        self._findings.append(Finding(self.control.line, text, severity, file))
+        file = self._files[self._file.current]
+        self._findings.append(Diagnostic(self.control.line, text, severity, file))
 
     # The loop
 
@@ -146,34 +146,34 @@ class Interpreter(ABC, Generic[A]):
             line = text.line
             control.line, control.block_number = line, -1
             raw = text.next_line()
-            self._count(1 + len(raw) // LONG)
+            self._count(1 + len(raw) // CHARACTERS_PER_STEP)
             self._line(call, line, raw)
             self._keep_events()
 
-    def _scan(self, text: Text) -> None:
+    def _scan(self, text: SourceText) -> None:
         """Let the kernel take plain blocks, as many as there are."""
         control = self.control
         columns = control.columns
         while text.fill():
             if columns.capacity - columns.n < _LEAST_ROOM:
                 # A little more than there will be if the program goes on as it began, once it is known how it does.
-                begun = columns.n > _ROOM // 2
-                columns.reserve(_ROOM, int(1.02 * text.expected(columns.n)) if begun else 0)
+                begun = columns.n > _FIRST_CAPACITY // 2
+                columns.reserve(_FIRST_CAPACITY, int(1.02 * text.expected(columns.n)) if begun else 0)
             control.before_scan(text.position, text.line)
             self._kernel(text)
             control.after_scan()
-            self._take_comments(text, control.notes.comments[: control.counts[COMMENTS]])
-            line = int(control.counts[LINE])
+            self._take_comments(text, control.scan_records.comments[: control.counters[COMMENTS]])
+            line = int(control.counters[LINE])
             taken = line - text.line
-            size = int(control.counts[POSITION]) - text.position
-            text.position, text.line = int(control.counts[POSITION]), line
+            size = int(control.counters[POSITION]) - text.position
+            text.position, text.line = int(control.counters[POSITION]), line
             control.line = line
-            self._count(taken + max(size - LONG * taken, 0) // LONG)
+            self._count(taken + max(size - CHARACTERS_PER_STEP * taken, 0) // CHARACTERS_PER_STEP)
             if text.position < len(text.buffer) and not control.full:
                 return
 
-    def _take_comments(self, text: Text, table: Ints) -> None:
-        file = self._file.now
+    def _take_comments(self, text: SourceText, table: Ints) -> None:
+        file = self._file.current
         self._keep(len(table), int((table[:, 3] - table[:, 2]).sum()))
         for line, row, start, end in table.tolist():
             words = decode(text.buffer[start:end].tobytes()).strip("\r")
@@ -182,7 +182,7 @@ class Interpreter(ABC, Generic[A]):
     def _comment(self, line: int, comment: str | None) -> None:
         if comment is not None:
             self._keep(1, len(comment))
-            self._comments.append(Comment(line, self.control.row, comment, self._file.now))
+            self._comments.append(Comment(line, self.control.row, comment, self._file.current))
 
     # Limits
 
@@ -194,13 +194,13 @@ class Interpreter(ABC, Generic[A]):
         main = self._stack[0].text
         texts = [text for text, _ in self._texts.values()]
         allowed = self._limit + main.known + sum(text.known for text in texts)
-        allowed += sum(text.size // LONG for text in (main, *texts))
+        allowed += sum(text.size // CHARACTERS_PER_STEP for text in (main, *texts))
         if self._steps > allowed:
             raise self._endless(f"executes more than {self._limit} blocks")
 
     def _keep(self, texts: int, characters: int) -> None:
         """Count comments and events, which are kept. What each file says once is free."""
-        self._kept += texts + characters // LONG
+        self._kept += texts + characters // CHARACTERS_PER_STEP
         if self._kept <= self._limit:
             return
         files = (self._stack[0].text, *(text for text, _ in self._texts.values()))
@@ -219,22 +219,22 @@ class Interpreter(ABC, Generic[A]):
     # Subprograms
 
     def _check_depth(self) -> None:
-        if len(self._stack) >= DEEPEST_CALL:
+        if len(self._stack) >= MAX_CALL_DEPTH:
             raise self._stack[-1].text.problem(
-                self.control.line, f"calls subprograms deeper than {DEEPEST_CALL} levels", "does one call itself?"
+                self.control.line, f"calls subprograms deeper than {MAX_CALL_DEPTH} levels", "does one call itself?"
             )
 
-    def _open(self, path: Path) -> tuple[Text, int]:
+    def _open(self, path: Path) -> tuple[SourceText, int]:
         """Return the text of a subprogram, at its first line, and its place in ``Run.files``; rows are now its own."""
         if path not in self._texts:
-            if len(self._texts) >= MOST_FILES:
-                raise self._endless(f"calls more than {MOST_FILES} subprograms")
+            if len(self._texts) >= MAX_SUBPROGRAMS:
+                raise self._endless(f"calls more than {MAX_SUBPROGRAMS} subprograms")
             self._files.append(str(path))
-            self._texts[path] = self.text_type(path), len(self._files) - 1
+            self._texts[path] = self.source_type(path), len(self._files) - 1
             text, file = self._texts[path]
         else:
             # The same file may be active more than once: each activation has its own place in it.
-            text, file = self._texts[path][0].again(), self._texts[path][1]
+            text, file = self._texts[path][0].restarted(), self._texts[path][1]
         text.first_row = self.control.row
         self._file.set(self.control.row, file)
         return text, file
@@ -251,6 +251,6 @@ class Interpreter(ABC, Generic[A]):
         if not call.text.whole:
             call.text.close()
         if not self._stack:
-            raise End
+            raise ProgramEnd
         self._file.set(self.control.row, self._stack[-1].file)
         self.control.line = self._stack[-1].text.line - 1

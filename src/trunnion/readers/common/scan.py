@@ -5,7 +5,7 @@ Out:    rows for the blocks that hold nothing but N, G0 or G1, X Y Z, rotary wor
         numbers; the place of the first block that holds anything else, which is the interpreter's.
 Units:  mm and degrees; ``lengths`` and ``feeds`` turn inches into mm.
 
-What letters and signs mean in a language is in the table of ``letters``.
+What letters and signs mean in a language is in the table of ``letter_table``.
 
 A line is read to its end before anything is written: a line that turns out not to be plain has had no effect. Numbers
 have at most 15 digits, so that mantissa and power of ten are exact and the quotient is the nearest double, the same
@@ -18,7 +18,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Codes, Floats, Ints
 from trunnion.jit import ONE, njit, signed, unsigned
-from trunnion.readers.common.scan_buffers import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, Notes, Target
+from trunnion.readers.common.scan_buffers import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, ScanRecords, ScanTarget
 
 NUMBER: Final = 1
 PREPARATORY: Final = 2
@@ -40,7 +40,7 @@ _POWERS: Final = np.array([10.0**k for k in range(23)])
 _DIGITS: Final = 15
 
 #: Larger numbers are looked at by the interpreter, which knows how far machines reach.
-_FARTHEST: Final = 1e5
+_LARGEST_NUMBER: Final = 1e5
 
 _TAB: Final = 9
 _LF: Final = 10
@@ -54,7 +54,7 @@ _THREE: Final = 51
 _EQUALS: Final = 61
 
 
-def letters(
+def letter_table(
     rotary: tuple[str, str],
     *,
     comment: str = "",
@@ -88,42 +88,42 @@ def letters(
 
 
 @njit(cache=True, nogil=True)
-def scan(
+def scan_blocks(
     text: Bytes,
     end: int,
     table: Codes,
     vectors: bool,
-    lengths: float,
-    feeds: float,
-    way: int,
-    frame: Floats,
-    turn: Floats,
-    counts: Ints,
-    place: Floats,
-    target: Target,
-    notes: Notes,
+    length_unit: float,
+    feed_unit: float,
+    turn_rule: int,
+    position_map: Floats,
+    vector_map: Floats,
+    counters: Ints,
+    commanded: Floats,
+    target: ScanTarget,
+    records: ScanRecords,
 ) -> None:
     """Take plain blocks until one is not, the text ends, or the columns or the notes are full.
 
     text      (m,) uint8       the program; whole lines up to ``end``
-    table     (256,) uint8     from ``letters``
+    table     (256,) uint8     from ``letter_table``
     vectors   bool             A3= B3= C3= are allowed
-    frame     (3, 4) float64   from programmed position to ``target.place``
+    frame     (3, 4) float64   from programmed position to ``target.xyz``
     turn      (3, 3) float64   from programmed vector to ``target.vector``
     counts    (6,) int64       KIND, ROW, COMMENTS, POSITION (byte), LINE (of the next block) and FEEDS, updated
     place     (5,) float64     programmed X Y Z, mm, feed, and feed of the row before, updated
     """
-    kind = counts[KIND]
-    row = counts[ROW]
-    noted = counts[COMMENTS]
-    feeds_noted = counts[FEEDS]
-    position = counts[POSITION]
-    line = counts[LINE]
-    comments = notes.comments
-    room = min(target.kind.shape[0], target.base + target.way.shape[0])
-    values = notes.numbers
+    kind = counters[KIND]
+    row = counters[ROW]
+    noted = counters[COMMENTS]
+    feeds_noted = counters[FEEDS]
+    position = counters[POSITION]
+    line = counters[LINE]
+    comments = records.comments
+    room = min(target.kind.shape[0], target.base + target.turn_rule.shape[0])
+    values = records.numbers
     gaps = table[_SPACE] == GAP
-    while position < end and row < room and noted < comments.shape[0] and feeds_noted < notes.feeds.shape[0]:
+    while position < end and row < room and noted < comments.shape[0] and feeds_noted < records.feed_values.shape[0]:
         at = unsigned(position)
         seen = 0
         number = -1
@@ -207,7 +207,7 @@ def scan(
                 motion = mantissa
             else:
                 value = mantissa / _POWERS[decimals]
-                if value > _FARTHEST:
+                if value > _LARGEST_NUMBER:
                     plain = False
                     break
                 values[slot] = -value if negative else value
@@ -216,40 +216,45 @@ def scan(
             break
         kind = motion
         if seen & (1 << FEED):
-            place[3] = values[FEED] * feeds
+            commanded[3] = values[FEED] * feed_unit
         for k in range(3):
             if seen & (1 << (SLIDE + k)):
-                place[k] = values[SLIDE + k] * lengths
+                commanded[k] = values[SLIDE + k] * length_unit
         if moves:
-            waits = row - target.base
-            target.block[waits] = line
-            target.number[waits] = number
+            pending = row - target.base
+            target.line[pending] = line
+            target.block_number[pending] = number
             target.kind[row] = kind
             # A feed that is not known (NaN) differs from itself, but is no change.
-            if place[3] != place[4] and (place[3] == place[3] or place[4] == place[4]):
-                notes.feed_rows[feeds_noted] = row
-                notes.feeds[feeds_noted] = place[3]
-                place[4] = place[3]
+            if commanded[3] != commanded[4] and (commanded[3] == commanded[3] or commanded[4] == commanded[4]):
+                records.feed_rows[feeds_noted] = row
+                records.feed_values[feeds_noted] = commanded[3]
+                commanded[4] = commanded[3]
                 feeds_noted += 1
             bits = moves & 0b11111
             if seen & (1 << FEED):
                 bits |= 64
             for k in range(3):
-                target.place[row, k] = (
-                    frame[k, 0] * place[0] + frame[k, 1] * place[1] + frame[k, 2] * place[2] + frame[k, 3]
+                target.xyz[row, k] = (
+                    position_map[k, 0] * commanded[0]
+                    + position_map[k, 1] * commanded[1]
+                    + position_map[k, 2] * commanded[2]
+                    + position_map[k, 3]
                 )
             for k in range(2):
                 target.rotary[row, k] = values[ROTARY + k] if seen & (1 << (ROTARY + k)) else np.nan
-            target.vector[waits, 0] = np.nan
+            target.vector[pending, 0] = np.nan
             if moves >> 5:
                 bits |= 32
                 for k in range(3):
                     # Components that a block does not write count as zero.
                     values[9 + k] = values[9 + k] if seen & (1 << (9 + k)) else 0.0
                 for k in range(3):
-                    target.vector[waits, k] = turn[k, 0] * values[9] + turn[k, 1] * values[10] + turn[k, 2] * values[11]
+                    target.vector[pending, k] = (
+                        vector_map[k, 0] * values[9] + vector_map[k, 1] * values[10] + vector_map[k, 2] * values[11]
+                    )
             target.programmed[row] = bits
-            target.way[waits] = way
+            target.turn_rule[pending] = turn_rule
             row += 1
         if comment >= 0:
             comments[noted, 0] = line
@@ -259,9 +264,9 @@ def scan(
             noted += 1
         position = signed(at + ONE)
         line += 1
-    counts[KIND] = kind
-    counts[ROW] = row
-    counts[COMMENTS] = noted
-    counts[FEEDS] = feeds_noted
-    counts[POSITION] = position
-    counts[LINE] = line
+    counters[KIND] = kind
+    counters[ROW] = row
+    counters[COMMENTS] = noted
+    counters[FEEDS] = feeds_noted
+    counters[POSITION] = position
+    counters[LINE] = line

@@ -4,7 +4,7 @@ from typing import Final, NamedTuple
 
 from trunnion.arrays import Codes, Floats, Ints
 
-#: Fields of ``counts``: motion kind (0 rapid, 1 line, more for circles), rows, comments, place in the text, feeds,
+#: Fields of ``counters``: motion kind (0 rapid, 1 line, more for circles), rows, comments, place in the text, feeds,
 #: surface normals.
 KIND: Final = 0
 ROW: Final = 1
@@ -13,32 +13,32 @@ POSITION: Final = 3
 LINE: Final = 4
 FEEDS: Final = 5
 NORMALS: Final = 6
-FIELDS: Final = 7
+COUNTER_COUNT: Final = 7
 
 #: Comments, feeds and normals that a kernel may note before it comes back.
-ROOM: Final = 4096
+RECORD_CAPACITY: Final = 4096
 
 
-class Target(NamedTuple):
-    """Columns that rows go to; see ``Columns``. In those from ``block`` on, row r is at r - ``base``."""
+class ScanTarget(NamedTuple):
+    """Columns that rows go to; see ``RowBuffer``. In those from ``line`` on, row r is at r - ``base``."""
 
     kind: Codes
     programmed: Codes
-    place: Floats
+    xyz: Floats
     rotary: Floats
     base: int
-    block: Ints
-    number: Ints
+    line: Ints
+    block_number: Ints
     vector: Floats
-    way: Codes
+    turn_rule: Codes
 
 
-class Notes(NamedTuple):
-    """What the kernel notes besides rows, written from the top; ``counts`` says how many there are.
+class ScanRecords(NamedTuple):
+    """What the kernel notes besides rows, written from the top; ``counters`` says how many there are.
 
     comments    (k, 4) int64   line, row, first byte and end of each comment
     feed_rows   (k,) int64     rows from which another feed holds
-    feeds       (k,) float64   that feed
+    feed_values (k,) float64   that feed
     touching    (k,) int64     rows whose blocks say the surface's normal
     normals     (k, 3) float64 that normal, workpiece frame, as long as it was said
     numbers     (12,) float64  the numbers of one block, while it is being read
@@ -46,7 +46,7 @@ class Notes(NamedTuple):
 
     comments: Ints
     feed_rows: Ints
-    feeds: Floats
-    touching: Ints
+    feed_values: Floats
+    normal_rows: Ints
     normals: Floats
     numbers: Floats

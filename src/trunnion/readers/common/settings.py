@@ -3,7 +3,7 @@
 from functools import lru_cache
 from importlib.resources import files
 
-from trunnion.definitions import Table, extended
+from trunnion.definitions import Table, resolve_extends
 from trunnion.machines import Machine
 
 #: The family of machines whose definition names no control.
@@ -22,4 +22,4 @@ def reading_of(machine: Machine) -> Table:
 
 
 def _control(machine: Machine) -> Table:
-    return extended(machine.control.fresh(), files("trunnion").joinpath("controls", "library"))
+    return resolve_extends(machine.control.unread_copy(), files("trunnion").joinpath("controls", "library"))

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
-from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Parameters, Reader, Value
+from trunnion.readers.rs274.expressions import Arithmetic, BlockError, ExpressionReader, Parameters, Value
 
 #: Longer blocks are no blocks.
-LONGEST: Final = 8192
+MAX_LENGTH: Final = 8192
 
 #: Larger codes are none that a control has.
 _LARGEST_CODE: Final = 100_000
@@ -69,7 +69,7 @@ class Line:
     comments: tuple[str, ...] = ()
 
 
-def split(raw: str, *, semicolon: bool) -> Line:
+def split_line(raw: str, *, semicolon: bool) -> Line:
     """Take a line apart; BlockError if a comment does not end.
 
     semicolon   a semicolon begins a comment, else it ends the block
@@ -107,7 +107,7 @@ def split(raw: str, *, semicolon: bool) -> Line:
     return Line(text, number, skipped, tuple(comments))
 
 
-def read_block(reader: Reader, twice: Callable[[str], None]) -> Block:
+def read_block(reader: ExpressionReader, twice: Callable[[str], None]) -> Block:
     """Read the rest of a block; ``twice`` is told of words that stand in it more than once."""
     block = Block()
     while not reader.ended:
@@ -133,11 +133,11 @@ def read_block(reader: Reader, twice: Callable[[str], None]) -> Block:
     return block
 
 
-def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> Reader:
+def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> ExpressionReader:
     """Return a reader at the beginning of a block."""
-    if len(text) > LONGEST:
-        raise BlockError(f"the block is longer than {LONGEST} characters")
-    return Reader(text, arithmetic, parameters)
+    if len(text) > MAX_LENGTH:
+        raise BlockError(f"the block is longer than {MAX_LENGTH} characters")
+    return ExpressionReader(text, arithmetic, parameters)
 
 
 def _code(value: float, letter: str, parts: int) -> int:
@@ -147,7 +147,7 @@ def _code(value: float, letter: str, parts: int) -> int:
     return code
 
 
-def spelled(code: int) -> str:
+def g_code_text(code: int) -> str:
     """A G code as it is written: 541 is G54.1."""
     whole, tenth = divmod(code, 10)
     return f"G{whole}.{tenth}" if tenth else f"G{whole}"

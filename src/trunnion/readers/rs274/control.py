@@ -9,18 +9,18 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.readers.common import arcs
-from trunnion.readers.common.rows import FARTHEST
-from trunnion.readers.common.virtual_control import LINEAR, Circle, Control
+from trunnion.readers.common.row_recorder import LARGEST_POSITION
+from trunnion.readers.common.virtual_control import LINEAR, Circle, VirtualControl
 
 #: Kinds of motion besides rapid and lines: G2 and G3.
 CLOCKWISE: Final = 2
 COUNTER: Final = 3
 
 #: More turns than this are none that a program means.
-MOST_TURNS: Final = 1000
+MAX_TURNS: Final = 1000
 
 
-class Rs274Control(Control):
+class Rs274Control(VirtualControl):
     """A control whose circles have centres I J K or a radius R."""
 
     #: I J K count from the start of the circle.
@@ -30,7 +30,7 @@ class Rs274Control(Control):
     _lengthened = False
 
     @property
-    def _length(self) -> Floats:
+    def _length_offset(self) -> Floats:
         return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self._lengthened else np.zeros(3)
 
     @property
@@ -45,7 +45,7 @@ class Rs274Control(Control):
         if not self.machine.tool_length:
             self._lengthened = on
             return
-        with self.change():
+        with self.frame_change():
             self._lengthened = on
 
     def circle(self, params: Mapping[str, float], turns: int = 0) -> Circle | None:
@@ -59,19 +59,19 @@ class Rs274Control(Control):
         return partial(self._arc, params, turns)
 
     def _arc(self, params: Mapping[str, float], turns: int, start: Floats, end: Floats) -> arcs.Arc:
-        if not 0 <= turns < MOST_TURNS:
+        if not 0 <= turns < MAX_TURNS:
             raise arcs.ArcError(f"a circle with {turns} turns")
-        if any(abs(value) * self.lengths > FARTHEST for value in params.values()):
+        if any(abs(value) * self.length_unit > LARGEST_POSITION for value in params.values()):
             raise arcs.ArcError("a circle with numbers that no machine has")
         clockwise = self.kind == CLOCKWISE
-        given = {axis: params[name] * self.lengths for axis, name in enumerate("IJK") if name in params}
-        if self.plane in given:
-            self.note(f"{'IJK'[self.plane]} has no meaning for a circle in this plane", Severity.WARNING)
-            del given[self.plane]
+        given = {axis: params[name] * self.length_unit for axis, name in enumerate("IJK") if name in params}
+        if self.plane_axis in given:
+            self.note(f"{'IJK'[self.plane_axis]} has no meaning for a circle in this plane", Severity.WARNING)
+            del given[self.plane_axis]
         if "R" in params:
             if given:
                 self.note("R and a centre in one block: R counts", Severity.ERROR)
-            return arcs.by_radius(start, end, params["R"] * self.lengths, self.plane, clockwise, turns)
+            return arcs.by_radius(start, end, params["R"] * self.length_unit, self.plane_axis, clockwise, turns)
         if not given:
             raise arcs.ArcError("the circle has no centre")
         if not self.relative_centres and len(given) < 2:
@@ -80,7 +80,7 @@ class Rs274Control(Control):
         for axis, value in given.items():
             centre[axis] = start[axis] + value if self.relative_centres else value
         self.check_radii(start, end, centre)
-        return arcs.by_centre(start, end, centre, self.plane, clockwise, turns)
+        return arcs.by_centre(start, end, centre, self.plane_axis, clockwise, turns)
 
     def check_radii(self, start: Floats, end: Floats, centre: Floats) -> None:
         """Raise ``arcs.ArcError`` where this control minds how far the radii at start and end differ."""

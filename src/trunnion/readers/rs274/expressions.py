@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Final, Protocol
 
 #: How deep brackets and signs may nest.
-DEEPEST: Final = 40
+MAX_NESTING: Final = 40
 
 #: Larger numbers are none that a machine could mean.
 LARGEST: Final = 1e300
@@ -59,7 +59,7 @@ class Arithmetic:
     empty: Callable[[str, Value, Value], float | None] | None = None
 
 
-class Reader:
+class ExpressionReader:
     """A place in a block without blanks, in capitals, and how to go on from there."""
 
     def __init__(self, text: str, arithmetic: Arithmetic, parameters: Parameters) -> None:
@@ -79,7 +79,7 @@ class Reader:
         """What is left, cut short for messages."""
         return self.text[self.at : self.at + 40]
 
-    def takes(self, text: str) -> bool:
+    def accept(self, text: str) -> bool:
         """Step over a text if it comes next."""
         if self.text.startswith(text, self.at):
             self.at += len(text)
@@ -88,7 +88,7 @@ class Reader:
 
     def expect(self, text: str) -> None:
         """Step over a text that must come next."""
-        if not self.takes(text):
+        if not self.accept(text):
             raise BlockError(
                 f"{text} is missing before {self.rest!r}" if self.rest else f"{text} is missing at the end"
             )
@@ -115,14 +115,14 @@ class Reader:
         """Return a value behind a letter or sign, and whether it was written as digits without a point."""
         self._deeper()
         try:
-            if self.takes("-"):
+            if self.accept("-"):
                 value, whole = self.real()
                 return (None if value is None else -value), whole
-            if self.takes("+"):
+            if self.accept("+"):
                 return self.real()
             if self.text.startswith("[", self.at):
                 return self.bracket(), False
-            if self.takes("#"):
+            if self.accept("#"):
                 return self._parameters.value(self.key()), False
             name = self._function()
             if name:
@@ -164,17 +164,17 @@ class Reader:
             return self.real()[0]
         left = self._level(level + 1)
         while True:
-            operator = next((name for name in levels[level] if self.takes_operator(name)), None)
+            operator = next((name for name in levels[level] if self.accept_operator(name)), None)
             if operator is None:
                 return left
             right = self._level(level + 1)
             left = self._apply(operator, left, right)
 
-    def takes_operator(self, name: str) -> bool:
+    def accept_operator(self, name: str) -> bool:
         """Step over an operator; ``*`` is not half of ``**``."""
         if name == "*" and self.text.startswith("**", self.at):
             return False
-        return self.takes(name)
+        return self.accept(name)
 
     def _apply(self, operator: str, left: Value, right: Value) -> float:
         empty = self._arithmetic.empty
@@ -186,7 +186,7 @@ class Reader:
 
     def _function(self) -> str:
         names = (*self._arithmetic.functions, *self._arithmetic.pairs, "EXISTS")
-        return next((name for name in names if self.takes(name)), "")
+        return next((name for name in names if self.accept(name)), "")
 
     def _call(self, name: str) -> float:
         if name == "EXISTS":
@@ -201,7 +201,7 @@ class Reader:
             return _sane(lambda: self._arithmetic.functions[name](value), name)
         self.expect("[")
         first = _plain(self._level(0))
-        if self.takes(","):
+        if self.accept(","):
             second = _plain(self._level(0))
             self.expect("]")
         else:
@@ -212,8 +212,8 @@ class Reader:
 
     def _deeper(self) -> None:
         self._depth += 1
-        if self._depth > DEEPEST:
-            raise BlockError(f"expressions nest deeper than {DEEPEST} levels")
+        if self._depth > MAX_NESTING:
+            raise BlockError(f"expressions nest deeper than {MAX_NESTING} levels")
 
 
 def _plain(value: Value) -> float:
@@ -231,7 +231,7 @@ def _sane(work: Callable[[], float], name: str) -> float:
     return float(value)
 
 
-def half_away(value: float) -> float:
+def round_half_away(value: float) -> float:
     """Round to a whole number, halves away from zero."""
     return math.copysign(math.floor(abs(value) + 0.5), value)
 
@@ -244,7 +244,7 @@ COMMON: Final[Mapping[str, Callable[[float], float]]] = {
     "COS": lambda a: math.cos(math.radians(a)),
     "EXP": math.exp,
     "LN": math.log,
-    "ROUND": half_away,
+    "ROUND": round_half_away,
     "SIN": lambda a: math.sin(math.radians(a)),
     "SQRT": math.sqrt,
     "TAN": lambda a: math.tan(math.radians(a)),

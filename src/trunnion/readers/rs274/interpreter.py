@@ -10,15 +10,15 @@ import numpy as np
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
-from trunnion.model.run import Written
+from trunnion.model.run import ProgrammedWord
 from trunnion.readers.common import interpreter
-from trunnion.readers.common.interpreter import End, Interpreter
-from trunnion.readers.common.scan import scan
+from trunnion.readers.common.axis_word import AxisWord, PositionMode
+from trunnion.readers.common.interpreter import Interpreter, ProgramEnd
+from trunnion.readers.common.scan import scan_blocks
 from trunnion.readers.common.scan_buffers import FEEDS, ROW
-from trunnion.readers.common.text import Text
+from trunnion.readers.common.source_text import SourceText
 from trunnion.readers.common.virtual_control import LINEAR, RAPID
-from trunnion.readers.common.word import How, Word
-from trunnion.readers.rs274.block import Block, spelled, split
+from trunnion.readers.rs274.block import Block, g_code_text, split_line
 from trunnion.readers.rs274.control import CLOCKWISE, COUNTER, Rs274Control
 from trunnion.readers.rs274.expressions import BlockError
 
@@ -28,7 +28,7 @@ PLANES: Final = {170: 2, 180: 1, 190: 0}
 FEED_MODES: Final = {930: 93, 940: 94, 950: 95}
 
 #: Radius compensation: left of the path, right of it, off.
-SIDES: Final = {400: 0, 410: 1, 411: 1, 412: 1, 420: -1, 421: -1, 422: -1}
+RADIUS_COMPENSATION: Final = {400: 0, 410: 1, 411: 1, 412: 1, 420: -1, 421: -1, 422: -1}
 CANCEL: Final = 800
 
 #: M codes that are events as they are: kind and value.
@@ -45,7 +45,7 @@ EVENTS: Final = {
 }
 SPINDLE: Final = {3: 1, 4: -1, 5: 0}
 CHANGE: Final = 6
-ENDS: Final = frozenset({2, 30})
+PROGRAM_ENDS: Final = frozenset({2, 30})
 
 #: Letters of axes; a machine has five of them.
 AXES: Final = "XYZABCUVW"
@@ -58,7 +58,7 @@ _LOOK: Final = 48
 
 
 @dataclass(slots=True)
-class Activation(interpreter.Activation):
+class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram being executed.
 
     row        the row at which it began
@@ -69,7 +69,7 @@ class Activation(interpreter.Activation):
     percents: int = 0
 
 
-A = TypeVar("A", bound=Activation)
+A = TypeVar("A", bound=ActiveProgram)
 
 
 class Rs274Interpreter(Interpreter[A]):
@@ -96,7 +96,7 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _line(self, call: A, line: int, raw: str) -> None:
         try:
-            parts = split(raw, semicolon=self.semicolon)
+            parts = split_line(raw, semicolon=self.semicolon)
         except BlockError as error:
             self._note(f"not understood: {error}: the block is not executed", Severity.ERROR)
             return
@@ -124,11 +124,11 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _end_of_file(self, call: A) -> None:
         """End at a percent sign."""
-        raise End
+        raise ProgramEnd
 
     # Plain blocks
 
-    def _may_be_plain(self, text: Text) -> bool:
+    def _may_be_plain(self, text: SourceText) -> bool:
         control = self.control
         if self.motion not in (0, 10) or not control.absolute:
             return False
@@ -139,26 +139,26 @@ class Rs274Interpreter(Interpreter[A]):
     def _table(self) -> Codes:
         """What bytes mean to the kernel now."""
 
-    def _kernel(self, text: Text) -> None:
+    def _kernel(self, text: SourceText) -> None:
         control = self.control
         first = control.columns.n
-        inverse = control.feed_mode.now == 93
-        before = float(control.place[3])
+        inverse = control.feed_mode.current == 93
+        before = float(control.commanded[3])
         control.kind = MOTIONS[self.motion]
-        scan(
+        scan_blocks(
             text.buffer,
             len(text.buffer),
             self._table,
             False,
-            control.lengths,
-            1.0 if inverse else control.feeds,
-            control.default_way,
-            control.map,
-            control.turn,
-            control.counts,
-            control.place,
-            control.target(),
-            control.notes,
+            control.length_unit,
+            1.0 if inverse else control.feed_unit,
+            control.default_turn_rules,
+            control.position_map,
+            control.vector_map,
+            control.counters,
+            control.commanded,
+            control.scan_target(),
+            control.scan_records,
         )
         self.motion = 10 * control.kind
         self._check_feeds(first, before, inverse)
@@ -166,23 +166,23 @@ class Rs274Interpreter(Interpreter[A]):
     def _check_feeds(self, first: int, before: float, inverse: bool) -> None:
         """Say where the kernel made lines without a feed."""
         control = self.control
-        c, target = control.columns, control.target()
-        rows = slice(first, int(control.counts[ROW]))
+        c, target = control.columns, control.scan_target()
+        rows = slice(first, int(control.counters[ROW]))
         lines = target.kind[rows] != 0
         if inverse:
-            lines &= (target.programmed[rows] & int(Written.FEED)) == 0
+            lines &= (target.programmed[rows] & int(ProgrammedWord.FEED)) == 0
             missing = np.flatnonzero(lines) + first
         else:
-            noted = int(control.counts[FEEDS])
-            feeds = np.append(before, control.notes.feeds[:noted])
+            noted = int(control.counters[FEEDS])
+            feeds = np.append(before, control.scan_records.feed_values[:noted])
             if (feeds > 0.0).all():
                 return
-            begins = np.append(first, control.notes.feed_rows[:noted])
+            begins = np.append(first, control.scan_records.feed_rows[:noted])
             held = feeds[np.searchsorted(begins, np.arange(rows.start, rows.stop), "right") - 1]
             missing = np.flatnonzero(lines & ~(held > 0.0)) + first
         here = control.line
         for row in missing.tolist():
-            control.line = int(c.block[row - c.base])
+            control.line = int(c.line[row - c.base])
             self._note("a line without a feed", Severity.ERROR)
         control.line = here
 
@@ -197,7 +197,7 @@ class Rs274Interpreter(Interpreter[A]):
         if code in MOTIONS:
             self.motion = code
         elif code in PLANES:
-            control.plane = PLANES[code]
+            control.plane_axis = PLANES[code]
         elif code in (200, 210):
             control.set_units(code == 200, True)
         elif code in (900, 910):
@@ -210,23 +210,23 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _name_code(self, code: int, named: dict[int, tuple[str, bool]], silent: frozenset[int]) -> None:
         """Say that a G code is known and not simulated, or not known."""
-        if code in SIDES:
-            self.control.compensation.set(self.control.row, SIDES[code])
+        if code in RADIUS_COMPENSATION:
+            self.control.compensation.set(self.control.row, RADIUS_COMPENSATION[code])
         if code in named:
             text, grave = named[code]
-            self._note(f"{spelled(code)}: {text}", Severity.ERROR if grave else Severity.WARNING)
+            self._note(f"{g_code_text(code)}: {text}", Severity.ERROR if grave else Severity.WARNING)
         elif code not in silent:
-            self._note(f"unknown word {spelled(code)}", Severity.ERROR)
+            self._note(f"unknown word {g_code_text(code)}", Severity.ERROR)
 
-    def _axis_words(self, block: Block) -> dict[str, Word]:
+    def _axis_words(self, block: Block) -> dict[str, AxisWord]:
         """Words of the machine's axes; those of others are findings."""
-        axes: dict[str, Word] = {}
+        axes: dict[str, AxisWord] = {}
         for letter in AXES:
             value = block.take(letter)
             if value is None:
                 continue
-            if letter in "XYZ" or letter in self.control.names:
-                axes[letter] = value, How.AS_SET
+            if letter in "XYZ" or letter in self.control.rotary_names:
+                axes[letter] = value, PositionMode.MODAL
             else:
                 self._note(f"{letter}: the machine has no such axis", Severity.ERROR)
         return axes
@@ -237,13 +237,13 @@ class Rs274Interpreter(Interpreter[A]):
         if feed is not None:
             if feed < 0.0:
                 raise BlockError("a feed below zero")
-            control.place[3] = feed if control.feed_mode.now == 93 else feed * control.feeds
+            control.commanded[3] = feed if control.feed_mode.current == 93 else feed * control.feed_unit
         speed = block.take("S")
         if speed is not None:
             control.rpm.set(control.row, abs(speed))
-            control.event("speed", abs(speed))
+            control.add_event("speed", abs(speed))
 
-    def _move(self, block: Block, axes: dict[str, Word], *, turns: int = 0, machine_frame: bool = False) -> None:
+    def _move(self, block: Block, axes: dict[str, AxisWord], *, turns: int = 0, machine_frame: bool = False) -> None:
         """Make the motion in force: a line or a circle."""
         control = self.control
         control.kind = MOTIONS[self.motion]
@@ -260,8 +260,8 @@ class Rs274Interpreter(Interpreter[A]):
         control = self.control
         if control.kind == RAPID:
             return
-        feed = float(control.place[3])
-        missing = math.isnan(feed) or feed <= 0.0 or (control.feed_mode.now == 93 and not written)
+        feed = float(control.commanded[3])
+        missing = math.isnan(feed) or feed <= 0.0 or (control.feed_mode.current == 93 and not written)
         if missing:
             self._note("a line without a feed" if control.kind == LINEAR else "a circle without a feed", Severity.ERROR)
 
@@ -271,12 +271,12 @@ class Rs274Interpreter(Interpreter[A]):
         if code in SPINDLE:
             control.spindle.set(control.row, SPINDLE[code])
         if code in EVENTS:
-            control.event(*EVENTS[code])
+            control.add_event(*EVENTS[code])
         elif code == CHANGE:
             control.change_tool()
-        elif code in ENDS:
-            control.event("end", f"M{code}")
-            raise End
+        elif code in PROGRAM_ENDS:
+            control.add_event("end", f"M{code}")
+            raise ProgramEnd
         else:
             return False
         return True

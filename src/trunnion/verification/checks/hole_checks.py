@@ -1,6 +1,6 @@
 """Each hole against what the CL file's cycle asks for.
 
-Heights are as in ``trunnion.verification.matching.expected_holes``.
+Heights are as in ``trunnion.verification.expected.holes``.
 """
 
 import math
@@ -12,13 +12,13 @@ import numpy as np
 from trunnion.arrays import Codes, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.readers import numbers_lengths
-from trunnion.verification.checks.state_checks import lacks_length, lengths_of
-from trunnion.verification.context import NAMED, Case, judged
-from trunnion.verification.matching.expected_holes import Hole
-from trunnion.verification.matching.expected_path import is_called
-from trunnion.verification.matching.hole_matching import Made, made_in, straight_over
-from trunnion.verification.matching.row_ranges import Rows
+from trunnion.readers import uses_length_numbers
+from trunnion.verification.checks.state_checks import allowed_length_numbers, length_fault_text
+from trunnion.verification.context import MAX_PLACES, Context, check_from_places
+from trunnion.verification.expected.holes import Hole
+from trunnion.verification.expected.path import names_tool
+from trunnion.verification.matching.hole_matching import MatchedHole, clearance_between_holes, match_holes
+from trunnion.verification.matching.row_ranges import RowRanges
 from trunnion.verification.results import Check, Place
 
 #: A spindle speed is printed without decimals.
@@ -38,15 +38,16 @@ _CHIP = 5.0
 
 
 def faults(
-    run: Run, hole: Hole, made: Made, waits: Mapping[int, list[float]], over: float | None = None
+    run: Run, hole: Hole, made: MatchedHole, waits: Mapping[int, list[float]], over: float | None = None
 ) -> Iterator[tuple[int, float, str]]:
     """What is wrong with one hole: row, value and words.
 
-    ``waits`` are the dwells of the run, by row; ``over`` is as ``straight_over`` has it, from the hole before.
+    ``waits`` are the dwells of the run, by row; ``over`` is as ``clearance_between_holes`` has it, from the hole
+    before.
     """
     spindle = float(run.state.rpm[made.end - 1])
     rows = np.arange(max(made.first - 1, 0), made.end)
-    poses = run.poses(rows)
+    poses = run.positions(rows)
     offset = poses.tip - hole.tip
     height = offset @ hole.axis
     aside = np.linalg.norm(offset - height[:, None] * hole.axis, axis=1)
@@ -55,7 +56,7 @@ def faults(
     at = rows[1:]
     if made.begins_at:
         kind[0] = Kind.RAPID  # how the tool came to a CL point is what that asks for
-    if float(np.abs(poses.axis[1:] - hole.axis).max()) > 1e-6 + np.radians(4.0 * hole.allowed):
+    if float(np.abs(poses.axis[1:] - hole.axis).max()) > 1e-6 + np.radians(4.0 * hole.tip_tolerance):
         yield int(at[0]), 0.0, "the tool does not stand along the axis of the hole"
         return
     lifted = "NODRAG" in hole.mode
@@ -87,12 +88,12 @@ def faults(
     yield from _spindle(run, hole, made, at[int(np.argmin(h))])
 
 
-def _any_between(rows: Rows, first: int, last: int) -> bool:
+def _any_between(rows: RowRanges, first: int, last: int) -> bool:
     """Whether any of growing ``rows`` is from ``first`` to ``last``."""
     return rows.before(last + 1) > rows.before(first)
 
 
-def _spindle(run: Run, hole: Hole, made: Made, bottom: int) -> Iterator[tuple[int, float, str]]:
+def _spindle(run: Run, hole: Hole, made: MatchedHole, bottom: int) -> Iterator[tuple[int, float, str]]:
     """The spindle is as asked; where motion makes a hole that it leaves with the spindle standing, it stands then."""
     drags = made.by_motion and "DRAG" in hole.mode
     row = int(bottom) if drags else made.end - 1
@@ -103,7 +104,7 @@ def _spindle(run: Run, hole: Hole, made: Made, bottom: int) -> Iterator[tuple[in
         yield row + 1, rpm, "leaves the hole with the spindle turning; the CL file wants it to stand"
 
 
-def _strokes(hole: Hole, made: Made, at: Ints, kind: Codes, h: Floats) -> Iterator[tuple[int, float, str]]:
+def _strokes(hole: Hole, made: MatchedHole, at: Ints, kind: Codes, h: Floats) -> Iterator[tuple[int, float, str]]:
     """Rapids stay above what is drilled; strokes and how the tool is drawn back between them are those of the cycle."""
     near, deepest = hole.near, hole.above
     ends: list[float] = []
@@ -160,8 +161,8 @@ def _by_motion(hole: Hole, row: int, ends: list[float]) -> Iterator[tuple[int, f
     """Strokes that the program says itself are those of STEP, one by one: from the point of the hole, or from RAPTO."""
     found = _apart([hole.above, *ends], hole.near)
     for begin in (0.0, hole.above):
-        wanted = _apart([hole.above, *_depths(hole, begin)], hole.near)
-        if len(wanted) == len(found) and float(np.abs(wanted - found).max()) <= hole.near:
+        expected = _apart([hole.above, *_depths(hole, begin)], hole.near)
+        if len(expected) == len(found) and float(np.abs(expected - found).max()) <= hole.near:
             return
     said = ", ".join(f"{-height:.4f}" for height in found[1:5])
     yield row, float(found[-1]), f"drills to {said} and so on, which are not the strokes of STEP in the CL file"
@@ -199,7 +200,7 @@ def _fed(run: Run, hole: Hole, lines: Ints, spindle: float) -> Iterator[tuple[in
 
 
 def _dwells(
-    hole: Hole, made: Made, bottom: int, waits: Mapping[int, list[float]], spindle: float
+    hole: Hole, made: MatchedHole, bottom: int, waits: Mapping[int, list[float]], spindle: float
 ) -> Iterator[tuple[int, float, str]]:
     """How long the tool waits at the bottom, and that it waits nowhere else in the hole."""
     want = 60.0 * hole.dwell / spindle if hole.dwell_turns and spindle else hole.dwell
@@ -211,13 +212,13 @@ def _dwells(
         yield elsewhere[0], 0.0, "waits in the hole where the CL file does not want it"
 
 
-def holes(case: Case) -> Check:
+def holes(context: Context) -> Check:
     """Every hole of the CL file is made as its cycle asks, in its turn between the points; and no other."""
-    wanted, pairs, run = case.wanted, case.pairs, case.run
-    assert wanted is not None
-    assert pairs is not None
+    expected, matching, run = context.expected, context.matching, context.run
+    assert expected is not None
+    assert matching is not None
     title = "holes as the cycles of the CL file ask"
-    made = made_in(run, wanted)
+    made = match_holes(run, expected)
     waits: dict[int, list[float]] = {}
     for event in run.events:
         if event.kind == "dwell" and isinstance(event.value, float):
@@ -225,37 +226,39 @@ def holes(case: Case) -> Check:
     places: list[Place] = []
     count = 0
     by_hole = {there.hole: there for there in made}
-    last: tuple[Hole, Made] | None = None
-    for number, hole in enumerate(wanted.holes):
+    last: tuple[Hole, MatchedHole] | None = None
+    for number, hole in enumerate(expected.holes):
         there = by_hole.get(number)
         if there is None:
             count += 1
-            places.append(Place(case.last_line, -1, 0.0, "nothing makes this hole", hole.file, hole.line))
+            places.append(Place(context.last_line, -1, 0.0, "nothing makes this hole", hole.file, hole.line))
             continue
-        asked = last is not None and _any_between(pairs.nc, last[1].end, there.first)
-        over = None if last is None or asked else straight_over(run, *last, hole, there)
+        asked = last is not None and _any_between(matching.nc, last[1].end, there.first)
+        over = None if last is None or asked else clearance_between_holes(run, *last, hole, there)
         found = list(faults(run, hole, there, waits, over))
         last = hole, there
-        names = (case.settings.tool,) if case.settings.tool else hole.tools
+        names = (context.settings.tool,) if context.settings.tool else hole.tools
         has = run.tools[run.state.tool[there.first]]
-        if names and not is_called(has, names):
+        if names and not names_tool(has, names):
             text = f"tool {has or 'none'} is in the spindle; the CL file wants {names[0]}"
             found.append((there.first, 0.0, text))
-        lengths = lengths_of(case.settings.tool, hole.lengths) if numbers_lengths(run.machine) else ()
+        lengths = (
+            allowed_length_numbers(context.settings.tool, hole.lengths) if uses_length_numbers(run.machine) else ()
+        )
         if lengths and (number := int(run.state.edge[there.first])) not in lengths:
-            found.append((there.first, 0.0, lacks_length(number, lengths)))
-        k = pairs.cl.before(hole.row)
+            found.append((there.first, 0.0, length_fault_text(number, lengths)))
+        k = matching.cl.before(hole.row)
         first, end = there.first + there.begins_at, there.end - there.ends_at
-        if (k and pairs.nc[k - 1] >= first) or (k < len(pairs.nc) and pairs.nc[k] < end):
+        if (k and matching.nc[k - 1] >= first) or (k < len(matching.nc) and matching.nc[k] < end):
             found.append((there.first, 0.0, "the hole is made before or after its turn"))
         count += len(found)
-        for row, value, text in found[: max(NAMED - len(places), 0)]:
-            place = case.place(row, value, text)
+        for row, value, text in found[: max(MAX_PLACES - len(places), 0)]:
+            place = context.place(row, value, text)
             places.append(replace(place, cl_file=hole.file, cl_line=hole.line))
-    for there in (there for there in made if there.hole >= len(wanted.holes)):
+    for there in (there for there in made if there.hole >= len(expected.holes)):
         count += 1
-        places.append(case.place(there.first, 0.0, "drills where the CL file has no more holes"))
+        places.append(context.place(there.first, 0.0, "drills where the CL file has no more holes"))
     good = f"{len(made)} holes" if made else "the CL file has none"
     motion = sum(there.by_motion for there in made)
     good += f", {motion} of them by motion" if motion else ""
-    return judged("holes", title, places, good, count)
+    return check_from_places("holes", title, places, good, count)

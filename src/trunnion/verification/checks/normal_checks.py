@@ -11,37 +11,37 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
-from trunnion.model.run import Run, Written
+from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.context import NAMED, Case
-from trunnion.verification.matching.expected_path import Part
+from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.expected.path import Section
 from trunnion.verification.results import Check, Place
 
 _TITLE: Final = "surface normals against the contact points"
-_ROTARY: Final = int(Written.FIRST | Written.SECOND)
+_ROTARY: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND)
 
 
-def normals(case: Case) -> list[Check]:
+def normals(context: Context) -> list[Check]:
     """One check, or none."""
-    wanted, pairs, run = case.wanted, case.pairs, case.run
-    assert wanted is not None
-    assert pairs is not None
-    asking = [part for part in wanted.parts if _asks(part)]
+    expected, matching, run = context.expected, context.matching, context.run
+    assert expected is not None
+    assert matching is not None
+    asking = [section for section in expected.sections if _asks(section)]
     if not asking and not len(run.normals):
         return []
     places: list[Place] = []
     bad = right = 0
     largest = limit = 0.0
-    for part in asking:
-        start, stop = pairs.cl.before(part.first), pairs.cl.before(part.end)
-        limit = max(limit, part.allowed.normal)
-        for nc, cl in pairs.chunks(start, stop):
-            asked, said = _asked(part, cl), _said(run, nc)
+    for section in asking:
+        start, stop = matching.cl.before(section.first), matching.cl.before(section.end)
+        limit = max(limit, section.tolerances.normal)
+        for nc, cl in matching.pair_chunks(start, stop):
+            asked, said = _asked(section, cl), _said(run, nc)
             off = np.abs(said - asked).max(axis=1)
             both, cut = np.isfinite(off), run.kind[nc] == Kind.LINEAR
             missing = np.isfinite(asked[:, 0]) & np.isnan(said[:, 0]) & cut & ((run.programmed[nc] & _ROTARY) == 0)
             strange = np.isnan(asked[:, 0]) & np.isfinite(said[:, 0])
-            wrong = both & (off > part.allowed.normal)
+            wrong = both & (off > section.tolerances.normal)
             right += int(both.sum() - wrong.sum())
             largest = max(largest, float(off[both].max(initial=0.0)))
             texts = (
@@ -51,10 +51,10 @@ def normals(case: Case) -> list[Check]:
             )
             for rows, text in texts:
                 bad += int(rows.sum())
-                for k in np.flatnonzero(rows)[: NAMED - len(places)].tolist():
+                for k in np.flatnonzero(rows)[: MAX_PLACES - len(places)].tolist():
                     value = float(off[k]) if both[k] else 0.0
                     told = f"{text} by {value:.9f}" if both[k] else text
-                    places.append(case.place(int(nc[k]), value, told, int(cl[k])))
+                    places.append(context.place(int(nc[k]), value, told, int(cl[k])))
     summary = f"{right} normals as the contact points have them, largest difference {largest:.9f}"
     if not asking:
         summary = f"{len(run.normals)} normals, and the CL files have no contact points to compare them with"
@@ -63,16 +63,16 @@ def normals(case: Case) -> list[Check]:
     return [Check("normal", _TITLE, not bad, summary, largest, limit or None, "", tuple(places))]
 
 
-def _asks(part: Part) -> bool:
-    normal = part.operation.moves.normal
+def _asks(section: Section) -> bool:
+    normal = section.operation.moves.normal
     return normal is not None and bool(np.isfinite(normal).any())
 
 
-def _asked(part: Part, cl: Ints) -> Floats:
+def _asked(section: Section, cl: Ints) -> Floats:
     """(k, 3): the normals of CL rows, NaN where there are none."""
-    normal = part.operation.moves.normal
+    normal = section.operation.moves.normal
     assert normal is not None
-    return np.asarray(normal[cl - part.first])
+    return np.asarray(normal[cl - section.first])
 
 
 def _said(run: Run, nc: Ints) -> Floats:

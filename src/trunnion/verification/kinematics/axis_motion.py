@@ -19,19 +19,19 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.jit import njit
 from trunnion.machines import Machine, forward
-from trunnion.model.feed_path import STILL, FeedPath, ways
-from trunnion.model.run import Orientation, Run, Stretch
+from trunnion.model.feed_path import NO_ROTATION, FeedPath, feed_path_lengths
+from trunnion.model.run import Orientation, PositionChunk, Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.kinematics.rapid_feeds import levels
-from trunnion.verification.kinematics.run_time import Pace
+from trunnion.verification.kinematics.rapid_feeds import approach_rows
+from trunnion.verification.kinematics.run_time import RunTimer
 
 
 @dataclass(slots=True)
-class Worst:
+class WorstRows:
     """The worst of many rows, and those beyond a limit: ``rows`` are the worst of them, worst first."""
 
     limit: float
-    named: int
+    max_rows: int
     value: float = 0.0
     row: int = -1
     count: int = 0
@@ -48,14 +48,14 @@ class Worst:
             return
         beyond = np.flatnonzero(values > self.limit)
         self.count += len(beyond)
-        worst = beyond[np.argsort(-values[beyond], kind="stable")[: self.named]]
+        worst = beyond[np.argsort(-values[beyond], kind="stable")[: self.max_rows]]
         self.rows = sorted(
             [*self.rows, *((first + int(k), float(values[k])) for k in worst)], key=lambda place: -place[1]
-        )[: self.named]
+        )[: self.max_rows]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Walk:
+class AxisMotion:
     """What a program makes the axes do.
 
     seconds       (n,) float64; no rows where times were not asked for
@@ -70,54 +70,54 @@ class Walk:
 
     seconds: Floats
     tip_feed: Floats
-    speed: tuple[Worst, ...]
-    acceleration: tuple[Worst, ...]
-    bend_axis: Worst
-    bend_tip: Worst
+    speed: tuple[WorstRows, ...]
+    acceleration: tuple[WorstRows, ...]
+    axis_deviation: WorstRows
+    tip_deviation: WorstRows
     extremes: Floats
     places: Ints
 
 
-class Walker:
-    """Goes through the rows of a run, stretch by stretch; of what is beyond a limit, ``named`` rows are named.
+class AxisMotionAnalyzer:
+    """Goes through the rows of a run, stretch by stretch; of what is beyond a limit, ``max_rows`` rows are named.
 
     ``times``: whether the time of each row is wanted.
     """
 
-    def __init__(self, run: Run, named: int, span_limit: float = math.inf, *, times: bool = True) -> None:
+    def __init__(self, run: Run, max_rows: int, span_limit: float = math.inf, *, times: bool = True) -> None:
         self._run = run
         axes = run.machine.axes
         self._rotary = np.array([axis.is_rotary for axis in axes])
         self._rapid = np.array([math.inf if axis.rapid is None else axis.rapid for axis in axes])
         self._acceleration = np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in axes])
         self._arc_length = _arc_lengths(run)
-        self._levels = levels(run)
+        self._levels = approach_rows(run)
         self._state = np.zeros(7)
-        self._pace = Pace(run) if times else None
-        self._walk = Walk(
+        self._pace = RunTimer(run) if times else None
+        self._walk = AxisMotion(
             np.zeros(0),
             np.zeros(0),
-            tuple(Worst(1.0 + 1e-9, named) for _ in axes),
-            tuple(Worst(1.0 + 1e-9, named) for _ in axes),
-            Worst(span_limit, named),
-            Worst(math.inf, named),
+            tuple(WorstRows(1.0 + 1e-9, max_rows) for _ in axes),
+            tuple(WorstRows(1.0 + 1e-9, max_rows) for _ in axes),
+            WorstRows(span_limit, max_rows),
+            WorstRows(math.inf, max_rows),
             np.column_stack((np.full(5, math.inf), np.full(5, -math.inf))),
             np.full((5, 2), -1, np.int64),
         )
 
-    def take(self, first: int, end: int, poses: Stretch) -> None:
-        """Add rows, in order; ``poses`` is the ``Run.stretch`` of them."""
+    def take(self, first: int, end: int, poses: PositionChunk) -> None:
+        """Add rows, in order; ``poses`` is the ``Run.chunk`` of them."""
         run, walk, count = self._run, self._walk, end - first
         state, kind, programmed = run.state, run.kind[first:end], run.programmed[first:end]
         tcp, machine_frame = state.tcp.part(first, end), state.machine_frame.part(first, end)
         # On the first leg of an approach the tool is still as high as the machine's position before it.
         here = self._levels[(self._levels >= first) & (self._levels < end)]
         machine_frame[here - first] = True
-        angles = run.oriented(first, end) == Orientation.ANGLES
+        angles = run.orientation_between(first, end) == Orientation.ANGLES
         times, shares, bend = np.empty((4, count)), np.empty((2, 5, count)), np.empty(count)
         ways = self._ways(first, end, poses, tcp)
-        walk_rows(
-            first, poses.joints, poses.tip, poses.axis, poses.half_way, kind, programmed, tcp, machine_frame,
+        axis_motion_rows(
+            first, poses.joints, poses.tip, poses.axis, poses.midpoint_axis, kind, programmed, tcp, machine_frame,
             state.feed.part(first, end), state.feed_mode.part(first, end), state.rpm.part(first, end), run.arcs.row,
             self._arc_length, self._rotary,
             self._rapid, self._acceleration, ways, self._state, walk.extremes, walk.places, times, shares, angles, bend,
@@ -129,13 +129,13 @@ class Walker:
                 walk.speed[k].take(first, shares[0, k])
             if axis.acceleration is not None:
                 walk.acceleration[k].take(first, shares[1, k])
-        walk.bend_axis.take(first, bend)
+        walk.axis_deviation.take(first, bend)
         if not tcp.all():
-            turned = np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > STILL
+            turned = np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > NO_ROTATION
             free = np.flatnonzero(turned & ~tcp & (kind == Kind.LINEAR))
-            walk.bend_tip.take(first, _off_tip(run.machine, poses, free, count))
+            walk.tip_deviation.take(first, _off_tip(run.machine, poses, free, count))
 
-    def _ways(self, first: int, end: int, poses: Stretch, tcp: Flags) -> Floats:
+    def _ways(self, first: int, end: int, poses: PositionChunk, tcp: Flags) -> Floats:
         """What F counts in rows in which rotary axes turn without TCP, NaN in the others; empty where there are none.
 
         A rule that counts the slides alone is left to the kernel.
@@ -144,16 +144,16 @@ class Walker:
         led = ~tcp & (path != FeedPath.SLIDES)
         if not led.any():
             return np.zeros(0)
-        led &= np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > STILL
+        led &= np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > NO_ROTATION
         found, rows = np.full(end - first, np.nan), np.flatnonzero(led)
-        found[rows] = ways(self._run.machine, poses.joints[rows], poses.joints[rows + 1], path[rows])
+        found[rows] = feed_path_lengths(self._run.machine, poses.joints[rows], poses.joints[rows + 1], path[rows])
         return found
 
-    def walked(self) -> Walk:
+    def result(self) -> AxisMotion:
         """Everything, when all rows have gone by."""
         if self._pace is None:
             return self._walk
-        seconds, tip_feed = self._pace.paced()
+        seconds, tip_feed = self._pace.result()
         return replace(self._walk, seconds=seconds, tip_feed=tip_feed)
 
 
@@ -162,7 +162,7 @@ def _arc_lengths(run: Run) -> Floats:
     rows = run.arcs.row
     if not len(rows):
         return np.zeros(0)
-    start, end = run.poses(rows - 1).tip, run.poses(rows).tip
+    start, end = run.positions(rows - 1).tip, run.positions(rows).tip
     centre, normal = run.arcs.centre, run.arcs.normal
     rise = np.einsum("ij,ij->i", end - start, normal)
     a, b = start - centre, end - centre
@@ -170,10 +170,10 @@ def _arc_lengths(run: Run) -> Floats:
     along = np.einsum("ij,ij->i", a, b) - np.einsum("ij,ij->i", a, normal) * np.einsum("ij,ij->i", b, normal)
     angle = np.mod(np.arctan2(across, along), 2.0 * np.pi)
     angle = np.where(np.minimum(angle, 2.0 * np.pi - angle) * run.arcs.radius < 1e-6, 2.0 * np.pi, angle)
-    return np.asarray(np.hypot((angle + 2.0 * np.pi * run.arcs.turns) * run.arcs.radius, rise))
+    return np.asarray(np.hypot((angle + 2.0 * np.pi * run.arcs.full_turns) * run.arcs.radius, rise))
 
 
-def _off_tip(machine: Machine, poses: Stretch, rows: Ints, count: int) -> Floats:
+def _off_tip(machine: Machine, poses: PositionChunk, rows: Ints, count: int) -> Floats:
     """Mm between the tip half-way through ``rows`` and its straight line; of all ``count`` rows, 0 in the others."""
     middle = forward(machine, 0.5 * (poses.joints[rows] + poses.joints[rows + 1]))[0]
     away = middle - 0.5 * (forward(machine, poses.joints[rows])[0] + poses.tip[rows + 1])
@@ -183,7 +183,7 @@ def _off_tip(machine: Machine, poses: Stretch, rows: Ints, count: int) -> Floats
 
 
 @njit(cache=True)
-def beside(axis: Floats, half_way: Floats, row: int) -> float:
+def half_way_deviation(axis: Floats, half_way: Floats, row: int) -> float:
     """Degrees from ``half_way`` (k, 3) at a row to the middle of the great circle from ``axis`` there to the next one.
 
     Opposite tool axes have no middle: 0.
@@ -199,7 +199,7 @@ def beside(axis: Floats, half_way: Floats, row: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def walk_rows(
+def axis_motion_rows(
     first: int,
     joints: Floats,
     tip: Floats,
@@ -291,8 +291,8 @@ def walk_rows(
         times[2, at] = way
         times[3, at] = meant
         bend[at] = 0.0
-        if turned > STILL and kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
-            bend[at] = beside(axis, half_way, at)
+        if turned > NO_ROTATION and kind[at] != 0 and not machine_frame[at] and (angles[at] or not tcp[at]):
+            bend[at] = half_way_deviation(axis, half_way, at)
         for k in range(5):
             stated = most[k] < math.inf
             shares[0, k, at] = 0.0

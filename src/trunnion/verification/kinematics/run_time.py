@@ -12,13 +12,13 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines.motion_time import row_seconds
-from trunnion.model.run import Run, Stretch
+from trunnion.model.run import PositionChunk, Run
 
 #: What the axes stand still for.
 _STOPS = ("dwell", "stop", "tool_change", "end")
 
 
-class Pace:
+class RunTimer:
     """Gathers what the time of a run is worked out from."""
 
     def __init__(self, run: Run) -> None:
@@ -26,12 +26,12 @@ class Pace:
         self._steps = np.empty((len(run), 5))
         self._times = np.empty((4, len(run)))
 
-    def take(self, first: int, end: int, poses: Stretch, times: Floats) -> None:
-        """Add rows, in order, with what ``walk_rows`` writes of their times."""
+    def take(self, first: int, end: int, poses: PositionChunk, times: Floats) -> None:
+        """Add rows, in order, with what ``axis_motion_rows`` writes of their times."""
         self._steps[first:end] = np.diff(poses.joints, axis=0)
         self._times[:, first:end] = times
 
-    def paced(self) -> tuple[Floats, Floats]:
+    def result(self) -> tuple[Floats, Floats]:
         """Seconds, and speed of the tip in mm/min, of all rows.
 
         The axes stand still for a dwell, a stop and a change of the tool, and where what the feed means changes.

@@ -16,9 +16,9 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.kinematics.rapid_feeds import PLACES, levels
-from trunnion.verification.matching.expected_holes import Hole
-from trunnion.verification.matching.expected_path import Wanted
+from trunnion.verification.expected.holes import Hole
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.kinematics.rapid_feeds import POSITION_WORDS, approach_rows
 
 #: A motion is along the tool axis, or across it, when it is off by less than this, mm.
 _STRAIGHT = 1e-6
@@ -40,7 +40,7 @@ _MISSES = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class MatchedHole:
     """Rows ``first`` to ``end`` (left out) that make one hole; the first goes to it.
 
     hole         which of the holes, in their order
@@ -62,50 +62,50 @@ class Made:
         return np.arange(self.first + self.begins_at, self.end - self.ends_at)
 
 
-def made_in(run: Run, wanted: Wanted | None = None) -> list[Made]:
+def match_holes(run: Run, expected: ExpectedPath | None = None) -> list[MatchedHole]:
     """The motions of a run that make holes, hole by hole, in the order of the run.
 
     A thread that is cut by a block of its own has besides the rapid to it and, where the CL file wants that, the rapid
     straight up behind it.
     """
-    holes = () if wanted is None else wanted.holes
+    holes = () if expected is None else expected.holes
     cycle = np.flatnonzero((run.programmed == 0) & (run.kind != Kind.ARC))
     groups = np.split(cycle, np.flatnonzero(np.diff(cycle) != 1) + 1) if len(cycle) else []
-    if wanted is None or len(groups) >= len(holes):
+    if expected is None or len(groups) >= len(holes):
         return [_by_cycle(run, rows, k, holes[k] if k < len(holes) else None) for k, rows in enumerate(groups)]
-    return list(_in_turn(run, wanted, groups))
+    return list(_in_turn(run, expected, groups))
 
 
-def _by_cycle(run: Run, rows: Ints, number: int, hole: Hole | None) -> Made:
+def _by_cycle(run: Run, rows: Ints, number: int, hole: Hole | None) -> MatchedHole:
     """One hole of a cycle, whose unwritten rows these are."""
     first, end = int(rows[0]), int(rows[-1]) + 1
-    to = first - 1 if first and run.blocks[first - 1] == run.blocks[first] else first
+    to = first - 1 if first and run.lines[first - 1] == run.lines[first] else first
     if to == first and first and run.kind[first] != Kind.RAPID and run.kind[first - 1] == Kind.RAPID:
         to -= 1
         back = hole is not None and hole.retract > hole.above + 1e-9
         end += back and end < len(run) and run.kind[end] == Kind.RAPID and _leg(run, end)[1] > 0.0
-    return Made(to, end, number)
+    return MatchedHole(to, end, number)
 
 
 def _leg(run: Run, row: int) -> tuple[float, float]:
     """How far a row goes across the tool axis and, if it does so by nothing else, along it, mm."""
-    poses = run.poses(np.array([row - 1, row]))
+    poses = run.positions(np.array([row - 1, row]))
     way = poses.tip[1] - poses.tip[0]
     up = float(way @ poses.axis[1])
     across = float(np.linalg.norm(way - up * poses.axis[1]))
     return across, up if across < _STRAIGHT else 0.0
 
 
-def _in_turn(run: Run, wanted: Wanted, groups: Sequence[Ints]) -> Iterator[Made]:
+def _in_turn(run: Run, expected: ExpectedPath, groups: Sequence[Ints]) -> Iterator[MatchedHole]:
     """Hole by hole: by the motions before the next cycle if there are such, else by that cycle."""
     at, cycles, misses = 0, 0, 0
     before: Hole | None = None
-    for number, hole in enumerate(wanted.holes):
+    for number, hole in enumerate(expected.holes):
         limit = int(groups[cycles][0]) if cycles < len(groups) else len(run)
         found = None
         if misses < _MISSES:
-            row = _plunge(run, hole, at, limit, _own_plunges(wanted, before, hole))
-            found = None if row is None else _by_motion(run, wanted, number, row, at)
+            row = _plunge(run, hole, at, limit, _own_plunges(expected, before, hole))
+            found = None if row is None else _by_motion(run, expected, number, row, at)
         if found is None and cycles < len(groups):
             found = _by_cycle(run, groups[cycles], number, hole)
             cycles += 1
@@ -116,7 +116,7 @@ def _in_turn(run: Run, wanted: Wanted, groups: Sequence[Ints]) -> Iterator[Made]
             at = found.end
         before = hole
     for rows in groups[cycles:]:
-        yield _by_cycle(run, rows, len(wanted.holes), None)
+        yield _by_cycle(run, rows, len(expected.holes), None)
 
 
 def _goes_down(hole: Hole, tip: Floats, kind: Codes) -> Flags:
@@ -130,18 +130,18 @@ def _goes_down(hole: Hole, tip: Floats, kind: Codes) -> Flags:
     return np.asarray(on[1:] & on[:-1] & down)
 
 
-def _own_plunges(wanted: Wanted, before: Hole | None, hole: Hole) -> int:
+def _own_plunges(expected: ExpectedPath, before: Hole | None, hole: Hole) -> int:
     """How often the CL file itself goes down on the axis of a hole, after the hole before."""
     first, count = 0 if before is None else before.row, 0
     for start in range(first, hole.row, _MANY):
         end = min(start + _MANY, hole.row)
         came = max(start - 1, 0)
         rows = np.arange(came, end)
-        tip, kind = wanted.tip(rows), wanted.kind(rows).copy()
+        tip, kind = expected.tip(rows), expected.kind(rows).copy()
         if before is not None and start == first and first:
             tip = tip.copy()
             tip[0] = before.left
-        kind[np.isin(rows, wanted.firsts)] = Kind.RAPID  # gone to from home
+        kind[np.isin(rows, expected.first_rows)] = Kind.RAPID  # gone to from home
         count += int(_goes_down(hole, tip, kind).sum())
     return count
 
@@ -152,7 +152,7 @@ def _plunge(run: Run, hole: Hole, at: int, limit: int, own: int) -> int | None:
     while start < limit:
         end = min(start + size, limit)
         rows = np.arange(start - 1, end)
-        found = np.flatnonzero(_goes_down(hole, run.poses(rows).tip, run.kind[rows]))
+        found = np.flatnonzero(_goes_down(hole, run.positions(rows).tip, run.kind[rows]))
         if len(found) > own:
             return start + int(found[own])
         own -= len(found)
@@ -160,24 +160,26 @@ def _plunge(run: Run, hole: Hole, at: int, limit: int, own: int) -> int | None:
     return None
 
 
-def _by_motion(run: Run, wanted: Wanted, number: int, plunge: int, at: int) -> Made:
+def _by_motion(run: Run, expected: ExpectedPath, number: int, plunge: int, at: int) -> MatchedHole:
     """The hole that row ``plunge`` begins to drill; rows before ``at`` make holes before it."""
-    hole = wanted.holes[number]
+    hole = expected.holes[number]
     end = _end(run, hole, plunge)
-    first, before, after = plunge - 1, wanted.holes[number - 1 : number], wanted.holes[number + 1 : number + 2]
-    alone = hole.row not in wanted.firsts and all(other.row != hole.row for other in before)
-    begins_at = first < at or (alone and _is_point(run, wanted, hole.row - 1, first, -1, hole))
+    first, before, after = plunge - 1, expected.holes[number - 1 : number], expected.holes[number + 1 : number + 2]
+    alone = hole.row not in expected.first_rows and all(other.row != hole.row for other in before)
+    begins_at = first < at or (alone and _is_point(run, expected, hole.row - 1, first, -1, hole))
     left = all(other.row != hole.row for other in after)
-    return Made(first, end, number, True, begins_at, left and _is_point(run, wanted, hole.row, end - 1, 1, hole))
+    return MatchedHole(
+        first, end, number, True, begins_at, left and _is_point(run, expected, hole.row, end - 1, 1, hole)
+    )
 
 
-def _is_point(run: Run, wanted: Wanted, cl: int, row: int, beside: int, hole: Hole) -> bool:
+def _is_point(run: Run, expected: ExpectedPath, cl: int, row: int, beside: int, hole: Hole) -> bool:
     """Whether a row goes to a CL point, and no row ``beside`` it does."""
-    if not 0 <= cl < len(wanted):
+    if not 0 <= cl < len(expected):
         return False
-    there = wanted.point(cl).tip
+    there = expected.point(cl).tip
     rows = [k for k in (row, row + beside) if 0 <= k < len(run)]
-    off = np.abs(run.poses(np.array(sorted(rows))).tip - there).max(axis=1) <= 2.0 * hole.near
+    off = np.abs(run.positions(np.array(sorted(rows))).tip - there).max(axis=1) <= 2.0 * hole.near
     fits = dict(zip(sorted(rows), off.tolist(), strict=True))
     return bool(fits.get(row)) and not fits.get(row + beside, False)
 
@@ -187,7 +189,7 @@ def _end(run: Run, hole: Hole, plunge: int) -> int:
     start, size, deep = plunge, _FEW, False
     while True:
         rows = np.arange(start, min(start + size + 1, len(run)))
-        height, aside = hole.seen(run.poses(rows).tip)
+        height, aside = hole.seen(run.positions(rows).tip)
         inside = (aside <= hole.near) & ~run.state.machine_frame.at(rows)
         for k in range(len(rows) - 1):
             deep = deep or bool(height[k] <= hole.near - hole.depth)
@@ -200,7 +202,7 @@ def _end(run: Run, hole: Hole, plunge: int) -> int:
         start, size = int(rows[-1]), min(2 * size, _MANY)
 
 
-def straight_over(run: Run, first: Hole, made: Made, second: Hole, there: Made) -> float | None:
+def clearance_between_holes(run: Run, first: Hole, made: MatchedHole, second: Hole, there: MatchedHole) -> float | None:
     """How high the tip stays on its way from a hole to the next one, whose axis is another, while the tool turns (TCP).
 
     At each place of the way it is counted from where the cycle of that hole may begin over which the tip is higher; the
@@ -210,7 +212,7 @@ def straight_over(run: Run, first: Hole, made: Made, second: Hole, there: Made) 
     turned = float(np.abs(first.axis - second.axis).max()) > _TURNED
     if not turned or not len(rows) or not run.state.tcp.at(rows).all():
         return None
-    tips = run.poses(np.concatenate(([made.end - 1], rows))).tip
+    tips = run.positions(np.concatenate(([made.end - 1], rows))).tip
     heights = np.stack([(tips - hole.tip) @ hole.axis - hole.above for hole in (first, second)])
     lowest = float(heights.max(axis=0).min())
     apart = heights[0] - heights[1]
@@ -220,26 +222,26 @@ def straight_over(run: Run, first: Hole, made: Made, second: Hole, there: Made) 
     return lowest
 
 
-def hole_rows(made: Sequence[Made]) -> Ints:
+def hole_rows(made: Sequence[MatchedHole]) -> Ints:
     """All rows that do nothing but make holes, growing."""
     pieces = [hole.rows for hole in made]
     return np.concatenate(pieces) if pieces else np.zeros(0, np.int64)
 
 
-def leads(run: Run, extra: Sequence[int], made: Sequence[Made], allowed: float) -> set[int]:
+def hole_approach_rows(run: Run, extra: Sequence[int], made: Sequence[MatchedHole], tip_tolerance: float) -> set[int]:
     """Which of the motions that answer to no CL point only lead to a hole.
 
     They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, over
     the hole at that height, and straight down; or, from home or while the tool turns, over the hole itself. Where they
-    are not a cycle's, their coordinates may each be off by ``allowed``, mm.
+    are not a cycle's, their coordinates may each be off by ``tip_tolerance``, mm.
     """
-    approach, unasked = set(levels(run).tolist()), set(extra)
+    approach, unasked = set(approach_rows(run).tolist()), set(extra)
     lawful = set()
     for hole in made:
         if hole.begins_at:
             continue
         row = hole.first - 1
-        rounded = _BOTH_ENDS * allowed if hole.by_motion else 0.0
+        rounded = _BOTH_ENDS * tip_tolerance if hole.by_motion else 0.0
         while row > 0 and row in unasked and run.kind[row] == Kind.RAPID:
             leg = _leads_how(run, row, hole, approach, rounded)
             if leg:
@@ -250,9 +252,9 @@ def leads(run: Run, extra: Sequence[int], made: Sequence[Made], allowed: float) 
     return lawful
 
 
-def _leads_how(run: Run, row: int, hole: Made, approach: set[int], rounded: float) -> str:
+def _leads_how(run: Run, row: int, hole: MatchedHole, approach: set[int], rounded: float) -> str:
     """How a rapid leads to the hole; empty if it does not. ``rounded``: what directions may be off for that, mm."""
-    poses = run.poses(np.array([row - 1, row, hole.first]))
+    poses = run.positions(np.array([row - 1, row, hole.first]))
     way, rest, axis = poses.tip[1] - poses.tip[0], poses.tip[2] - poses.tip[1], poses.axis[1]
     up, left = float(way @ axis), float(rest @ axis)
     # With TCP places and axes are rounded each by itself.
@@ -263,7 +265,7 @@ def _leads_how(run: Run, row: int, hole: Made, approach: set[int], rounded: floa
     from_home = (
         row - 1 in approach
         or bool(run.state.machine_frame[row - 1])
-        or (int(run.programmed[row - 1]) & int(PLACES)) == 0
+        or (int(run.programmed[row - 1]) & int(POSITION_WORDS)) == 0
     )
     turned = float(np.abs(poses.axis[0] - axis).max()) > _TURNED
     if float(np.abs(way).max()) < near and not turned:

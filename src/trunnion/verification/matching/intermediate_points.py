@@ -16,15 +16,15 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.jit import njit
-from trunnion.machines.forward import Chain, chain_row, pack_chain
-from trunnion.model.run import Orientation, Poses, Run, Written
+from trunnion.machines.forward import KinematicChain, forward_row, kinematic_chain
+from trunnion.model.run import Orientation, ProgrammedWord, RowPositions, Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.kinematics.axis_motion import Worst
-from trunnion.verification.kinematics.point_deviations import Tilt, axes_apart
-from trunnion.verification.matching.expected_path import Wanted
+from trunnion.verification.deviations.point_deviations import RotaryGeometry, axis_difference
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.kinematics.axis_motion import WorstRows
 
 if TYPE_CHECKING:
-    from trunnion.verification.matching.path_matching import Pairs
+    from trunnion.verification.matching.path_matching import Matching
 
 #: Two points nearer to each other than this, mm, have no line between them: the tool axis says how far it has come.
 _SHORT: Final = 1e-3
@@ -40,8 +40,8 @@ _LOOKS: Final = 7
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Way:
-    """What ``follow`` found.
+class FollowedPath:
+    """What ``follow_path`` found.
 
     motions, points  how many of either side go together
     partner          (motions,) int64  CL point that each motion goes to, or leads to
@@ -54,8 +54,8 @@ class Way:
     there: Flags
 
 
-def follow(
-    tilt: Tilt,
+def follow_path(
+    tilt: RotaryGeometry,
     tip: Floats,
     axis: Floats,
     joints: Floats,
@@ -66,7 +66,7 @@ def follow(
     near: tuple[float, float],
     allowed: tuple[float, float],
     bend: float,
-) -> Way:
+) -> FollowedPath:
     """Go along CL points as far as motions go to them, straight or by points between.
 
     Parameters
@@ -95,7 +95,7 @@ def follow(
         tip, axis, joints[:, tilt.column], tilt.sense, tilt.first, tilt.second, kind, want_tip, want_axis, want_kind,
         near[0], near[1], allowed[0], allowed[1], bend, partner, there,
     )  # fmt: skip
-    return Way(motions, points, partner[:motions], there[:motions])
+    return FollowedPath(motions, points, partner[:motions], there[:motions])
 
 
 @njit(cache=True)
@@ -131,7 +131,7 @@ def _follow(
                 and kind[ahead] == kind[i]
                 and _is_at(tip, axis, ahead, want_tip, want_axis, j, _ABOUT * near_tip, _ABOUT * near_axis)
             ):
-                _, off = axes_apart(axis, ahead, want_axis, j, value[ahead], sense, first, second)
+                _, off = axis_difference(axis, ahead, want_axis, j, value[ahead], sense, first, second)
                 if off <= allowed_angle and _is_at(tip, axis, ahead, want_tip, want_axis, j, allowed, near_axis):
                     last = ahead
                 ahead += 1
@@ -229,7 +229,7 @@ def _weights(turn: float, part: float) -> tuple[float, float]:
     return math.sin((1.0 - part) * turn) / sine, math.sin(part * turn) / sine
 
 
-class Spans:
+class LinearizationErrors:
     """How far the tool leaves its way within motions; gathered as a run goes by, of what is off some are named.
 
     The way of a motion that goes to a CL point, or leads there, is the CL file's: the straight line and the great
@@ -242,27 +242,27 @@ class Spans:
     def __init__(
         self,
         run: Run,
-        named: int,
+        max_rows: int,
         tip_limit: float,
         axis_limit: float,
         rounded: float = 0.0,
-        wanted: Wanted | None = None,
-        pairs: "Pairs | None" = None,
+        expected: ExpectedPath | None = None,
+        matching: "Matching | None" = None,
     ) -> None:
         self._run = run
         self._unsure = 2.0 * math.sqrt(3.0) * rounded
-        self._chain = pack_chain(run.machine)
+        self._chain = kinematic_chain(run.machine)
         self._rotary = np.array(run.machine.rotary, np.int64)
-        self._wanted = wanted
+        self._wanted = expected
         self._leads = np.full(len(run), -1, np.int64)
-        if wanted is not None and pairs is not None:
-            for nc, cl in pairs.all_chunks():
-                self._leads[nc] = np.where(np.isin(cl, wanted.firsts) | (wanted.kind(cl) == Kind.ARC), -1, cl)
-        self.tip = Worst(tip_limit, named)
-        self.axis = Worst(axis_limit, named)
+        if expected is not None and matching is not None:
+            for nc, cl in matching.all_pair_chunks():
+                self._leads[nc] = np.where(np.isin(cl, expected.first_rows) | (expected.kind(cl) == Kind.ARC), -1, cl)
+        self.tip = WorstRows(tip_limit, max_rows)
+        self.axis = WorstRows(axis_limit, max_rows)
 
-    def take(self, first: int, end: int, poses: Poses) -> None:
-        """Add rows, in order; ``poses`` is the ``Run.stretch`` of them.
+    def take(self, first: int, end: int, poses: RowPositions) -> None:
+        """Add rows, in order; ``poses`` is the ``Run.chunk`` of them.
 
         Rapids count only where the tip is judged, and those that place nothing but rotary axes never.
         """
@@ -270,10 +270,10 @@ class Spans:
         kind, programmed = run.kind[first:end], run.programmed[first:end]
         tcp, frame = run.state.tcp.part(first, end), run.state.machine_frame.part(first, end)
         turned = np.abs(np.diff(poses.joints[:, self._rotary], axis=0)).max(axis=1) > _STILL
-        places = (programmed & int(Written.X | Written.Y | Written.Z | Written.VECTOR)) != 0
+        places = (programmed & int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.VECTOR)) != 0
         looked = turned & ~frame & (kind != Kind.ARC)
         looked &= (kind != Kind.RAPID) | (~tcp & places & math.isfinite(self.tip.limit))
-        looked &= ~tcp | (run.oriented(first, end) == Orientation.ANGLES)
+        looked &= ~tcp | (run.orientation_between(first, end) == Orientation.ANGLES)
         rows = np.flatnonzero(looked)
         # The ends of each way: of the motion itself, or of the CL file's way that it is on.
         tips = np.stack((poses.tip[rows], poses.tip[rows + 1]), axis=1)
@@ -298,7 +298,7 @@ class Spans:
 
 @njit(cache=True)
 def _leave(
-    chain: Chain,
+    chain: KinematicChain,
     joints: Floats,
     tip_at: Floats,
     axis_at: Floats,
@@ -330,7 +330,7 @@ def _leave(
             share = look / (_LOOKS + 1.0)
             for c in range(5):
                 here[c] = joints[row, c] + share * (joints[row + 1, c] - joints[row, c])
-            chain_row(chain, here, tip, axis)
+            forward_row(chain, here, tip, axis)
             part = begin + share * (end - begin)
             way, along, off = 0.0, 0.0, 0.0
             for c in range(3):

@@ -16,17 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.model.run import Run, Written
+from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.kinematics.point_deviations import Tilt
-from trunnion.verification.kinematics.rapid_feeds import PLACES as PLACES
-from trunnion.verification.kinematics.rapid_feeds import leaving, levels
-from trunnion.verification.matching.expected_arcs import Arc, arc_of
-from trunnion.verification.matching.expected_path import Wanted
-from trunnion.verification.matching.hole_matching import hole_rows, leads, made_in
-from trunnion.verification.matching.intermediate_points import follow
-from trunnion.verification.matching.retracts import comes_back
-from trunnion.verification.matching.row_ranges import Rows
+from trunnion.verification.deviations.point_deviations import RotaryGeometry
+from trunnion.verification.expected.arcs import Arc, arc_of
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.kinematics.rapid_feeds import POSITION_WORDS as POSITION_WORDS
+from trunnion.verification.kinematics.rapid_feeds import approach_rows, tool_axis_exit_rows
+from trunnion.verification.matching.hole_matching import hole_approach_rows, hole_rows, match_holes
+from trunnion.verification.matching.intermediate_points import follow_path
+from trunnion.verification.matching.rewind_retracts import rewind_retract_length
+from trunnion.verification.matching.row_ranges import RowRanges
 
 #: Rows compared at a time: what is needed for them stays in the processor's cache.
 CHUNK = 8192
@@ -44,11 +44,11 @@ _PARTINGS = 2000
 _SAME = 1e-9
 
 #: Words that turn rotary axes.
-_TURNS = Written.FIRST | Written.SECOND
+_TURNS = ProgrammedWord.FIRST | ProgrammedWord.SECOND
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Pieces:
+class ArcSegments:
     """Lines of a program, rows ``nc``, that together stand for the arc ``arc`` at CL row ``cl``, its end left out."""
 
     nc: Ints
@@ -60,7 +60,7 @@ _NOTHING = np.zeros(0, np.int64), np.zeros(0, np.int64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Pairs:
+class Matching:
     """Partners: row ``nc[k]`` of the run answers to CL row ``cl[k]``, both growing.
 
     missing   CL rows that no motion answers to, repeated points left out
@@ -68,16 +68,16 @@ class Pairs:
     between   (k,) and (k,) int64: motions on the way from one CL point to the next, and the CL row that each leads to
     """
 
-    nc: Rows
-    cl: Rows
+    nc: RowRanges
+    cl: RowRanges
     missing: tuple[int, ...] = ()
     extra: tuple[int, ...] = ()
-    pieces: tuple[Pieces, ...] = ()
+    pieces: tuple[ArcSegments, ...] = ()
     between: tuple[Ints, Ints] = _NOTHING
 
-    def all_chunks(self) -> Iterator[tuple[Ints, Ints]]:
-        """As ``chunks``, with the motions between CL points after all the others."""
-        yield from self.chunks()
+    def all_pair_chunks(self) -> Iterator[tuple[Ints, Ints]]:
+        """As ``pair_chunks``, with the motions between CL points after all the others."""
+        yield from self.pair_chunks()
         nc, cl = self.between
         for start in range(0, len(nc), CHUNK):
             yield nc[start : start + CHUNK], cl[start : start + CHUNK]
@@ -87,7 +87,7 @@ class Pairs:
         to = self.between[1]
         return np.searchsorted(to, cl, "right") - np.searchsorted(to, cl)
 
-    def chunks(self, first: int = 0, end: int | None = None) -> Iterator[tuple[Ints, Ints]]:
+    def pair_chunks(self, first: int = 0, end: int | None = None) -> Iterator[tuple[Ints, Ints]]:
         """Partners, many at a time, from pair ``first`` to the one before ``end``: rows of run and CL files."""
         end = len(self.nc) if end is None else end
         for start in range(first, end, _MANY):
@@ -95,9 +95,11 @@ class Pairs:
             yield self.nc.part(start, stop), self.cl.part(start, stop)
 
 
-def answers(run: Run) -> Rows:
+def workpiece_rows(run: Run) -> RowRanges:
     """Rows of a run that ought to answer to CL points."""
-    return Rows.where((start, _answer(run, start, min(start + CHUNK, len(run)))) for start in range(0, len(run), CHUNK))
+    return RowRanges.where(
+        (start, _answer(run, start, min(start + CHUNK, len(run)))) for start in range(0, len(run), CHUNK)
+    )
 
 
 def _answer(run: Run, start: int, end: int) -> Flags:
@@ -106,46 +108,46 @@ def _answer(run: Run, start: int, end: int) -> Flags:
 
 
 def _placing(run: Run, start: int, end: int) -> Flags:
-    """``places_only`` for consecutive rows."""
+    """``only_positions_rotary_axes`` for consecutive rows."""
     programmed = run.programmed[start:end]
-    turns = ((programmed & int(PLACES)) == 0) & ((programmed & int(_TURNS)) != 0)
+    turns = ((programmed & int(POSITION_WORDS)) == 0) & ((programmed & int(_TURNS)) != 0)
     return np.asarray(turns & ~run.state.tcp.part(start, end) & (run.kind[start:end] == Kind.RAPID))
 
 
-def places_only(run: Run, rows: Ints) -> Flags:
+def only_positions_rotary_axes(run: Run, rows: Ints) -> Flags:
     """(k,) bool: the row does nothing but place rotary axes at rapid, with TCP off."""
     programmed = run.programmed[rows]
-    turns = ((programmed & int(PLACES)) == 0) & ((programmed & int(_TURNS)) != 0)
+    turns = ((programmed & int(POSITION_WORDS)) == 0) & ((programmed & int(_TURNS)) != 0)
     return np.asarray(turns & ~run.state.tcp.at(rows) & (run.kind[rows] == Kind.RAPID))
 
 
-def points(run: Run, wanted: Wanted) -> Rows:
+def points(run: Run, expected: ExpectedPath) -> RowRanges:
     """Rows of a run that ought to answer to CL points, without those that make holes or lead to the first point."""
-    rows = answers(run)
-    none = np.concatenate((hole_rows(made_in(run, wanted)), levels(run), leaving(run)))
-    more = _taken_along(run, wanted)
+    rows = workpiece_rows(run)
+    none = np.concatenate((hole_rows(match_holes(run, expected)), approach_rows(run), tool_axis_exit_rows(run)))
+    more = _taken_along(run, expected)
     if not len(none) and not len(more):
         return rows
     flags = np.zeros(len(run), np.bool_)
     flags[rows.part(0, len(rows))] = True
     flags[none] = False
     flags[more] = True
-    return Rows.where([(0, flags)])
+    return RowRanges.where([(0, flags)])
 
 
-def _taken_along(run: Run, wanted: Wanted) -> Ints:
+def _taken_along(run: Run, expected: ExpectedPath) -> Ints:
     """Rows that turn the table from one plane to the next, and so take the tool to a CL point at rapid."""
     rows: Ints = np.concatenate(
         [np.zeros(0, np.int64)]
         + [k + np.flatnonzero(_placing(run, k, min(k + CHUNK, len(run)))) for k in range(0, len(run), CHUNK)]
     )
     rows = rows[rows > 0]
-    rows = rows[run.state.by_tip.at(rows - 1) & ~run.state.tcp.at(rows - 1)]
+    rows = rows[run.state.xyz_is_tip.at(rows - 1) & ~run.state.tcp.at(rows - 1)]
     if not len(rows):
         return rows
-    is_, arrives = run.poses(rows), np.zeros(len(rows), np.bool_)
-    for part in wanted.parts:
-        moves, allowed = part.operation.moves, part.allowed
+    is_, arrives = run.positions(rows), np.zeros(len(rows), np.bool_)
+    for part in expected.sections:
+        moves, allowed = part.operation.moves, part.tolerances
         rapids = np.flatnonzero(moves.kind[1:] == Kind.RAPID) + 1
         turns = rapids[(moves.axis[rapids] != moves.axis[rapids - 1]).any(axis=1)]
         for k in turns.tolist():
@@ -154,19 +156,19 @@ def _taken_along(run: Run, wanted: Wanted) -> Ints:
     return np.asarray(rows[arrives])
 
 
-def in_order(run: Run, wanted: Wanted) -> Pairs | None:
-    """Pairs by counting alone, if there are as many motions as points; whether they fit is not looked at."""
-    rows = points(run, wanted)
-    if len(rows) == len(wanted):
-        return Pairs(rows, Rows.of([(0, len(wanted))]))
-    fresh = Rows.where(_fresh(wanted))
-    return Pairs(rows, fresh) if len(rows) == len(fresh) else None
+def match_by_count(run: Run, expected: ExpectedPath) -> Matching | None:
+    """Matching by counting alone, if there are as many motions as points; whether they fit is not looked at."""
+    rows = points(run, expected)
+    if len(rows) == len(expected):
+        return Matching(rows, RowRanges.of([(0, len(expected))]))
+    fresh = RowRanges.where(_fresh(expected))
+    return Matching(rows, fresh) if len(rows) == len(fresh) else None
 
 
-def _fresh(wanted: Wanted) -> Iterator[tuple[int, Flags]]:
-    """CL rows that do not say the point before once more, within an operation; as ``Rows.where`` takes them."""
-    behind = np.array(sorted(wanted.left_at), np.int64)
-    for part in wanted.parts:
+def _fresh(expected: ExpectedPath) -> Iterator[tuple[int, Flags]]:
+    """CL rows that do not say the point before once more, within an operation; as ``RowRanges.where`` takes them."""
+    behind = np.array(sorted(expected.hole_exits), np.int64)
+    for part in expected.sections:
         moves = part.operation.moves
         for start in range(0, len(moves), CHUNK):
             now, before = slice(max(start, 1), start + CHUNK), slice(max(start - 1, 0), start + CHUNK - 1)
@@ -178,43 +180,43 @@ def _fresh(wanted: Wanted) -> Iterator[tuple[int, Flags]]:
             first = part.first + start
             near = slice(*np.searchsorted(behind, [max(first, part.first + 1), first + len(fresh)]))
             for row in behind[near].tolist():
-                (tip, axis), point = wanted.left_at[row], wanted.point(row)
+                (tip, axis), point = expected.hole_exits[row], expected.point(row)
                 fresh[row - first] = max(np.abs(point.tip - tip).max(), np.abs(point.axis - axis).max()) > _SAME
             yield part.first + start, fresh
 
 
-def matched(run: Run, wanted: Wanted, *, bend: float | None = None) -> Pairs:
-    """Pairs by position, whatever was dropped, doubled or swapped.
+def match_by_position(run: Run, expected: ExpectedPath, *, bend: float | None = None) -> Matching:
+    """Matching by position, whatever was dropped, doubled or swapped.
 
     With ``bend``, degrees, there may be more points on the way between CL points, with the tool axis no further off.
     """
-    return _Matcher(run, wanted, bend).walk()
+    return _Matcher(run, expected, bend).walk()
 
 
 class _Matcher:
     """Walks along the motions of a program and the points of its CL files together."""
 
-    def __init__(self, run: Run, wanted: Wanted, bend: float | None) -> None:
-        self._run, self._wanted, self._bend = run, wanted, bend
-        self._rows = points(run, wanted)
-        self._tilt = Tilt.of(run.machine)
-        made = made_in(run, wanted)
-        limits = [part.allowed for part in wanted.parts]
+    def __init__(self, run: Run, expected: ExpectedPath, bend: float | None) -> None:
+        self._run, self._wanted, self._bend = run, expected, bend
+        self._rows = points(run, expected)
+        self._tilt = RotaryGeometry.of(run.machine)
+        made = match_holes(run, expected)
+        limits = [part.tolerances for part in expected.sections]
         before = [hole.first - k for hole in made for k in (1, 2, 3)]
-        self._leads = leads(run, before, made, max(each.tip for each in limits))
+        self._leads = hole_approach_rows(run, before, made, max(each.tip for each in limits))
         self._near = np.array([(each.tip * 1.001 + 1e-9, np.radians(2.0 * each.angle) + 2e-7) for each in limits])
-        all_made = len(made) == len(wanted.holes)
+        all_made = len(made) == len(expected.holes)
         self._made = np.array([hole.first for hole in made] if all_made else [], np.int64)
-        self._holes = np.array([hole.row for hole in wanted.holes] if all_made else [], np.int64)
-        self._n, self._m = len(self._rows), len(wanted)
+        self._holes = np.array([hole.row for hole in expected.holes] if all_made else [], np.int64)
+        self._n, self._m = len(self._rows), len(expected)
         self._nc: list[tuple[int, int]] = []
         self._cl: list[tuple[int, int]] = []
         self._missing: list[int] = []
         self._extra: list[int] = []
-        self._pieces: list[Pieces] = []
+        self._pieces: list[ArcSegments] = []
         self._between: list[tuple[Ints, Ints]] = [_NOTHING]
 
-    def walk(self) -> Pairs:
+    def walk(self) -> Matching:
         """Both sides to their ends."""
         i = j = partings = 0
         size = 64
@@ -240,7 +242,7 @@ class _Matcher:
             if pieces:
                 i += pieces
                 continue
-            back = comes_back(self._run, self._rows[i], self._wanted.part_of(j).allowed.tip)
+            back = rewind_retract_length(self._run, self._rows[i], self._wanted.section_at(j).tolerances.tip)
             if back:
                 self._extra += self._rows.part(i, i + back).tolist()
                 i += back
@@ -255,9 +257,9 @@ class _Matcher:
             i, j = i + a, j + b
         self._extra += self._rows.part(i, self._n).tolist()
         self._missing += [row for row in range(j, self._m) if not self._repeats(row)]
-        return Pairs(
-            Rows.of(self._nc),
-            Rows.of(self._cl),
+        return Matching(
+            RowRanges.of(self._nc),
+            RowRanges.of(self._cl),
             tuple(self._missing),
             tuple(self._extra),
             tuple(self._pieces),
@@ -270,18 +272,18 @@ class _Matcher:
 
     def _limits(self, j: int) -> tuple[float, float]:
         """How far apart partners may be, mm and as the length of a vector; the exact limits are judged later."""
-        tip, axis = self._near[int(np.searchsorted(self._wanted.firsts, j, "right")) - 1]
+        tip, axis = self._near[int(np.searchsorted(self._wanted.first_rows, j, "right")) - 1]
         return float(tip), float(axis)
 
     def _limits_of(self, rows: Ints) -> tuple[Floats, Floats]:
         """``_limits`` at growing CL rows, (k,) and (k,): each operation has its own."""
-        near = self._near[np.searchsorted(self._wanted.firsts, rows, "right") - 1]
+        near = self._near[np.searchsorted(self._wanted.first_rows, rows, "right") - 1]
         return near[:, 0], near[:, 1]
 
     def _fits(self, i: int, j: int, count: int) -> Flags:
         """Which of ``count`` motions from the i-th on are where the points from row j on want them, (count,) bool."""
         rows, points = self._rows.part(i, i + count), np.arange(j, j + count)
-        is_ = self._run.poses(rows)
+        is_ = self._run.positions(rows)
         tip, axis = self._limits_of(points)
         fits = (np.abs(is_.tip - self._wanted.tip(points)) <= tip[:, None]).all(axis=1)
         fits &= (np.abs(is_.axis - self._wanted.axis(points)) <= axis[:, None]).all(axis=1)
@@ -292,7 +294,7 @@ class _Matcher:
     def _repeats(self, j: int) -> bool:
         """Whether a point may print as the one before it; an arc only if all of it does."""
         point = self._wanted.point(j)
-        if j in self._wanted.firsts:
+        if j in self._wanted.first_rows:
             return False
         tip, axis = self._limits(j)
         if point.kind is Kind.ARC:
@@ -300,7 +302,7 @@ class _Matcher:
             if arc.sweep * arc.radius > 2.0 * tip:
                 return False
         before = self._wanted.point(j - 1)
-        was_tip, was_axis = self._wanted.left_at.get(j, (before.tip, before.axis))
+        was_tip, was_axis = self._wanted.hole_exits.get(j, (before.tip, before.axis))
         return bool(
             (np.abs(point.tip - was_tip) <= 2.0 * tip).all() and (np.abs(point.axis - was_axis) <= 2.0 * axis).all()
         )
@@ -325,7 +327,7 @@ class _Matcher:
             turns_off = np.flatnonzero(self._run.kind[rows] != Kind.LINEAR)
             if len(turns_off):
                 rows = rows[: turns_off[0]]
-            tips = self._run.poses(rows).tip
+            tips = self._run.positions(rows).tip
             there = np.flatnonzero((np.abs(tips - arc.end) <= tip).all(axis=1))
             if arc.radius > 4.0 * tip:  # on the way of more than one turn the end may be passed
                 there = there[np.abs(arc.fractions(tips)[there] - 1.0) * arc.sweep < np.pi]
@@ -334,7 +336,7 @@ class _Matcher:
                 off = np.abs(arc.deviation(tips[: there[0]])).max(axis=1, initial=0.0)
                 if (off > 100.0 * tip + 0.1).any():  # these lines are about something else
                     return 0
-                self._pieces.append(Pieces(pieces, j, arc))
+                self._pieces.append(ArcSegments(pieces, j, arc))
                 return len(pieces)
             if len(rows) < ahead:
                 return 0
@@ -344,17 +346,18 @@ class _Matcher:
         """How many motions from the i-th on go to how many points from row j on, some by points between."""
         if j == 0 or self._bend is None:
             return 0, 0
-        part = self._wanted.part_of(j)
+        part = self._wanted.section_at(j)
         rows = self._rows.part(i, i + CHUNK)
         points = np.arange(max(j - 1, part.first), min(j + CHUNK, part.end))
         if points[0] == j:  # nobody knows from where the tool comes to the first point
             return 0, 0
-        is_ = self._run.poses(rows)
-        wanted = self._wanted
+        is_ = self._run.positions(rows)
+        expected = self._wanted
         near, bend = self._limits(j), math.radians(self._bend)
-        way = follow(
-            self._tilt, is_.tip, is_.axis, is_.joints, self._run.kind[rows], wanted.tip(points), wanted.axis(points),
-            wanted.kind(points), near, (part.allowed.tip, part.allowed.angle), bend + 2.0 * near[1],
+        way = follow_path(
+            self._tilt, is_.tip, is_.axis, is_.joints, self._run.kind[rows], expected.tip(points),
+            expected.axis(points), expected.kind(points), near, (part.tolerances.tip, part.tolerances.angle), bend +
+            2.0 * near[1],
         )  # fmt: skip
         nc, cl = rows[: way.motions], j + way.partner
         there = np.flatnonzero(way.there)
@@ -370,7 +373,7 @@ class _Matcher:
         """How many motions and points to go until two in a row fit again; all of them if they never do."""
         for window in _WINDOWS:
             a, b = min(window, self._n - i), min(window, self._m - j)
-            is_, points = self._run.poses(self._rows.part(i, i + a)), np.arange(j, j + b)
+            is_, points = self._run.positions(self._rows.part(i, i + a)), np.arange(j, j + b)
             want_tip, want_axis = self._wanted.tip(points), self._wanted.axis(points)
             tip, axis = self._limits_of(points)
             fits = np.ones((a, b), np.bool_)
@@ -378,7 +381,7 @@ class _Matcher:
                 fits &= np.abs(is_.tip[:, column, None] - want_tip[:, column]) <= tip
                 fits &= np.abs(is_.axis[:, column, None] - want_axis[:, column]) <= axis
             ends = i + a == self._n, j + b == self._m
-            found = first_meeting(fits, ends)
+            found = find_resync(fits, ends)
             if found is not None:
                 return found
         return self._n - i, self._m - j
@@ -401,7 +404,7 @@ class _Matcher:
 
     def _gap(self, i: int, j: int, a: int, b: int) -> int:
         """From which row on the longer of two sides, ``a`` motions and ``b`` points, leaves out what it has more."""
-        is_, points = self._run.poses(self._rows.part(i, i + a)), np.arange(j, j + b)
+        is_, points = self._run.positions(self._rows.part(i, i + a)), np.arange(j, j + b)
         want_tip, want_axis = self._wanted.tip(points), self._wanted.axis(points)
         apart = np.empty(min(a, b) + 1)
         for gap in range(len(apart)):
@@ -413,7 +416,7 @@ class _Matcher:
         return int(np.argmin(apart))
 
 
-def first_meeting(fits: Flags, ends: Sequence[bool]) -> tuple[int, int] | None:
+def find_resync(fits: Flags, ends: Sequence[bool]) -> tuple[int, int] | None:
     """The nearest (a, b) at which two in a row fit, or one before the end of either side, or both sides end."""
     a, b = fits.shape
     twice = fits.copy()

@@ -9,7 +9,7 @@ from trunnion.arrays import Flags, Ints
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Rows:
+class RowRanges:
     """Row numbers, each larger than the one before; ``rows[k]`` is one of them, ``len(rows)`` how many there are.
 
     first   (m,) int64     the first number of each stretch
@@ -20,20 +20,20 @@ class Rows:
     begin: Ints
 
     @staticmethod
-    def of(stretches: Iterable[tuple[int, int]]) -> "Rows":
+    def of(stretches: Iterable[tuple[int, int]]) -> "RowRanges":
         """From stretches as (first number, how many)."""
         pairs = np.array([pair for pair in stretches if pair[1]], np.int64).reshape(-1, 2)
-        return Rows(pairs[:, 0].copy(), np.concatenate(([0], np.cumsum(pairs[:, 1]))))
+        return RowRanges(pairs[:, 0].copy(), np.concatenate(([0], np.cumsum(pairs[:, 1]))))
 
     @staticmethod
-    def where(pieces: Iterable[tuple[int, Flags]]) -> "Rows":
+    def where(pieces: Iterable[tuple[int, Flags]]) -> "RowRanges":
         """Numbers of rows that have a flag; pieces as (number of the first row, flags), one after the other."""
         first, count = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
         for start, flags in pieces:
             edges = np.flatnonzero(np.diff(flags, prepend=False, append=False)).reshape(-1, 2)
             first.append(start + edges[:, 0])
             count.append(edges[:, 1] - edges[:, 0])
-        return Rows(np.concatenate(first), np.concatenate(([0], np.cumsum(np.concatenate(count)))))
+        return RowRanges(np.concatenate(first), np.concatenate(([0], np.cumsum(np.concatenate(count)))))
 
     def __len__(self) -> int:
         return int(self.begin[-1])

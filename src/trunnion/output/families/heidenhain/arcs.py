@@ -9,12 +9,12 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.controls.family import CENTRE_DIGITS, ArcWords, Formats
-from trunnion.controls.words import ABSENT, counts
+from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS, ArcWords, Formats
+from trunnion.controls.words import ABSENT, round_to_counts
 from trunnion.model.toolpath import Arcs
 
 #: How near to half a turn a radius says a circle no more, degrees: there both its signs mean about the same.
-_HALF: Final = 2.0
+_HALF_TURN_MARGIN: Final = 2.0
 
 
 def arc_words(arcs: Arcs, tip: Floats, rows: Ints, formats: Formats, by_radius: bool) -> ArcWords:
@@ -26,29 +26,31 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, formats: Formats, by_radius: 
     start, end, centre = tip[arcs.row[rows] - 1], tip[arcs.row[rows]], arcs.centre[rows]
     sense = np.sign(arcs.normal[rows, 2])
     place, decimals = formats["Z"].decimals, formats["arc_angle"].decimals
-    rise = counts(np.ascontiguousarray(end[:, 2]), place) - counts(np.ascontiguousarray(start[:, 2]), place)
-    helix = (rise != 0) | (arcs.turns[rows] > 0)
-    sweep = _sweep(start, end, centre, sense, arcs.turns[rows])
+    rise = round_to_counts(np.ascontiguousarray(end[:, 2]), place) - round_to_counts(
+        np.ascontiguousarray(start[:, 2]), place
+    )
+    helix = (rise != 0) | (arcs.full_turns[rows] > 0)
+    sweep = _sweep(start, end, centre, sense, arcs.full_turns[rows])
     radius = _radius(start, end, centre, sweep, place)
     # Behind a helix the control stands where its angle led it to, which is nothing that was printed.
     behind = np.isin(arcs.row[rows] - 1, arcs.row[rows][helix])
-    short = _is_safe(start, end, centre, sweep, radius, place) & ~helix & ~behind & by_radius
+    short = _radius_finds_centre(start, end, centre, sweep, radius, place) & ~helix & ~behind & by_radius
     columns = {
         "line": np.full(len(rows), ABSENT),
         "arc": np.where(helix | short, ABSENT, 1),
         "arc_by_radius": np.where(short, 1, ABSENT),
         "helix": np.where(helix, 1, ABSENT),
         "arc_radius": np.where(short, radius, ABSENT),
-        "arc_angle": np.where(helix, counts(sweep, decimals), ABSENT),
+        "arc_angle": np.where(helix, round_to_counts(sweep, decimals), ABSENT),
         "arc_rise": np.where(helix & (rise != 0), rise, ABSENT),
         "counterclockwise": np.where(sense > 0, 1, ABSENT),
         "clockwise": np.where(sense < 0, 1, ABSENT),
         "Z": np.full(len(rows), ABSENT),
     }
     for c, word in enumerate("XY"):
-        columns[word] = np.where(helix, ABSENT, counts(np.ascontiguousarray(end[:, c]), place))
+        columns[word] = np.where(helix, ABSENT, round_to_counts(np.ascontiguousarray(end[:, c]), place))
     said = np.ones(len(rows), np.int64)
-    number = formats["X"].of_count
+    number = formats["X"].text_of_count
     lines = [f"CC X{number(x)} Y{number(y)}" for x, y in _centres(start, centre, place).tolist()]
     return ArcWords(
         columns,
@@ -59,8 +61,8 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, formats: Formats, by_radius: 
 
 def _centres(start: Floats, centre: Floats, decimals: int) -> Ints:
     """(a, 2) counts: the centres as seen from where the circles start in print, so that nothing is rounded twice."""
-    ways = [counts(np.ascontiguousarray((centre - start)[:, c]), decimals) for c in range(2)]
-    starts = [counts(np.ascontiguousarray(start[:, c]), decimals) for c in range(2)]
+    ways = [round_to_counts(np.ascontiguousarray((centre - start)[:, c]), decimals) for c in range(2)]
+    starts = [round_to_counts(np.ascontiguousarray(start[:, c]), decimals) for c in range(2)]
     return np.column_stack([a + b for a, b in zip(ways, starts, strict=True)])
 
 
@@ -76,14 +78,16 @@ def _sweep(start: Floats, end: Floats, centre: Floats, sense: Floats, turns: Int
 def _radius(start: Floats, end: Floats, centre: Floats, sweep: Floats, decimals: int) -> Ints:
     """(a,) counts, negative over half a turn."""
     away = [np.linalg.norm((point - centre)[:, :2], axis=1) for point in (start, end)]
-    return counts(np.where(np.abs(sweep) > 180.0, -0.5, 0.5) * (away[0] + away[1]), decimals)
+    return round_to_counts(np.where(np.abs(sweep) > 180.0, -0.5, 0.5) * (away[0] + away[1]), decimals)
 
 
-def _is_safe(start: Floats, end: Floats, centre: Floats, sweep: Floats, radius: Ints, decimals: int) -> Flags:
-    """(a,) whether a control finds the centre by what is printed, within ``CENTRE_DIGITS`` of it."""
+def _radius_finds_centre(
+    start: Floats, end: Floats, centre: Floats, sweep: Floats, radius: Ints, decimals: int
+) -> Flags:
+    """(a,) whether a control finds the centre by what is printed, within ``MAX_CENTRE_ERROR_DIGITS`` of it."""
     digit = 10.0**-decimals
     first, last = (
-        np.column_stack([counts(np.ascontiguousarray(point[:, c]), decimals) for c in range(2)]) * digit
+        np.column_stack([round_to_counts(np.ascontiguousarray(point[:, c]), decimals) for c in range(2)]) * digit
         for point in (start, end)
     )
     chord = last - first
@@ -93,6 +97,6 @@ def _is_safe(start: Floats, end: Floats, centre: Floats, sweep: Floats, radius: 
     height = np.sqrt(np.maximum(square, 0.0)) * np.sign(sweep) * np.sign(radius)
     left = np.column_stack((-chord[:, 1], chord[:, 0])) / np.maximum(length, digit)[:, None]
     found = 0.5 * (first + last) + height[:, None] * left
-    near = np.abs(found - centre[:, :2]).max(axis=1, initial=0.0) < CENTRE_DIGITS * digit
-    half = np.abs(np.abs(sweep) - 180.0) < _HALF
+    near = np.abs(found - centre[:, :2]).max(axis=1, initial=0.0) < MAX_CENTRE_ERROR_DIGITS * digit
+    half = np.abs(np.abs(sweep) - 180.0) < _HALF_TURN_MARGIN
     return np.asarray(near & (square > 0.0) & (length > digit) & ~half)

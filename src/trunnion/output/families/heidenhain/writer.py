@@ -11,19 +11,26 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.controls.family import BY_RADIUS, ArcWords, Codes, Formats, UnsayableError, WordEvent
+from trunnion.controls.family_writer import (
+    RADIUS_ARC_WORDS,
+    ArcWords,
+    Codes,
+    Formats,
+    UnsupportedFeatureError,
+    WordEvent,
+)
 from trunnion.controls.template import Value
 from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
-from trunnion.output.euler_angles import about_three
+from trunnion.output.euler_angles import tait_bryan_angles
 from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
-from trunnion.output.families.heidenhain.cycles import cycle_lines
-from trunnion.planning.holes.cycles import Cycle, Turning
+from trunnion.output.families.heidenhain.cycles import cycle_definition
+from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 WORDS: tuple[str, ...] = (
-    "line", "vector_line", "surface_x", "surface_y", "surface_z", "axis_x", "axis_y", "axis_z", "arc", *BY_RADIUS,
-    "helix", "arc_angle", "arc_rise",
+    "line", "vector_line", "surface_x", "surface_y", "surface_z", "axis_x", "axis_y", "axis_z", "arc",
+    *RADIUS_ARC_WORDS, "helix", "arc_angle", "arc_rise",
     "counterclockwise", "clockwise", "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant",
     "feed_mode", "call",
 )  # fmt: skip
@@ -33,10 +40,10 @@ CODES: tuple[str, ...] = (
     "optional_stop", "call",
 )  # fmt: skip
 
-PLANES: tuple[str, ...] = ("spatial", "vector", "cycle19")
+PLANE_COMMANDS: tuple[str, ...] = ("spatial", "vector", "cycle19")
 
-CHOICES: Mapping[str, tuple[str, ...]] = {
-    "plane": PLANES,
+SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
+    "plane": PLANE_COMMANDS,
     "plane_move": ("turn", "move", "stay"),
     "plane_solution": ("SEQ", "SYM"),
     "tcpm": ("m128", "function"),
@@ -46,37 +53,37 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "normals": ("off", "contact"),
 }
 
-_VECTOR: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
+_PLANE_VECTOR_FIELDS: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
 
-FIELDS: frozenset[str] = frozenset(
+TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
         "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "spatial_a", "spatial_b",
-        "spatial_c", *_VECTOR, "blank_low", "blank_high",
+        "spatial_c", *_PLANE_VECTOR_FIELDS, "blank_low", "blank_high",
     }
 )  # fmt: skip
 
 #: Bytes of a comment in one line.
-_ROOM: Final = 100
+_COMMENT_LENGTH: Final = 100
 
-_TCPM: Final = {
+_TCP_SWITCHES: Final = {
     "m128": ("M128", "M129"),
     "function": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "FUNCTION RESET TCPM"),
 }
 _POSITIONING: Final = {"turn": "TURN FMAX", "move": "MOVE ABST0 FMAX", "stay": "STAY"}
-_COMP: Final = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
+_COMP_WORDS: Final = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
 
 
 def comment(text: str) -> list[str]:
     """A semicolon begins a comment; a long one goes on in the next line."""
     pieces = [""]
-    for character in inside(text):
-        if len((pieces[-1] + character).encode()) > _ROOM:
+    for character in escape_comment(text):
+        if len((pieces[-1] + character).encode()) > _COMMENT_LENGTH:
             pieces.append("")
         pieces[-1] += character
     return [f"; {piece}" for piece in pieces]
 
 
-def inside(text: str) -> str:
+def escape_comment(text: str) -> str:
     """A tilde at the end of a line would take the next one into the block."""
     return text.replace("~", "-")
 
@@ -84,7 +91,7 @@ def inside(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """What stands after ``TOOL CALL``: a number, or a name in quotation marks, in which none can stand."""
     if by_name and '"' in name:
-        raise UnsayableError(f"the tool name {name} has a quotation mark in it", "write --set tool=NUMBER")
+        raise UnsupportedFeatureError(f"the tool name {name} has a quotation mark in it", "write --set tool=NUMBER")
     return f'"{name}"' if by_name else str(number)
 
 
@@ -93,12 +100,14 @@ def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     amount = event.amount
     if event.revolutions:
         if rpm is None or not rpm > 0.0:
-            raise UnsayableError("a dwell in spindle revolutions while the spindle stands", "put SPINDL before it")
+            raise UnsupportedFeatureError(
+                "a dwell in spindle revolutions while the spindle stands", "put SPINDL before it"
+            )
         amount = 60.0 * amount / rpm
     form = formats["dwell"]
     if not form.least <= amount <= form.greatest:
         what = f"a dwell of {amount:g} s, and the control waits {form.least:g} to {form.greatest:g} s"
-        raise UnsayableError(what, "write a dwell within that")
+        raise UnsupportedFeatureError(what, "write a dwell within that")
     return ["CYCL DEF 9.0 DWELL TIME", f"CYCL DEF 9.1 DWELL {form.text(amount)}"]
 
 
@@ -119,25 +128,28 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
     if isinstance(event, Coolant):
         return {"coolant": coolant[event.kind]}
     if isinstance(event, CutterComp):
-        return {_COMP[event.side]: 1} if event.side in _COMP else {}
+        return {_COMP_WORDS[event.side]: 1} if event.side in _COMP_WORDS else {}
     return {"spindle": codes["spindle_off"]}
 
 
-def first_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
+def first_block_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
     """None."""
     return {}
 
 
-def refused(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsayableError]]:
+def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
     """Radius compensation in another plane than that of the tool axis."""
     return [
-        (event.line, UnsayableError(f"radius compensation in the plane {event.plane}", "write XYPLAN, or no CUTCOM"))
+        (
+            event.line,
+            UnsupportedFeatureError(f"radius compensation in the plane {event.plane}", "write XYPLAN, or no CUTCOM"),
+        )
         for event in operation.events
         if isinstance(event, CutterComp) and event.plane not in ("", "XYPLAN")
     ]
 
 
-def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
     """A program name that no file of the control has, a block form that is none."""
     wrong = []
     name, blank = settings.get("program", ""), settings.get("blank", "")
@@ -151,7 +163,7 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
     if distance and not (re.fullmatch(r"[0-9]{1,5}(\.[0-9]{1,4})?", distance) and float(distance) > 0.0):
         cure = "write how far the tool goes back along its axis, mm, such as 50; or nothing"
         wrong.append(("retract_distance", cure))
-    if blank not in ("", "extents") and _corners(blank) is None:
+    if blank not in ("", "extents") and _blank_corners(blank) is None:
         cure = (
             "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first; or extents, for all that is cut"
         )
@@ -159,14 +171,14 @@ def wrong_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
     return wrong
 
 
-def hole_call(
-    cycle: Cycle, top: float, turning: Turning | None, settings: Mapping[str, str], formats: Formats
+def cycle_call(
+    cycle: Cycle, top: float, turning: SpindleState | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
     """The definition of the cycle; ``M99`` calls it at each hole."""
-    return cycle_lines(cycle, top, turning, formats, settings.get("disengage", ""))
+    return cycle_definition(cycle, top, turning, formats, settings.get("disengage", ""))
 
 
-def hole_end() -> list[str]:
+def cycle_cancel() -> list[str]:
     """Nothing: a cycle is called hole by hole."""
     return []
 
@@ -186,15 +198,15 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Format
     return heidenhain_arcs.arc_words(arcs, tip, rows, formats, by_radius)
 
 
-def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
+def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
     """TCP on and off as ``tcpm`` says it, the words and angles of a plane, the corners of the block form.
 
     SPA, SPB and SPC turn about fixed axes X, then Y, then Z: the same as about Z, the new Y and the newest X.
     """
-    on, off = _TCPM[str(settings["tcpm"])]
+    on, off = _TCP_SWITCHES[str(settings["tcpm"])]
     if settings["orientation"] == "vector":
         on = on.replace("PATHCTRL AXIS", "PATHCTRL VECTOR")
-    low, high = _corners(str(settings.get("blank") or "")) or (None, None)
+    low, high = _blank_corners(str(settings.get("blank") or "")) or (None, None)
     found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
     at_tip = settings["rotary_feed"] == "tip"
     found |= {"feed_at_tip": "M116" if at_tip else None, "feed_in_degrees": "M117" if at_tip else None}
@@ -203,13 +215,17 @@ def values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Val
     found["positioning"] = _POSITIONING[str(settings["plane_move"])]
     spatial = "spatial_c", "spatial_b", "spatial_a"
     if plane is None:
-        return {**found, **dict.fromkeys((*spatial, *_VECTOR))}
-    turns = [180.0 if angle < -179.99999999 else angle for angle in about_three(plane, (2, 1, 0))]
+        return {**found, **dict.fromkeys((*spatial, *_PLANE_VECTOR_FIELDS))}
+    turns = [180.0 if angle < -179.99999999 else angle for angle in tait_bryan_angles(plane, (2, 1, 0))]
     angles = dict(zip(spatial, turns, strict=True))
-    return {**found, **angles, **dict(zip(_VECTOR, [*plane[:, 0].tolist(), *plane[:, 2].tolist()], strict=True))}
+    return {
+        **found,
+        **angles,
+        **dict(zip(_PLANE_VECTOR_FIELDS, [*plane[:, 0].tolist(), *plane[:, 2].tolist()], strict=True)),
+    }
 
 
-def _corners(blank: str) -> tuple[str, str] | None:
+def _blank_corners(blank: str) -> tuple[str, str] | None:
     """The two corners of the block form as words, None where the text is none."""
     try:
         numbers = [float(part) for part in blank.split(",")]

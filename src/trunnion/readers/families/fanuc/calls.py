@@ -7,10 +7,10 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common.interpreter import End
-from trunnion.readers.common.text import Subprograms
+from trunnion.readers.common.interpreter import ProgramEnd
+from trunnion.readers.common.source_text import Subprograms
 from trunnion.readers.families.fanuc import words
-from trunnion.readers.families.fanuc.flow import Activation, Flow, ModalMacro
+from trunnion.readers.families.fanuc.flow import ActiveProgram, Flow, ModalMacro
 from trunnion.readers.families.fanuc.settings import settings_of
 from trunnion.readers.families.fanuc.text import SUFFIXES, FanucText
 from trunnion.readers.families.fanuc.variables import Variables
@@ -28,7 +28,7 @@ _MOST_MACROS: Final = 4
 _FOUR: Final = 10_000
 
 
-class CallInterpreter(Rs274Interpreter[Activation]):
+class CallInterpreter(Rs274Interpreter[ActiveProgram]):
     """Calls and returns; what blocks say besides is for the class below."""
 
     def __init__(
@@ -44,7 +44,7 @@ class CallInterpreter(Rs274Interpreter[Activation]):
     def _system(self, key: int) -> float | None:
         """Return what the control itself puts behind a number; None if it is none of its own."""
 
-    def _macro(self, call: Activation, block: Block) -> None:
+    def _macro(self, call: ActiveProgram, block: Block) -> None:
         """G65 and G66: a macro with arguments, now or after every motion."""
         number, times = block.take("P"), block.take("L")
         if number is None:
@@ -64,16 +64,16 @@ class CallInterpreter(Rs274Interpreter[Activation]):
         if words.MODAL_MACRO in block.g:
             call.modal = macro
         else:
-            self._enter(macro.number, macro.times, macro.arguments)
+            self._write_row(macro.number, macro.times, macro.arguments)
 
     def _argument(self, letter: str, word: Number) -> float:
         if word.whole and word.value and not self._settings.calculator and letter not in "DEHMST":
             self._note(f"argument {letter} without a point: taken as it is written", Severity.WARNING)
         return word.value
 
-    def _call_modal(self, call: Activation) -> None:
+    def _call_modal(self, call: ActiveProgram) -> None:
         if call.modal is not None:
-            self._enter(call.modal.number, call.modal.times, dict(call.modal.arguments))
+            self._write_row(call.modal.number, call.modal.times, dict(call.modal.arguments))
 
     def _call(self, block: Block) -> None:
         """M98: P is the number, L how often; without L the digits before the last four."""
@@ -84,9 +84,9 @@ class CallInterpreter(Rs274Interpreter[Activation]):
         if times is None and program >= _FOUR:
             times = float(program // _FOUR)
             program %= _FOUR
-        self._enter(program, _times(times), None)
+        self._write_row(program, _times(times), None)
 
-    def _enter(self, number: int, times: int, arguments: dict[int, float] | None) -> None:
+    def _write_row(self, number: int, times: int, arguments: dict[int, float] | None) -> None:
         """Begin a subprogram: of this file, or of those that were named."""
         if times < 1:
             return
@@ -94,7 +94,7 @@ class CallInterpreter(Rs274Interpreter[Activation]):
         here = self._stack[-1]
         begin = here.text.program(number)
         if begin is not None:
-            entered = Activation(here.text.again(), here.file, times)
+            entered = ActiveProgram(here.text.restarted(), here.file, times)
         else:
             path = next(
                 (
@@ -108,7 +108,7 @@ class CallInterpreter(Rs274Interpreter[Activation]):
                 raise BlockError(f"missing subprogram O{number:04d}; name its file")
             text, file = self._open(path)
             assert isinstance(text, FanucText)
-            entered = Activation(text, file, times)
+            entered = ActiveProgram(text, file, times)
             begin = text.program(number) or 1
         entered.row, entered.line = self.control.row, begin
         entered.begun = entered.text.program(number) is not None
@@ -121,7 +121,7 @@ class CallInterpreter(Rs274Interpreter[Activation]):
                 self._note(what, Severity.WARNING)
         self._stack.append(entered)
 
-    def _return(self, call: Activation, line: int, block: Block) -> None:
+    def _return(self, call: ActiveProgram, line: int, block: Block) -> None:
         """M99: back, P the block there that goes on; in the program itself it would begin anew without end."""
         target = block.take("P")
         if len(self._stack) < 2:
@@ -129,8 +129,8 @@ class CallInterpreter(Rs274Interpreter[Activation]):
                 self._flow.jump(call, line, _program(target))
                 return
             self._note("M99 begins the program anew without end: it ends here", Severity.WARNING)
-            self.control.event("end", "M99")
-            raise End
+            self.control.add_event("end", "M99")
+            raise ProgramEnd
         deep = len(self._stack)
         self._leave()
         if target is not None and len(self._stack) < deep:

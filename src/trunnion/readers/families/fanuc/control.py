@@ -4,16 +4,16 @@ import numpy as np
 
 from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
-from trunnion.machines import Axis, Carries, Machine, Output
+from trunnion.machines import AngleOutput, Axis, Machine, Mount
 from trunnion.model.axis_positions import PLAIN
-from trunnion.model.columns import Changes
-from trunnion.model.run import Written
+from trunnion.model.columns import StepColumnBuilder
+from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common import tilt
-from trunnion.readers.common.frames import Frame, about, turn
-from trunnion.readers.common.rows import Note
-from trunnion.readers.common.scan import letters
-from trunnion.readers.common.word import How, Word
+from trunnion.readers.common import tool_orientation
+from trunnion.readers.common.affine_map import AffineMap, rotation_about, rotation_matrix
+from trunnion.readers.common.axis_word import AxisWord, PositionMode
+from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.common.scan import letter_table
 from trunnion.readers.rs274.control import Rs274Control
 
 
@@ -21,14 +21,20 @@ class FanucControl(Rs274Control):
     """A Fanuc at work on a machine. Work offsets that the program does not set are the machine's workpiece zero."""
 
     def __init__(
-        self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None, calculator: bool
+        self,
+        machine: Machine,
+        note: Note,
+        file: StepColumnBuilder[int],
+        *,
+        shortest: bool | None = None,
+        calculator: bool,
     ) -> None:
         super().__init__(machine, note, file, shortest=shortest)
-        names = self.names[0], self.names[1]
+        names = self.rotary_names[0], self.rotary_names[1]
         pointed = "" if calculator else "XYZ" + "".join(names)
         # Whole numbers behind F are what they look like only in mm/min; with G43.5 I J K are the tool axis.
         self._tables = {
-            (plain, vectors): letters(
+            (plain, vectors): letter_table(
                 names,
                 gaps=True,
                 pointed="" if calculator else pointed + "IJK" + ("" if plain else "F"),
@@ -44,20 +50,20 @@ class FanucControl(Rs274Control):
         self.preset = np.zeros(3)
         self.local = np.zeros(3)
         #: G68 as one frame.
-        self.rotation = Frame()
+        self.rotation = AffineMap()
         #: G43.5: words I J K of lines are vectors.
         self.vectors = False
         #: In one table or in one head the axis that carries the other; on mixed machines that of the table.
-        self.deciding = 1 if all(machine.axes[k].carries is Carries.PART for k in machine.rotary) else 0
+        self.deciding_axis = 1 if all(machine.axes[k].mount is Mount.PART for k in machine.rotary) else 0
 
-    def shorter(self, axis: Axis) -> bool:
+    def takes_shortest_path(self, axis: Axis) -> bool:
         """Always, as axes roll over that are set to; but for axes whose values are written as they wind."""
-        return axis.output is not Output.NONE
+        return axis.output is not AngleOutput.NONE
 
     @property
     def plain_table(self) -> Codes:
         """What bytes mean to the scan kernel now."""
-        plain = self.feed_mode.now in (93, 94) and self.lengths == 1.0
+        plain = self.feed_mode.current in (93, 94) and self.length_unit == 1.0
         return self._tables[plain, self.vectors]
 
     # Frames
@@ -79,17 +85,17 @@ class FanucControl(Rs274Control):
     def refresh(self) -> None:
         """Let offsets and rotations count as they are now; the axes stand still."""
         shift = self.offset_of(self.system) - self.zero + self.preset + self.local
-        base = Frame(np.eye(3), shift)
+        base = AffineMap(np.eye(3), shift)
         if self.tilted:
             # The plane stands in the work offset that held when it was taken.
-            self.set_program_frame(self.rotation, old=False)
+            self.set_program_frame(self.rotation, keep_base=False)
         else:
-            self.set_program_frame(base.then(self.rotation), old=False)
+            self.set_program_frame(base.compose(self.rotation), keep_base=False)
 
     def rotate(self, centre: Floats, direction: Floats, angle: float) -> None:
         """G68: turn about an axis through a point (both (3,), programmed), on top of a G68 in force."""
         linear = _about(direction, angle)
-        self.rotation = self.rotation.then(Frame(linear, centre - linear @ centre))
+        self.rotation = self.rotation.compose(AffineMap(linear, centre - linear @ centre))
         self.refresh()
 
     def tilt(self, origin: Floats, euler: tuple[float, float, float]) -> None:
@@ -97,18 +103,18 @@ class FanucControl(Rs274Control):
         if self.tilted:
             self.note("G68.2 while a plane is tilted: the old one is given up", Severity.WARNING)
         first, second, third = euler
-        linear = turn(2, first) @ turn(0, second) @ turn(2, third)
+        linear = rotation_matrix(2, first) @ rotation_matrix(0, second) @ rotation_matrix(2, third)
         shift = self.offset_of(self.system) - self.zero + self.preset + self.local
-        self.rotation = Frame()
-        self.set_plane(Frame(linear, shift + origin))
-        self.event("tilt", "G68.2")
+        self.rotation = AffineMap()
+        self.set_plane(AffineMap(linear, shift + origin))
+        self.add_event("tilt", "G68.2")
 
     def upright(self) -> None:
         """G69: no rotation and no plane."""
-        self.rotation = Frame()
+        self.rotation = AffineMap()
         if self.tilted:
             self.set_plane(None)
-            self.event("tilt", "")
+            self.add_event("tilt", "")
         self.refresh()
 
     def stand_on_plane(self) -> None:
@@ -116,30 +122,35 @@ class FanucControl(Rs274Control):
         if not self.tilted:
             self.note("G53.1 without a plane of G68.2: it is not executed", Severity.ERROR)
             return
-        self.settle()
-        pairs = tilt.solutions(self.machine, self.frame.linear[:, 2], self.held)
-        inside = [tilt.turned_inside(self.machine, pair, self.held) for pair in pairs if tilt.fits(self.machine, pair)]
+        self.resolve_rows()
+        pairs = tool_orientation.solutions(self.machine, self.frame.linear[:, 2], self.current_joints)
+        inside = [
+            tool_orientation.turned_inside(self.machine, pair, self.current_joints)
+            for pair in pairs
+            if tool_orientation.fits(self.machine, pair)
+        ]
         if not inside:
             self.note("G53.1: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return
-        held, first = self.held[list(self.machine.rotary)], self.deciding
+        held, first = self.current_joints[list(self.machine.rotary)], self.deciding_axis
         ways = [np.round(np.abs(np.array(pair) - held), 6).tolist() for pair in inside]
         _, best = min(zip(ways, inside, strict=True), key=lambda item: (item[0][first], item[0][1 - first]))
-        bits = int(Written.FIRST | Written.SECOND)
-        self.event("tilt", "G53.1")
-        self.move_axes(Kind.RAPID, self.held[self._slides].copy(), list(best), PLAIN, bits)
+        bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND)
+        self.add_event("tilt", "G53.1")
+        self.move_axes(Kind.RAPID, self.current_joints[self._slides].copy(), list(best), PLAIN, bits)
 
     # Positions of the machine
 
     def slides_now(self) -> Floats:
         """(3,) where the slides X, Y and Z stand."""
-        self.settle()
-        return np.asarray(self.held[self._slides])
+        self.resolve_rows()
+        return np.asarray(self.current_joints[self._slides])
 
     def go_to_machine(self, goal: dict[str, float]) -> None:
         """Go to positions of axes, mm and degrees, at rapid."""
-        axes: dict[str, Word] = {
-            name: (value / self.lengths if name in "XYZ" else value, How.ABSOLUTE) for name, value in goal.items()
+        axes: dict[str, AxisWord] = {
+            name: (value / self.length_unit if name in "XYZ" else value, PositionMode.ABSOLUTE)
+            for name, value in goal.items()
         }
         self.move(axes, None, machine_frame=True)
 
@@ -148,5 +159,5 @@ def _about(direction: Floats, angle: float) -> Floats:
     """(3, 3): exact about X, Y and Z."""
     axis = int(np.argmax(np.abs(direction)))
     if abs(abs(direction[axis]) - 1.0) < 1e-12:
-        return turn(axis, float(np.sign(direction[axis])) * angle)
-    return about(direction, angle)
+        return rotation_matrix(axis, float(np.sign(direction[axis])) * angle)
+    return rotation_about(direction, angle)

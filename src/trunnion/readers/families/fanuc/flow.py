@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.errors import Severity
-from trunnion.readers.common.rows import Note
+from trunnion.readers.common.row_recorder import Note
 from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.rs274 import interpreter
 from trunnion.readers.rs274.block import Block
-from trunnion.readers.rs274.expressions import BlockError, Reader
+from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
 
 _WORD = re.compile(r"IF|GOTO|WHILE|DO|END(?=[0-9#\[])")
 
@@ -19,7 +19,7 @@ _HIGHEST: Final = 10**9
 
 
 @dataclass(slots=True)
-class Activation(interpreter.Activation):
+class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram being executed.
 
     line    where it began, for repetitions
@@ -51,7 +51,7 @@ class Flow:
         self._note = note
         self._variables = variables
 
-    def takes(self, call: Activation, line: int, reader: Reader) -> bool:
+    def accept(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> bool:
         """Execute a word of flow if one comes next."""
         match = _WORD.match(reader.text, reader.at)
         if match is None:
@@ -64,7 +64,7 @@ class Flow:
             raise BlockError(f"something stands behind {match.group()}: {reader.rest!r}")
         return True
 
-    def _holds(self, reader: Reader) -> bool:
+    def _holds(self, reader: ExpressionReader) -> bool:
         """Return a condition; one that cannot be worked out does not hold."""
         begin = reader.at
         try:
@@ -74,9 +74,9 @@ class Flow:
             reader.at = _behind_bracket(reader.text, begin)
             return False
 
-    def _if(self, call: Activation, line: int, reader: Reader) -> None:
+    def _if(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         holds = self._holds(reader)
-        if reader.takes("GOTO"):
+        if reader.accept("GOTO"):
             if holds:
                 self._goto(call, line, reader)
             reader.at = len(reader.text)
@@ -89,18 +89,18 @@ class Flow:
         key = reader.key()
         self._variables.set(key, reader.assigned())
 
-    def _goto(self, call: Activation, line: int, reader: Reader) -> None:
+    def _goto(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         self.jump(call, line, _whole(reader.real()[0]))
 
     @staticmethod
-    def jump(call: Activation, line: int, number: int) -> None:
+    def jump(call: ActiveProgram, line: int, number: int) -> None:
         """Go on at a block number."""
         target = call.text.number(number, line)
         if target is None:
             raise BlockError(f"there is no block N{number} to go to")
         call.text.jump(target)
 
-    def _while(self, call: Activation, line: int, reader: Reader) -> None:
+    def _while(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         holds = self._holds(reader)
         reader.expect("DO")
         _whole(reader.real()[0])
@@ -108,11 +108,11 @@ class Flow:
         if not holds:
             call.text.jump(end + 1)
 
-    def _do(self, call: Activation, line: int, reader: Reader) -> None:
+    def _do(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         _whole(reader.real()[0])
         call.text.partner(line)
 
-    def _end(self, call: Activation, line: int, reader: Reader) -> None:
+    def _end(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         _whole(reader.real()[0])
         call.text.jump(call.text.partner(line))
 

@@ -8,18 +8,18 @@ import numpy as np
 
 from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
-from trunnion.machines import Carries, Machine
+from trunnion.machines import Machine, Mount
 from trunnion.model.run import Orientation
-from trunnion.readers.common.drilling import CycleError, Step
-from trunnion.readers.common.interpreter import STEPS, End
-from trunnion.readers.common.rows import FARTHEST
-from trunnion.readers.common.text import Text
+from trunnion.readers.common.axis_word import AxisWord, PositionMode
+from trunnion.readers.common.hole_motion import CycleExecutionError, HoleMotion
+from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, ProgramEnd
+from trunnion.readers.common.row_recorder import LARGEST_POSITION
+from trunnion.readers.common.source_text import SourceText
 from trunnion.readers.common.virtual_control import RAPID
-from trunnion.readers.common.word import How, Word
 from trunnion.readers.families.fanuc import cycles, words
 from trunnion.readers.families.fanuc.control import FanucControl
-from trunnion.readers.families.fanuc.flow import Activation, assign
-from trunnion.readers.families.fanuc.offsets_and_frames import PlaceInterpreter
+from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
+from trunnion.readers.families.fanuc.offsets_and_frames import OffsetInterpreter
 from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import ARITHMETIC
 from trunnion.readers.rs274.block import Block, block_reader, read_block
@@ -30,10 +30,10 @@ from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
 _MOST_HOLES: Final = 10_000
 
 
-class FanucInterpreter(PlaceInterpreter):
+class FanucInterpreter(OffsetInterpreter):
     """Runs one Fanuc program on one machine."""
 
-    text_type = FanucText
+    source_type = FanucText
 
     def __init__(
         self,
@@ -41,7 +41,7 @@ class FanucInterpreter(PlaceInterpreter):
         machine: Machine,
         *,
         subprograms: Sequence[Path] = (),
-        step_limit: int = STEPS,
+        step_limit: int = DEFAULT_STEP_LIMIT,
         skip: bool = False,
         shortest: bool | None = None,
     ) -> None:
@@ -51,7 +51,7 @@ class FanucInterpreter(PlaceInterpreter):
         )
         self._to_initial = True
         self._initial: float | None = None
-        self._sticky: dict[str, float] = {}
+        self._modal_words: dict[str, float] = {}
         self._length_number = -1
 
     @property
@@ -63,40 +63,40 @@ class FanucInterpreter(PlaceInterpreter):
     def _table(self) -> Codes:
         return self._control.plain_table
 
-    def _first(self, text: Text) -> Activation:
+    def _first(self, text: SourceText) -> ActiveProgram:
         assert isinstance(text, FanucText)
-        return Activation(text, 0)
+        return ActiveProgram(text, 0)
 
-    def _may_be_plain(self, text: Text) -> bool:
+    def _may_be_plain(self, text: SourceText) -> bool:
         return self._stack[-1].modal is None and super()._may_be_plain(text)
 
     def _system(self, key: int) -> float | None:
         control = self._control
-        axes = {0: "X", 1: "Y", 2: "Z", **{3 + k: name for k, name in enumerate(control.names)}}
+        axes = {0: "X", 1: "Y", 2: "Z", **{3 + k: name for k, name in enumerate(control.rotary_names)}}
         if 5001 <= key <= 5005 or 5041 <= key <= 5045:
             axis = (key - 1) % 20
             if axis < 3:
-                return float(control.place[axis]) / control.lengths
-            control.settle()
-            return float(control.held[control.machine.column(axes[axis])])
+                return float(control.commanded[axis]) / control.length_unit
+            control.resolve_rows()
+            return float(control.current_joints[control.machine.column(axes[axis])])
         if 5021 <= key <= 5025:
-            control.settle()
-            value = float(control.held[control.machine.column(axes[key - 5021])])
-            return value / control.lengths if key <= 5023 else value
+            control.resolve_rows()
+            value = float(control.current_joints[control.machine.column(axes[key - 5021])])
+            return value / control.length_unit if key <= 5023 else value
         return None
 
     # Blocks
 
-    def _text(self, call: Activation, line: int, text: str) -> None:
+    def _text(self, call: ActiveProgram, line: int, text: str) -> None:
         if text[0] in "O:":
             self._program_number(call, line, text)
             return
         reader = block_reader(text, ARITHMETIC, self._variables)
-        if self._flow.takes(call, line, reader):
+        if self._flow.accept(call, line, reader):
             return
         self._carry_out(call, line, read_block(reader, self._twice))
 
-    def _program_number(self, call: Activation, line: int, text: str) -> None:
+    def _program_number(self, call: ActiveProgram, line: int, text: str) -> None:
         """An O number begins a program; where another one runs into it, that one has ended."""
         digits = text[1:]
         if not digits.isdigit() or len(digits) > 8:
@@ -106,12 +106,12 @@ class FanucInterpreter(PlaceInterpreter):
             self._end_of_file(call)
         call.begun = True
 
-    def _end_of_file(self, call: Activation) -> None:
+    def _end_of_file(self, call: ActiveProgram) -> None:
         if len(self._stack) < 2:
-            raise End
+            raise ProgramEnd
         self._leave()
 
-    def _carry_out(self, call: Activation, line: int, block: Block) -> None:
+    def _carry_out(self, call: ActiveProgram, line: int, block: Block) -> None:
         control = self._control
         if words.MACRO in block.g or words.MODAL_MACRO in block.g:
             self._macro(call, block)
@@ -122,13 +122,15 @@ class FanucInterpreter(PlaceInterpreter):
                 self._modal(code)
         tilts = words.TILT in block.g
         if words.DWELL not in block.g:
-            self._settings.scale(block, control.feed_mode.now, control.lengths != 1.0, angles="IJKR" if tilts else "")
+            self._settings.scale(
+                block, control.feed_mode.current, control.length_unit != 1.0, angles="IJKR" if tilts else ""
+            )
         self._feed_and_speed(block)
         tool = block.take("T")
         if tool is not None:
-            control.choose(f"{tool:g}")
+            control.select_tool(f"{tool:g}")
         for code in block.m:
-            if code not in words.LATE:
+            if code not in words.AFTER_MOTION:
                 self._m_word(code)
         special, machine_frame = self._codes(block)
         number = block.take("H")
@@ -137,14 +139,14 @@ class FanucInterpreter(PlaceInterpreter):
         # The control keeps H after G49, but no length is in force.
         control.edge.set(control.row, self._length_number if control.lengthened else -1)
         block.take("D")
-        if special in words.TAKES_AXES:
+        if special in words.TAKING_AXIS_WORDS:
             self._special(special, block)
         elif not any(code in words.NO_MOTION for code in block.g):
             self._drive(call, block, machine_frame)
         if words.TOOL_UPRIGHT in block.g:
             self._stand(block)
         assign(self._variables, block)
-        late = [code for code in block.m if code in words.LATE]
+        late = [code for code in block.m if code in words.AFTER_MOTION]
         for code in late:
             self._late(call, line, code, block)
         self._name_unused(block)
@@ -154,7 +156,7 @@ class FanucInterpreter(PlaceInterpreter):
         special = -1
         machine_frame = False
         for code in block.g:
-            if code in words.TAKES_AXES:
+            if code in words.TAKING_AXIS_WORDS:
                 if special >= 0:
                     raise BlockError("two G words want the words of the block")
                 special = code
@@ -171,8 +173,8 @@ class FanucInterpreter(PlaceInterpreter):
         control = self._control
         if code in cycles.CYCLES:
             if self._initial is None:
-                self._initial = float(control.place[control.plane])
-                self._sticky = {}
+                self._initial = float(control.commanded[control.plane_axis])
+                self._modal_words = {}
             self.motion = code
             return
         self._initial = None
@@ -182,7 +184,7 @@ class FanucInterpreter(PlaceInterpreter):
 
     def _g(self, code: int, block: Block) -> None:
         control = self._control
-        for letter in words.WORDS.get(code, ""):
+        for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in words.OFFSETS or code == words.MORE_OFFSETS:
             self._offset(code, block)
@@ -201,14 +203,14 @@ class FanucInterpreter(PlaceInterpreter):
             self._to_initial = code == 980
         elif code == words.MODAL_MACRO_OFF:
             self._stack[-1].modal = None
-        elif code in words.LINES:
-            self._name_code(code, words.NAMED, words.SILENT)
+        elif code in words.TAKEN_AS_LINES:
+            self._name_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
             self._begin(10)
         elif code == 960:
             control.feed_mode.set(control.row, 95)
-            self._name_code(code, words.NAMED, words.SILENT)
+            self._name_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
         elif code != words.TOOL_UPRIGHT and not self._modal(code):
-            self._name_code(code, words.NAMED, words.SILENT)
+            self._name_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
 
     def _tcp(self, code: int, block: Block) -> None:
         """G43.4 and G43.5; P says how the tool axis moves from block to block."""
@@ -231,13 +233,13 @@ class FanucInterpreter(PlaceInterpreter):
     def _in_head(self) -> bool:
         """Whether both rotary axes turn the tool."""
         machine = self._control.machine
-        return all(machine.axes[column].carries is Carries.TOOL for column in machine.rotary)
+        return all(machine.axes[column].mount is Mount.TOOL for column in machine.rotary)
 
     def _m_word(self, code: int) -> None:
         if not self._m(code):
-            self._control.event("m", float(code))
+            self._control.add_event("m", float(code))
 
-    def _late(self, call: Activation, line: int, code: int, block: Block) -> None:
+    def _late(self, call: ActiveProgram, line: int, code: int, block: Block) -> None:
         if code == words.CALL:
             self._call(block)
         elif code == words.RETURN:
@@ -251,7 +253,7 @@ class FanucInterpreter(PlaceInterpreter):
 
     # Motion
 
-    def _drive(self, call: Activation, block: Block, machine_frame: bool) -> None:
+    def _drive(self, call: ActiveProgram, block: Block, machine_frame: bool) -> None:
         """Make the motion that the words of the block ask for."""
         control = self._control
         axes = self._axis_words(block)
@@ -270,7 +272,7 @@ class FanucInterpreter(PlaceInterpreter):
             control.kind = MOTIONS[self.motion]
             self._check_feed("F" in block.words)
             control.move(
-                {name: (word[0], How.ABSOLUTE) for name, word in axes.items()},
+                {name: (word[0], PositionMode.ABSOLUTE) for name, word in axes.items()},
                 None,
                 machine_frame=True,
                 feed_written="F" in block.words,
@@ -292,35 +294,37 @@ class FanucInterpreter(PlaceInterpreter):
         if all(value is None for value in values):
             return None
         vector = np.array([value or 0.0 for value in values])
-        if not 1e-12 < float(np.linalg.norm(vector)) < FARTHEST:
+        if not 1e-12 < float(np.linalg.norm(vector)) < LARGEST_POSITION:
             raise BlockError("the tool axis has no direction")
         return vector
 
     # Cycles
 
-    def _cycle(self, block: Block, axes: dict[str, Word]) -> None:
+    def _cycle(self, block: Block, axes: dict[str, AxisWord]) -> None:
         """Drill at the position of a block."""
         control = self._control
-        along = "XYZ"[control.plane]
+        along = "XYZ"[control.plane_axis]
         given = {
-            letter: value for letter in cycles.STICKY if letter != "Z" and (value := block.take(letter)) is not None
+            letter: value
+            for letter in cycles.MODAL_WORDS
+            if letter != "Z" and (value := block.take(letter)) is not None
         }
         if along in axes:
             given["Z"] = axes[along][0]
-        self._sticky |= given
+        self._modal_words |= given
         repeats = block.take("K")
         block.take("L")
         if not axes and not ({"R", "Z"} & given.keys()):
             return
         if set(axes) - set("XYZ"):
             self._note("rotary words in a cycle: they are not executed", Severity.ERROR)
-        missing = [letter for letter in "ZR" + "Q" * (self.motion in cycles.NEED_Q) if letter not in self._sticky]
+        missing = [letter for letter in "ZR" + "Q" * (self.motion in cycles.NEED_Q) if letter not in self._modal_words]
         if missing:
             raise BlockError(f"the cycle has no {missing[0]}")
         times = 1 if repeats is None else int(repeats)
         if not 0 <= times <= _MOST_HOLES:
             raise BlockError("K of a cycle is how often it drills")
-        if not control.place[3] > 0.0:
+        if not control.commanded[3] > 0.0:
             self._note("a cycle without a feed", Severity.ERROR)
         made = self._motions(self._hole())
         plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
@@ -334,8 +338,8 @@ class FanucInterpreter(PlaceInterpreter):
 
     def _hole(self) -> cycles.Hole:
         control = self._control
-        scale = control.lengths
-        now = self._sticky
+        scale = control.length_unit
+        now = self._modal_words
         assert self._initial is not None
         initial = self._initial / scale
         retract, bottom = now["R"], now["Z"]
@@ -343,13 +347,20 @@ class FanucInterpreter(PlaceInterpreter):
             retract += initial
             bottom += retract
         stroke = abs(now.get("Q", 0.0))
-        aside = (now["I"], now.get("J", 0.0)) if "I" in now else (0.0, now["J"]) if "J" in now else (stroke, 0.0)
+        lateral = (now["I"], now.get("J", 0.0)) if "I" in now else (0.0, now["J"]) if "J" in now else (stroke, 0.0)
         return cycles.Hole(
-            retract, bottom, initial, self._to_initial, stroke, aside, max(now.get("P", 0.0), 0.0) / 1000.0, 1.0 / scale
+            retract,
+            bottom,
+            initial,
+            self._to_initial,
+            stroke,
+            lateral,
+            max(now.get("P", 0.0), 0.0) / 1000.0,
+            1.0 / scale,
         )
 
-    def _motions(self, hole: cycles.Hole) -> list[Step]:
+    def _motions(self, hole: cycles.Hole) -> list[HoleMotion]:
         try:
-            return cycles.steps(self.motion, hole)
-        except CycleError as error:
+            return cycles.cycle_motions(self.motion, hole)
+        except CycleExecutionError as error:
             raise BlockError(f"the cycle {error}") from None

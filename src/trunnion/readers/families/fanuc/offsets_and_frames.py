@@ -6,9 +6,9 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.readers.common.rows import FARTHEST
+from trunnion.readers.common.axis_word import AxisWord
+from trunnion.readers.common.row_recorder import LARGEST_POSITION
 from trunnion.readers.common.virtual_control import RAPID
-from trunnion.readers.common.word import Word
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.calls import CallInterpreter
 from trunnion.readers.families.fanuc.control import FanucControl
@@ -16,7 +16,7 @@ from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
 
 
-class PlaceInterpreter(CallInterpreter):
+class OffsetInterpreter(CallInterpreter):
     """Blocks whose words are no motion to where they say; motions are for the class below."""
 
     @property
@@ -59,8 +59,8 @@ class PlaceInterpreter(CallInterpreter):
             case words.PRESET:
                 for axis, value in enumerate(self._point(block)):
                     if value is not None:
-                        control.preset[axis] += float(control.place[axis]) - value
-                if control.tilted or not control.rotation.rigid or self._turned():
+                        control.preset[axis] += float(control.commanded[axis]) - value
+                if control.tilted or not control.rotation.keeps_lengths or self._turned():
                     self._note("G92 in a turned frame is not simulated", Severity.ERROR)
                 control.refresh()
             case words.ROTATE:
@@ -78,20 +78,20 @@ class PlaceInterpreter(CallInterpreter):
             block.take(letter)
         milliseconds = block.take("P")
         if number is not None:
-            self.control.event("dwell", number.value * (self._settings.seconds if number.whole else 1.0))
+            self.control.add_event("dwell", number.value * (self._settings.seconds if number.whole else 1.0))
         elif milliseconds is not None:
-            self.control.event("dwell", milliseconds / 1000.0)
+            self.control.add_event("dwell", milliseconds / 1000.0)
         else:
             self._note("G4 without a time", Severity.WARNING)
 
     def _point(self, block: Block) -> list[float | None]:
         """X, Y and Z of a block in mm; words of rotary axes must be 0 where they would shift."""
-        for name in self.control.names:
+        for name in self.control.rotary_names:
             if block.take(name):
                 self._note(f"a shift of {name} is not simulated", Severity.ERROR)
         values = [block.take(name) for name in "XYZ"]
-        scaled = [None if value is None else value * self.control.lengths for value in values]
-        if any(value is not None and abs(value) > FARTHEST for value in scaled):
+        scaled = [None if value is None else value * self.control.length_unit for value in values]
+        if any(value is not None and abs(value) > LARGEST_POSITION for value in scaled):
             raise BlockError("a shift is larger than any machine")
         return scaled
 
@@ -128,19 +128,19 @@ class PlaceInterpreter(CallInterpreter):
             self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING)
         self._count(1)
         kind, control.kind = control.kind, RAPID
-        before = control.place[:3].copy()
+        before = control.commanded[:3].copy()
         moving = {name: word for name, word in axes.items() if not (not control.absolute and word[0] == 0.0)}
         if moving and (set(moving) - set("XYZ") or not np.array_equal(before, self._goal(moving))):
             control.move(moving, None)
         control.go_to_machine({name: float(control.machine.axis(name).home) for name in axes})
         control.kind = kind
 
-    def _goal(self, axes: dict[str, Word]) -> Floats:
+    def _goal(self, axes: dict[str, AxisWord]) -> Floats:
         control = self.control
-        goal = control.place[:3].copy()
+        goal = control.commanded[:3].copy()
         for axis, name in enumerate("XYZ"):
             if name in axes:
-                value = axes[name][0] * control.lengths
+                value = axes[name][0] * control.length_unit
                 goal[axis] = value if control.absolute else goal[axis] + value
         return np.asarray(goal)
 
@@ -150,16 +150,16 @@ class PlaceInterpreter(CallInterpreter):
         angle = block.take("R")
         point = self._point(block)
         centre = np.array(
-            [now if value is None else value for now, value in zip(control.place[:3], point, strict=True)]
+            [now if value is None else value for now, value in zip(control.commanded[:3], point, strict=True)]
         )
         direction = [block.take(letter) for letter in "IJK"]
         axis = np.zeros(3)
         if any(value is not None for value in direction):
             axis[:] = [value or 0.0 for value in direction]
         else:
-            axis[control.plane] = 1.0
+            axis[control.plane_axis] = 1.0
         length = float(np.linalg.norm(axis))
-        if angle is None or not 1e-12 < length < FARTHEST or not abs(angle) < FARTHEST:
+        if angle is None or not 1e-12 < length < LARGEST_POSITION or not abs(angle) < LARGEST_POSITION:
             raise BlockError("G68 needs an angle R, and an axis that has a direction")
         control.rotate(centre, axis / length, angle)
 
@@ -173,7 +173,7 @@ class PlaceInterpreter(CallInterpreter):
         order = block.take("Q")
         if way or (order is not None and order != 313):
             raise BlockError("G68.2 with P or Q is not simulated: only Euler angles are")
-        if any(not abs(angle) < FARTHEST for angle in angles):
+        if any(not abs(angle) < LARGEST_POSITION for angle in angles):
             raise BlockError("an angle is none that a plane has")
         control.tilt(origin, (angles[0], angles[1], angles[2]))
 

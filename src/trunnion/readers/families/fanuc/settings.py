@@ -71,6 +71,6 @@ def settings_of(machine: Machine) -> Settings:
     table = reading_of(machine)
     numbers = table.text("whole_numbers", "increments", one_of=("increments", "calculator"))
     increment = table.number("least_increment_mm", 0.001, above=0.0)
-    table.finish()
-    table.check()
+    table.report_unread_keys()
+    table.raise_problems()
     return Settings(numbers == "calculator", increment)

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.readers.common.text import Text
+from trunnion.readers.common.source_text import SourceText
 
 #: How names of programs end.
 SUFFIXES: Final = (".NC", ".CNC", ".TAP", ".PRG", ".TXT", "")
 
 #: How deep loops may stand inside each other; the control itself has 3 levels.
-DEEPEST: Final = 64
+MAX_NESTING: Final = 64
 
 _START: Final = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?"
 _O_NUMBER = re.compile(rb"^[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9])", re.IGNORECASE | re.MULTILINE)
@@ -32,11 +32,11 @@ class _Places:
     loops: dict[int, int] | None = None
 
 
-class FanucText(Text):
+class FanucText(SourceText):
     """A program file with the places where its jumps lead."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        # Shared by all that run the same text: see ``again``.
+        # Shared by all that run the same text: see ``restarted``.
         self._places = _Places()
         super().__init__(path, whole=whole)
 
@@ -86,8 +86,8 @@ class FanucText(Text):
             number = int(match.group(2))
             if match.group(1).upper() == b"DO":
                 open_.append((number, line))
-                if len(open_) > DEEPEST:
-                    raise self.problem(line, f"nests loops deeper than {DEEPEST} levels")
+                if len(open_) > MAX_NESTING:
+                    raise self.problem(line, f"nests loops deeper than {MAX_NESTING} levels")
             elif not open_ or open_[-1][0] != number:
                 raise self.problem(line, f"has END{number} without its DO{number}")
             else:

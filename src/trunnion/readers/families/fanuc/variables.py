@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Final
 
-from trunnion.readers.rs274.expressions import COMMON, Arithmetic, BlockError, Value, half_away
+from trunnion.readers.rs274.expressions import COMMON, Arithmetic, BlockError, Value, round_half_away
 
 #: Local variables of a macro, common ones, and the first that the control itself sets.
 LOCAL: Final = 33
@@ -76,7 +76,7 @@ ARITHMETIC: Final = Arithmetic(
     functions={
         **COMMON,
         "SQR": math.sqrt,
-        "RND": half_away,
+        "RND": round_half_away,
         "FIX": math.trunc,
         "FUP": lambda a: math.copysign(math.ceil(abs(a)), a),
     },

@@ -25,15 +25,17 @@ TCP_VECTOR: Final = 435
 LENGTH_OFF: Final = 490
 
 #: Codes that use the axis words of their block, which then makes no other motion.
-TAKES_AXES: Final = frozenset({DWELL, SET_DATA, HOME, OTHER_HOME, LOCAL, MACRO, MODAL_MACRO, ROTATE, TILT, PRESET})
+TAKING_AXIS_WORDS: Final = frozenset(
+    {DWELL, SET_DATA, HOME, OTHER_HOME, LOCAL, MACRO, MODAL_MACRO, ROTATE, TILT, PRESET}
+)
 
 #: G codes that change how the control drives, or what is not there: tool lengths are 0.
-SILENT: Final = frozenset(
+WITHOUT_PATH_EFFECT: Final = frozenset(
     {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 500, 501, 600, 610, 620, 630, 640, 970}
 )
 
 #: G codes that are known and not simulated: text, and whether the path is wrong without it.
-NAMED: Final = {
+NOT_SIMULATED: Final = {
     53: ("not simulated", False),
     61: ("a smooth curve is not simulated", True),
     62: ("NURBS are not simulated", True),
@@ -66,13 +68,13 @@ NAMED: Final = {
 }
 
 #: G codes whose motion is a straight line here, in force until another one.
-LINES: Final = frozenset({310, 330})
+TAKEN_AS_LINES: Final = frozenset({310, 330})
 
 #: G codes whose block makes no motion here, and whose words are not positions.
 NO_MOTION: Final = frozenset({50, 51, 53, 61, 62, 80, 220, 270, 290, 501, 510, 511, 536, 661, 683, 684, 921})
 
 #: Words that belong to a code, and that need no look here.
-WORDS: Final = {
+WORDS_OF_CODE: Final = {
     50: "P",
     51: "QRXYZABC",
     53: "P",
@@ -110,7 +112,7 @@ WORDS: Final = {
 }
 
 #: M codes that act after the motion of their block.
-LATE: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198})
+AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198})
 
 CALL: Final = 98
 RETURN: Final = 99

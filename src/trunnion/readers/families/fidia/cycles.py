@@ -6,19 +6,19 @@ positions along Z, in the units of the program.
 
 from typing import Final
 
-from trunnion.readers.common.drilling import MOST_PECKS, CycleError, Step
+from trunnion.readers.common.hole_motion import MAX_PECKS, CycleExecutionError, HoleMotion
 
 #: Canned cycles, by their G code in tenths.
 CYCLES: Final = frozenset({810, 820, 830, 840, 850, 860, 890})
 
 #: Words of cycles that hold until they end.
-STICKY: Final = "ZERDH"
+MODAL_WORDS: Final = "ZERDH"
 
 #: How far above the last depth G83 goes back at rapid, mm (unconfirmed).
 ABOVE: Final = 1.0
 
 
-def steps(code: int, words: dict[str, float], units: float) -> list[Step]:
+def cycle_motions(code: int, words: dict[str, float], units: float) -> list[HoleMotion]:
     """Return the motions of a cycle from the height of positioning on and back to it.
 
     words   Z, E and R at least
@@ -26,10 +26,10 @@ def steps(code: int, words: dict[str, float], units: float) -> list[Step]:
     """
     height, start, depth = words["Z"], words["R"], words["E"]
     if not height >= start > depth:
-        raise CycleError("does not go down from Z by R to E")
+        raise CycleExecutionError("does not go down from Z by R to E")
     dwell = max(words.get("H", 0.0), 0.0)
-    down = [Step(True, start)] if start != height else []
-    into = Step(False, depth, dwell=dwell)
+    down = [HoleMotion(True, start)] if start != height else []
+    into = HoleMotion(False, depth, dwell=dwell)
     match code:
         case 810 | 820 | 860:
             made = [into]
@@ -37,23 +37,23 @@ def steps(code: int, words: dict[str, float], units: float) -> list[Step]:
             made = _peck(start, depth, words.get("D", 0.0), dwell, units)
         case _:
             assert code in (840, 850, 890)
-            made = [into, Step(False, start)]
-    back = [Step(True, height)] if code not in (840, 850, 890) or start != height else []
+            made = [into, HoleMotion(False, start)]
+    back = [HoleMotion(True, height)] if code not in (840, 850, 890) or start != height else []
     return [*down, *made, *back]
 
 
-def _peck(start: float, depth: float, stroke: float, dwell: float, units: float) -> list[Step]:
+def _peck(start: float, depth: float, stroke: float, dwell: float, units: float) -> list[HoleMotion]:
     if stroke <= 0.0:
-        raise CycleError("has a D that is not above 0")
+        raise CycleExecutionError("has a D that is not above 0")
     total = start - depth
-    if total / stroke > MOST_PECKS:
-        raise CycleError(f"would peck more than {MOST_PECKS} times")
-    made: list[Step] = []
+    if total / stroke > MAX_PECKS:
+        raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
+    made: list[HoleMotion] = []
     reached = stroke
     while reached < total - 1e-9:
-        made.append(Step(False, start - reached, dwell=dwell))
-        made.append(Step(True, start))
+        made.append(HoleMotion(False, start - reached, dwell=dwell))
+        made.append(HoleMotion(True, start))
         if reached > ABOVE * units:
-            made.append(Step(True, start - reached + ABOVE * units))
+            made.append(HoleMotion(True, start - reached + ABOVE * units))
         reached += stroke
-    return [*made, Step(False, depth, dwell=dwell)]
+    return [*made, HoleMotion(False, depth, dwell=dwell)]

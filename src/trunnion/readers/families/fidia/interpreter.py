@@ -8,16 +8,16 @@ from typing import Final
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common.drilling import CycleError, Step
-from trunnion.readers.common.interpreter import STEPS
-from trunnion.readers.common.text import Subprograms, Text
+from trunnion.readers.common.axis_word import AxisWord
+from trunnion.readers.common.hole_motion import CycleExecutionError, HoleMotion
+from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT
+from trunnion.readers.common.source_text import SourceText, Subprograms
 from trunnion.readers.common.virtual_control import RAPID
-from trunnion.readers.common.word import Word
 from trunnion.readers.families.fidia import cycles, words
 from trunnion.readers.families.fidia.control import FidiaControl
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Value
-from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, Activation, Rs274Interpreter
+from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, ActiveProgram, Rs274Interpreter
 
 #: A tool's number may stand behind a point: T.1.
 _TOOL = re.compile(r"T\.?([0-9]{1,9})")
@@ -43,7 +43,7 @@ def _no_operation(name: str, a: float, b: float) -> float:
 _ARITHMETIC: Final = Arithmetic(levels=(), operate=_no_operation, functions={}, pairs={})
 
 
-class FidiaInterpreter(Rs274Interpreter[Activation]):
+class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
     """Runs one Fidia program on one machine."""
 
     def __init__(
@@ -52,13 +52,13 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
         machine: Machine,
         *,
         subprograms: Sequence[Path] = (),
-        step_limit: int = STEPS,
+        step_limit: int = DEFAULT_STEP_LIMIT,
         skip: bool = False,
         shortest: bool | None = None,
     ) -> None:
         super().__init__(path, machine, Subprograms(subprograms, ()), step_limit=step_limit, skip=skip)
         self._control = FidiaControl(machine, self._note, self._file, shortest=shortest)
-        self._sticky: dict[str, float] = {}
+        self._modal_words: dict[str, float] = {}
 
     @property
     def control(self) -> FidiaControl:
@@ -69,15 +69,15 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
     def _table(self) -> Codes:
         return self._control.plain_table
 
-    def _first(self, text: Text) -> Activation:
-        return Activation(text, 0)
+    def _first(self, text: SourceText) -> ActiveProgram:
+        return ActiveProgram(text, 0)
 
-    def _may_be_plain(self, text: Text) -> bool:
+    def _may_be_plain(self, text: SourceText) -> bool:
         # In a plane without TCP, rotary words leave the slides where they are.
         control = self._control
         return (control.tcp or not control.tilted) and super()._may_be_plain(text)
 
-    def _text(self, call: Activation, line: int, text: str) -> None:
+    def _text(self, call: ActiveProgram, line: int, text: str) -> None:
         tool = _TOOL.search(text)
         if tool is not None:
             text = text[: tool.start()] + text[tool.end() :]
@@ -101,9 +101,9 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
             self._dwell(block)
         self._feed_and_speed(block)
         if tool is not None:
-            control.choose(tool)
+            control.select_tool(tool)
         for code in block.m:
-            if code not in words.LATE:
+            if code not in words.AFTER_MOTION:
                 self._m_word(code)
         if tool is not None and words.TOOL not in block.m and 6 not in block.m:
             self._note(f"T{tool} without M306 or M6: the tool is only chosen", Severity.WARNING)
@@ -111,7 +111,7 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
             self._drive(block, machine_frame, begun)
         self._name_unused(block)
         for code in block.m:
-            if code in words.LATE:
+            if code in words.AFTER_MOTION:
                 self._m_word(code)
 
     def _begin(self, code: int) -> None:
@@ -119,7 +119,7 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
         control = self._control
         if code in cycles.CYCLES:
             if self.motion not in cycles.CYCLES:
-                self._sticky = {}
+                self._modal_words = {}
             self.motion = code
             return
         self.motion = control.kind * 10 if code == CANCEL else code
@@ -127,7 +127,7 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
 
     def _g(self, code: int, block: Block) -> None:
         control = self._control
-        for letter in words.WORDS.get(code, ""):
+        for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in words.UNITS:
             control.set_units(words.UNITS[code], True)
@@ -144,14 +144,14 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
         elif code in words.TCP_ON or code in words.TCP_OFF:
             control.set_tcp(code in words.TCP_ON)
         elif code in (930, 950, 200, 210) or (code != words.DWELL and not self._modal(code)):
-            self._name_code(code, words.NAMED, words.SILENT)
+            self._name_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
 
     def _dwell(self, block: Block) -> None:
         seconds = block.take("H")
         if seconds is None:
             self._note("G4 without a time HD", Severity.WARNING)
         else:
-            self._control.event("dwell", seconds)
+            self._control.add_event("dwell", seconds)
 
     def _m_word(self, code: int) -> None:
         control = self._control
@@ -161,7 +161,7 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
             self._count(1)
             control.retract()
         elif not self._m(code):
-            control.event("m", float(code))
+            control.add_event("m", float(code))
 
     # Motion
 
@@ -176,7 +176,7 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
         if not axes and not circle:
             return
         written = "F" in block.words
-        turns = set(axes) & set(control.names)
+        turns = set(axes) & set(control.rotary_names)
         if machine_frame:
             control.kind = MOTIONS[self.motion]
             self._check_feed(written)
@@ -193,37 +193,39 @@ class FidiaInterpreter(Rs274Interpreter[Activation]):
     def _cycle(self, block: Block, begun: bool) -> None:
         """Drill at the position of a block."""
         control = self._control
-        given = {letter: value for letter in cycles.STICKY if (value := block.take(letter)) is not None}
-        self._sticky |= given
+        given = {letter: value for letter in cycles.MODAL_WORDS if (value := block.take(letter)) is not None}
+        self._modal_words |= given
         axes = self._axis_words(block)
         axes.pop("Z", None)
         if not axes and not begun:
             return
         if set(axes) - set("XY"):
             self._note("rotary words in a cycle: they are not executed", Severity.ERROR)
-        if control.plane != 2 or not control.absolute:
+        if control.plane_axis != 2 or not control.absolute:
             raise BlockError("cycles are simulated in G17 and G90 only")
-        missing = [letter for letter in "ZER" if letter not in self._sticky]
+        missing = [letter for letter in "ZER" if letter not in self._modal_words]
         if missing:
             raise BlockError(f"the cycle has no {missing[0]}")
-        if not control.place[3] > 0.0:
+        if not control.commanded[3] > 0.0:
             self._note("a cycle without a feed", Severity.ERROR)
         made = self._motions()
         self._count(len(made) + 2)
-        place: dict[str, Word] = {name: word for name, word in axes.items() if name in "XY"}
-        height = self._sticky["Z"]
-        up = float(control.place[2]) < height * control.lengths
+        place: dict[str, AxisWord] = {name: word for name, word in axes.items() if name in "XY"}
+        height = self._modal_words["Z"]
+        up = float(control.commanded[2]) < height * control.length_unit
         kind, control.kind = control.kind, RAPID
         if up:
-            control.drill([Step(True, height)])
+            control.drill([HoleMotion(True, height)])
         control.move(place, None)
         control.drill(
-            made if up or float(control.place[2]) == height * control.lengths else [Step(True, height), *made]
+            made
+            if up or float(control.commanded[2]) == height * control.length_unit
+            else [HoleMotion(True, height), *made]
         )
         control.kind = kind
 
-    def _motions(self) -> list[Step]:
+    def _motions(self) -> list[HoleMotion]:
         try:
-            return cycles.steps(self.motion, self._sticky, 1.0 / self._control.lengths)
-        except CycleError as error:
+            return cycles.cycle_motions(self.motion, self._modal_words, 1.0 / self._control.length_unit)
+        except CycleExecutionError as error:
             raise BlockError(f"the cycle {error}") from None

@@ -12,10 +12,10 @@ TCP_OFF: Final = frozenset({970, 1970})
 UNITS: Final = {700: True, 710: False}
 
 #: G codes that change how the control drives; feeds are in mm/min on this control.
-SILENT: Final = frozenset({400, 940})
+WITHOUT_PATH_EFFECT: Final = frozenset({400, 940})
 
 #: G codes that are known and not simulated: text, and whether the path is wrong without it.
-NAMED: Final = {
+NOT_SIMULATED: Final = {
     200: ("ends a plane of G21, which is not simulated", True),
     210: ("a plane by its angles is not simulated", True),
     220: ("a helix by its angle is not simulated", True),
@@ -28,11 +28,11 @@ NAMED: Final = {
 NO_MOTION: Final = frozenset({200, 210, 220, 230})
 
 #: Words that belong to a code, and that need no look here.
-WORDS: Final = {170: "Q", 180: "Q", 190: "Q", 210: "XYZ", 220: "XYZIJKP", 230: "XYZIJKP", 410: "D", 420: "D"}
+WORDS_OF_CODE: Final = {170: "Q", 180: "Q", 190: "Q", 210: "XYZ", 220: "XYZIJKP", 230: "XYZIJKP", 410: "D", 420: "D"}
 
 #: M words: the tool and its offset, and the retract of Z.
 TOOL: Final = 306
 RETRACT: Final = 242
 
 #: M codes that act after the motion of their block.
-LATE: Final = frozenset({0, 1, 2, 5, 9, 30})
+AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30})

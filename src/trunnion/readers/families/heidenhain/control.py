@@ -9,20 +9,20 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machines import Axis, Carries, Machine, forward
+from trunnion.machines import Axis, Machine, Mount, forward
 from trunnion.machines.inverse import solve_slides
-from trunnion.model import axis_positions as poses
-from trunnion.model.columns import Changes
+from trunnion.model import axis_positions
+from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.feed_path import FeedPath
-from trunnion.model.run import Written
+from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common import tilt
-from trunnion.readers.common.frames import Frame
-from trunnion.readers.common.rows import FARTHEST, Note
-from trunnion.readers.common.virtual_control import RAPID, Circle, Control
-from trunnion.readers.common.word import Word
-from trunnion.readers.families.heidenhain.planes import Datum, spatial
-from trunnion.readers.families.heidenhain.scan import letters
+from trunnion.readers.common import tool_orientation
+from trunnion.readers.common.affine_map import AffineMap
+from trunnion.readers.common.axis_word import AxisWord
+from trunnion.readers.common.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.common.virtual_control import RAPID, Circle, VirtualControl
+from trunnion.readers.families.heidenhain.plane_frames import Datum, spatial
+from trunnion.readers.families.heidenhain.scan import letter_table
 
 #: How far the values of a rotary solution may lie from each other and count as the same, degrees.
 _SAME: Final = 1e-6
@@ -40,7 +40,7 @@ class Positioning:
     retract     along the tool axis before, mm; inf: as far as the travel goes; 0: not at all
     """
 
-    manner: str = "STAY"
+    mode: str = "STAY"
     sequence: int = 0
     table: bool = False
     distance: float = 0.0
@@ -49,10 +49,12 @@ class Positioning:
     retract: float = 0.0
 
 
-class HeidenhainControl(Control):
+class HeidenhainControl(VirtualControl):
     """A TNC at work on a machine."""
 
-    def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
+    def __init__(
+        self, machine: Machine, note: Note, file: StepColumnBuilder[int], *, shortest: bool | None = None
+    ) -> None:
         self.shortest_path = False
         #: TCPM with AXIS SPAT: rotary words are spatial angles, and these are the last ones.
         self.by_angles = False
@@ -68,20 +70,20 @@ class HeidenhainControl(Control):
         self.pole: Floats | None = None
         super().__init__(machine, note, file, shortest=shortest)
         self.feed_path.set(0, int(FeedPath.AXES))
-        self._tables = letters((self.names[0], self.names[1])), letters(("", ""))
+        self._tables = letter_table((self.rotary_names[0], self.rotary_names[1])), letter_table(("", ""))
 
     @property
     def table(self) -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
         """What letters mean to the kernel now: rotary words only where they are positions and nothing else moves."""
         return self._tables[self.by_angles or (self.tilted and not self.tcp)]
 
-    def shorter(self, axis: Axis) -> bool:
+    def takes_shortest_path(self, axis: Axis) -> bool:
         """With M126."""
         return self.shortest_path
 
     def feed_at_tip(self, on: bool) -> None:
         """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""
-        heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.carries is Carries.TOOL]
+        heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
         if on and heads:
             text = f"M116 leaves out the axes of a head: the feed where {' and '.join(heads)} turns is unknown"
             self.note(text, Severity.WARNING)
@@ -90,23 +92,23 @@ class HeidenhainControl(Control):
     # Tools
 
     @property
-    def _length(self) -> Floats:
+    def _length_offset(self) -> Floats:
         length = np.zeros(3)
         if self._lengthened:
-            length[self.plane] = self.machine.tool_length or 0.0
+            length[self.plane_axis] = self.machine.tool_length or 0.0
         return length
 
     def call_tool(self, name: str | None, plane: int | None) -> None:
         """TOOL CALL: another tool, or None; and the axis that it lies along, which stands on the working plane."""
         if name is not None:
-            self.choose(name)
+            self.select_tool(name)
         longer = self._lengthened if name is None else name.strip("0") != ""
-        along = self.plane if plane is None else plane
-        if self.machine.tool_length and (longer, along) != (self._lengthened, self.plane):
-            with self.change():
-                self._lengthened, self.plane = longer, along
+        along = self.plane_axis if plane is None else plane
+        if self.machine.tool_length and (longer, along) != (self._lengthened, self.plane_axis):
+            with self.frame_change():
+                self._lengthened, self.plane_axis = longer, along
         else:
-            self._lengthened, self.plane = longer, along
+            self._lengthened, self.plane_axis = longer, along
         if name is not None:
             self.change_tool()
 
@@ -119,8 +121,8 @@ class HeidenhainControl(Control):
 
     def set_datum(self, datum: Datum) -> None:
         """Shift, mirror, turn or scale; the axes stand still."""
-        frame = datum.frame(self.plane)
-        self.set_program_frame(frame, old=False)
+        frame = datum.frame(self.plane_axis)
+        self.set_program_frame(frame, keep_base=False)
         if self.program_frame is not frame:
             return
         if self.tilted:
@@ -140,48 +142,48 @@ class HeidenhainControl(Control):
         relative   on top of the plane in force
         """
         base = self.frame if relative else self._base
-        total = base.then(Frame(linear))
+        total = base.compose(AffineMap(linear))
         normal = total.linear[:, 2] / np.linalg.norm(total.linear[:, 2])
-        self.settle()
+        self.resolve_rows()
         rotary = self._solution(normal, how)
         if rotary is None:
             return None
-        if how.table and tilt.free(self.machine, rotary):
-            rotary = self._near(tilt.aligned(self.machine, rotary, total.linear[:, 0]))
+        if how.table and tool_orientation.free(self.machine, rotary):
+            rotary = self._near(tool_orientation.aligned(self.machine, rotary, total.linear[:, 0]))
         self._position(rotary, how)
         self._enter_plane(total)
         return rotary
 
     def tilt_axial(self, rotary: tuple[float, float], how: Positioning) -> None:
         """The plane that the tool stands on with the rotary axes at these positions."""
-        self.settle()
-        linear = tilt.tool_frame(self.machine, rotary)
+        self.resolve_rows()
+        linear = tool_orientation.tool_frame(self.machine, rotary)
         self._position(rotary, how)
-        self._enter_plane(Frame(linear, self._base.shift))
+        self._enter_plane(AffineMap(linear, self._base.shift))
 
     def untilt(self, how: Positioning) -> None:
         """PLANE RESET: no tilted plane; what was set in it ends with it."""
         self._position((0.0, 0.0), how)
         if self.tilted:
-            self.set_plane(None, self._outside.frame(self.plane))
+            self.set_plane(None, self._outside.frame(self.plane_axis))
         self._inside = Datum()
 
     @property
-    def _base(self) -> Frame:
+    def _base(self) -> AffineMap:
         """Where tilted planes begin."""
-        return self._outside.frame(self.plane)
+        return self._outside.frame(self.plane_axis)
 
-    def _enter_plane(self, plane: Frame) -> None:
+    def _enter_plane(self, plane: AffineMap) -> None:
         self.set_plane(plane)
         self._inside = Datum()
 
     def _solution(self, normal: Floats, how: Positioning) -> tuple[float, float] | None:
         """Rotary position that stands the tool on a plane, as the block asks for it."""
-        pairs = [self._near(pair) for pair in tilt.solutions(self.machine, normal, self.held)]
+        pairs = [self._near(pair) for pair in tool_orientation.solutions(self.machine, normal, self.current_joints)]
         if not pairs:
             self.note("PLANE: no rotary position stands the tool on this plane", Severity.ERROR)
             return None
-        inside = [pair for pair in pairs if tilt.fits(self.machine, pair)]
+        inside = [pair for pair in pairs if tool_orientation.fits(self.machine, pair)]
         if how.sequence:
             # A master axis at zero has no sign: either sequence takes it.
             inside = [pair for pair in inside if pair[1] * how.sequence > 0.0 or abs(pair[1]) < _SAME]
@@ -189,7 +191,7 @@ class HeidenhainControl(Control):
             text = "inside the travel" if not how.sequence else f"with SEQ{'-' if how.sequence < 0 else '+'}"
             self.note(f"PLANE: no rotary position {text} stands the tool on this plane", Severity.ERROR)
             return None
-        held = [float(self.held[column]) for column in self.machine.rotary]
+        held = [float(self.current_joints[column]) for column in self.machine.rotary]
         return min(inside, key=lambda pair: sum(abs(value - was) for value, was in zip(pair, held, strict=True)))
 
     def _near(self, rotary: tuple[float, float]) -> tuple[float, float]:
@@ -197,26 +199,28 @@ class HeidenhainControl(Control):
         found = []
         for column, value in zip(self.machine.rotary, rotary, strict=True):
             axis = self.machine.axes[column]
-            held = float(self.held[column])
-            found.append(poses.nearest(held, value, False, axis.low, axis.high) if not axis.endless else value)
+            held = float(self.current_joints[column])
+            found.append(
+                axis_positions.nearest_turn(held, value, False, axis.low, axis.high) if not axis.endless else value
+            )
         return found[0], found[1]
 
     def _position(self, rotary: tuple[float, float], how: Positioning) -> None:
         """Move the rotary axes as the block says."""
         if how.retract:
             self.retract(how.retract, rapid=how.rapid, feed=how.feed)
-        if how.manner == "STAY":
+        if how.mode == "STAY":
             return
-        kept = float(self.place[3])
+        kept = float(self.commanded[3])
         if how.feed is not None:
-            self.place[3] = how.feed
-        self.settle()
+            self.commanded[3] = how.feed
+        self.resolve_rows()
         kind = Kind.RAPID if how.rapid else Kind.LINEAR
-        bits = int(Written.FIRST | Written.SECOND)
-        slides = self.held[self._slides].copy()
-        if how.manner == "MOVE":
-            reached = self._reached(rotary, self.default_way)
-            tip, axis = forward(self.machine, self.held[None])
+        bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND)
+        slides = self.current_joints[self._slides].copy()
+        if how.mode == "MOVE":
+            reached = self._reached(rotary, self.default_turn_rules)
+            tip, axis = forward(self.machine, self.current_joints[None])
             after = forward(self.machine, reached[None])[1][0]
             wanted = tip[0] + how.distance * (after - axis[0])
             found = self._slides_for(wanted, reached)
@@ -224,23 +228,25 @@ class HeidenhainControl(Control):
                 self.note("PLANE MOVE: the slides cannot follow", Severity.ERROR)
             else:
                 slides = found
-        self.move_axes(kind, slides, list(rotary), self.default_way, bits)
-        self.place[3] = kept
+        self.move_axes(kind, slides, list(rotary), self.default_turn_rules, bits)
+        self.commanded[3] = kept
 
-    def _reached(self, rotary: Sequence[float], way: int) -> Floats:
+    def _reached(self, rotary: Sequence[float], turn_rule: int) -> Floats:
         """Where the axes are once the rotary ones have followed their words, and the slides have not moved."""
-        joints = self.held.copy()
+        joints = self.current_joints.copy()
         for which, column in enumerate(self.machine.rotary):
             low = self.machine.axes[column].display_low
             lowest = 0.0 if math.isnan(low) else low
-            joints[column] = poses.reach(float(joints[column]), rotary[which], way >> (4 * which) & 15, lowest)
+            joints[column] = axis_positions.rotary_position(
+                float(joints[column]), rotary[which], turn_rule >> (4 * which) & 15, lowest
+            )
         return joints
 
     def _slides_for(self, tip: Floats, joints: Floats) -> Floats | None:
         """Slides X, Y, Z that bring the tip to a point of the workpiece frame, with the rotary axes of ``joints``."""
         first, second = (float(joints[column]) for column in self.machine.rotary)
         found = np.zeros(5)
-        solve_slides(self._packed, first, second, float(tip[0]), float(tip[1]), float(tip[2]), found)
+        solve_slides(self._kinematics, first, second, float(tip[0]), float(tip[1]), float(tip[2]), found)
         slides = found[self._slides]
         return slides if np.isfinite(slides).all() else None
 
@@ -250,38 +256,38 @@ class HeidenhainControl(Control):
         """Where the last motion went to at its end, in programmed coordinates; None if there was none."""
         if not self.row:
             return None
-        back = np.linalg.inv(self.map[:, :3])
+        back = np.linalg.inv(self.position_map[:, :3])
         if self._arcs and self._arcs[-1][0] == self.row - 1:
             _, centre, normal, _, _ = self._arcs[-1]
-            tip = self._tip_of(self.place[:3])
-            if self.tips:
+            tip = self._tip_of(self.commanded[:3])
+            if self.tip_programmed:
                 return np.asarray(back @ np.cross(normal, tip - centre))
             rigid = self._slides_to_tip()
             tip = rigid[:, :3] @ tip + rigid[:, 3]
             return np.asarray(back @ np.linalg.solve(rigid[:, :3], np.cross(normal, tip - centre)))
         if self.row - 2 < self._since:
             return None
-        return np.asarray(back @ (self.columns.place[self.row - 1] - self.columns.place[self.row - 2]))
+        return np.asarray(back @ (self.columns.xyz[self.row - 1] - self.columns.xyz[self.row - 2]))
 
-    def _remap(self) -> None:
-        tips = self.tips
-        super()._remap()
-        if tips != self.tips:
+    def _update_maps(self) -> None:
+        tips = self.tip_programmed
+        super()._update_maps()
+        if tips != self.tip_programmed:
             self._since = self.row
 
-    def move_axes(self, kind: Kind, slides: Floats, rotary: list[float], way: int, bits: int) -> None:
-        """Make a row of slide values and rotary values; see ``Control.move_axes``."""
-        super().move_axes(kind, slides, rotary, way, bits)
+    def move_axes(self, kind: Kind, slides: Floats, rotary: list[float], turn_rule: int, bits: int) -> None:
+        """Make a row of slide values and rotary values; see ``VirtualControl.move_axes``."""
+        super().move_axes(kind, slides, rotary, turn_rule, bits)
         self._since = self.row
 
     # Retract
 
     def retract(self, distance: float, *, rapid: bool, feed: float | None) -> None:
         """M140: back along the tool axis, mm; inf: as far as the travel of the slides goes."""
-        self.settle()
-        tip, axis = forward(self.machine, self.held[None])
-        slides = self.held[self._slides].copy()
-        one = self._slides_for(tip[0] + axis[0], self.held)
+        self.resolve_rows()
+        tip, axis = forward(self.machine, self.current_joints[None])
+        slides = self.current_joints[self._slides].copy()
+        one = self._slides_for(tip[0] + axis[0], self.current_joints)
         if one is None:
             self.note("M140: the slides cannot go along the tool axis", Severity.ERROR)
             return
@@ -293,16 +299,16 @@ class HeidenhainControl(Control):
             if math.isinf(distance):
                 self.note("M140 MB MAX: the travel of the slides is not known, the tool stays", Severity.WARNING)
                 return
-        kept = float(self.place[3])
+        kept = float(self.commanded[3])
         if feed is not None:
-            self.place[3] = feed
+            self.commanded[3] = feed
         bits = sum(1 << axis for axis in range(3) if abs(per_mm[axis]) > 1e-9)
         still = [math.nan, math.nan]
-        self.event(*(("retract", "M140") if to_the_end else ("leave", distance)))
+        self.add_event(*(("retract", "M140") if to_the_end else ("leave", distance)))
         self.machine_rows.set(self.row, to_the_end)
         self.move_axes(Kind.RAPID if rapid else Kind.LINEAR, slides + distance * per_mm, still, 0, bits)
         self.machine_rows.set(self.row, False)
-        self.place[3] = kept
+        self.commanded[3] = kept
 
     def _room(self, slides: Floats, per_mm: Floats) -> float:
         """How far the slides can go, mm along the tool axis; inf if nothing ends them."""
@@ -318,53 +324,59 @@ class HeidenhainControl(Control):
 
     def move(
         self,
-        axes: Mapping[str, Word],
+        axes: Mapping[str, AxisWord],
         vector: Floats | None,
         *,
         circle: Circle | None = None,
         machine_frame: bool = False,
         feed_written: bool = False,
     ) -> None:
-        """Execute the motion of a block; see ``Control.move``.
+        """Execute the motion of a block; see ``VirtualControl.move``.
 
         In a tilted plane without TCP a rotary axis turns alone, and takes the programmed positions with it.
         """
         if self.by_angles and vector is None and not machine_frame and axes.keys() & {"A", "B", "C"}:
             vector = self._by_angles(axes)
             axes = {name: word for name, word in axes.items() if name not in ("A", "B", "C")}
-        if not self.tilted or self.tcp or machine_frame or vector is not None or not axes.keys() & set(self.names):
+        if (
+            not self.tilted
+            or self.tcp
+            or machine_frame
+            or vector is not None
+            or not axes.keys() & set(self.rotary_names)
+        ):
             super().move(axes, vector, circle=circle, machine_frame=machine_frame, feed_written=feed_written)
             return
         if circle is not None:
             self.note("rotary axes turn during a circle of a tilted plane: taken as a straight line", Severity.ERROR)
-        self._turn_in_plane(axes, int(Written.FEED) if feed_written else 0)
+        self._turn_in_plane(axes, int(ProgrammedWord.FEED) if feed_written else 0)
 
-    def _by_angles(self, axes: Mapping[str, Word]) -> Floats:
+    def _by_angles(self, axes: Mapping[str, AxisWord]) -> Floats:
         for axis, name in enumerate("ABC"):
             if name in axes:
                 value, how = axes[name]
-                self.angles[axis] = self.angles[axis] + value if self._adds(how) else value
+                self.angles[axis] = self.angles[axis] + value if self._is_incremental(how) else value
         return np.asarray(spatial(*self.angles)[:, 2])
 
-    def _turn_in_plane(self, axes: Mapping[str, Word], bits: int) -> None:
-        self.settle()
-        wanted = self.place[:3].copy()
+    def _turn_in_plane(self, axes: Mapping[str, AxisWord], bits: int) -> None:
+        self.resolve_rows()
+        wanted = self.commanded[:3].copy()
         for axis, name in enumerate("XYZ"):
             if name in axes:
                 value, how = axes[name]
-                wanted[axis] = value * self.lengths + (wanted[axis] if self._adds(how) else 0.0)
+                wanted[axis] = value * self.length_unit + (wanted[axis] if self._is_incremental(how) else 0.0)
                 bits |= 1 << axis
-        rotary, way, turned = self.rotary_words(axes)
-        slides = self.held[self._slides].copy()
+        rotary, turn_rule, turned = self.rotary_words(axes)
+        slides = self.current_joints[self._slides].copy()
         if bits & 7:
-            reached = self._reached(rotary, way)
-            found = None if np.abs(wanted).max() > FARTHEST else self._slides_for(self._tip_of(wanted), reached)
+            reached = self._reached(rotary, turn_rule)
+            found = None if np.abs(wanted).max() > LARGEST_POSITION else self._slides_for(self._tip_of(wanted), reached)
             if found is None:
                 self.note("the slides cannot reach this position: the block is not executed", Severity.ERROR)
                 return
             slides = found
         kind = Kind.RAPID if self.kind == RAPID else Kind.LINEAR
-        self.move_axes(kind, slides, rotary, way, bits | turned)
+        self.move_axes(kind, slides, rotary, turn_rule, bits | turned)
 
     def _tip_of(self, place: Floats) -> Floats:
-        return np.asarray(self.map[:, :3] @ place + self.map[:, 3])
+        return np.asarray(self.position_map[:, :3] @ place + self.position_map[:, 3])

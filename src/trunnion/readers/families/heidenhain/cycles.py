@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Final
 
-from trunnion.readers.common.drilling import FASTEST, MOST_PECKS, CycleError, Step, sane
+from trunnion.readers.common.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion, finite
 
 #: How far the tool moves off the wall of a bored hole, mm; the control has it fixed.
 DISENGAGE: Final = 0.2
@@ -34,7 +34,7 @@ class Hole:
         self.surface = self.need(203)
         self.depth = self.need(201)
         if self.depth == 0.0:
-            raise CycleError("has the depth 0")
+            raise CycleExecutionError("has the depth 0")
         self.sign = -1.0 if self.depth < 0.0 else 1.0
         self.total = abs(self.depth)
         self.start = self.at(-self.need(200))
@@ -45,14 +45,14 @@ class Hole:
         given = self._values.get(number, default)
         if number in MAY_BE_RAPID and given == math.inf:
             return given
-        value = sane(given)
+        value = finite(given)
         assert value is not None
         return value
 
     def need(self, number: int) -> float:
         """A value that the cycle cannot do without."""
         if number not in self._values:
-            raise CycleError(f"has no Q{number}")
+            raise CycleExecutionError(f"has no Q{number}")
         return self.get(number)
 
     def at(self, depth: float) -> float:
@@ -70,7 +70,7 @@ class Hole:
         return self.get(208) or self.feed
 
 
-def steps(number: int, values: Mapping[int, float], rpm: float) -> list[Step]:
+def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[HoleMotion]:
     """Return the motions of a cycle of the 200 series at one hole; ``number`` is a key of ``CYCLES``.
 
     Parameters
@@ -82,13 +82,13 @@ def steps(number: int, values: Mapping[int, float], rpm: float) -> list[Step]:
     """
     hole = Hole(values, rpm)
     made = [replace(step, rapid=True, feed=None) if step.feed == math.inf else step for step in CYCLES[number](hole)]
-    if any(step.feed is not None and not 0.0 <= step.feed <= FASTEST for step in made):
-        raise CycleError("has a feed that no machine has")
-    made = [Step(True, hole.start), *made]
-    return made if hole.back == hole.start else [*made, Step(True, hole.back)]
+    if any(step.feed is not None and not 0.0 <= step.feed <= MAX_FEED for step in made):
+        raise CycleExecutionError("has a feed that no machine has")
+    made = [HoleMotion(True, hole.start), *made]
+    return made if hole.back == hole.start else [*made, HoleMotion(True, hole.back)]
 
 
-def infeeds(total: float, first: float, less: float = 0.0, least: float = 0.0) -> list[float]:
+def peck_depths(total: float, first: float, less: float = 0.0, least: float = 0.0) -> list[float]:
     """Depths that are drilled to one after another: each stroke shorter by ``less``, none shorter than ``least``.
 
     A first stroke that is not positive, or that is longer than the whole, is the whole.
@@ -99,187 +99,190 @@ def infeeds(total: float, first: float, less: float = 0.0, least: float = 0.0) -
     stroke = first
     while total - depths[-1] > 1e-9:
         stroke = max(stroke - less, least)
-        if stroke <= 0.0 or len(depths) >= MOST_PECKS:
-            raise CycleError(f"would peck more than {MOST_PECKS} times")
+        if stroke <= 0.0 or len(depths) >= MAX_PECKS:
+            raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
         depths.append(min(depths[-1] + stroke, total))
     depths[-1] = total
     return depths
 
 
-def _drill(hole: Hole) -> list[Step]:
+def _drill(hole: Hole) -> list[HoleMotion]:
     """200: pecks of Q202, out to the set-up clearance after each."""
-    made: list[Step] = []
-    depths = infeeds(hole.total, hole.get(202), 0.0, hole.get(202))
+    made: list[HoleMotion] = []
+    depths = peck_depths(hole.total, hole.get(202), 0.0, hole.get(202))
     for before, depth in zip([0.0, *depths], depths, strict=False):
         if before:
-            made.append(Step(True, hole.start, dwell=hole.get(210)))
-            made.append(Step(True, hole.at(before - hole.need(200))))
-        made.append(Step(False, hole.at(depth), hole.feed, dwell=hole.get(211) if depth == hole.total else 0.0))
-    return [*made, Step(True, hole.start)]
+            made.append(HoleMotion(True, hole.start, dwell=hole.get(210)))
+            made.append(HoleMotion(True, hole.at(before - hole.need(200))))
+        made.append(HoleMotion(False, hole.at(depth), hole.feed, dwell=hole.get(211) if depth == hole.total else 0.0))
+    return [*made, HoleMotion(True, hole.start)]
 
 
-def _ream(hole: Hole) -> list[Step]:
+def _ream(hole: Hole) -> list[HoleMotion]:
     """201."""
     return [
-        Step(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)),
-        Step(False, hole.start, hole.out),
+        HoleMotion(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)),
+        HoleMotion(False, hole.start, hole.out),
     ]
 
 
-def _bore(hole: Hole) -> list[Step]:
+def _bore(hole: Hole) -> list[HoleMotion]:
     """202: off the wall at the bottom, out at Q208, back over the hole."""
-    aside = _aside(hole, DISENGAGE)
-    made = [Step(False, hole.at(hole.total), hole.feed, dwell=hole.get(211))]
-    if aside == (0.0, 0.0):
-        return [*made, Step(False, hole.start, hole.out)]
+    lateral = _aside(hole, DISENGAGE)
+    made = [HoleMotion(False, hole.at(hole.total), hole.feed, dwell=hole.get(211))]
+    if lateral == (0.0, 0.0):
+        return [*made, HoleMotion(False, hole.start, hole.out)]
     return [
         *made,
-        Step(False, None, hole.out, aside=aside),
-        Step(False, hole.start, hole.out, aside=aside),
-        Step(True, None),
+        HoleMotion(False, None, hole.out, lateral=lateral),
+        HoleMotion(False, hole.start, hole.out, lateral=lateral),
+        HoleMotion(True, None),
     ]
 
 
 def _aside(hole: Hole, distance: float) -> tuple[float, float]:
     direction = hole.get(214)
     if direction not in _ASIDE:
-        raise CycleError(f"has Q214={direction:g}, which is no direction")
+        raise CycleExecutionError(f"has Q214={direction:g}, which is no direction")
     first, second = _ASIDE[int(direction)]
     return first * distance, second * distance
 
 
-def _universal(hole: Hole) -> list[Step]:
+def _universal(hole: Hole) -> list[HoleMotion]:
     """203: Q213 chip breaks between two full retracts, at Q208."""
-    made: list[Step] = []
+    made: list[HoleMotion] = []
     breaks = 0
-    depths = infeeds(hole.total, hole.get(202), hole.get(212), hole.get(205) or (hole.get(202) - hole.get(212)))
+    depths = peck_depths(hole.total, hole.get(202), hole.get(212), hole.get(205) or (hole.get(202) - hole.get(212)))
     for before, depth in zip([0.0, *depths], depths, strict=False):
         if before and breaks < hole.get(213):
             breaks += 1
-            made.append(Step(False, hole.at(before - hole.get(256)), hole.out))
+            made.append(HoleMotion(False, hole.at(before - hole.get(256)), hole.out))
         elif before:
             breaks = 0
-            made.append(Step(False, hole.start, hole.out, dwell=hole.get(210)))
-            made.append(Step(True, hole.at(before - hole.need(200))))
-        made.append(Step(False, hole.at(depth), hole.feed, dwell=hole.get(211) if depth == hole.total else 0.0))
-    return [*made, Step(False, hole.start, hole.out)]
+            made.append(HoleMotion(False, hole.start, hole.out, dwell=hole.get(210)))
+            made.append(HoleMotion(True, hole.at(before - hole.need(200))))
+        made.append(HoleMotion(False, hole.at(depth), hole.feed, dwell=hole.get(211) if depth == hole.total else 0.0))
+    return [*made, HoleMotion(False, hole.start, hole.out)]
 
 
-def _back_bore(hole: Hole) -> list[Step]:
+def _back_bore(hole: Hole) -> list[HoleMotion]:
     """204: past the hole aside, and up into its lower edge; Q250 is the thickness, Q251 from tip to cutting edge."""
-    aside = _aside(hole, hole.need(252))
+    lateral = _aside(hole, hole.need(252))
     free = hole.at(hole.need(250) + hole.get(251) + hole.need(200))
     deep = hole.at(hole.need(250) + hole.get(251) - hole.need(249))
     slow, cut = hole.get(253), hole.need(254)
     return [
-        Step(True, None, aside=aside),
-        Step(False, free, slow, aside=aside),
-        Step(False, None, slow),
-        Step(False, deep, cut, dwell=hole.get(255)),
-        Step(False, free, slow),
-        Step(False, None, slow, aside=aside),
-        Step(False, hole.start, slow, aside=aside),
-        Step(True, None),
+        HoleMotion(True, None, lateral=lateral),
+        HoleMotion(False, free, slow, lateral=lateral),
+        HoleMotion(False, None, slow),
+        HoleMotion(False, deep, cut, dwell=hole.get(255)),
+        HoleMotion(False, free, slow),
+        HoleMotion(False, None, slow, lateral=lateral),
+        HoleMotion(False, hole.start, slow, lateral=lateral),
+        HoleMotion(True, None),
     ]
 
 
-def _deep(hole: Hole) -> list[Step]:
+def _deep(hole: Hole) -> list[HoleMotion]:
     """205: from Q379 on, chip breaks every Q257 by Q256, full retracts after every stroke."""
-    made: list[Step] = []
+    made: list[HoleMotion] = []
     begin = hole.get(379)
     if not 0.0 <= begin < hole.total:
-        raise CycleError("starts below its depth")
+        raise CycleExecutionError("starts below its depth")
     if begin:
-        made.append(Step(False, hole.at(begin), hole.need(253)))
-    depths = [begin + depth for depth in infeeds(hole.total - begin, hole.get(202), hole.get(212), hole.get(205))]
+        made.append(HoleMotion(False, hole.at(begin), hole.need(253)))
+    depths = [begin + depth for depth in peck_depths(hole.total - begin, hole.get(202), hole.get(212), hole.get(205))]
     count = max(len(depths) - 2, 1)
     for stroke, (before, depth) in enumerate(zip([begin, *depths], depths, strict=False)):
         if stroke:
             gap = hole.get(258) + (hole.get(259) - hole.get(258)) * min((stroke - 1) / count, 1.0)
-            made.append(Step(True, hole.start))
-            made.append(Step(True, hole.at(max(before - gap, 0.0))))
-        pieces = infeeds(depth - before, hole.get(257), 0.0, hole.get(257))
+            made.append(HoleMotion(True, hole.start))
+            made.append(HoleMotion(True, hole.at(max(before - gap, 0.0))))
+        pieces = peck_depths(depth - before, hole.get(257), 0.0, hole.get(257))
         for k, piece in enumerate(pieces):
             if k:
-                made.append(Step(False, hole.at(before + pieces[k - 1] - hole.get(256)), hole.feed))
+                made.append(HoleMotion(False, hole.at(before + pieces[k - 1] - hole.get(256)), hole.feed))
             last = before + piece >= hole.total - 1e-9
-            made.append(Step(False, hole.at(before + piece), hole.feed, dwell=hole.get(211) if last else 0.0))
-    return [*made, Step(True, hole.start)]
+            made.append(HoleMotion(False, hole.at(before + piece), hole.feed, dwell=hole.get(211) if last else 0.0))
+    return [*made, HoleMotion(True, hole.start)]
 
 
-def _tap(hole: Hole) -> list[Step]:
+def _tap(hole: Hole) -> list[HoleMotion]:
     """206, with a floating holder: in and out at Q206."""
-    return [Step(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)), Step(False, hole.start, hole.feed)]
+    return [
+        HoleMotion(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)),
+        HoleMotion(False, hole.start, hole.feed),
+    ]
 
 
 def _pitch(hole: Hole) -> float:
     feed = abs(hole.need(239)) * hole.rpm
     if feed == 0.0:
-        raise CycleError("has no pitch or no spindle speed")
+        raise CycleExecutionError("has no pitch or no spindle speed")
     return feed
 
 
-def _tap_rigid(hole: Hole) -> list[Step]:
+def _tap_rigid(hole: Hole) -> list[HoleMotion]:
     """207: the feed follows from pitch and spindle."""
     feed = _pitch(hole)
-    return [Step(False, hole.at(hole.total), feed), Step(False, hole.start, feed)]
+    return [HoleMotion(False, hole.at(hole.total), feed), HoleMotion(False, hole.start, feed)]
 
 
-def _bore_mill(hole: Hole) -> list[Step]:
+def _bore_mill(hole: Hole) -> list[HoleMotion]:
     """208: in helices down along the wall, no deeper a turn than Q334, once more round at the bottom, and out.
 
     The tool's radius is the control's: what goes round is the point of the wall. Q351 is -1 for up-cut milling.
     """
     radius, most = 0.5 * hole.need(335), hole.need(334)
     if radius <= 0.0 or most <= 0.0:
-        raise CycleError("has no diameter (Q335) or no infeed (Q334)")
+        raise CycleExecutionError("has no diameter (Q335) or no infeed (Q334)")
     share = (hole.total + hole.need(200)) / most
-    if not 0.0 < share <= MOST_PECKS:
-        raise CycleError(f"would turn more than {MOST_PECKS} times, or not at all")
-    side, aside = -1 if hole.get(351) < 0.0 else 1, (radius, 0.0)
+    if not 0.0 < share <= MAX_PECKS:
+        raise CycleExecutionError(f"would turn more than {MAX_PECKS} times, or not at all")
+    side, lateral = -1 if hole.get(351) < 0.0 else 1, (radius, 0.0)
     return [
-        Step(False, None, hole.feed, aside=aside),
-        Step(False, hole.at(hole.total), hole.feed, aside=aside, turns=side * math.ceil(round(share, 9))),
-        Step(False, None, hole.feed, aside=aside, turns=side),
-        Step(False, None, hole.feed),
-        Step(True, hole.start),
+        HoleMotion(False, None, hole.feed, lateral=lateral),
+        HoleMotion(False, hole.at(hole.total), hole.feed, lateral=lateral, turns=side * math.ceil(round(share, 9))),
+        HoleMotion(False, None, hole.feed, lateral=lateral, turns=side),
+        HoleMotion(False, None, hole.feed),
+        HoleMotion(True, hole.start),
     ]
 
 
-def _tap_break(hole: Hole) -> list[Step]:
+def _tap_break(hole: Hole) -> list[HoleMotion]:
     """209: chip breaks every Q257; back by Q256 pitches, or all the way out if it is 0."""
     feed = _pitch(hole)
-    made: list[Step] = []
-    depths = infeeds(hole.total, hole.get(257), 0.0, hole.get(257))
+    made: list[HoleMotion] = []
+    depths = peck_depths(hole.total, hole.get(257), 0.0, hole.get(257))
     back = hole.get(256) * abs(hole.need(239))
     for before, depth in zip([0.0, *depths], depths, strict=False):
         if before:
-            made.append(Step(False, hole.at(before - back) if back else hole.start, feed))
-        made.append(Step(False, hole.at(depth), feed))
-    return [*made, Step(False, hole.start, feed)]
+            made.append(HoleMotion(False, hole.at(before - back) if back else hole.start, feed))
+        made.append(HoleMotion(False, hole.at(depth), feed))
+    return [*made, HoleMotion(False, hole.start, feed)]
 
 
-def _centre(hole: Hole) -> list[Step]:
+def _centre(hole: Hole) -> list[HoleMotion]:
     """240, by depth; by diameter it would need the tool's point angle."""
     if hole.get(343):
-        raise CycleError("centres to a diameter, for which the tool's point angle is not in the program")
-    return [Step(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)), Step(True, hole.start)]
+        raise CycleExecutionError("centres to a diameter, for which the tool's point angle is not in the program")
+    return [HoleMotion(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)), HoleMotion(True, hole.start)]
 
 
-def _gun_drill(hole: Hole) -> list[Step]:
+def _gun_drill(hole: Hole) -> list[HoleMotion]:
     """241: from Q379 on, in one stroke."""
-    made: list[Step] = []
+    made: list[HoleMotion] = []
     begin = hole.get(379)
     if not 0.0 <= begin < hole.total:
-        raise CycleError("starts below its depth")
+        raise CycleExecutionError("starts below its depth")
     if begin:
-        made.append(Step(False, hole.at(begin - hole.need(200)), hole.need(253)))
-    made.append(Step(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)))
-    return [*made, Step(False, hole.start, hole.out)]
+        made.append(HoleMotion(False, hole.at(begin - hole.need(200)), hole.need(253)))
+    made.append(HoleMotion(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)))
+    return [*made, HoleMotion(False, hole.start, hole.out)]
 
 
 #: Cycles of the 200 series by number.
-CYCLES: Final[dict[int, Callable[[Hole], list[Step]]]] = {
+CYCLES: Final[dict[int, Callable[[Hole], list[HoleMotion]]]] = {
     200: _drill,
     201: _ream,
     202: _bore,
@@ -295,7 +298,7 @@ CYCLES: Final[dict[int, Callable[[Hole], list[Step]]]] = {
 }
 
 
-def old_steps(number: int, values: Mapping[str, float], rpm: float, here: float) -> list[Step]:
+def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, here: float) -> list[HoleMotion]:
     """Return the motions of cycle 1, 2 or 17 from where the tool stands, ``here`` along its axis.
 
     Parameters
@@ -306,38 +309,38 @@ def old_steps(number: int, values: Mapping[str, float], rpm: float, here: float)
 
     def need(name: str) -> float:
         if name not in values:
-            raise CycleError(f"has no {name}")
-        value = sane(values[name])
+            raise CycleExecutionError(f"has no {name}")
+        value = finite(values[name])
         assert value is not None
         return value
 
     clearance, depth = abs(need("DIST")), need("DEPTH")
     if depth == 0.0:
-        raise CycleError("has the depth 0")
+        raise CycleExecutionError("has the depth 0")
     sign = -1.0 if depth < 0.0 else 1.0
     total = abs(depth)
     surface = here + sign * clearance
     if number != 1:
         feed = abs(need("PITCH")) * rpm if number == 17 else need("F")
-        if not 0.0 < feed <= FASTEST:
-            raise CycleError("has no feed that a machine has")
-        bottom = Step(False, surface + sign * total, feed, dwell=values.get("DWELL", 0.0))
-        return [bottom, Step(False, here, feed)]
+        if not 0.0 < feed <= MAX_FEED:
+            raise CycleExecutionError("has no feed that a machine has")
+        bottom = HoleMotion(False, surface + sign * total, feed, dwell=values.get("DWELL", 0.0))
+        return [bottom, HoleMotion(False, here, feed)]
     feed = need("F")
-    if not 0.0 <= feed <= FASTEST:
-        raise CycleError("has a feed that no machine has")
+    if not 0.0 <= feed <= MAX_FEED:
+        raise CycleExecutionError("has a feed that no machine has")
     # How far above the last depth the rapid ends, as the control has it built in.
     gap = 0.6 if total <= 30.0 else min(total / 50.0, 7.0)
-    made: list[Step] = []
-    depths = infeeds(total, abs(need("PLNGNG")), 0.0, abs(need("PLNGNG")))
+    made: list[HoleMotion] = []
+    depths = peck_depths(total, abs(need("PLNGNG")), 0.0, abs(need("PLNGNG")))
     for before, reached in zip([0.0, *depths], depths, strict=False):
         if before:
-            made.append(Step(True, here))
-            made.append(Step(True, surface + sign * (before - gap)))
+            made.append(HoleMotion(True, here))
+            made.append(HoleMotion(True, surface + sign * (before - gap)))
         last = reached == total
-        made.append(Step(False, surface + sign * reached, feed, dwell=values.get("DWELL", 0.0) if last else 0.0))
-    return [*made, Step(True, here)]
+        made.append(HoleMotion(False, surface + sign * reached, feed, dwell=values.get("DWELL", 0.0) if last else 0.0))
+    return [*made, HoleMotion(True, here)]
 
 
 #: Cycles that count from where the tool stands.
-OLD: Final = frozenset({1, 2, 17})
+LEGACY_CYCLES: Final = frozenset({1, 2, 17})

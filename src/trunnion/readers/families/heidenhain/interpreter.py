@@ -9,25 +9,25 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.readers.common import interpreter
-from trunnion.readers.common.drilling import CycleError
-from trunnion.readers.common.interpreter import STEPS, End, Interpreter
-from trunnion.readers.common.text import Subprograms, Text
+from trunnion.readers.common.axis_word import PositionMode
+from trunnion.readers.common.hole_motion import CycleExecutionError
+from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, Interpreter, ProgramEnd
+from trunnion.readers.common.source_text import SourceText, Subprograms
 from trunnion.readers.common.virtual_control import INCH, LINEAR, RAPID
-from trunnion.readers.common.word import How
 from trunnion.readers.families.heidenhain import scan
-from trunnion.readers.families.heidenhain.blocks import LONGEST, Line, split_line, words
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
-from trunnion.readers.families.heidenhain.definitions import Definitions
-from trunnion.readers.families.heidenhain.functions import ASSIGNED, assign, execute
-from trunnion.readers.families.heidenhain.machine import Functions, tool_block
-from trunnion.readers.families.heidenhain.motion import Block, circle_of, polar_end, read_block
+from trunnion.readers.families.heidenhain.cycle_definitions import Definitions
+from trunnion.readers.families.heidenhain.fn_functions import ASSIGNED, assign, execute
+from trunnion.readers.families.heidenhain.lexer import MAX_LENGTH, Line, split_line, words
+from trunnion.readers.families.heidenhain.machine_functions import Functions, tool_block
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
+from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, polar_end, read_block
+from trunnion.readers.families.heidenhain.plane_blocks import plane_block, tcpm_block
 from trunnion.readers.families.heidenhain.text import SUFFIXES, KlartextText
-from trunnion.readers.families.heidenhain.tilting import plane_block, tcpm_block
-from trunnion.readers.families.heidenhain.words import BLOCKS_NAMED, M_CALL, M_MACHINE, M_SECOND_MACHINE, PATHS
+from trunnion.readers.families.heidenhain.words import BLOCKS_NOT_SIMULATED, M_CALL, M_MACHINE, M_SECOND_MACHINE, PATHS
 
 #: Subprograms by label inside each other.
-DEEPEST_LABEL: Final = 20
+MAX_LABEL_DEPTH: Final = 20
 
 #: Feeds of inch programs count tenths of an inch.
 _TENTH: Final = 0.1 * INCH
@@ -37,7 +37,7 @@ _PLAIN = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][Nn]?[ \t])")
 _LOOK: Final = 32
 
 #: Radius compensation: left of the path, right of it, off.
-_SIDES: Final = {"R0": 0, "RL": 1, "RR": -1}
+_RADIUS_COMPENSATION: Final = {"R0": 0, "RL": 1, "RR": -1}
 
 _LABEL = re.compile(r"(Q[LR]?[0-9]{1,4})|([0-9]{1,5})")
 _CYCLE = re.compile(r"[ \t]*(DEF|CALL)(?![A-Z])")
@@ -47,7 +47,7 @@ _PATH = re.compile(rf"({'|'.join(sorted(PATHS, key=len, reverse=True))})(?=[ \t]
 
 
 @dataclass(slots=True)
-class Activation(interpreter.Activation):
+class ActiveProgram(interpreter.ActiveProgram):
     """A program being executed.
 
     returns   lines after the calls of its labels
@@ -60,10 +60,10 @@ class Activation(interpreter.Activation):
     left: dict[int, int] = field(default_factory=dict)
 
 
-class HeidenhainInterpreter(Interpreter[Activation]):
+class HeidenhainInterpreter(Interpreter[ActiveProgram]):
     """Runs one Klartext program on one machine."""
 
-    text_type = KlartextText
+    source_type = KlartextText
 
     def __init__(
         self,
@@ -71,7 +71,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         machine: Machine,
         *,
         subprograms: Sequence[Path] = (),
-        step_limit: int = STEPS,
+        step_limit: int = DEFAULT_STEP_LIMIT,
         skip: bool = False,
         shortest: bool | None = None,
     ) -> None:
@@ -83,7 +83,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         self._began = 0, -1
         self._functions = Functions(self._control, self._note)
         self._tool_feed: float | None = None
-        self._heads: dict[str, Callable[[Activation, str], None]] = {
+        self._heads: dict[str, Callable[[ActiveProgram, str], None]] = {
             "BEGIN": self._begin,
             "END": self._end,
             "BLK": self._nothing,
@@ -104,39 +104,39 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         """The virtual control."""
         return self._control
 
-    def _first(self, text: Text) -> Activation:
+    def _first(self, text: SourceText) -> ActiveProgram:
         assert isinstance(text, KlartextText)
-        return Activation(text, 0)
+        return ActiveProgram(text, 0)
 
-    def _may_be_plain(self, text: Text) -> bool:
-        if self._begun or self._functions.modal_call or self._control.compensation.now:
+    def _may_be_plain(self, text: SourceText) -> bool:
+        if self._begun or self._functions.modal_call or self._control.compensation.current:
             return False
         return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
 
-    def _kernel(self, text: Text) -> None:
+    def _kernel(self, text: SourceText) -> None:
         control = self._control
-        scan.scan(
+        scan.scan_blocks(
             text.buffer,
             len(text.buffer),
             control.table,
-            control.tips,
-            control.lengths,
-            control.feeds,
-            control.default_way,
-            control.map,
-            control.turn,
-            control.counts,
-            control.place,
-            control.target(),
-            control.notes,
+            control.tip_programmed,
+            control.length_unit,
+            control.feed_unit,
+            control.default_turn_rules,
+            control.position_map,
+            control.vector_map,
+            control.counters,
+            control.commanded,
+            control.scan_target(),
+            control.scan_records,
         )
 
     # Lines and blocks
 
-    def _line(self, call: Activation, line: int, raw: str) -> None:
-        if len(raw) > LONGEST:
+    def _line(self, call: ActiveProgram, line: int, raw: str) -> None:
+        if len(raw) > MAX_LENGTH:
             self._begun.clear()
-            self._note(f"the line is longer than {LONGEST} characters: it is not executed", Severity.ERROR)
+            self._note(f"the line is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
             return
         parts = split_line(raw)
         if self._begun and parts.number >= 0 and not ASSIGNED.match(parts.statement):
@@ -152,13 +152,13 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         try:
             if not (parts.goes_on and self._begun):
                 self._finish(call)
-            elif sum(map(len, self._begun)) > LONGEST:
+            elif sum(map(len, self._begun)) > MAX_LENGTH:
                 self._begun.clear()
-                self._note(f"the block is longer than {LONGEST} characters: it is not executed", Severity.ERROR)
+                self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
         finally:
             self._comment(line, parts.comment)
 
-    def _finish(self, call: Activation) -> None:
+    def _finish(self, call: ActiveProgram) -> None:
         """Execute the block whose parts have come together."""
         statement = " ".join(self._begun)
         self._begun.clear()
@@ -177,7 +177,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
             return
         super()._leave()
 
-    def _statement(self, call: Activation, statement: str) -> None:
+    def _statement(self, call: ActiveProgram, statement: str) -> None:
         path, assigned = _PATH.match(statement), ASSIGNED.match(statement)
         if path is not None:
             self._motion(call, path[0], statement[path.end() :])
@@ -189,37 +189,37 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         word = "" if head is None else head[0]
         if word in self._heads:
             self._heads[word](call, statement[len(word) :])
-        elif word in BLOCKS_NAMED:
-            self._note(f"{word} {BLOCKS_NAMED[word]}", Severity.ERROR)
+        elif word in BLOCKS_NOT_SIMULATED:
+            self._note(f"{word} {BLOCKS_NOT_SIMULATED[word]}", Severity.ERROR)
         else:
             # A block of M words, or one axis on its own, needs no head.
             self._motion(call, "L", statement)
 
-    def _nothing(self, call: Activation, rest: str) -> None:
+    def _nothing(self, call: ActiveProgram, rest: str) -> None:
         pass
 
-    def _begin(self, call: Activation, rest: str) -> None:
+    def _begin(self, call: ActiveProgram, rest: str) -> None:
         if not rest.split()[:1] == ["PGM"]:
             raise KlartextError("BEGIN needs PGM")
         unit = rest.split()[-1]
         if unit not in ("MM", "INCH"):
             self._note("BEGIN PGM without MM or INCH: taken as millimetres", Severity.WARNING)
         self._control.set_units(unit == "INCH", False)
-        self._control.feeds = _TENTH if unit == "INCH" else 1.0
+        self._control.feed_unit = _TENTH if unit == "INCH" else 1.0
 
-    def _end(self, call: Activation, rest: str) -> None:
+    def _end(self, call: ActiveProgram, rest: str) -> None:
         self._begun.clear()
         self._leave()
 
-    def _stop(self, call: Activation, rest: str) -> None:
+    def _stop(self, call: ActiveProgram, rest: str) -> None:
         block = read_block(words(rest), call.parameters)
         self._functions.early(block)
-        self._control.event("stop")
+        self._control.add_event("stop")
         self._functions.late(block)
 
     # Motion
 
-    def _motion(self, call: Activation, head: str, rest: str) -> None:
+    def _motion(self, call: ActiveProgram, head: str, rest: str) -> None:
         control = self._control
         block = read_block(words(rest), call.parameters)
         machine = {M_MACHINE, M_SECOND_MACHINE} & {code for code, _ in block.m}
@@ -236,16 +236,16 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         feed = self._feed(block)
         self._functions.early(block)
         if feed is not None:
-            control.place[3] = feed
+            control.commanded[3] = feed
         control.kind = RAPID if block.rapid else LINEAR
         if block.side:
-            control.compensation.set(control.row, _SIDES[block.side])
+            control.compensation.set(control.row, _RADIUS_COMPENSATION[block.side])
         if block.side in ("RL", "RR"):
             text = "radius compensation is not simulated: the path is that of the tool centre as programmed"
             self._note(f"{block.side}: {text}", Severity.WARNING)
         if M_SECOND_MACHINE in machine:
             self._note("M92: where it counts from is set in the machine, taken as M91", Severity.WARNING)
-        if vector is not None and not control.tips:
+        if vector is not None and not control.tip_programmed:
             self._note("TX TY TZ need M128: the vector is taken as the tool axis", Severity.WARNING)
         moves, row = bool(axes) or vector is not None or circle is not None, control.row
         if moves:
@@ -257,7 +257,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
                 feed_written=block.feed is not None and not block.rapid,
             )
             if block.normal is not None and control.row > row:
-                control.touch(block.normal)
+                control.add_normal(block.normal)
         calls = any(code == M_CALL for code, _ in block.m)
         if calls or (self._functions.modal_call and moves and not machine):
             self._drill(call)
@@ -267,7 +267,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
 
     def _check_axes(self, block: Block) -> None:
         """Say which axes the machine does not have, and take them out."""
-        known = {"X", "Y", "Z", *self._control.names} | ({"A", "B", "C"} if self._control.by_angles else set())
+        known = {"X", "Y", "Z", *self._control.rotary_names} | ({"A", "B", "C"} if self._control.by_angles else set())
         for name in sorted(block.axes.keys() - known):
             self._note(f"the machine has no axis {name}: its word is not executed", Severity.ERROR)
             del block.axes[name]
@@ -275,28 +275,28 @@ class HeidenhainInterpreter(Interpreter[Activation]):
     def _feed(self, block: Block) -> float | None:
         """Feed of a block in mm/min, None if it has none."""
         if block.feed is not None:
-            return block.feed * self._control.feeds
+            return block.feed * self._control.feed_unit
         if block.feed_of_tool and self._tool_feed is None:
             raise KlartextError("F AUTO, and TOOL CALL has no F")
         return self._tool_feed if block.feed_of_tool else None
 
-    def _pole(self, call: Activation, rest: str) -> None:
+    def _pole(self, call: ActiveProgram, rest: str) -> None:
         control = self._control
         # A pole that is not understood leaves none.
         control.pole = None
         block = read_block(words(rest), call.parameters)
-        pole = control.place[:3].copy()
+        pole = control.commanded[:3].copy()
         for name, (value, how) in block.axes.items():
             if name not in ("X", "Y", "Z"):
                 raise KlartextError(f"CC takes no {name}")
             axis = "XYZ".index(name)
-            pole[axis] = value * control.lengths + (pole[axis] if how is How.INCREMENTAL else 0.0)
+            pole[axis] = value * control.length_unit + (pole[axis] if how is PositionMode.INCREMENTAL else 0.0)
         control.pole = pole
 
-    def _drill(self, call: Activation) -> None:
+    def _drill(self, call: ActiveProgram) -> None:
         try:
             made = self._definitions.called(call.parameters)
-        except CycleError as error:
+        except CycleExecutionError as error:
             self._note(f"the cycle {error}: it is not executed", Severity.ERROR)
             return
         self._count(len(made))
@@ -304,12 +304,12 @@ class HeidenhainInterpreter(Interpreter[Activation]):
 
     # Tools and cycles
 
-    def _tool(self, call: Activation, rest: str) -> None:
+    def _tool(self, call: ActiveProgram, rest: str) -> None:
         feed = tool_block(self._control, rest, call.parameters)
         if feed is not None:
             self._tool_feed = feed
 
-    def _cycle(self, call: Activation, rest: str) -> None:
+    def _cycle(self, call: ActiveProgram, rest: str) -> None:
         match = _CYCLE.match(rest)
         if match is None:
             raise KlartextError("CYCL needs DEF or CALL")
@@ -328,7 +328,7 @@ class HeidenhainInterpreter(Interpreter[Activation]):
             raise KlartextError("CYCL CALL takes no positions")
         self._functions.early(block)
         if block.feed is not None:
-            self._control.place[3] = block.feed * self._control.feeds
+            self._control.commanded[3] = block.feed * self._control.feed_unit
         if position:
             self._control.kind = LINEAR if block.feed is not None and not block.rapid else RAPID
             self._control.move(block.axes, None, feed_written=block.feed is not None)
@@ -337,11 +337,11 @@ class HeidenhainInterpreter(Interpreter[Activation]):
 
     # Planes
 
-    def _plane(self, call: Activation, rest: str) -> None:
-        self._control.event("plane", rest.strip())
+    def _plane(self, call: ActiveProgram, rest: str) -> None:
+        self._control.add_event("plane", rest.strip())
         plane_block(self._control, words(rest), call.parameters, self._note)
 
-    def _special(self, call: Activation, rest: str) -> None:
+    def _special(self, call: ActiveProgram, rest: str) -> None:
         match rest.split():
             case ["TCPM", *_]:
                 tcpm_block(self._control, words(rest.replace("TCPM", "", 1)), self._note)
@@ -355,17 +355,17 @@ class HeidenhainInterpreter(Interpreter[Activation]):
 
     # Flow
 
-    def _label(self, call: Activation, rest: str) -> None:
+    def _label(self, call: ActiveProgram, rest: str) -> None:
         if _target(rest, call.parameters) == "0" and call.returns:
             call.text.jump(call.returns.pop())
 
-    def _call(self, call: Activation, rest: str) -> None:
+    def _call(self, call: ActiveProgram, rest: str) -> None:
         match = _CALL.match(rest)
         if match is None:
             raise KlartextError("CALL needs LBL or PGM")
         rest = rest[match.end() :].strip()
         if match[1] == "PGM":
-            self._enter(rest.strip('"'))
+            self._write_row(rest.strip('"'))
             return
         where, _, again = rest.partition("REP")
         call.text.load()
@@ -374,14 +374,14 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         if again:
             self._repeat(call, here, target, int(_target(again.split("/")[0], call.parameters)))
             return
-        if len(call.returns) >= DEEPEST_LABEL:
+        if len(call.returns) >= MAX_LABEL_DEPTH:
             line = self._control.line
-            what = f"calls labels deeper than {DEEPEST_LABEL} levels"
+            what = f"calls labels deeper than {MAX_LABEL_DEPTH} levels"
             raise call.text.problem(line, what, "does one call itself?")
         call.returns.append(here)
         call.text.jump(target)
 
-    def _repeat(self, call: Activation, here: int, target: int, times: int) -> None:
+    def _repeat(self, call: ActiveProgram, here: int, target: int, times: int) -> None:
         left = call.left.setdefault(here, times)
         if left > 0:
             call.left[here] = left - 1
@@ -389,15 +389,15 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         else:
             del call.left[here]
 
-    def _line_of(self, call: Activation, where: str) -> int:
+    def _line_of(self, call: ActiveProgram, where: str) -> int:
         name = _target(where, call.parameters)
         found = call.text.label(name)
         if found is None:
             self._note(f"the label {name[:60]} is missing: the program ends here", Severity.ERROR)
-            raise End
+            raise ProgramEnd
         return found
 
-    def _enter(self, name: str) -> None:
+    def _write_row(self, name: str) -> None:
         """Call a program, one of the files that were named."""
         path = self._named.find(name)
         if path is None:
@@ -407,11 +407,11 @@ class HeidenhainInterpreter(Interpreter[Activation]):
         parameters = Parameters(self._stack[-1].parameters)
         text, file = self._open(path)
         assert isinstance(text, KlartextText)
-        self._stack.append(Activation(text, file, parameters=parameters))
+        self._stack.append(ActiveProgram(text, file, parameters=parameters))
 
     # Parameters
 
-    def _function(self, call: Activation, rest: str) -> None:
+    def _function(self, call: ActiveProgram, rest: str) -> None:
         where = execute(rest, call.parameters, self._note)
         if where is not None:
             call.text.load()

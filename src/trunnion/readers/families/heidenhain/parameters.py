@@ -7,7 +7,7 @@ from functools import partial
 from typing import Final
 
 #: Parentheses and signs inside each other.
-DEEPEST: Final = 40
+MAX_NESTING: Final = 40
 
 #: Larger values are none that a parameter can have.
 LARGEST: Final = 1e10
@@ -56,8 +56,8 @@ def sound(value: float) -> float:
 
 def canonical(name: str) -> str:
     """Name of a parameter without leading zeros."""
-    letters = name.rstrip("0123456789")
-    return f"{letters}{int(name[len(letters) :])}"
+    letter_table = name.rstrip("0123456789")
+    return f"{letter_table}{int(name[len(letter_table) :])}"
 
 
 def _raised(base: float, exponent: float) -> float:
@@ -159,8 +159,8 @@ class _Parser:
 
     def _factor(self) -> float:
         self._depth += 1
-        if self._depth > DEEPEST:
-            raise KlartextError(f"nests deeper than {DEEPEST} levels")
+        if self._depth > MAX_NESTING:
+            raise KlartextError(f"nests deeper than {MAX_NESTING} levels")
         try:
             return self._value(self._take())
         finally:

@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Codes, Floats, Ints
 from trunnion.jit import njit
-from trunnion.readers.common.scan_buffers import COMMENTS, FEEDS, LINE, NORMALS, POSITION, ROW, Notes, Target
+from trunnion.readers.common.scan_buffers import COMMENTS, FEEDS, LINE, NORMALS, POSITION, ROW, ScanRecords, ScanTarget
 
 FEED: Final = 1
 COMPENSATION: Final = 2
@@ -29,7 +29,7 @@ NORMAL: Final = 11  # and the two after it: NX, NY, NZ
 _POWERS: Final = np.array([10.0**k for k in range(23)])
 
 #: Larger numbers are looked at by the interpreter, which knows how far machines reach.
-_FARTHEST: Final = 1e5
+_LARGEST_NUMBER: Final = 1e5
 
 _TAB: Final = 9
 _LF: Final = 10
@@ -52,7 +52,7 @@ _Z: Final = 90
 _CAPITAL: Final = 0xDF
 
 
-def letters(rotary: tuple[str, str]) -> Codes:
+def letter_table(rotary: tuple[str, str]) -> Codes:
     """Table (256,) uint8 from a byte to what it means to ``scan``, for the names of the two rotary axes or ""."""
     table = np.zeros(256, np.uint8)
     meanings = {"F": FEED, "R": COMPENSATION, "X": SLIDE, "Y": SLIDE + 1, "Z": SLIDE + 2}
@@ -65,46 +65,46 @@ def letters(rotary: tuple[str, str]) -> Codes:
 
 
 @njit(cache=True)
-def scan(
+def scan_blocks(
     text: Bytes,
     end: int,
     table: Codes,
     vectors: bool,
-    lengths: float,
-    feeds: float,
-    way: int,
-    frame: Floats,
-    turn: Floats,
-    counts: Ints,
-    place: Floats,
-    target: Target,
-    notes: Notes,
+    length_unit: float,
+    feed_unit: float,
+    turn_rule: int,
+    position_map: Floats,
+    vector_map: Floats,
+    counters: Ints,
+    commanded: Floats,
+    target: ScanTarget,
+    records: ScanRecords,
 ) -> None:
     """Take plain blocks until one is not, the text ends, or the columns or the notes are full.
 
     text      (m,) uint8       the program; whole lines up to ``end``
-    table     (256,) uint8     from ``letters``
+    table     (256,) uint8     from ``letter_table``
     vectors   bool             TX TY TZ are allowed
-    frame     (3, 4) float64   from programmed position to ``target.place``
+    frame     (3, 4) float64   from programmed position to ``target.xyz``
     turn      (3, 3) float64   from programmed vector to ``target.vector``
     counts    (6,) int64       see ``trunnion.readers.common.scan_buffers``, updated
     place     (5,) float64     programmed X Y Z, mm, feed, and feed of the row before, updated
     """
-    row = counts[ROW]
-    noted = counts[COMMENTS]
-    feeds_noted = counts[FEEDS]
-    normals_noted = counts[NORMALS]
-    position = counts[POSITION]
-    line = counts[LINE]
-    comments = notes.comments
-    room = min(target.kind.shape[0], target.base + target.way.shape[0])
+    row = counters[ROW]
+    noted = counters[COMMENTS]
+    feeds_noted = counters[FEEDS]
+    normals_noted = counters[NORMALS]
+    position = counters[POSITION]
+    line = counters[LINE]
+    comments = records.comments
+    room = min(target.kind.shape[0], target.base + target.turn_rule.shape[0])
     values = np.zeros(14)
     while (
         position < end
         and row < room
         and noted < comments.shape[0]
-        and feeds_noted < notes.feeds.shape[0]
-        and normals_noted < notes.touching.shape[0]
+        and feeds_noted < records.feed_values.shape[0]
+        and normals_noted < records.normal_rows.shape[0]
     ):
         at = position
         seen = 0
@@ -189,7 +189,7 @@ def scan(
                     plain = False
                     break
                 value = mantissa / _POWERS[decimals]
-                if value > _FARTHEST or (what == COMPENSATION and (mantissa != 0 or point)):
+                if value > _LARGEST_NUMBER or (what == COMPENSATION and (mantissa != 0 or point)):
                     plain = False
                     break
                 values[what] = -value if negative else value
@@ -209,44 +209,51 @@ def scan(
             if moves & 0b11000 or (values[TOOL] == 0.0 and values[TOOL + 1] == 0.0 and values[TOOL + 2] == 0.0):
                 break
         if seen & (1 << FEED) and not rapid:
-            place[3] = values[FEED] * feeds
+            commanded[3] = values[FEED] * feed_unit
         for k in range(3):
             if seen & (1 << (SLIDE + k)):
-                place[k] = values[SLIDE + k] * lengths
+                commanded[k] = values[SLIDE + k] * length_unit
         if moves:
-            waits = row - target.base
-            target.block[waits] = line
-            target.number[waits] = number
+            pending = row - target.base
+            target.line[pending] = line
+            target.block_number[pending] = number
             target.kind[row] = 0 if rapid else 1
             # A feed that is not known (NaN) differs from itself, but is no change.
-            if place[3] != place[4] and (place[3] == place[3] or place[4] == place[4]):
-                notes.feed_rows[feeds_noted] = row
-                notes.feeds[feeds_noted] = place[3]
-                place[4] = place[3]
+            if commanded[3] != commanded[4] and (commanded[3] == commanded[3] or commanded[4] == commanded[4]):
+                records.feed_rows[feeds_noted] = row
+                records.feed_values[feeds_noted] = commanded[3]
+                commanded[4] = commanded[3]
                 feeds_noted += 1
             for k in range(3):
-                target.place[row, k] = (
-                    frame[k, 0] * place[0] + frame[k, 1] * place[1] + frame[k, 2] * place[2] + frame[k, 3]
+                target.xyz[row, k] = (
+                    position_map[k, 0] * commanded[0]
+                    + position_map[k, 1] * commanded[1]
+                    + position_map[k, 2] * commanded[2]
+                    + position_map[k, 3]
                 )
             for k in range(2):
                 target.rotary[row, k] = values[ROTARY + k] if seen & (1 << (ROTARY + k)) else np.nan
-            target.vector[waits, 0] = np.nan
+            target.vector[pending, 0] = np.nan
             if tilts:
                 for k in range(3):
-                    target.vector[waits, k] = (
-                        turn[k, 0] * values[TOOL] + turn[k, 1] * values[TOOL + 1] + turn[k, 2] * values[TOOL + 2]
+                    target.vector[pending, k] = (
+                        vector_map[k, 0] * values[TOOL]
+                        + vector_map[k, 1] * values[TOOL + 1]
+                        + vector_map[k, 2] * values[TOOL + 2]
                     )
             bits = (moves & 0b11111) | (32 if tilts else 0)
             target.programmed[row] = bits | (64 if seen & (1 << FEED) and not rapid else 0)
-            target.way[waits] = way
+            target.turn_rule[pending] = turn_rule
             if seen >> NORMAL:
                 for k in range(3):
                     values[NORMAL + k] = values[NORMAL + k] if seen & (1 << (NORMAL + k)) else 0.0
                 for k in range(3):
-                    notes.normals[normals_noted, k] = (
-                        turn[k, 0] * values[NORMAL] + turn[k, 1] * values[NORMAL + 1] + turn[k, 2] * values[NORMAL + 2]
+                    records.normals[normals_noted, k] = (
+                        vector_map[k, 0] * values[NORMAL]
+                        + vector_map[k, 1] * values[NORMAL + 1]
+                        + vector_map[k, 2] * values[NORMAL + 2]
                     )
-                notes.touching[normals_noted] = row
+                records.normal_rows[normals_noted] = row
                 normals_noted += 1
             row += 1
         if comment >= 0:
@@ -257,9 +264,9 @@ def scan(
             noted += 1
         position = at + 1
         line += 1
-    counts[ROW] = row
-    counts[COMMENTS] = noted
-    counts[FEEDS] = feeds_noted
-    counts[NORMALS] = normals_noted
-    counts[POSITION] = position
-    counts[LINE] = line
+    counters[ROW] = row
+    counters[COMMENTS] = noted
+    counters[FEEDS] = feeds_noted
+    counters[NORMALS] = normals_noted
+    counters[POSITION] = position
+    counters[LINE] = line

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.readers.common.text import Text, decode
+from trunnion.readers.common.source_text import SourceText, decode
 
 #: How names of programs end.
 SUFFIXES: Final = (".H", "")
@@ -23,11 +23,11 @@ class _Places:
     labels: dict[str, int] | None = None
 
 
-class KlartextText(Text):
+class KlartextText(SourceText):
     """A program file with the places where its jumps lead."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        # Shared by all that run the same text: see ``again``.
+        # Shared by all that run the same text: see ``restarted``.
         self._places = _Places()
         super().__init__(path, whole=whole)
 

@@ -11,7 +11,7 @@ def _words(text: str) -> frozenset[str]:
 PATHS: Final = _words("L LN LP C CR CP CT CTP")
 
 #: Blocks that are known and whose effect on the path is not simulated: what the reader says instead.
-BLOCKS_NAMED: Final = {
+BLOCKS_NOT_SIMULATED: Final = {
     "RND": "rounds the corner: not simulated, the corner stays sharp",
     "CHF": "chamfers the corner: not simulated, the corner stays sharp",
     "APPR": "approaches a contour: not simulated, the block is not executed",
@@ -46,7 +46,7 @@ M_PER_TURN: Final = 136
 M_PER_MINUTE: Final = 137
 M_FEED_AT_TIP: Final = 116
 M_FEED_IN_DEGREES: Final = 117
-M_ENDS: Final = frozenset({2, 30})
+M_PROGRAM_ENDS: Final = frozenset({2, 30})
 
 #: M words that become events: kind and value, in the order in which they happen.
 M_EVENTS: Final = {
@@ -65,10 +65,10 @@ M_EVENTS: Final = {
 M_SPINDLE: Final = {3: 1, 4: -1, 5: 0, 13: 1, 14: -1}
 
 #: M words that act after the motion of their block.
-M_LATE: Final = frozenset({0, 1, 5, 9, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_CALL}) | M_ENDS
+M_AFTER_MOTION: Final = frozenset({0, 1, 5, 9, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_CALL}) | M_PROGRAM_ENDS
 
 #: M words that change how the control drives, not where to.
-M_SILENT: Final = {
+M_WITHOUT_PATH_EFFECT: Final = {
     90: "constant contour speed at corners",
     94: "the display of rotary axes comes back below 360",
     97: "small contour steps",
@@ -93,7 +93,7 @@ M_SILENT: Final = {
 }
 
 #: M words that are known and whose effect on the path is not simulated: a finding each time; whether it is an error.
-M_NAMED: Final = {
+M_NOT_SIMULATED: Final = {
     98: ("ends an open contour corner: not simulated", False),
     104: ("takes the last datum again: not simulated", True),
     112: ("contour transitions are not simulated", False),
@@ -138,7 +138,7 @@ PRESET: Final = 247
 BORE_MILLING: Final = 208
 
 #: Cycles that are known and not simulated: whether the path is doubtful because of it when they are called.
-CYCLES_NAMED: Final = {
+CYCLES_NOT_SIMULATED: Final = {
     3: "slot milling", 4: "pocket milling", 5: "circular pocket", 6: "rough-out", 12: "program call", 14: "contour",
     15: "pilot drilling", 16: "contour milling", 18: "thread cutting", 20: "contour data", 21: "pilot drilling",
     22: "rough-out", 23: "floor finishing", 24: "side finishing", 25: "contour train", 27: "cylinder surface",
@@ -153,7 +153,7 @@ CYCLES_NAMED: Final = {
 }  # fmt: skip
 
 #: FN functions that are known and not simulated.
-FN_NAMED: Final = {
+FN_NOT_SIMULATED: Final = {
     14: "an error message", 15: "prints", 16: "prints to a file", 17: "writes system data", 19: "speaks to the PLC",
     20: "waits for the PLC", 25: "sets a preset", 26: "opens a table", 27: "writes to a table", 28: "reads a table",
     29: "speaks to the PLC", 37: "exports parameters", 38: "sends a message",

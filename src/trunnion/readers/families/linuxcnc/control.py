@@ -7,13 +7,13 @@ import numpy as np
 
 from trunnion.arrays import Codes, Floats
 from trunnion.machines import Axis, Machine, forward
-from trunnion.model import axis_positions as poses
-from trunnion.model.columns import Changes
+from trunnion.model import axis_positions
+from trunnion.model.columns import StepColumnBuilder
 from trunnion.readers.common import arcs
-from trunnion.readers.common.frames import Frame, turn
-from trunnion.readers.common.rows import Note
-from trunnion.readers.common.scan import letters
-from trunnion.readers.common.word import How, Word
+from trunnion.readers.common.affine_map import AffineMap, rotation_matrix
+from trunnion.readers.common.axis_word import AxisWord, PositionMode
+from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.common.scan import letter_table
 from trunnion.readers.rs274.control import Rs274Control
 
 #: Axes in the order of LinuxCNC's own tables.
@@ -40,9 +40,11 @@ class Offset:
 class LinuxcncControl(Rs274Control):
     """A LinuxCNC at work on a machine. Work offsets that the program does not set are the machine's workpiece zero."""
 
-    def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
+    def __init__(
+        self, machine: Machine, note: Note, file: StepColumnBuilder[int], *, shortest: bool | None = None
+    ) -> None:
         super().__init__(machine, note, file, shortest=shortest)
-        self.table = letters((self.names[0], self.names[1]), comment=";", gaps=True)
+        self.table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", gaps=True)
         #: Number of the work offset in force, 1 for G54.
         self.system = 1
         self._set: dict[int, Offset] = {}
@@ -50,17 +52,17 @@ class LinuxcncControl(Rs274Control):
         self.shift = np.zeros(6)
         self.shifted = False
 
-    def shorter(self, axis: Axis) -> bool:
+    def takes_shortest_path(self, axis: Axis) -> bool:
         """Never: rotary axes take the number as it is."""
         return False
 
-    def way(self, which: int, how: How) -> int:
+    def turn_rule(self, which: int, how: PositionMode) -> int:
         """The number itself, as axes take it that the machine's ini file does not call wrapped."""
-        return super().way(which, how) if self.shortest else poses.PLAIN
+        return super().turn_rule(which, how) if self.shortest else axis_positions.PLAIN
 
     def check_radii(self, start: Floats, end: Floats, centre: Floats) -> None:
         """Refuse circles whose radii differ more than LinuxCNC allows."""
-        first, second = ((self.plane + 1) % 3, (self.plane + 2) % 3)
+        first, second = ((self.plane_axis + 1) % 3, (self.plane_axis + 2) % 3)
         r1, r2 = (float(np.hypot(p[first] - centre[first], p[second] - centre[second])) for p in (start, end))
         off = abs(r1 - r2)
         if off > _COARSE or (off > _FINE and off > _PART * max(r1, r2)):
@@ -85,28 +87,28 @@ class LinuxcncControl(Rs274Control):
     def refresh(self) -> None:
         """Let offsets count as they are now; the axes stand still."""
         offset = self.offset_of(self.system)
-        linear = turn(2, offset.rotation)
+        linear = rotation_matrix(2, offset.rotation)
         shift = offset.values[:3] - self.zero[:3]
         if self.shifted:
             shift = shift + linear @ self.shift[:3]
-        self.set_program_frame(Frame(linear, shift), old=False)
+        self.set_program_frame(AffineMap(linear, shift), keep_base=False)
 
     @property
     def turned(self) -> dict[str, float]:
         """What a programmed rotary position has to grow by to be a position of the machine, by letter."""
         offset = self.offset_of(self.system).values
         total = offset + self.shift if self.shifted else offset
-        return {name: float(total[ORDER.index(name)]) for name in self.names if name in ORDER}
+        return {name: float(total[ORDER.index(name)]) for name in self.rotary_names if name in ORDER}
 
     def position(self) -> Floats:
         """(6,) programmed positions of where the axes stand, mm and degrees."""
-        self.settle()
+        self.resolve_rows()
         turned = self.turned
         position = np.zeros(6)
-        position[:3] = self.place[:3]
-        for which, name in enumerate(self.names):
+        position[:3] = self.commanded[:3]
+        for which, name in enumerate(self.rotary_names):
             if name in ORDER:
-                position[ORDER.index(name)] = float(self.held[self.machine.rotary[which]]) - turned[name]
+                position[ORDER.index(name)] = float(self.current_joints[self.machine.rotary[which]]) - turned[name]
         return position
 
     def machine_position(self) -> Floats:
@@ -114,35 +116,35 @@ class LinuxcncControl(Rs274Control):
 
         With TCP the length of the tool counts as it does for LinuxCNC's kinematics: over the tip.
         """
-        self.settle()
+        self.resolve_rows()
         position = np.zeros(6)
-        if self.tips:
-            position[:3] = forward(self.machine, self.held[None])[0][0] + self.zero[:3] + self._length
+        if self.tip_programmed:
+            position[:3] = forward(self.machine, self.current_joints[None])[0][0] + self.zero[:3] + self._length_offset
         else:
-            position[:3] = self.held[self._slides]
-        for which, name in enumerate(self.names):
+            position[:3] = self.current_joints[self._slides]
+        for which, name in enumerate(self.rotary_names):
             if name in ORDER:
-                position[ORDER.index(name)] = float(self.held[self.machine.rotary[which]])
+                position[ORDER.index(name)] = float(self.current_joints[self.machine.rotary[which]])
         return position
 
     def without_length(self, position: Floats) -> Floats:
         """Return a position of the machine as work offsets count it, whatever the length of the tool, (6,)."""
         bare = position.copy()
-        bare[:3] -= self._length
+        bare[:3] -= self._length_offset
         return bare
 
-    def machine_move(self, axes: dict[str, Word], *, feed_written: bool) -> None:
+    def machine_move(self, axes: dict[str, AxisWord], *, feed_written: bool) -> None:
         """Go to positions of the machine; with TCP those of the tip in the machine's frame."""
-        if not self.tips:
+        if not self.tip_programmed:
             self.move(axes, None, machine_frame=True, feed_written=feed_written)
             return
         goal = self.machine_position()[:3]
         for axis, name in enumerate("XYZ"):
             if name in axes:
-                goal[axis] = axes[name][0] * self.lengths
-        place = self._back(goal - self.zero[:3] - self._length) / self.lengths
+                goal[axis] = axes[name][0] * self.length_unit
+        place = self._to_programmed(goal - self.zero[:3] - self._length_offset) / self.length_unit
         words = {name: word for name, word in axes.items() if name not in "XYZ"}
-        words |= {name: (float(place[axis]), How.ABSOLUTE) for axis, name in enumerate("XYZ")}
+        words |= {name: (float(place[axis]), PositionMode.ABSOLUTE) for axis, name in enumerate("XYZ")}
         self.move(words, None, feed_written=feed_written)
 
     @property

@@ -8,26 +8,26 @@ from pathlib import Path
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common.text import Subprograms
+from trunnion.readers.common.source_text import Subprograms
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC, LOCAL, Parameters
 from trunnion.readers.families.linuxcnc.text import SUFFIXES, LinuxcncText
 from trunnion.readers.rs274 import interpreter
-from trunnion.readers.rs274.block import block_reader, split
-from trunnion.readers.rs274.expressions import BlockError, Reader
+from trunnion.readers.rs274.block import block_reader, split_line
+from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
 from trunnion.readers.rs274.interpreter import Rs274Interpreter
 
 _KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE|CALL|RETURN")
 
 
 @dataclass(slots=True)
-class Activation(interpreter.Activation):
+class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram being executed, and how often its REPEAT loops have still to run, by line."""
 
     text: LinuxcncText
     counters: dict[int, int] = field(default_factory=dict)
 
 
-class OWordInterpreter(Rs274Interpreter[Activation]):
+class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
     """Branches, loops and subprograms; what blocks say besides is for the class below."""
 
     def __init__(
@@ -42,7 +42,7 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
     def _system(self, key: int | str) -> float | None:
         """Return what the control itself puts behind a number or name; None if it is none of its own."""
 
-    def _o_word(self, call: Activation, line: int, reader: Reader) -> None:
+    def _o_word(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         label = self._label(reader)
         match = _KEYWORD.match(reader.text, reader.at)
         if match is None:
@@ -78,9 +78,9 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
             self._note(f"not understood behind {name}: {reader.rest!r}", Severity.ERROR)
 
     @staticmethod
-    def _label(reader: Reader) -> str:
+    def _label(reader: ExpressionReader) -> str:
         begin = reader.at
-        if reader.takes("<"):
+        if reader.accept("<"):
             end = reader.text.find(">", begin)
             if end < 0:
                 raise BlockError("the name of an O word does not end")
@@ -91,13 +91,13 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
             raise BlockError("an O word needs a whole number or a name")
         return str(int(value))
 
-    def _nothing(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _nothing(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         call.text.structure(line)
 
-    def _skip_sub(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _skip_sub(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         call.text.jump(call.text.structure(line).end + 1)
 
-    def _return(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _return(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         if len(self._stack) < 2:
             raise BlockError("the end of a subprogram outside one")
         self._returned = None
@@ -111,7 +111,7 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
         if len(self._stack) < deep:
             self._parameters.leave()
 
-    def _call(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _call(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         arguments: list[float] = []
         while not reader.ended and len(arguments) < LOCAL:
             arguments.append(reader.sum())
@@ -119,7 +119,7 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
         here = call.text.subprogram(label)
         if here is not None:
             self._file.set(self.control.row, call.file)
-            entered = Activation(call.text.again(), call.file)
+            entered = ActiveProgram(call.text.restarted(), call.file)
             begin = here.begin
         else:
             path = self._named.find(label.strip("<>"))
@@ -131,34 +131,34 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
             if found is None:
                 self._file.set(self.control.row, call.file)
                 raise BlockError(f"{path.name} holds no O{label[:80]} SUB")
-            entered, begin = Activation(text, file), found.begin
+            entered, begin = ActiveProgram(text, file), found.begin
         entered.row = self.control.row
         entered.text.jump(begin + 1)
         self._parameters.enter(arguments)
         self._stack.append(entered)
 
-    def _if(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _if(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         structure = call.text.structure(line)
         if self._holds(reader):
             return
         for branch in structure.branches:
             head = self._head(call, branch)
-            if head is None or (head.takes("ELSEIF") and self._holds(head)):
+            if head is None or (head.accept("ELSEIF") and self._holds(head)):
                 call.text.jump(branch + 1)
                 return
 
-    def _head(self, call: Activation, line: int) -> Reader | None:
+    def _head(self, call: ActiveProgram, line: int) -> ExpressionReader | None:
         """Return a reader at the ELSEIF of a line; None at an ELSE or at the end."""
         here = call.text.line
         call.text.jump(line)
-        text = split(call.text.next_line(), semicolon=True).text
+        text = split_line(call.text.next_line(), semicolon=True).text
         call.text.jump(here)
         reader = block_reader(text, ARITHMETIC, self._parameters)
         reader.expect("O")
         self._label(reader)
         return reader if reader.text.startswith("ELSEIF", reader.at) else None
 
-    def _holds(self, reader: Reader) -> bool:
+    def _holds(self, reader: ExpressionReader) -> bool:
         """Return a condition; one that cannot be worked out does not hold."""
         try:
             return bool(reader.sum())
@@ -167,12 +167,12 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
             reader.at = len(reader.text)
             return False
 
-    def _past_branches(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _past_branches(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         """A branch that was executed ends here."""
         reader.at = len(reader.text)
         call.text.jump(call.text.structure(line).end + 1)
 
-    def _while(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _while(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         structure = call.text.structure(line)
         holds = self._holds(reader)
         if structure.word == "DO":
@@ -181,10 +181,10 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
         elif not holds:
             call.text.jump(structure.end + 1)
 
-    def _again(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _again(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         call.text.jump(call.text.structure(line).begin)
 
-    def _repeat(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _repeat(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         structure = call.text.structure(line)
         times = 0
         try:
@@ -196,15 +196,15 @@ class OWordInterpreter(Rs274Interpreter[Activation]):
             call.text.jump(structure.end + 1)
         call.counters[line] = times
 
-    def _end_repeat(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _end_repeat(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         begin = call.text.structure(line).begin
         call.counters[begin] = call.counters.get(begin, 0) - 1
         if call.counters[begin] > 0:
             call.text.jump(begin + 1)
 
-    def _break(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _break(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         call.text.jump(call.text.structure(line).end + 1)
 
-    def _continue(self, call: Activation, line: int, reader: Reader, label: str) -> None:
+    def _continue(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         structure = call.text.structure(line)
         call.text.jump(structure.begin if structure.word == "WHILE" else structure.end)

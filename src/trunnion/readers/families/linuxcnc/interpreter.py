@@ -7,30 +7,30 @@ import numpy as np
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
-from trunnion.readers.common.text import Text
-from trunnion.readers.common.word import How
+from trunnion.readers.common.axis_word import PositionMode
+from trunnion.readers.common.source_text import SourceText
 from trunnion.readers.families.linuxcnc import cycles
 from trunnion.readers.families.linuxcnc.control import ORDER
-from trunnion.readers.families.linuxcnc.flow import Activation
-from trunnion.readers.families.linuxcnc.holes import HoleInterpreter
-from trunnion.readers.families.linuxcnc.offsets_and_frames import SPECIAL, TAKE_AXES
+from trunnion.readers.families.linuxcnc.cycle_blocks import CycleInterpreter
+from trunnion.readers.families.linuxcnc.flow import ActiveProgram
+from trunnion.readers.families.linuxcnc.offsets_and_frames import SPECIAL, TAKING_AXIS_WORDS
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC
 from trunnion.readers.families.linuxcnc.text import LinuxcncText
 from trunnion.readers.families.linuxcnc.words import (
     LENGTHS,
-    LINES,
-    NAMED,
-    NAMED_M,
     NO_MOTION,
+    NOT_SIMULATED,
+    NOT_SIMULATED_M,
     OFFSETS,
     RIGID_TAP,
-    SILENT,
-    SILENT_M,
+    TAKEN_AS_LINES,
     TCP_OFF,
     TCP_ON,
     TCP_USER,
     USERS,
-    WORDS,
+    WITHOUT_PATH_EFFECT,
+    WITHOUT_PATH_EFFECT_M,
+    WORDS_OF_CODE,
 )
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.expressions import BlockError
@@ -40,13 +40,13 @@ from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
 _MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),(.*)", re.IGNORECASE | re.DOTALL)
 
 #: M codes that act after the motion of their block.
-_LATE: Final = frozenset({0, 1, 2, 30, 60})
+_AFTER_MOTION: Final = frozenset({0, 1, 2, 30, 60})
 
 
-class LinuxcncInterpreter(HoleInterpreter):
+class LinuxcncInterpreter(CycleInterpreter):
     """Runs one LinuxCNC program on one machine."""
 
-    text_type = LinuxcncText
+    source_type = LinuxcncText
     semicolon = True
     motion = CANCEL
 
@@ -54,11 +54,11 @@ class LinuxcncInterpreter(HoleInterpreter):
     def _table(self) -> Codes:
         return self._control.plain_table
 
-    def _first(self, text: Text) -> Activation:
+    def _first(self, text: SourceText) -> ActiveProgram:
         assert isinstance(text, LinuxcncText)
-        return Activation(text, 0)
+        return ActiveProgram(text, 0)
 
-    def _may_be_plain(self, text: Text) -> bool:
+    def _may_be_plain(self, text: SourceText) -> bool:
         return super()._may_be_plain(text) and not any(self._control.turned.values())
 
     # Parameters
@@ -71,30 +71,30 @@ class LinuxcncInterpreter(HoleInterpreter):
                 return self._position(key - 5420)
             if 5210 < key <= 5216:
                 value = float(control.shift[key - 5211])
-                return value / control.lengths if key <= 5213 else value
+                return value / control.length_unit if key <= 5213 else value
             return {5210: float(control.shifted), 5220: float(control.system)}.get(key)
         if len(key) == 2 and key[0] == "_" and key[1] in ORDER:
             return self._position(ORDER.index(key[1]))
-        feed = float(control.place[3])
+        feed = float(control.commanded[3])
         found: dict[str, float | None] = {
             "_VALUE": self._returned or 0.0,
             "_VALUE_RETURNED": float(self._returned is not None),
             "_LINE": float(control.line),
-            "_FEED": 0.0 if np.isnan(feed) else feed / control.feeds,
-            "_RPM": float(control.rpm.now),
-            "_METRIC": float(control.lengths == 1.0),
-            "_IMPERIAL": float(control.lengths != 1.0),
+            "_FEED": 0.0 if np.isnan(feed) else feed / control.feed_unit,
+            "_RPM": float(control.rpm.current),
+            "_METRIC": float(control.length_unit == 1.0),
+            "_IMPERIAL": float(control.length_unit != 1.0),
             "_ABSOLUTE": float(control.absolute),
             "_INCREMENTAL": float(not control.absolute),
             "_MOTION_MODE": float(self.motion),
-            "_PLANE": {2: 170.0, 1: 180.0, 0: 190.0}[control.plane],
+            "_PLANE": {2: 170.0, 1: 180.0, 0: 190.0}[control.plane_axis],
             "_COORD_SYSTEM": float(OFFSETS[control.system - 1]),
         }
         return found.get(key)
 
     def _position(self, axis: int) -> float:
         value = float(self._control.position()[axis])
-        return value / self._control.lengths if axis < 3 else value
+        return value / self._control.length_unit if axis < 3 else value
 
     # Blocks
 
@@ -104,11 +104,11 @@ class LinuxcncInterpreter(HoleInterpreter):
     def _said(self, comment: str) -> None:
         match = _MESSAGE.match(comment)
         if match is not None:
-            self._control.event("message", match.group(1))
+            self._control.add_event("message", match.group(1))
 
-    def _text(self, call: Activation, line: int, text: str) -> None:
+    def _text(self, call: ActiveProgram, line: int, text: str) -> None:
         reader = block_reader(text, ARITHMETIC, self._parameters)
-        if reader.takes("O"):
+        if reader.accept("O"):
             self._o_word(call, line, reader)
             return
         block = read_block(reader, self._twice)
@@ -123,19 +123,19 @@ class LinuxcncInterpreter(HoleInterpreter):
                 self._modal(code)
                 if code != 930:
                     # LinuxCNC forgets the feed, even where the mode stays what it was.
-                    control.place[3] = np.nan
+                    control.commanded[3] = np.nan
         self._feed_and_speed(block)
         tool = block.take("T")
         if tool is not None:
-            control.choose(f"{tool:g}")
+            control.select_tool(f"{tool:g}")
         for code in block.m:
-            if code not in _LATE:
+            if code not in _AFTER_MOTION:
                 self._m_word(code, block)
         special = -1
         machine_frame = False
         explicit = False
         for code in block.g:
-            if code in MOTIONS or code in cycles.CYCLES or code in LINES or code in (CANCEL, RIGID_TAP):
+            if code in MOTIONS or code in cycles.CYCLES or code in TAKEN_AS_LINES or code in (CANCEL, RIGID_TAP):
                 explicit = code != CANCEL
             if code in SPECIAL:
                 special = code
@@ -145,7 +145,7 @@ class LinuxcncInterpreter(HoleInterpreter):
                 continue
             else:
                 self._g(code, block)
-        takes_axes = special in TAKE_AXES
+        takes_axes = special in TAKING_AXIS_WORDS
         if takes_axes and explicit:
             raise BlockError("two G words want the axis words")
         self._special(special, block)
@@ -154,14 +154,14 @@ class LinuxcncInterpreter(HoleInterpreter):
             self.motion = CANCEL if CANCEL in begun else self.motion
         else:
             self._drive(block, begun[-1] if begun else None, machine_frame, explicit)
-        late = [code for code in block.m if code in _LATE]
+        late = [code for code in block.m if code in _AFTER_MOTION]
         self._name_unused(block)
         for code in late:
             self._m_word(code, block)
 
     def _g(self, code: int, block: Block) -> None:
         control = self._control
-        for letter in WORDS.get(code, ""):
+        for letter in WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in OFFSETS:
             control.system = OFFSETS.index(code) + 1
@@ -174,16 +174,16 @@ class LinuxcncInterpreter(HoleInterpreter):
             control.edge.set(control.row, self._length_number(block) if LENGTHS[code] else -1)
         elif code in (901, 911):
             control.relative_centres = code == 911
-        elif code in LINES:
-            self._name_code(code, NAMED, SILENT)
+        elif code in TAKEN_AS_LINES:
+            self._name_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
             self.motion = code
         elif code == RIGID_TAP:
             self.motion = code
         elif code == 960:
             control.feed_mode.set(control.row, 95)
-            self._name_code(code, NAMED, SILENT)
+            self._name_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
         elif not self._modal(code):
-            self._name_code(code, NAMED, SILENT)
+            self._name_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
 
     def _length_number(self, block: Block) -> int:
         """Which length G43 takes: that of H, or of the tool in the spindle; 0 where nobody knows its number."""
@@ -196,15 +196,15 @@ class LinuxcncInterpreter(HoleInterpreter):
         control = self._control
         if code in (TCP_ON, TCP_OFF):
             control.set_tcp(code == TCP_ON)
-        elif code in SILENT_M:
-            for letter in SILENT_M[code]:
+        elif code in WITHOUT_PATH_EFFECT_M:
+            for letter in WITHOUT_PATH_EFFECT_M[code]:
                 block.take(letter)
         elif code == 61:
             tool = block.take("Q")
-            control.choose(f"{tool or 0:g}")
+            control.select_tool(f"{tool or 0:g}")
             control.change_tool()
         elif code == 60:
-            control.event("stop", "pallet")
+            control.add_event("stop", "pallet")
         elif code == 19:
             for letter in "RQP":
                 block.take(letter)
@@ -212,10 +212,10 @@ class LinuxcncInterpreter(HoleInterpreter):
         elif code in USERS:
             for letter in "PQ":
                 block.take(letter)
-            control.event("m", float(code))
+            control.add_event("m", float(code))
             self._note(f"M{code} belongs to the machine: what it does is not known", Severity.WARNING)
-        elif code in NAMED_M:
-            self._note(f"M{code}: {NAMED_M[code]}", Severity.ERROR)
+        elif code in NOT_SIMULATED_M:
+            self._note(f"M{code}: {NOT_SIMULATED_M[code]}", Severity.ERROR)
         elif code == TCP_USER:
             self._note("M430: kinematics of the user are not known", Severity.ERROR)
         elif not self._m(code):
@@ -255,10 +255,12 @@ class LinuxcncInterpreter(HoleInterpreter):
             control.kind = MOTIONS[code]
             written = "F" in block.words
             self._check_feed(written)
-            control.machine_move({name: (word[0], How.ABSOLUTE) for name, word in axes.items()}, feed_written=written)
+            control.machine_move(
+                {name: (word[0], PositionMode.ABSOLUTE) for name, word in axes.items()}, feed_written=written
+            )
             return
         here = self.motion
-        if code in LINES:
+        if code in TAKEN_AS_LINES:
             self.motion = 10
         if turns is not None and not 1 <= turns == int(turns):
             raise BlockError("P of a circle is the number of its turns")

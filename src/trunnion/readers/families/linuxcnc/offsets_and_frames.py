@@ -8,11 +8,11 @@ import numpy as np
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common.frames import turn
-from trunnion.readers.common.interpreter import STEPS
-from trunnion.readers.common.rows import FARTHEST
+from trunnion.readers.common.affine_map import rotation_matrix
+from trunnion.readers.common.axis_word import AxisWord, PositionMode
+from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT
+from trunnion.readers.common.row_recorder import LARGEST_POSITION
 from trunnion.readers.common.virtual_control import RAPID
-from trunnion.readers.common.word import How, Word
 from trunnion.readers.families.linuxcnc.control import ORDER, LinuxcncControl, Offset
 from trunnion.readers.families.linuxcnc.flow import OWordInterpreter
 from trunnion.readers.rs274.block import Block
@@ -28,10 +28,10 @@ SHIFTS: Final = frozenset({921, 922, 923})
 
 #: All of them, and those that take the axis words of their block.
 SPECIAL: Final = frozenset({DWELL, SETUP, *HOMES, *HOMES.values(), *AXIS_OFFSETS, *SHIFTS})
-TAKE_AXES: Final = frozenset({SETUP, *HOMES, *AXIS_OFFSETS})
+TAKING_AXIS_WORDS: Final = frozenset({SETUP, *HOMES, *AXIS_OFFSETS})
 
 
-class PlaceInterpreter(OWordInterpreter):
+class OffsetInterpreter(OWordInterpreter):
     """Has the virtual control, its offsets and the places that G28 and G30 go to."""
 
     def __init__(
@@ -40,7 +40,7 @@ class PlaceInterpreter(OWordInterpreter):
         machine: Machine,
         *,
         subprograms: Sequence[Path] = (),
-        step_limit: int = STEPS,
+        step_limit: int = DEFAULT_STEP_LIMIT,
         skip: bool = False,
         shortest: bool | None = None,
     ) -> None:
@@ -60,7 +60,7 @@ class PlaceInterpreter(OWordInterpreter):
             if seconds is None:
                 self._note("G4 without a time P", Severity.ERROR)
             else:
-                control.event("dwell", seconds)
+                control.add_event("dwell", seconds)
         elif code == SETUP:
             self._set_up(block)
         elif code in AXIS_OFFSETS:
@@ -88,7 +88,7 @@ class PlaceInterpreter(OWordInterpreter):
                 shift[axis] = value if code == 520 else shift[axis] * control.shifted + position[axis] - value
             elif not control.shifted:
                 shift[axis] = 0.0
-        if float(np.abs(shift).max()) > FARTHEST:
+        if float(np.abs(shift).max()) > LARGEST_POSITION:
             raise BlockError("an offset is larger than any machine")
         control.shift, control.shifted = shift, True
         control.refresh()
@@ -114,7 +114,7 @@ class PlaceInterpreter(OWordInterpreter):
             raise BlockError("G10 L20 takes no R")
         point = control.without_length(control.machine_position())
         shift = control.shift if control.shifted else np.zeros(6)
-        unturned = turn(2, -rotation)
+        unturned = rotation_matrix(2, -rotation)
         inside = point - values
         inside[:3] = unturned @ inside[:3]
         inside -= shift
@@ -127,9 +127,9 @@ class PlaceInterpreter(OWordInterpreter):
                 values[axis] = value
             else:
                 change[axis] = inside[axis] - value
-        change[:3] = turn(2, rotation) @ change[:3]
+        change[:3] = rotation_matrix(2, rotation) @ change[:3]
         values = values + change
-        if float(np.abs(values).max()) > FARTHEST or abs(rotation) > FARTHEST:
+        if float(np.abs(values).max()) > LARGEST_POSITION or abs(rotation) > LARGEST_POSITION:
             raise BlockError("an offset is larger than any machine")
         control.set_values(number, Offset(values, rotation))
 
@@ -138,11 +138,11 @@ class PlaceInterpreter(OWordInterpreter):
         value = block.take(name)
         if value is None:
             return None
-        if axis > 2 and name not in self._control.names:
+        if axis > 2 and name not in self._control.rotary_names:
             if value:
                 self._note(f"{name}: the machine has no such axis", Severity.ERROR)
             return None
-        return value * self._control.lengths if axis < 3 else value
+        return value * self._control.length_unit if axis < 3 else value
 
     def _go_home(self, code: int, block: Block) -> None:
         """G28 and G30: over the point that the block says to the stored one, all axes or those of the block."""
@@ -151,16 +151,16 @@ class PlaceInterpreter(OWordInterpreter):
         kind, control.kind = control.kind, RAPID
         self._count(1)
         control.move(axes, None)
-        names = axes or dict.fromkeys((*"XYZ", *control.names))
+        names = axes or dict.fromkeys((*"XYZ", *control.rotary_names))
         stored = self._homes[code]
-        scale = control.lengths
-        goal: dict[str, Word] = {
-            name: (stored.get(name, 0.0) / (scale if name in "XYZ" else 1.0), How.ABSOLUTE) for name in names
+        scale = control.length_unit
+        goal: dict[str, AxisWord] = {
+            name: (stored.get(name, 0.0) / (scale if name in "XYZ" else 1.0), PositionMode.ABSOLUTE) for name in names
         }
         control.machine_move(goal, feed_written=False)
         control.kind = kind
 
-    def _programmed(self, axes: dict[str, Word]) -> dict[str, Word]:
+    def _programmed(self, axes: dict[str, AxisWord]) -> dict[str, AxisWord]:
         """Axis words with the offsets of rotary axes in them."""
         if not self._control.absolute:
             return axes

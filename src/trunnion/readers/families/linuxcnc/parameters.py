@@ -7,13 +7,13 @@ from typing import Final
 from trunnion.readers.rs274.expressions import COMMON, Arithmetic, BlockError, Value
 
 #: The highest parameter.
-HIGHEST: Final = 5602
+MAX_NUMBER: Final = 5602
 
 #: Parameters of a subprogram's own.
 LOCAL: Final = 30
 
 #: Names that a program may have at most.
-MOST: Final = 50_000
+MAX_VARIABLES: Final = 50_000
 
 #: Numbers nearer than this are equal.
 EQUAL: Final = 1e-4
@@ -89,8 +89,8 @@ class Parameters:
             return found
         if isinstance(key, str):
             raise BlockError(f"#<{key}> has no value")
-        if not 1 <= key <= HIGHEST:
-            raise BlockError(f"#{key} is not from 1 to {HIGHEST}")
+        if not 1 <= key <= MAX_NUMBER:
+            raise BlockError(f"#{key} is not from 1 to {MAX_NUMBER}")
         if key > 5000:
             raise BlockError(f"#{key} is a value that only the control knows")
         return 0.0
@@ -108,16 +108,16 @@ class Parameters:
     def set(self, key: int | str, value: float) -> None:
         """Set a parameter."""
         if isinstance(key, int):
-            if not 1 <= key <= HIGHEST:
-                raise BlockError(f"#{key} is not from 1 to {HIGHEST}")
+            if not 1 <= key <= MAX_NUMBER:
+                raise BlockError(f"#{key} is not from 1 to {MAX_NUMBER}")
             if key > 5000:
                 raise BlockError(f"#{key} is set by the control, not by programs")
             self._numbers[key] = value
             return
         table = self._global if key.startswith("_") else self._local[-1]
         table[key] = value
-        if len(table) > MOST:
-            raise BlockError(f"a program has more than {MOST} names")
+        if len(table) > MAX_VARIABLES:
+            raise BlockError(f"a program has more than {MAX_VARIABLES} names")
 
     def enter(self, arguments: list[float]) -> None:
         """Begin a subprogram: #1 to #30 are its own, and so are names without an underscore."""

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from trunnion.readers.common.text import Text
+from trunnion.readers.common.source_text import SourceText
 
 #: How names of programs end.
 SUFFIXES: Final = (".NGC", ".NC", "")
 
 #: How deep control structures may stand inside each other.
-DEEPEST: Final = 64
+MAX_NESTING: Final = 64
 
 _O_WORD = re.compile(
     rb"^[ \t]*(?:/[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?O[ \t]*(<[^<>\n]{1,100}>|[0-9]{1,9})[ \t]*"
@@ -50,11 +50,11 @@ def label_of(text: str) -> str:
     return plain if plain.startswith("<") else str(int(plain))
 
 
-class LinuxcncText(Text):
+class LinuxcncText(SourceText):
     """A program file with the places where its O words lead."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        # Shared by all that run the same text: see ``again``.
+        # Shared by all that run the same text: see ``restarted``.
         self._places = _Places()
         super().__init__(path, whole=whole)
 
@@ -107,8 +107,8 @@ class LinuxcncText(Text):
                     subprograms[label] = structure
                 by_line[line] = structure
                 open_.append((label, structure))
-                if len(open_) > DEEPEST:
-                    raise self.problem(line, f"nests control structures deeper than {DEEPEST} levels")
+                if len(open_) > MAX_NESTING:
+                    raise self.problem(line, f"nests control structures deeper than {MAX_NESTING} levels")
         if open_:
             structure = open_[-1][1]
             raise self.problem(structure.begin, f"begins {structure.word}, which never ends")

@@ -9,10 +9,10 @@ OFFSETS: Final = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 LENGTHS: Final = {430: True, 490: False}
 
 #: G codes that change how the control drives, or what it does with tool lengths besides.
-SILENT: Final = frozenset({80, 400, 431, 432, 610, 611, 640, 911, 901, 970})
+WITHOUT_PATH_EFFECT: Final = frozenset({80, 400, 431, 432, 610, 611, 640, 911, 901, 970})
 
 #: G codes that are known and not simulated: text, and whether the path is wrong without it.
-NAMED: Final = {
+NOT_SIMULATED: Final = {
     50: ("a spline, taken as nothing", True),
     51: ("a spline, taken as nothing", True),
     52: ("a NURBS, taken as nothing", True),
@@ -44,7 +44,7 @@ NAMED: Final = {
 }
 
 #: G codes whose motion is a straight line here, in force until another one.
-LINES: Final = frozenset({330, 382, 383, 384, 385})
+TAKEN_AS_LINES: Final = frozenset({330, 382, 383, 384, 385})
 
 #: Rigid tapping: in by the pitch, and by the spindle's turning back out to where it began.
 RIGID_TAP: Final = 331
@@ -53,7 +53,7 @@ RIGID_TAP: Final = 331
 NO_MOTION: Final = frozenset({431, 432, 50, 51, 52, 53, 62, 63, 700, 710, 711, 712, 720, 721, 722, 760})
 
 #: Words that belong to a code, and that need no look here.
-WORDS: Final = {
+WORDS_OF_CODE: Final = {
     430: "H",
     431: "XYZABCUVW",
     432: "H",
@@ -79,7 +79,7 @@ WORDS: Final = {
 }
 
 #: M codes that change how the control drives, and their words.
-SILENT_M: Final = {
+WITHOUT_PATH_EFFECT_M: Final = {
     48: "",
     49: "",
     50: "P",
@@ -96,7 +96,7 @@ SILENT_M: Final = {
 }
 
 #: M codes that are known and not simulated.
-NAMED_M: Final = {
+NOT_SIMULATED_M: Final = {
     70: "what is in force is not kept for later",
     71: "what is in force is not kept for later",
     72: "what is in force is not brought back",

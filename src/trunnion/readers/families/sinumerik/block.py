@@ -8,30 +8,32 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.readers.common.rows import Note
-from trunnion.readers.common.word import How, Word
-from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, Reader, Value, whole
+from trunnion.readers.common.axis_word import AxisWord, PositionMode
+from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, ExpressionReader, Value, whole
 from trunnion.readers.families.sinumerik.tokens import Sort, Token
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
     ACTIVE,
     FLOW,
     FRAMES,
-    NAMED,
+    NOT_SIMULATED,
     ORIENTATION,
-    SILENT,
-    SILENT_CALLS,
-    SILENT_VALUES,
+    POSITION_MODES,
     TOOL_FRAMES,
     TYPES,
-    WAYS,
+    WITHOUT_PATH_EFFECT,
+    WITHOUT_PATH_EFFECT_CALLS,
+    WITHOUT_PATH_EFFECT_VALUES,
 )
 
 #: Larger feeds, in any unit, are slips of the program.
-FASTEST: Final = 1e9
+MAX_FEED: Final = 1e9
 
 #: Names that stand alone and are handed to the interpreter.
-_MODES: Final = FRAMES | ORIENTATION | SILENT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "TRAFOOF", "TRAORI"})
+_MODES: Final = (
+    FRAMES | ORIENTATION | WITHOUT_PATH_EFFECT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "TRAFOOF", "TRAORI"})
+)
 
 #: Names with a value that belong to circles and frames.
 _PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
@@ -56,9 +58,9 @@ class Block:
     params   I, J, K, I1, J1, K1, CR, AR, TURN, RPL
     """
 
-    axes: dict[str, Word] = field(default_factory=dict)
+    axes: dict[str, AxisWord] = field(default_factory=dict)
     vector: dict[str, float] = field(default_factory=dict)
-    params: dict[str, Word] = field(default_factory=dict)
+    params: dict[str, AxisWord] = field(default_factory=dict)
     g: list[int] = field(default_factory=list)
     words: list[str] = field(default_factory=list)
     m: list[int] = field(default_factory=list)
@@ -86,7 +88,7 @@ class BlockReader:
     def read(self, tokens: tuple[Token, ...], at: int, variables: Variables) -> Block:
         """Read from a token on; what is not understood is noted, and the rest of the block is left."""
         block = Block()
-        reader = Reader(tokens, variables, at)
+        reader = ExpressionReader(tokens, variables, at)
         while (token := reader.token) is not None:
             before = reader.at
             try:
@@ -103,7 +105,7 @@ class BlockReader:
 
     # Letters
 
-    def _letter(self, reader: Reader, block: Block, variables: Variables) -> None:
+    def _letter(self, reader: ExpressionReader, block: Block, variables: Variables) -> None:
         letter = reader.peek()
         start = reader.at
         reader.at += 1
@@ -121,7 +123,7 @@ class BlockReader:
         else:
             self._address(reader, block, letter, extension, value, how)
 
-    def _extension(self, reader: Reader) -> str:
+    def _extension(self, reader: ExpressionReader) -> str:
         """Digits between a letter and an equals sign, as in A3= or S2=."""
         token = reader.token
         if (
@@ -135,7 +137,7 @@ class BlockReader:
             return token.text
         return ""
 
-    def _parameter(self, reader: Reader, variables: Variables) -> None:
+    def _parameter(self, reader: ExpressionReader, variables: Variables) -> None:
         if reader.peek() == "[":
             index = reader.index()
             if len(index) != 1:
@@ -149,16 +151,16 @@ class BlockReader:
         reader.expect("=")
         variables.set_parameter(number, reader.number())
 
-    def _value(self, reader: Reader) -> tuple[Value, How]:
+    def _value(self, reader: ExpressionReader) -> tuple[Value, PositionMode]:
         """Read what follows an address: a number, or = and an expression, maybe inside AC() or its kin."""
-        if reader.takes("="):
+        if reader.accept("="):
             how = reader.peek()
-            if how in WAYS and reader.peek(1) == "(":
+            if how in POSITION_MODES and reader.peek(1) == "(":
                 reader.at += 2
                 value = reader.number()
                 reader.expect(")")
-                return value, How(how)
-            return reader.value(), How.AS_SET
+                return value, PositionMode(how)
+            return reader.value(), PositionMode.MODAL
         sign = 1.0
         if reader.peek() in ("+", "-"):
             sign = -1.0 if reader.peek() == "-" else 1.0
@@ -167,14 +169,16 @@ class BlockReader:
         if token is None or token.sort is not Sort.NUMBER:
             raise ExpressionError("a number is missing")
         reader.at += 1
-        return sign * token.value, How.AS_SET
+        return sign * token.value, PositionMode.MODAL
 
-    def _axis(self, block: Block, name: str, value: float, how: How) -> None:
+    def _axis(self, block: Block, name: str, value: float, how: PositionMode) -> None:
         if name in block.axes:
             self._note(f"{name} is written twice: the last one counts", Severity.WARNING)
         block.axes[name] = value, how
 
-    def _address(self, reader: Reader, block: Block, letter: str, extension: str, value: Value, how: How) -> None:
+    def _address(
+        self, reader: ExpressionReader, block: Block, letter: str, extension: str, value: Value, how: PositionMode
+    ) -> None:
         if letter == "T" and extension in ("", "0", "1"):
             block.tool = value if isinstance(value, str) else f"{value:.10g}"
             return
@@ -195,8 +199,8 @@ class BlockReader:
                 else:
                     self._note(f"S{extension}= speaks to another spindle: not followed", Severity.WARNING)
             case "F", "":
-                if not 0.0 <= number <= FASTEST:
-                    raise ExpressionError(f"a feed is not from 0 to {FASTEST:g}")
+                if not 0.0 <= number <= MAX_FEED:
+                    raise ExpressionError(f"a feed is not from 0 to {MAX_FEED:g}")
                 block.feed = number
             case "D", "":
                 block.edge = _code(number, "D")
@@ -224,7 +228,7 @@ class BlockReader:
 
     # Names
 
-    def _name(self, reader: Reader, block: Block, variables: Variables) -> None:
+    def _name(self, reader: ExpressionReader, block: Block, variables: Variables) -> None:
         name = reader.peek()
         follows = reader.peek(1)
         reader.at += 1
@@ -234,10 +238,10 @@ class BlockReader:
         elif name in _PARAMS and follows == "=":
             value, how = self._value(reader)
             block.params[name] = _number(value), how
-        elif name in SILENT_VALUES and follows in ("=", "["):
+        elif name in WITHOUT_PATH_EFFECT_VALUES and follows in ("=", "["):
             if follows == "[":
                 _skip(reader, "[", "]")
-            if reader.takes("="):
+            if reader.accept("="):
                 self._value(reader)
         elif name == "SPOS" and follows in ("=", "["):
             if follows == "[":
@@ -245,7 +249,7 @@ class BlockReader:
             reader.expect("=")
             value, _ = self._value(reader)
             block.words.append("SPOS")
-        elif name in NAMED:
+        elif name in NOT_SIMULATED:
             self._named(reader, name)
         elif follows in ("=", "["):
             self._assignment(reader, name, variables)
@@ -254,18 +258,18 @@ class BlockReader:
             if follows == "(":
                 numbers = reader.arguments()
                 block.traori = _number(numbers[0]) if numbers and numbers[0] is not None else 1.0
-        elif name in SILENT_CALLS and follows == "(":
+        elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
             _skip(reader, "(", ")")
         elif name in _MODES:
             block.words.append(name)
-        elif name in FLOW or name in TYPES or name in OPERATORS or name in WAYS:
+        elif name in FLOW or name in TYPES or name in OPERATORS or name in POSITION_MODES:
             raise ExpressionError(f"{name} cannot stand here")
         elif name in ACTIVE and name not in ("MSG", "SETAL"):
             raise ExpressionError(f"{name} needs a value")
         else:
             block.calls.append(read_call(reader, name))
 
-    def _named(self, reader: Reader, name: str) -> None:
+    def _named(self, reader: ExpressionReader, name: str) -> None:
         """Read a word that is known but not simulated, with all that belongs to it."""
         start = reader.at - 1
         if reader.peek() == "(":
@@ -277,7 +281,7 @@ class BlockReader:
             return
         self._note(f"{_text(reader.tokens, start, reader.at)} is known but not simulated", Severity.ERROR)
 
-    def _assignment(self, reader: Reader, name: str, variables: Variables) -> None:
+    def _assignment(self, reader: ExpressionReader, name: str, variables: Variables) -> None:
         if name.startswith("$"):
             raise ExpressionError(f"{name} is a system variable, which is not simulated")
         index = reader.index()
@@ -286,13 +290,13 @@ class BlockReader:
             self._note(f"{name} is not defined in the program: taken as a global variable", Severity.WARNING)
 
 
-def read_call(reader: Reader, name: str) -> Call:
+def read_call(reader: ExpressionReader, name: str) -> Call:
     """Read the arguments of a call whose name was just read."""
     if reader.peek() != "(":
         return Call(name)
     call = Call(name)
     reader.at += 1
-    if reader.takes(")"):
+    if reader.accept(")"):
         return call
     while True:
         start = reader.at
@@ -301,12 +305,12 @@ def read_call(reader: Reader, name: str) -> Call:
         else:
             call.arguments.append(reader.value())
         call.written.append(_text(reader.tokens, start, reader.at))
-        if reader.takes(")"):
+        if reader.accept(")"):
             return call
         reader.expect(",")
 
 
-def _skip(reader: Reader, opening: str, closing: str) -> None:
+def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
     """Step over brackets and all they hold."""
     reader.expect(opening)
     depth = 1

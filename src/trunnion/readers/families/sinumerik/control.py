@@ -12,18 +12,18 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.machines import Axis, Machine, Output, forward
-from trunnion.model.columns import Changes
-from trunnion.model.run import Written
+from trunnion.machines import AngleOutput, Axis, Machine, forward
+from trunnion.model.columns import StepColumnBuilder
+from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common import arcs, tilt
-from trunnion.readers.common.drilling import Step
-from trunnion.readers.common.frames import Frame
-from trunnion.readers.common.rows import FARTHEST, Note
-from trunnion.readers.common.scan import letters
+from trunnion.readers.common import arcs, tool_orientation
+from trunnion.readers.common.affine_map import AffineMap
+from trunnion.readers.common.axis_word import AxisWord, PositionMode
+from trunnion.readers.common.hole_motion import HoleMotion
+from trunnion.readers.common.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.common.scan import letter_table
 from trunnion.readers.common.settings import reading_of
-from trunnion.readers.common.virtual_control import LINEAR, Circle, Control
-from trunnion.readers.common.word import How, Word
+from trunnion.readers.common.virtual_control import LINEAR, Circle, VirtualControl
 
 #: Kinds of motion besides rapid and lines: G2, G3 and CIP.
 CLOCKWISE: Final = 2
@@ -31,58 +31,60 @@ COUNTER: Final = 3
 THROUGH: Final = 4
 
 
-class SinumerikControl(Control):
+class SinumerikControl(VirtualControl):
     """A Sinumerik at work on a machine."""
 
     no_offset = 500
 
-    def __init__(self, machine: Machine, note: Note, file: Changes[int], *, shortest: bool | None = None) -> None:
+    def __init__(
+        self, machine: Machine, note: Note, file: StepColumnBuilder[int], *, shortest: bool | None = None
+    ) -> None:
         self._machine_vectors = False
         #: From TOROT or TOFRAME to what ends them: Z of the frame lies along the tool. Settings say where X and Y lie,
         #: and whether it is a frame of its own, that no TRANS takes away.
         self.tool_frame = False
         super().__init__(machine, note, file, shortest=shortest)
-        self.table = letters((self.names[0], self.names[1]), comment=";", assign="=")
+        self.table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
 
-    def shorter(self, axis: Axis) -> bool:
+    def takes_shortest_path(self, axis: Axis) -> bool:
         """With TRAORI, but for axes whose values are written as they wind."""
-        return self.tcp and axis.output is not Output.NONE
+        return self.tcp and axis.output is not AngleOutput.NONE
 
-    def _vectors(self, frame: Frame) -> Floats:
-        return np.eye(3) if self._machine_vectors else super()._vectors(frame)
+    def _vector_map(self, frame: AffineMap) -> Floats:
+        return np.eye(3) if self._machine_vectors else super()._vector_map(frame)
 
     @property
-    def _length(self) -> Floats:
+    def _length_offset(self) -> Floats:
         length = np.zeros(3)
-        if self.edge.now > 0:
-            length[self.plane] = self.machine.tool_length or 0.0
+        if self.edge.current > 0:
+            length[self.plane_axis] = self.machine.tool_length or 0.0
         return length
 
     def set_edge(self, edge: int) -> None:
         """D word: the offsets of the tool."""
-        if not self.machine.tool_length or (edge > 0) == (self.edge.now > 0):
+        if not self.machine.tool_length or (edge > 0) == (self.edge.current > 0):
             self.edge.set(self.row, edge)
             return
-        with self.change():
+        with self.frame_change():
             self.edge.set(self.row, edge)
 
     def set_working_plane(self, plane: int) -> None:
         """G17, G18, G19, by the axis that stands on the plane."""
-        if not self.machine.tool_length or plane == self.plane:
-            self.plane = plane
+        if not self.machine.tool_length or plane == self.plane_axis:
+            self.plane_axis = plane
             return
-        with self.change():
-            self.plane = plane
+        with self.frame_change():
+            self.plane_axis = plane
 
     def set_machine_vectors(self, on: bool) -> None:
         """ORIMKS or ORIWKS."""
-        self.settle()
+        self.resolve_rows()
         self._machine_vectors = on
-        self._remap()
+        self._update_maps()
 
     # Circles
 
-    def circle(self, params: Mapping[str, Word], axes: Mapping[str, Word]) -> Circle | None:
+    def circle(self, params: Mapping[str, AxisWord], axes: Mapping[str, AxisWord]) -> Circle | None:
         """The circle that the motion in force makes of a block; None if it makes lines.
 
         params   I, J, K, I1, J1, K1, CR, AR, TURN
@@ -90,54 +92,54 @@ class SinumerikControl(Control):
         """
         if self.kind <= LINEAR:
             return None
-        in_plane = any(name in axes for axis, name in enumerate("XYZ") if axis != self.plane)
+        in_plane = any(name in axes for axis, name in enumerate("XYZ") if axis != self.plane_axis)
         return partial(self._arc, params, in_plane)
 
-    def _arc(self, params: Mapping[str, Word], in_plane: bool, start: Floats, end: Floats) -> arcs.Arc:
-        turns = int(params.get("TURN", (0.0, How.AS_SET))[0])
+    def _arc(self, params: Mapping[str, AxisWord], in_plane: bool, start: Floats, end: Floats) -> arcs.Arc:
+        turns = int(params.get("TURN", (0.0, PositionMode.MODAL))[0])
         if not 0 <= turns < 1000:
             raise arcs.ArcError(f"TURN={turns} is not from 0 to 999")
-        if any(abs(value) * self.lengths > FARTHEST for value, _ in params.values()):
+        if any(abs(value) * self.length_unit > LARGEST_POSITION for value, _ in params.values()):
             raise arcs.ArcError("a circle with numbers that no machine has")
         if self.kind != THROUGH:
             return self._plane_arc(params, in_plane, turns, start, end)
         through = end.copy()
         for axis, name in enumerate(("I1", "J1", "K1")):
-            value, how = params.get(name, (0.0, How.INCREMENTAL))
-            value *= self.lengths
-            through[axis] = start[axis] + value if self._adds(how) else value
+            value, how = params.get(name, (0.0, PositionMode.INCREMENTAL))
+            value *= self.length_unit
+            through[axis] = start[axis] + value if self._is_incremental(how) else value
         return arcs.by_points(start, through, end, turns)
 
     def _plane_arc(
-        self, params: Mapping[str, Word], in_plane: bool, turns: int, start: Floats, end: Floats
+        self, params: Mapping[str, AxisWord], in_plane: bool, turns: int, start: Floats, end: Floats
     ) -> arcs.Arc:
         clockwise = self.kind == CLOCKWISE
         centre = None
         for axis, name in enumerate("IJK"):
             if name not in params:
                 continue
-            if axis == self.plane:
+            if axis == self.plane_axis:
                 self.note(f"{name} has no meaning for a circle in this plane", Severity.WARNING)
                 continue
             centre = start.copy() if centre is None else centre
             value, how = params[name]
-            value *= self.lengths
-            centre[axis] = value if how is How.ABSOLUTE else start[axis] + value
+            value *= self.length_unit
+            centre[axis] = value if how is PositionMode.ABSOLUTE else start[axis] + value
         if "CR" in params:
-            radius = params["CR"][0] * self.lengths
+            radius = params["CR"][0] * self.length_unit
             if centre is not None:
                 self.note("CR= and a centre in one block: CR= counts", Severity.ERROR)
-            return arcs.by_radius(start, end, radius, self.plane, clockwise, turns)
+            return arcs.by_radius(start, end, radius, self.plane_axis, clockwise, turns)
         if "AR" in params:
             angle = params["AR"][0]
             if centre is None:
-                return arcs.by_angle(start, end, angle, self.plane, clockwise, turns)
-            arc = arcs.by_angle_and_centre(start, centre, angle, self.plane, clockwise, turns)
-            arc.end[self.plane] = end[self.plane]
+                return arcs.by_angle(start, end, angle, self.plane_axis, clockwise, turns)
+            arc = arcs.by_angle_and_centre(start, centre, angle, self.plane_axis, clockwise, turns)
+            arc.end[self.plane_axis] = end[self.plane_axis]
             return arc
         if centre is None:
             raise arcs.ArcError("the circle has no centre" if in_plane else "the circle has neither end nor centre")
-        return arcs.by_centre(start, end, centre, self.plane, clockwise, turns)
+        return arcs.by_centre(start, end, centre, self.plane_axis, clockwise, turns)
 
     # Frames along the tool
 
@@ -146,8 +148,8 @@ class SinumerikControl(Control):
         """Whether cycles turn the frame as TOROT does while TCP is on: the machine's own do, Siemens' do not."""
         table = reading_of(self.machine)
         along = table.flag("cycles_along_tool", False)
-        table.finish()
-        table.check()
+        table.report_unread_keys()
+        table.raise_problems()
         return along
 
     def turn_frame(self, word: str) -> None:
@@ -155,67 +157,71 @@ class SinumerikControl(Control):
         program = self.program_frame
         if word.endswith("OF"):
             if self.tool_frame:
-                self.set_program_frame(Frame(shift=program.shift), old=False)
-                self.event("frame", "")
+                self.set_program_frame(AffineMap(shift=program.shift), keep_base=False)
+                self.add_event("frame", "")
             self.tool_frame = False
             return
         if not self.tcp or self.tilted or (not self.tool_frame and not np.array_equal(program.linear, np.eye(3))):
             self.note(f"{word} without TRAORI, or on top of a turned frame, is not simulated", Severity.ERROR)
             return
-        self.set_program_frame(self._along_tool(program.shift if word.startswith("TOROT") else np.zeros(3)), old=False)
+        self.set_program_frame(
+            self._along_tool(program.shift if word.startswith("TOROT") else np.zeros(3)), keep_base=False
+        )
         self.tool_frame = True
-        self.event("frame", word)
+        self.add_event("frame", word)
 
-    def _along_tool(self, zero: Floats) -> Frame:
+    def _along_tool(self, zero: Floats) -> AffineMap:
         """The frame at a zero whose Z lies along the tool, and X in the plane of X and Z of the work offset."""
-        self.settle()
-        z = forward(self.machine, self.held[None])[1][0]
+        self.resolve_rows()
+        z = forward(self.machine, self.current_joints[None])[1][0]
         x = np.array([z[2], 0.0, -z[0]])
         length = float(np.linalg.norm(x))
         x = np.array([1.0, 0.0, 0.0]) if length < 1e-9 else x / length
-        return Frame(np.column_stack((x, np.cross(z, x), z)), zero)
+        return AffineMap(np.column_stack((x, np.cross(z, x), z)), zero)
 
-    def drill(self, steps: list[Step]) -> None:
+    def drill(self, steps: list[HoleMotion]) -> None:
         """A drilling cycle where the tool is; along the tool where the definition says that cycles do so."""
         turns = self.tcp and not (self.tilted or self.tool_frame) and self._cycles_along_tool
         program = self.program_frame
         if turns:
-            self.set_program_frame(self._along_tool(program.shift), old=False)
-        if (turns or self.tool_frame) and any(any(step.aside) for step in steps):
+            self.set_program_frame(self._along_tool(program.shift), keep_base=False)
+        if (turns or self.tool_frame) and any(any(step.lateral) for step in steps):
             self.note("the cycle lifts off along X and Y of a frame that the control's settings turn", Severity.ERROR)
         super().drill(steps)
         if turns:
-            self.set_program_frame(program, old=False)
+            self.set_program_frame(program, keep_base=False)
 
     # CYCLE800
 
-    def swivel(self, frame: Frame, *, add: bool, direction: float, direct: tuple[float, float] | None) -> None:
+    def swivel(self, frame: AffineMap, *, add: bool, direction: float, direct: tuple[float, float] | None) -> None:
         """CYCLE800: a swivelled plane, and the rotary axes to it.
 
         add         on top of the plane and frames in force, instead of in their place
         direction   -1 or 1: the solution with the lower or higher value of the second rotary axis; 0: do not move
         direct      rotary values that the cycle gave itself; the plane is then the one they make
         """
-        self.settle()
-        outer = self.frame if add else Frame()
+        self.resolve_rows()
+        outer = self.frame if add else AffineMap()
         rotary: tuple[float, float] | None = direct
         if direct is not None:
-            frame = Frame(tilt.tool_frame(self.machine, direct) @ frame.linear, frame.shift)
-        total = outer.then(frame)
+            frame = AffineMap(tool_orientation.tool_frame(self.machine, direct) @ frame.linear, frame.shift)
+        total = outer.compose(frame)
         if rotary is None and direction:
             rotary = self._solution(total.linear[:, 2], direction)
         if rotary is not None:
-            bits = int(Written.FIRST | Written.SECOND)
-            self.move_axes(Kind.RAPID, self.held[self._slides].copy(), list(rotary), self.default_way, bits)
+            bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND)
+            self.move_axes(
+                Kind.RAPID, self.current_joints[self._slides].copy(), list(rotary), self.default_turn_rules, bits
+            )
         self.set_plane(total)
 
     def _solution(self, normal: Floats, direction: float) -> tuple[float, float] | None:
         """Rotary values whose tool axis is ``normal``, with the second axis on the side of ``direction``."""
-        pairs = tilt.solutions(self.machine, normal, self.held)
+        pairs = tool_orientation.solutions(self.machine, normal, self.current_joints)
         if not pairs:
             self.note("CYCLE800: no rotary position stands the tool on this plane", Severity.ERROR)
             return None
-        inside = [pair for pair in pairs if tilt.fits(self.machine, pair)]
+        inside = [pair for pair in pairs if tool_orientation.fits(self.machine, pair)]
         if not inside:
             self.note("CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return None
@@ -223,4 +229,4 @@ class SinumerikControl(Control):
         if wanted not in inside:
             self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
             wanted = inside[0]
-        return tilt.turned_inside(self.machine, wanted, self.held)
+        return tool_orientation.turned_inside(self.machine, wanted, self.current_joints)

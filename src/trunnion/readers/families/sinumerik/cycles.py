@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from trunnion.readers.common.drilling import FASTEST, MOST_PECKS, CycleError, Step
+from trunnion.readers.common.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion
 
 #: How far a chip-breaking peck backs off where the program does not say it, mm.
 CHIP_BREAK: Final = 1.0
@@ -32,7 +32,7 @@ class Heights:
 Arguments = Sequence[float | None]
 
 
-def steps(name: str, arguments: Arguments, rpm: float) -> list[Step]:
+def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotion]:
     """Return the motions of a cycle at one hole.
 
     Parameters
@@ -46,9 +46,9 @@ def steps(name: str, arguments: Arguments, rpm: float) -> list[Step]:
     """
     heights = _heights(arguments)
     made = CYCLES[name](arguments, heights, rpm)
-    if any(step.feed is not None and abs(step.feed) > FASTEST for step in made):
-        raise CycleError("has a feed that no machine has")
-    return [Step(True, heights.start), *made, Step(True, heights.retract)]
+    if any(step.feed is not None and abs(step.feed) > MAX_FEED for step in made):
+        raise CycleExecutionError("has a feed that no machine has")
+    return [HoleMotion(True, heights.start), *made, HoleMotion(True, heights.retract)]
 
 
 def _get(arguments: Arguments, place: int) -> float | None:
@@ -65,26 +65,26 @@ def _heights(arguments: Arguments) -> Heights:
     retract, depth, deep = _get(arguments, 1), _get(arguments, 4), _get(arguments, 5)
     reference = _or(arguments, 2)
     if retract is None:
-        raise CycleError("has no retract plane")
+        raise CycleExecutionError("has no retract plane")
     if depth is None and deep is None:
-        raise CycleError("has no depth")
+        raise CycleExecutionError("has no depth")
     down = -1.0 if retract >= reference else 1.0
     # Where both are given, the one relative to the reference plane counts.
     if deep:
         depth = reference + down * abs(deep)
     elif depth is None:
-        raise CycleError("has no depth")
+        raise CycleExecutionError("has no depth")
     sign = -1.0 if depth < reference else 1.0
     if depth == reference or sign * (retract - reference) > 0.0:
-        raise CycleError("has a retract plane below the reference plane")
+        raise CycleExecutionError("has a retract plane below the reference plane")
     return Heights(retract, reference, reference - sign * abs(_or(arguments, 3)), depth)
 
 
-def _drill(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
-    return [Step(False, heights.depth, dwell=_or(arguments, 6))]
+def _drill(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
+    return [HoleMotion(False, heights.depth, dwell=_or(arguments, 6))]
 
 
-def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
     """CYCLE83: strokes that get shorter, with full retraction (VARI 1) or chip breaking (0)."""
     first, deep = _get(arguments, 6), _get(arguments, 7)
     sign = heights.sign
@@ -99,32 +99,32 @@ def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
     full = _or(arguments, 12) == 1.0
     back = _or(arguments, 15) or CHIP_BREAK
     entry = _or(arguments, 17) or _entry_gap(total)
-    made: list[Step] = []
-    depths = strokes(total, stroke, _or(arguments, 8), _or(arguments, 14))
+    made: list[HoleMotion] = []
+    depths = peck_depths(total, stroke, _or(arguments, 8), _or(arguments, 14))
     factor = _or(arguments, 11, 1.0)
     for count, depth in enumerate(depths):
         height = heights.reference + sign * depth
         last = count == len(depths) - 1
         if count and full:
-            made.append(Step(True, heights.start, dwell=again))
+            made.append(HoleMotion(True, heights.start, dwell=again))
             above = max(depths[count - 1] - entry, 0.0)
-            made.append(Step(True, heights.reference + sign * above))
+            made.append(HoleMotion(True, heights.reference + sign * above))
         elif count:
-            made.append(Step(False, heights.reference + sign * max(depths[count - 1] - back, 0.0)))
+            made.append(HoleMotion(False, heights.reference + sign * max(depths[count - 1] - back, 0.0)))
         slow = -factor if count == 0 and 0.0 < factor < 1.0 else None
         wait = (_or(arguments, 16) or dwell) if last else dwell
-        made.append(Step(False, height, feed=slow, dwell=wait))
+        made.append(HoleMotion(False, height, feed=slow, dwell=wait))
     return made
 
 
-def strokes(total: float, first: float, less: float, least: float) -> list[float]:
+def peck_depths(total: float, first: float, less: float, least: float) -> list[float]:
     """Depths, mm below the reference plane, that CYCLE83 drills to one after another.
 
     Each stroke is shorter by ``less`` (a factor if negative) but not shorter than ``less`` or ``least``; the last two
     share what is left in equal parts if they would otherwise leave a thin rest.
     """
     if first <= 0.0:
-        raise CycleError("has a first depth above the reference plane")
+        raise CycleExecutionError("has a first depth above the reference plane")
     depths = [min(first, total)]
     stroke = first
     floor = max(abs(least), less if less > 0.0 else 0.0)
@@ -134,8 +134,8 @@ def strokes(total: float, first: float, less: float, least: float) -> list[float
             stroke = max(stroke * abs(less), floor)
         elif less > 0.0:
             stroke = max(stroke - less, floor)
-        if stroke <= 0.0 or len(depths) >= MOST_PECKS:
-            raise CycleError(f"would peck more than {MOST_PECKS} times")
+        if stroke <= 0.0 or len(depths) >= MAX_PECKS:
+            raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
         if left <= stroke:
             step = left
         elif left < 2.0 * floor:
@@ -169,68 +169,71 @@ def _pitch(size: float | None, pitch: float | None, unit: float) -> float:
         return 25.4 * value if unit == 3.0 else value
     if size and abs(size) in PITCHES:
         return PITCHES[int(abs(size))]
-    raise CycleError("has no pitch")
+    raise CycleExecutionError("has no pitch")
 
 
-def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
     """CYCLE84, without a compensating chuck; pecks if VARI and DAM say so."""
     pitch = _pitch(_get(arguments, 8), _get(arguments, 9), _or(arguments, 14))
     down = (_or(arguments, 11) or rpm) * pitch
     up = (_or(arguments, 12) or _or(arguments, 11) or rpm) * pitch
     variant, stroke = _or(arguments, 16), abs(_or(arguments, 17))
     total = abs(heights.depth - heights.reference)
-    depths = strokes(total, stroke, 0.0, 0.0) if variant and stroke else [total]
-    made: list[Step] = []
+    depths = peck_depths(total, stroke, 0.0, 0.0) if variant and stroke else [total]
+    made: list[HoleMotion] = []
     for count, depth in enumerate(depths):
         if count:
             above = depths[count - 1] - (_or(arguments, 18) or CHIP_BREAK)
             back = heights.start if variant == 2.0 else heights.reference + heights.sign * max(above, 0.0)
-            made.append(Step(False, back, feed=up))
+            made.append(HoleMotion(False, back, feed=up))
         last = count == len(depths) - 1
         wait = _or(arguments, 6) if last else 0.0
-        made.append(Step(False, heights.reference + heights.sign * depth, feed=down, dwell=wait))
-    return [*made, Step(False, heights.start, feed=up)]
+        made.append(HoleMotion(False, heights.reference + heights.sign * depth, feed=down, dwell=wait))
+    return [*made, HoleMotion(False, heights.start, feed=up)]
 
 
-def _tap_chuck(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+def _tap_chuck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
     """CYCLE840, with a compensating chuck: the feed follows from pitch and spindle, or is the one in force."""
     size, pitch = _get(arguments, 10), _get(arguments, 11)
     feed = rpm * _pitch(size, pitch, _or(arguments, 13)) if size or pitch else None
-    return [Step(False, heights.depth, feed=feed, dwell=_or(arguments, 6)), Step(False, heights.start, feed=feed)]
+    return [
+        HoleMotion(False, heights.depth, feed=feed, dwell=_or(arguments, 6)),
+        HoleMotion(False, heights.start, feed=feed),
+    ]
 
 
-def _ream(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+def _ream(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
     """CYCLE85: in at FFR, out at RFF."""
     down, up = _get(arguments, 7), _get(arguments, 8)
     return [
-        Step(False, heights.depth, feed=down or None, dwell=_or(arguments, 6)),
-        Step(False, heights.start, feed=up or None),
+        HoleMotion(False, heights.depth, feed=down or None, dwell=_or(arguments, 6)),
+        HoleMotion(False, heights.start, feed=up or None),
     ]
 
 
-def _bore(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+def _bore(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
     """CYCLE86: spindle oriented at depth, lift-off by RPA, RPO, RPAP, out at rapid, back over the hole."""
-    aside = (_or(arguments, 8), _or(arguments, 9))
+    lateral = (_or(arguments, 8), _or(arguments, 9))
     lifted = heights.depth + _or(arguments, 10)
     return [
-        Step(False, heights.depth, dwell=_or(arguments, 6)),
-        Step(True, lifted, aside=aside),
-        Step(True, heights.start, aside=aside),
+        HoleMotion(False, heights.depth, dwell=_or(arguments, 6)),
+        HoleMotion(True, lifted, lateral=lateral),
+        HoleMotion(True, heights.start, lateral=lateral),
     ]
 
 
-def _bore_out(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+def _bore_out(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
     """CYCLE89: out at the feed that went in."""
-    return [Step(False, heights.depth, dwell=_or(arguments, 6)), Step(False, heights.start)]
+    return [HoleMotion(False, heights.depth, dwell=_or(arguments, 6)), HoleMotion(False, heights.start)]
 
 
-def _stop_and_out(arguments: Arguments, heights: Heights, rpm: float) -> list[Step]:
+def _stop_and_out(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
     """CYCLE87: spindle and program stop at depth; what stands in the dwell's place is the spindle's sense."""
-    return [Step(False, heights.depth)]
+    return [HoleMotion(False, heights.depth)]
 
 
 #: Cycles by name.
-CYCLES: Final[dict[str, Callable[[Arguments, Heights, float], list[Step]]]] = {
+CYCLES: Final[dict[str, Callable[[Arguments, Heights, float], list[HoleMotion]]]] = {
     "CYCLE81": _drill,
     "CYCLE82": _drill,
     "CYCLE83": _peck,

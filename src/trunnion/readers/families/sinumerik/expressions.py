@@ -13,10 +13,10 @@ from trunnion.readers.families.sinumerik.tokens import Sort, Token
 Value = float | str
 
 #: How deep parentheses and signs may nest.
-DEEPEST: Final = 40
+MAX_NESTING: Final = 40
 
 #: The longest text that concatenation may make.
-LONGEST_TEXT: Final = 1000
+MAX_TEXT_LENGTH: Final = 1000
 
 #: Larger numbers are none that a machine could mean.
 LARGEST: Final = 1e300
@@ -87,7 +87,7 @@ FUNCTIONS: Final[dict[str, tuple[int, Callable[..., float]]]] = {
 }
 
 
-class Reader:
+class ExpressionReader:
     """A place in a list of tokens, and how to go on from there."""
 
     def __init__(self, tokens: Sequence[Token], names: Names, at: int = 0) -> None:
@@ -108,7 +108,7 @@ class Reader:
             return self.tokens[at].text
         return ""
 
-    def takes(self, text: str) -> bool:
+    def accept(self, text: str) -> bool:
         """Step over a sign or name if it comes next."""
         if self.peek() == text:
             self.at += 1
@@ -117,7 +117,7 @@ class Reader:
 
     def expect(self, text: str) -> None:
         """Step over a sign that must come next."""
-        if not self.takes(text):
+        if not self.accept(text):
             found = self.token
             raise ExpressionError(f"expected {text}, found {found.text if found else 'the end of the block'}")
 
@@ -140,20 +140,20 @@ class Reader:
         """Read ``(a, , b)``; values left out are None."""
         values: list[Value | None] = []
         self.expect("(")
-        if self.takes(")"):
+        if self.accept(")"):
             return values
         while True:
             values.append(None if self.peek() in (",", ")") else self.value())
-            if self.takes(")"):
+            if self.accept(")"):
                 return values
             self.expect(",")
 
     def index(self) -> tuple[int, ...]:
         """Read ``[i]`` or ``[i, j]`` if it comes next."""
-        if not self.takes("["):
+        if not self.accept("["):
             return ()
         found = [self.integer()]
-        while self.takes(","):
+        while self.accept(","):
             found.append(self.integer())
         self.expect("]")
         return tuple(found)
@@ -170,8 +170,8 @@ class Reader:
 
     def _unary(self) -> Value:
         self._depth += 1
-        if self._depth > DEEPEST:
-            raise ExpressionError(f"nests deeper than {DEEPEST} levels")
+        if self._depth > MAX_NESTING:
+            raise ExpressionError(f"nests deeper than {MAX_NESTING} levels")
         try:
             return self._primary()
         finally:
@@ -250,7 +250,7 @@ def _sound(value: float) -> float:
 def _apply(operator: str, left: Value, right: Value) -> Value:
     if operator == "<<":
         text = _text(left) + _text(right)
-        if len(text) > LONGEST_TEXT:
+        if len(text) > MAX_TEXT_LENGTH:
             raise ExpressionError("makes too long a text")
         return text
     if operator in ("==", "<>") and isinstance(left, str) and isinstance(right, str):

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 
 from trunnion.errors import Severity
 from trunnion.readers.common import interpreter
-from trunnion.readers.common.interpreter import End
-from trunnion.readers.common.rows import Note
+from trunnion.readers.common.interpreter import ProgramEnd
+from trunnion.readers.common.row_recorder import Note
 from trunnion.readers.families.sinumerik.block import Call
-from trunnion.readers.families.sinumerik.expressions import ExpressionError, Reader
+from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
 from trunnion.readers.families.sinumerik.text import SinumerikText
 from trunnion.readers.families.sinumerik.tokens import Sort, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
@@ -20,7 +20,7 @@ from trunnion.readers.families.sinumerik.words import TYPES
 
 
 @dataclass(slots=True)
-class Activation(interpreter.Activation):
+class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram being executed, and the cycle that is modal in it."""
 
     text: SinumerikText
@@ -28,7 +28,7 @@ class Activation(interpreter.Activation):
     modal: Call | None = None
 
 
-Handler = Callable[[Reader, Activation, int], None]
+Handler = Callable[[ExpressionReader, ActiveProgram, int], None]
 
 
 class Flow:
@@ -56,14 +56,14 @@ class Flow:
             **dict.fromkeys(("GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS"), self._goto),
         }
 
-    def _paired(self, reader: Reader, call: Activation, line: int) -> None:
+    def _paired(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         """See that the word has its other half, and go on."""
         call.text.partner(line)
 
-    def _ignore(self, reader: Reader, call: Activation, line: int) -> None:
+    def _ignore(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         pass
 
-    def _if(self, reader: Reader, call: Activation, line: int) -> None:
+    def _if(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         try:
             holds = bool(reader.number())
         except ExpressionError as error:
@@ -82,10 +82,10 @@ class Flow:
         if not holds:
             call.text.jump((middle or end) + 1)
 
-    def _else(self, reader: Reader, call: Activation, line: int) -> None:
+    def _else(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         call.text.jump(call.text.partner(line)[1] + 1)
 
-    def _while(self, reader: Reader, call: Activation, line: int) -> None:
+    def _while(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         end = call.text.partner(line)[1]
         try:
             holds = bool(reader.number())
@@ -95,23 +95,23 @@ class Flow:
         if not holds:
             call.text.jump(end + 1)
 
-    def _end_while(self, reader: Reader, call: Activation, line: int) -> None:
+    def _end_while(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         call.text.jump(call.text.partner(line)[1])
 
-    def _end_loop(self, reader: Reader, call: Activation, line: int) -> None:
+    def _end_loop(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         call.text.jump(call.text.partner(line)[1] + 1)
 
-    def _repeat(self, reader: Reader, call: Activation, line: int) -> None:
+    def _repeat(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         if reader.token is not None:
             raise ExpressionError("repeating a part of the program by its labels is not simulated")
         call.text.partner(line)
 
-    def _until(self, reader: Reader, call: Activation, line: int) -> None:
+    def _until(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         begin = call.text.partner(line)[1]
         if not reader.number():
             call.text.jump(begin + 1)
 
-    def _for(self, reader: Reader, call: Activation, line: int) -> None:
+    def _for(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         end = call.text.partner(line)[1]
         try:
             name, index = self._loop_variable(reader)
@@ -126,7 +126,7 @@ class Flow:
         if value > last:
             call.text.jump(end + 1)
 
-    def _end_for(self, reader: Reader, call: Activation, line: int) -> None:
+    def _end_for(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         begin = call.text.partner(line)[1]
         head = self._loop_head(call, begin)
         name, index = self._loop_variable(head)
@@ -138,7 +138,7 @@ class Flow:
         self._set(call, name, index, value)
         call.text.jump(begin + 1 if value <= last else line + 1)
 
-    def _loop_head(self, call: Activation, begin: int) -> Reader:
+    def _loop_head(self, call: ActiveProgram, begin: int) -> ExpressionReader:
         """Return a reader at the variable of the FOR block at a line."""
         here = call.text.line
         call.text.jump(begin)
@@ -146,9 +146,9 @@ class Flow:
         call.text.jump(here)
         tokens = tokenize(statement_)
         at = next((k for k, token in enumerate(tokens) if token.text == "FOR"), len(tokens))
-        return Reader(tokens, call.variables, at + 1)
+        return ExpressionReader(tokens, call.variables, at + 1)
 
-    def _loop_variable(self, reader: Reader) -> tuple[str, tuple[int, ...]]:
+    def _loop_variable(self, reader: ExpressionReader) -> tuple[str, tuple[int, ...]]:
         name = reader.peek()
         if not name or name == "=":
             raise ExpressionError("FOR needs a variable")
@@ -162,7 +162,7 @@ class Flow:
             raise ExpressionError("R needs a number")
         return name, index
 
-    def _get(self, call: Activation, name: str, index: tuple[int, ...]) -> float:
+    def _get(self, call: ActiveProgram, name: str, index: tuple[int, ...]) -> float:
         if name == "R":
             return call.variables.parameter(index[0])
         value = call.variables.variable(name, index)
@@ -170,17 +170,17 @@ class Flow:
             raise ExpressionError(f"{name} is a text")
         return value
 
-    def _set(self, call: Activation, name: str, index: tuple[int, ...], value: float) -> None:
+    def _set(self, call: ActiveProgram, name: str, index: tuple[int, ...], value: float) -> None:
         if name == "R":
             call.variables.set_parameter(index[0], value)
         elif not call.variables.assign(name, index, value):
             self._note(f"{name} is not defined in the program: taken as a global variable", Severity.WARNING)
 
-    def _goto(self, reader: Reader, call: Activation, line: int) -> None:
+    def _goto(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         reader.at -= 1
         self._goto_from(reader, call, line)
 
-    def _goto_from(self, reader: Reader, call: Activation, line: int) -> None:
+    def _goto_from(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         """Jump as the word says that comes next."""
         word = reader.peek()
         reader.at += 1
@@ -194,10 +194,10 @@ class Flow:
             call.text.jump(found)
         elif word != "GOTOC":
             self._note(f"the target {target} of {word} is missing: the program ends here", Severity.ERROR)
-            raise End
+            raise ProgramEnd
 
     def _target(
-        self, reader: Reader, call: Activation, line: int, *, forward: bool, backward: bool
+        self, reader: ExpressionReader, call: ActiveProgram, line: int, *, forward: bool, backward: bool
     ) -> tuple[str, int | None]:
         token = reader.token
         if token is None:
@@ -218,11 +218,11 @@ class Flow:
             return name, call.text.number(int(name[1:]), line, forward=forward, backward=backward)
         return name[:80], call.text.label(name, line, forward=forward, backward=backward)
 
-    def _case(self, reader: Reader, call: Activation, line: int) -> None:
+    def _case(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         value = reader.number()
         reader.expect("OF")
         while reader.token is not None:
-            taken = reader.takes("DEFAULT") or reader.number() == value
+            taken = reader.accept("DEFAULT") or reader.number() == value
             if not reader.peek().startswith("GOTO"):
                 raise ExpressionError("a jump must follow the value")
             if taken:
@@ -232,7 +232,7 @@ class Flow:
             numbered = reader.peek() == "N"
             reader.at += 2 if numbered else 1
 
-    def _def(self, reader: Reader, call: Activation, line: int) -> None:
+    def _def(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         kind = reader.peek()
         while kind and kind not in TYPES:
             reader.at += 1
@@ -248,7 +248,7 @@ class Flow:
                 return
             reader.expect(",")
 
-    def _define(self, reader: Reader, call: Activation, kind: str) -> None:
+    def _define(self, reader: ExpressionReader, call: ActiveProgram, kind: str) -> None:
         name = reader.peek()
         token = reader.token
         if token is None or token.sort not in (Sort.NAME, Sort.LETTER):
@@ -258,16 +258,16 @@ class Flow:
         if name == "R" and number is not None and number.sort is Sort.NUMBER:
             # Some programs declare R parameters, which need none.
             reader.at += 1
-            value = reader.number() if reader.takes("=") else 0.0
+            value = reader.number() if reader.accept("=") else 0.0
             call.variables.set_parameter(int(min(number.value, 1e6)), value)
             return
         if token.sort is not Sort.NAME:
             raise ExpressionError(f"{name} is no name for a variable")
         size = reader.index()
         call.variables.define(kind, name)
-        if not reader.takes("="):
+        if not reader.accept("="):
             return
-        if reader.takes("SET"):
+        if reader.accept("SET"):
             for index, element in enumerate(reader.arguments()):
                 if element is not None:
                     call.variables.assign(name, (index,), element)
@@ -278,15 +278,15 @@ class Flow:
             else:
                 call.variables.assign(name, (), given)
 
-    def _proc(self, reader: Reader, call: Activation, line: int) -> None:
+    def _proc(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         """Give the arguments of the call to the names of the PROC line."""
         handed = call.variables.handed
         reader.at += 1
-        if not reader.takes("("):
+        if not reader.accept("("):
             return
         place = 0
-        while not reader.takes(")"):
-            reader.takes("VAR")
+        while not reader.accept(")"):
+            reader.accept("VAR")
             kind = reader.peek()
             reader.at += 1
             if kind == "STRING":
@@ -296,8 +296,8 @@ class Flow:
                 raise ExpressionError("a parameter has a type and a name")
             reader.at += 1
             reader.index()
-            default = reader.value() if reader.takes("=") else None
+            default = reader.value() if reader.accept("=") else None
             given = handed[place] if place < len(handed) else None
             call.variables.define(kind, name, default if given is None else given)
             place += 1
-            reader.takes(",")
+            reader.accept(",")

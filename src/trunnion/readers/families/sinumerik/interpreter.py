@@ -8,21 +8,21 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.run import Orientation
-from trunnion.readers.common.drilling import CycleError, sane
-from trunnion.readers.common.interpreter import STEPS, End, Interpreter
-from trunnion.readers.common.rows import FARTHEST
-from trunnion.readers.common.scan import scan
-from trunnion.readers.common.text import Subprograms, Text
+from trunnion.readers.common.hole_motion import CycleExecutionError, finite
+from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, Interpreter, ProgramEnd
+from trunnion.readers.common.row_recorder import LARGEST_POSITION
+from trunnion.readers.common.scan import scan_blocks
+from trunnion.readers.common.source_text import SourceText, Subprograms
 from trunnion.readers.common.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.sinumerik import cycles
 from trunnion.readers.families.sinumerik.block import Block, BlockReader, Call, read_call
 from trunnion.readers.families.sinumerik.control import CLOCKWISE, COUNTER, THROUGH, SinumerikControl
-from trunnion.readers.families.sinumerik.expressions import ExpressionError, Reader, Value
-from trunnion.readers.families.sinumerik.flow import Activation, Flow
-from trunnion.readers.families.sinumerik.frames import statement
-from trunnion.readers.families.sinumerik.swivel import swivel
+from trunnion.readers.families.sinumerik.cycle800 import swivel
+from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader, Value
+from trunnion.readers.families.sinumerik.flow import ActiveProgram, Flow
+from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement
 from trunnion.readers.families.sinumerik.text import SUFFIXES, SinumerikText
-from trunnion.readers.families.sinumerik.tokens import LONGEST, Sort, Token, split_comment, tokenize
+from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Sort, Token, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
     CONSTANTS,
@@ -30,22 +30,22 @@ from trunnion.readers.families.sinumerik.words import (
     G_FEEDS,
     G_LIMITS,
     G_MACHINE,
-    G_NAMED,
     G_NO_MOTION,
+    G_NOT_SIMULATED,
     G_OFFSETS,
     G_PLANES,
-    G_SIDES,
-    G_SILENT,
+    G_RADIUS_COMPENSATION,
     G_SURFACE,
     G_UNITS,
+    G_WITHOUT_PATH_EFFECT,
+    M_AFTER_MOTION,
     M_CHANGE,
-    M_ENDS,
     M_EVENTS,
-    M_LATE,
+    M_PROGRAM_ENDS,
     M_RETURN,
     M_SPINDLE,
-    SILENT,
     TOOL_FRAMES,
+    WITHOUT_PATH_EFFECT,
 )
 
 #: Names with arguments that the interpreter knows; all others are subprograms.
@@ -56,10 +56,10 @@ _PLAIN = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FX
 _LOOK: Final = 48
 
 
-class SinumerikInterpreter(Interpreter[Activation]):
+class SinumerikInterpreter(Interpreter[ActiveProgram]):
     """Runs one Sinumerik program on one machine."""
 
-    text_type = SinumerikText
+    source_type = SinumerikText
 
     def __init__(
         self,
@@ -67,13 +67,13 @@ class SinumerikInterpreter(Interpreter[Activation]):
         machine: Machine,
         *,
         subprograms: Sequence[Path] = (),
-        step_limit: int = STEPS,
+        step_limit: int = DEFAULT_STEP_LIMIT,
         skip: bool = False,
         shortest: bool | None = None,
     ) -> None:
         super().__init__(path, machine, Subprograms(subprograms, SUFFIXES, "_N_"), step_limit=step_limit, skip=skip)
         self._control = SinumerikControl(machine, self._note, self._file, shortest=shortest)
-        self._reader = BlockReader(self._control.names, self._note)
+        self._reader = BlockReader(self._control.rotary_names, self._note)
         self._flow = {
             **Flow(self._note).handlers,
             "RET": self._return,
@@ -87,36 +87,36 @@ class SinumerikInterpreter(Interpreter[Activation]):
         """The virtual control."""
         return self._control
 
-    def _first(self, text: Text) -> Activation:
+    def _first(self, text: SourceText) -> ActiveProgram:
         assert isinstance(text, SinumerikText)
-        return Activation(text, 0, variables=Variables())
+        return ActiveProgram(text, 0, variables=Variables())
 
-    def _may_be_plain(self, text: Text) -> bool:
+    def _may_be_plain(self, text: SourceText) -> bool:
         call = self._stack[-1]
         if not self._control.absolute or call.modal is not None or self._control.tool_frame:
             return False
         begin = text.buffer[text.position : text.position + _LOOK].tobytes()
         return _PLAIN.match(begin) is not None
 
-    def _kernel(self, text: Text) -> None:
+    def _kernel(self, text: SourceText) -> None:
         control = self._control
-        scan(
+        scan_blocks(
             text.buffer,
             len(text.buffer),
             control.table,
-            control.tips,
-            control.lengths,
-            control.feeds,
-            control.default_way,
-            control.map,
-            control.turn,
-            control.counts,
-            control.place,
-            control.target(),
-            control.notes,
+            control.tip_programmed,
+            control.length_unit,
+            control.feed_unit,
+            control.default_turn_rules,
+            control.position_map,
+            control.vector_map,
+            control.counters,
+            control.commanded,
+            control.scan_target(),
+            control.scan_records,
         )
 
-    def _line(self, call: Activation, line: int, raw: str) -> None:
+    def _line(self, call: ActiveProgram, line: int, raw: str) -> None:
         """Execute a line that is not plain."""
         control = self._control
         raw = raw.rstrip("\r")
@@ -125,8 +125,8 @@ class SinumerikInterpreter(Interpreter[Activation]):
         if not stripped or stripped.startswith("%"):
             self._comment(line, comment)
             return
-        if len(words) > LONGEST:
-            self._note(f"the block is longer than {LONGEST} characters: it is not executed", Severity.ERROR)
+        if len(words) > MAX_LENGTH:
+            self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
             return
         tokens = tokenize(words)
         at = 0
@@ -155,13 +155,13 @@ class SinumerikInterpreter(Interpreter[Activation]):
         finally:
             self._comment(line, comment)
 
-    def _statement(self, call: Activation, line: int, tokens: tuple[Token, ...], at: int) -> None:
+    def _statement(self, call: ActiveProgram, line: int, tokens: tuple[Token, ...], at: int) -> None:
         first = tokens[at]
         flow = self._flow.get(first.text) if first.sort is Sort.NAME else None
         if flow is None:
             self._block(call, self._reader.read(tokens, at, call.variables))
             return
-        reader = Reader(tokens, call.variables, at + 1)
+        reader = ExpressionReader(tokens, call.variables, at + 1)
         try:
             flow(reader, call, line)
         except ExpressionError as error:
@@ -169,7 +169,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
 
     # Words
 
-    def _block(self, call: Activation, block: Block) -> None:
+    def _block(self, call: ActiveProgram, block: Block) -> None:
         """Carry out the words of a block, in the order in which the control does."""
         control = self._control
         machine_frame = "SUPA" in block.words
@@ -187,20 +187,20 @@ class SinumerikInterpreter(Interpreter[Activation]):
             self._dwell(block)
             return
         if block.feed is not None:
-            control.place[3] = block.feed * control.feeds
+            control.commanded[3] = block.feed * control.feed_unit
         if block.speed is not None and not G_LIMITS.intersection(block.g):
             control.rpm.set(control.row, abs(block.speed))
-            control.event("speed", abs(block.speed))
+            control.add_event("speed", abs(block.speed))
         if block.tool is not None:
-            control.choose(block.tool)
+            control.select_tool(block.tool)
         if block.edge is not None:
             control.set_edge(block.edge)
-        late = [code for code in block.m if code in M_LATE]
+        late = [code for code in block.m if code in M_AFTER_MOTION]
         for code in block.m:
             if code not in late:
                 self._m(code)
         for value in block.h:
-            control.event("h", value)
+            control.add_event("h", value)
         calls = block.calls
         if frame:
             self._frame(frame, block)
@@ -209,7 +209,7 @@ class SinumerikInterpreter(Interpreter[Activation]):
         elif block.axes or block.vector or (block.params and control.kind > LINEAR):
             if {"I", "J", "K"} & block.params.keys() and control.kind <= LINEAR:
                 self._note("I, J and K have no meaning for a straight line", Severity.WARNING)
-            if block.vector and not control.tips:
+            if block.vector and not control.tip_programmed:
                 self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.WARNING)
             if control.tool_frame and {"X", "Y"} & block.axes.keys():
                 self._note(
@@ -232,8 +232,8 @@ class SinumerikInterpreter(Interpreter[Activation]):
 
     def _g(self, code: int) -> None:
         control = self._control
-        if code in G_SIDES:
-            control.compensation.set(control.row, G_SIDES[code])
+        if code in G_RADIUS_COMPENSATION:
+            control.compensation.set(control.row, G_RADIUS_COMPENSATION[code])
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER):
             control.kind = code
         elif code in G_PLANES:
@@ -248,12 +248,17 @@ class SinumerikInterpreter(Interpreter[Activation]):
                 self._note(f"G{code}: constant surface speed: only the kind of feed is followed", Severity.WARNING)
         elif code in G_OFFSETS:
             control.set_offset(code, f"G{code}")
-        elif code in G_NAMED:
-            text, grave = G_NAMED[code]
+        elif code in G_NOT_SIMULATED:
+            text, grave = G_NOT_SIMULATED[code]
             self._note(f"G{code}: {text}", Severity.ERROR if grave else Severity.WARNING)
             if code in (33, 63, 331, 332):
                 control.kind = LINEAR
-        elif code not in G_SILENT and code not in G_SIDES and code not in G_MACHINE and code != 4:
+        elif (
+            code not in G_WITHOUT_PATH_EFFECT
+            and code not in G_RADIUS_COMPENSATION
+            and code not in G_MACHINE
+            and code != 4
+        ):
             self._note(f"unknown word G{code}", Severity.ERROR)
 
     def _word(self, word: str, block: Block) -> None:
@@ -276,16 +281,16 @@ class SinumerikInterpreter(Interpreter[Activation]):
             case _ if word in TOOL_FRAMES:
                 control.turn_frame(word)
             case "SPOS":
-                control.event("spindle", "oriented")
+                control.add_event("spindle", "oriented")
             case _:
                 # Frames come after this, SUPA before; the rest drives, and leaves the path alone.
-                assert word in FRAMES or word in SILENT or word == "SUPA" or word.startswith("ORI")
+                assert word in FRAMES or word in WITHOUT_PATH_EFFECT or word == "SUPA" or word.startswith("ORI")
 
     def _dwell(self, block: Block) -> None:
         if block.feed is not None:
-            self._control.event("dwell", block.feed)
+            self._control.add_event("dwell", block.feed)
         elif block.speed is not None:
-            self._control.event("dwell", -block.speed)
+            self._control.add_event("dwell", -block.speed)
         else:
             self._note("G4 without a time", Severity.WARNING)
         if block.axes:
@@ -296,16 +301,16 @@ class SinumerikInterpreter(Interpreter[Activation]):
         if code in M_SPINDLE:
             control.spindle.set(control.row, M_SPINDLE[code])
         if code in M_EVENTS:
-            control.event(*M_EVENTS[code])
+            control.add_event(*M_EVENTS[code])
         elif code == M_CHANGE:
             control.change_tool()
-        elif code in M_ENDS:
-            control.event("end", f"M{code}")
-            raise End
+        elif code in M_PROGRAM_ENDS:
+            control.add_event("end", f"M{code}")
+            raise ProgramEnd
         elif code == M_RETURN:
             self._leave()
         else:
-            control.event("m", float(code))
+            control.add_event("m", float(code))
 
     def _frame(self, words: list[str], block: Block) -> None:
         control = self._control
@@ -316,18 +321,18 @@ class SinumerikInterpreter(Interpreter[Activation]):
         base = word.removeprefix("A")
         values: dict[str, float] = {}
         for name, (value, _) in {**block.axes, **block.params}.items():
-            if abs(value) * control.lengths > FARTHEST:
+            if abs(value) * control.length_unit > LARGEST_POSITION:
                 self._note(f"{word}: {name} is larger than any machine: the frame is not used", Severity.ERROR)
                 return
             if name in ("X", "Y", "Z"):
-                values[name] = value * control.lengths if base == "TRANS" else value
+                values[name] = value * control.length_unit if base == "TRANS" else value
             elif name == "RPL":
                 values[name] = value
             else:
                 self._note(f"{word}: {name} is not simulated", Severity.ERROR)
-        frame = statement(base, values, control.plane)
-        control.set_program_frame(control.program_frame.then(frame) if adds else frame)
-        control.event("frame", "" if not adds and not values else word)
+        frame = frame_of_statement(base, values, control.plane_axis)
+        control.set_program_frame(control.program_frame.compose(frame) if adds else frame)
+        control.add_event("frame", "" if not adds and not values else word)
 
     # Cycles and calls
 
@@ -341,29 +346,29 @@ class SinumerikInterpreter(Interpreter[Activation]):
             values = tuple(
                 text if text in CONSTANTS else value for text, value in zip(made.written, made.arguments, strict=True)
             )
-            control.event("cycle832", values)
+            control.add_event("cycle832", values)
         elif name == "CYCLE800":
             swivel(control, made)
         elif name == "MSG":
             first = made.arguments[0] if made.arguments else ""
-            control.event("message", first if isinstance(first, str) else f"{first or 0:g}")
+            control.add_event("message", first if isinstance(first, str) else f"{first or 0:g}")
         else:
             assert name == "SETAL"
-            control.event("message", f"SETAL({', '.join(made.written)})")
+            control.add_event("message", f"SETAL({', '.join(made.written)})")
 
     def _enter_one(self, calls: Sequence[Call]) -> None:
         """Call the subprogram of a block, which goes on only after all that the block says."""
         if len(calls) > 1:
             self._note("several subprograms in one block: only the first is executed", Severity.ERROR)
         for made in calls[:1]:
-            self._enter(made.name, made)
+            self._write_row(made.name, made)
 
     def _drill(self, made: Call) -> None:
         control = self._control
         try:
-            numbers = [sane(self._plain_number(value)) for value in made.arguments]
-            steps = cycles.steps(made.name, numbers, float(control.rpm.now))
-        except CycleError as error:
+            numbers = [finite(self._plain_number(value)) for value in made.arguments]
+            steps = cycles.cycle_motions(made.name, numbers, float(control.rpm.current))
+        except CycleExecutionError as error:
             self._note(f"{made.name} {error}: it is not executed", Severity.ERROR)
             return
         self._count(len(steps))
@@ -372,10 +377,10 @@ class SinumerikInterpreter(Interpreter[Activation]):
     @staticmethod
     def _plain_number(value: Value | None) -> float | None:
         if isinstance(value, str):
-            raise CycleError("has a text where a number must stand")
+            raise CycleExecutionError("has a text where a number must stand")
         return value
 
-    def _enter(self, name: str, made: Call) -> None:
+    def _write_row(self, name: str, made: Call) -> None:
         """Call a subprogram, one of the files that were named."""
         path = self._named.find(name)
         if path is None:
@@ -390,17 +395,17 @@ class SinumerikInterpreter(Interpreter[Activation]):
         variables = Variables(self._stack[-1].variables)
         text, file = self._open(path)
         assert isinstance(text, SinumerikText)
-        self._stack.append(Activation(text, file, made.repeats, variables=variables))
+        self._stack.append(ActiveProgram(text, file, made.repeats, variables=variables))
         self._bind(made)
 
     def _bind(self, made: Call) -> None:
         """Hand arguments to the PROC line, which reads them when it is executed."""
         self._stack[-1].variables.hand(made.arguments)
 
-    def _return(self, reader: Reader, call: Activation, line: int) -> None:
+    def _return(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         self._leave()
 
-    def _mcall(self, reader: Reader, call: Activation, line: int) -> None:
+    def _mcall(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
         token = reader.token
         if token is None:
             call.modal = None
@@ -417,11 +422,11 @@ class SinumerikInterpreter(Interpreter[Activation]):
         reader.at += 1
         call.modal = read_call(reader, token.text)
 
-    def _extcall(self, reader: Reader, call: Activation, line: int) -> None:
-        inside = reader.takes("(")
+    def _extcall(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+        inside = reader.accept("(")
         value = reader.value()
         if inside:
             reader.expect(")")
         if not isinstance(value, str):
             raise ExpressionError("takes the name of a program")
-        self._enter(value, Call(value))
+        self._write_row(value, Call(value))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.readers.common.text import Text
+from trunnion.readers.common.source_text import SourceText
 
 # Blanks are matched in one place each: two runs of them side by side would take quadratic time on a line of blanks.
 _START = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[0-9]+[ \t]*)?"
@@ -23,7 +23,7 @@ _JUMPS = re.compile(rb"(?<![A-Z0-9_])GOTO[FBCS]?(?![A-Z0-9_])", re.IGNORECASE)
 _ENDS: Final = {"ENDIF": "IF", "ENDFOR": "FOR", "ENDWHILE": "WHILE", "ENDLOOP": "LOOP", "UNTIL": "REPEAT"}
 
 #: How deep control structures may stand inside each other.
-DEEPEST: Final = 64
+MAX_NESTING: Final = 64
 
 
 #: How names of programs end; a subprogram goes before a main program.
@@ -39,11 +39,11 @@ class _Places:
     partners: dict[int, tuple[int, int]] | None = None
 
 
-class SinumerikText(Text):
+class SinumerikText(SourceText):
     """A program file with the places where its jumps lead."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        # Shared by all that run the same text: see ``again``.
+        # Shared by all that run the same text: see ``restarted``.
         self._places = _Places()
         super().__init__(path, whole=whole)
 
@@ -97,8 +97,8 @@ class SinumerikText(Text):
                     partners[middle] = (0, line)
             else:
                 open_.append((word, line, 0))
-                if len(open_) > DEEPEST:
-                    raise self.problem(line, f"nests control structures deeper than {DEEPEST} levels")
+                if len(open_) > MAX_NESTING:
+                    raise self.problem(line, f"nests control structures deeper than {MAX_NESTING} levels")
         if open_:
             raise self.problem(open_[-1][1], f"begins {open_[-1][0]}, which never ends")
         return partners

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 #: The longest statement that is looked at; the control itself stops at 512 characters.
-LONGEST: Final = 4096
+MAX_LENGTH: Final = 4096
 
 #: Only statements as short as most are remembered with their tokens: long ones would fill the memory.
 _REMEMBERED: Final = 128

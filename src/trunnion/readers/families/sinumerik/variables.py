@@ -10,10 +10,10 @@ from trunnion.readers.families.sinumerik.words import CONSTANTS
 Elements = dict[tuple[int, ...], Value]
 
 #: The highest R parameter and array index.
-HIGHEST: Final = 32767
+MAX_NUMBER: Final = 32767
 
 #: Assignments after which variables are counted; half as many a program may have.
-MOST: Final = 100_000
+MAX_VARIABLES: Final = 100_000
 
 
 class Variables:
@@ -68,7 +68,7 @@ class Variables:
         if kind == "BOOL" and isinstance(value, float):
             value = float(bool(value))
         self._count[0] += 1
-        if self._count[0] > MOST:
+        if self._count[0] > MAX_VARIABLES:
             self._recount()
         if kind is not None:
             self._local[name][index] = value
@@ -80,8 +80,8 @@ class Variables:
     def _recount(self) -> None:
         """Count variables exactly, as seldom as assignments can have made many."""
         held = sum(map(len, self._local.values())) + sum(map(len, self._global.values()))
-        if held > MOST // 2:
-            raise ExpressionError(f"the program has more than {MOST // 2} variables")
+        if held > MAX_VARIABLES // 2:
+            raise ExpressionError(f"the program has more than {MAX_VARIABLES // 2} variables")
         self._count[0] = held
 
     def variable(self, name: str, index: tuple[int, ...]) -> Value:
@@ -100,5 +100,5 @@ class Variables:
 
     @staticmethod
     def _check_index(number: int) -> None:
-        if not 0 <= number <= HIGHEST:
-            raise ExpressionError(f"{number} is not from 0 to {HIGHEST}")
+        if not 0 <= number <= MAX_NUMBER:
+            raise ExpressionError(f"{number} is not from 0 to {MAX_NUMBER}")

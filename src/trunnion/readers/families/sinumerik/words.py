@@ -29,10 +29,10 @@ G_OFFSETS: Final = frozenset({54, 55, 56, 57, 500, *range(505, 600)})
 G_MACHINE: Final = frozenset({53, 153})
 
 #: Radius compensation: left of the path, right of it, off.
-G_SIDES: Final = {40: 0, 41: 1, 42: -1}
+G_RADIUS_COMPENSATION: Final = {40: 0, 41: 1, 42: -1}
 
 #: G words that change how the control drives, not where to.
-G_SILENT: Final = {
+G_WITHOUT_PATH_EFFECT: Final = {
     9: "exact stop, one block",
     60: "exact stop",
     601: "exact stop fine",
@@ -71,7 +71,7 @@ G_SILENT: Final = {
 }
 
 #: G words that are known and whose effect on the path is not simulated: a finding each time.
-G_NAMED: Final = {
+G_NOT_SIMULATED: Final = {
     33: ("thread cutting is taken as a straight line", False),
     41: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     42: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
@@ -103,7 +103,7 @@ G_NO_MOTION: Final = frozenset({25, 26, 58, 59, 74, 75, 110, 111, 112})
 G_LIMITS: Final = frozenset({25, 26})
 
 #: Words without a value that change how the control drives, not where to.
-SILENT: Final = _words("""
+WITHOUT_PATH_EFFECT: Final = _words("""
     NORM KONT KONTC KONTT FNORM FLIN FCUB FPO
     CFC CFTCP CFIN CFCIN
     CUT2D CUT2DF CUT3DC CUT3DF CUT3DFS CUT3DFF CUTCONON CUTCONOF
@@ -121,19 +121,19 @@ SILENT: Final = _words("""
     """)
 
 #: Names that take ``=value`` or ``[axis]=value`` and change how the control drives, not where to.
-SILENT_VALUES: Final = _words("""
+WITHOUT_PATH_EFFECT_VALUES: Final = _words("""
     ADIS ADISPOS CTOL OTOL ATOL STOL OTOLG CTOLG FGREF FL OVR OVRA OVRRAP ACC VELOLIM JERKLIM ACCLIM SCC LIMS
     TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA SPCON DITS DITE FZ SVC
     """)
 
 #: Names that take arguments and change how the control drives, not where to.
-SILENT_CALLS: Final = _words("""
+WITHOUT_PATH_EFFECT_CALLS: Final = _words("""
     FGROUP WORKPIECE EXTERN SOFTA BRISKA DRIVEA FIFOCTRL SPCOF GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS
     ORISOF ORISON GROUP_BEGIN GROUP_END GROUP_ADDEND TOFFOF
     """)
 
 #: Known words whose effect on the path is not simulated: a finding each time, an error.
-NAMED: Final = _words("""
+NOT_SIMULATED: Final = _words("""
     ROTS AROTS CROTS CROT CTRANS CSCALE CMIRROR TOFRAMEX TOFRAMEY TOROTX TOROTY PAROT
     TRANSMIT TRACYL TRAANG TRACON
     BSPLINE ASPLINE CSPLINE POLY INVCW INVCCW CT
@@ -162,7 +162,7 @@ FLOW: Final = _words("""
 TYPES: Final = frozenset({"REAL", "INT", "BOOL", "CHAR", "STRING", "AXIS", "FRAME"})
 
 #: Ways to say a position.
-WAYS: Final = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
+POSITION_MODES: Final = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 
 #: Remaining words with an effect: transformation, machine positions, arcs, cycles, messages.
 ACTIVE: Final = frozenset({"TRAORI", "TRAFOOF", "SUPA", "CIP", "CR", "TURN", "AR", "RPL", "SPOS", "MSG", "SETAL"})
@@ -202,9 +202,9 @@ M_EVENTS: Final = {
 M_SPINDLE: Final = {3: 1, 4: -1, 5: 0}
 
 #: M words that end a program, those that end a subprogram, and the one that changes the tool.
-M_ENDS: Final = frozenset({2, 30})
+M_PROGRAM_ENDS: Final = frozenset({2, 30})
 M_RETURN: Final = 17
 M_CHANGE: Final = 6
 
 #: M words that act after the motion of their block.
-M_LATE: Final = frozenset({0, 1, 5, 9, M_RETURN}) | M_ENDS
+M_AFTER_MOTION: Final = frozenset({0, 1, 5, 9, M_RETURN}) | M_PROGRAM_ENDS

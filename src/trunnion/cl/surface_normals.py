@@ -1,0 +1,203 @@
+"""Where the tool touches the surface: points that NX writes behind its GOTOs, and the surface's normals there.
+
+    $$ centerline and contact point
+    GOTO/5.6280,6.3548,-18.1120 $$ 5.0000,7.6184,-18.3545
+
+In:     a toolpath that was read, and its file, which goes by once more; only who wants normals asks for them.
+Out:    the same toolpath with the column ``Moves.normal``.
+
+A tool with a round corner touches whatever it touches along the surface's normal: that is the direction from the
+contact point to the nearest point of the tool's core, which is the cylinder that the corner's centre circle bounds.
+Stock left on the part lies along the same direction.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Bytes, Floats, Ints, Lines
+from trunnion.errors import InputError, Problem, Severity
+from trunnion.jit import njit
+from trunnion.model.toolpath import Moves, Operation, Tool, Toolpath
+
+#: Bytes read at a time.
+_CHUNK: Final = 4 << 20
+
+#: A contact point nearer to the tool's core than this, mm, names no direction.
+_MIN_DISTANCE: Final = 1e-3
+
+#: So much of the corner's radius may its centre circle lie beyond the tool's axis: diameters are rounded.
+_RADIUS_ROUNDING: Final = 1e-4
+
+_NEWLINE, _RETURN, _BLANK, _DOLLAR, _PLUS, _COMMA, _MINUS, _POINT, _ZERO = 10, 13, 32, 36, 43, 44, 45, 46, 48
+_CONTACT_POINT = np.frombuffer(b"CONTACT POINT", np.uint8)
+_TOOL_PATH = np.frombuffer(b"TOOL PATH", np.uint8)
+
+
+def with_normals(toolpath: Toolpath) -> Toolpath:
+    """The toolpath with the surface's normals; what has none is said in its remarks.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read any more.
+    """
+    moving = [operation for operation in toolpath.operations if len(operation.moves)]
+    if not moving:
+        return toolpath
+    line = np.concatenate([operation.moves.line for operation in moving])
+    try:
+        contact = contact_points(Path(toolpath.file), line) * toolpath.unit
+    except OSError as error:
+        what = f"cannot be read: {error.strerror or error}"
+        raise InputError(Problem(toolpath.file, 0, what, "leave the file where it is")) from error
+    operations, remarks = [], list(toolpath.remarks)
+    begin = 0
+    for operation in toolpath.operations:
+        moves = operation.moves
+        points = contact[begin : begin + len(moves)]
+        begin += len(moves)
+        why = _why_no_normals(operation.tool, points)
+        normal = np.full((len(moves), 3), np.nan) if why else normals(moves, points, operation.tool)
+        if why and len(moves):
+            remarks.append(_remark(toolpath.file, operation, why))
+        operations.append(replace(operation, moves=replace(moves, normal=normal)))
+    return replace(toolpath, operations=tuple(operations), remarks=tuple(remarks))
+
+
+def _why_no_normals(tool: Tool, contact: Floats) -> str:
+    """Why an operation has no normals; empty where it has."""
+    if not np.isfinite(contact).any():
+        return "has no contact points, and so no surface normals"
+    if tool.kind != "MILL" or tool.taper_angle or tool.tip_angle:
+        return "has a tool whose form does not say the surface's normal: only ball and toroidal mills do"
+    if tool.corner_radius <= 0.0 or tool.corner_radius > (0.5 + _RADIUS_ROUNDING) * tool.diameter:
+        return "has a tool without a round corner, whose edge touches surfaces of any direction: no surface normals"
+    return ""
+
+
+def _remark(file: str, operation: Operation, why: str) -> Problem:
+    cure = "output contact points (Centerline and Contact Point), with a ball or toroidal mill"
+    return Problem(file, operation.line, f"operation {operation.name} {why}", cure, Severity.WARNING)
+
+
+def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:
+    """Unit vectors out of the surface, NaN where no contact point says one.
+
+    Parameters
+    ----------
+    moves
+        Of one operation, mm.
+    contact : (n, 3) float64
+        Contact points, mm, NaN where there is none.
+    tool
+        A mill with a round corner, be it a ball.
+    """
+    to_contact = contact - moves.tip
+    axial = np.einsum("ij,ij->i", to_contact, moves.axis)
+    radial = to_contact - axial[:, None] * moves.axis
+    distance = np.linalg.norm(radial, axis=1)
+    core = max(0.5 * tool.diameter - tool.corner_radius, 0.0)
+    share = np.minimum(core / np.maximum(distance, 1e-12), 1.0)
+    nearest = np.maximum(axial, tool.corner_radius)[:, None] * moves.axis + share[:, None] * radial
+    normal = nearest - to_contact
+    length = np.linalg.norm(normal, axis=1)
+    found = np.full_like(normal, np.nan)
+    clear = length > _MIN_DISTANCE
+    found[clear] = normal[clear] / length[clear, None]
+    return np.asarray(found)
+
+
+def contact_points(file: Path, line: Lines) -> Floats:
+    """(n, 3) float64: the points behind the GOTOs in these lines (n,), growing; NaN where there is none.
+
+    They count where a comment before says that there are contact points, until the next operation.
+    """
+    found = np.full((len(line), 3), np.nan)
+    state = np.array([1, 0, 0], np.int64)
+    with file.open("rb", buffering=0) as source:
+        rest = b""
+        while piece := source.read(_CHUNK):
+            whole = rest + piece
+            end = whole.rfind(b"\n") + 1
+            rest = whole[end:]
+            if end:
+                _scan_contact_points(np.frombuffer(whole, np.uint8), end, line, found, state)
+    if rest:
+        _scan_contact_points(np.frombuffer(rest + b"\n", np.uint8), len(rest) + 1, line, found, state)
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _scan_contact_points(data: Bytes, stop: int, line: Lines, found: Floats, state: Ints) -> None:
+    """Go over whole lines; ``state``: the line that comes, the row that comes, whether contact points are said."""
+    at = 0
+    number, row, announced = state[0], state[1], state[2]
+    while at < stop:
+        while row < line.shape[0] and line[row] < number:
+            row += 1
+        end = at
+        dollars = -1
+        while data[end] != _NEWLINE:
+            if dollars < 0 and data[end] == _DOLLAR and data[end + 1] == _DOLLAR:
+                dollars = end + 2
+            end += 1
+        if row < line.shape[0] and line[row] == number:
+            if announced and dollars >= 0:
+                _parse_point(data, dollars, found, row)
+        elif dollars >= 0 and _contains(data, dollars, end, _CONTACT_POINT):
+            announced = 1
+        elif _contains(data, at, min(end, at + _TOOL_PATH.shape[0]), _TOOL_PATH):
+            announced = 0
+        at = end + 1
+        number += 1
+    state[0], state[1], state[2] = number, row, announced
+
+
+@njit(cache=True)
+def _contains(data: Bytes, begin: int, end: int, word: Bytes) -> bool:
+    """Whether a word of capitals stands between two places, in any case."""
+    for first in range(begin, end - word.shape[0] + 1):
+        same = 0
+        while same < word.shape[0]:
+            byte = data[first + same]
+            if byte != word[same] and byte - 32 != word[same]:
+                break
+            same += 1
+        if same == word.shape[0]:
+            return True
+    return False
+
+
+@njit(cache=True)
+def _parse_point(data: Bytes, at: int, found: Floats, row: int) -> None:
+    """Read ``x,y,z`` to the end of the line into a row, if that is what stands there."""
+    for k in range(3):
+        while data[at] == _BLANK:
+            at += 1
+        negative = data[at] == _MINUS
+        if negative or data[at] == _PLUS:
+            at += 1
+        value, scale, digits = 0.0, 1.0, 0
+        while 0 <= int(data[at]) - _ZERO <= 9:
+            value = value * 10.0 + (int(data[at]) - _ZERO)
+            digits += 1
+            at += 1
+        if data[at] == _POINT:
+            at += 1
+            while 0 <= int(data[at]) - _ZERO <= 9:
+                value = value * 10.0 + (int(data[at]) - _ZERO)
+                scale *= 10.0
+                digits += 1
+                at += 1
+        while data[at] == _BLANK:
+            at += 1
+        ends = data[at] == _RETURN or data[at] == _NEWLINE
+        if digits == 0 or digits > 15 or (data[at] != _COMMA if k < 2 else not ends):
+            for other in range(3):
+                found[row, other] = np.nan
+            return
+        found[row, k] = -value / scale if negative else value / scale
+        at += 1

@@ -1,0 +1,71 @@
+"""Coordinate systems of programs: shifted, turned, mirrored and scaled ones, as affine maps.
+
+A frame takes a programmed position to the frame below it: ``linear @ p + shift``, mm.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trunnion.arrays import Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AffineMap:
+    """An affine map: linear (3, 3) float64 and shift (3,) float64, mm."""
+
+    linear: Floats = field(default_factory=lambda: np.eye(3))
+    shift: Floats = field(default_factory=lambda: np.zeros(3))
+
+    def compose(self, inner: "AffineMap") -> "AffineMap":
+        """Return the frame of ``inner`` given in this frame."""
+        return AffineMap(self.linear @ inner.linear, self.linear @ inner.shift + self.shift)
+
+    def apply(self, point: Floats) -> Floats:
+        """Return a programmed position in the frame below."""
+        return np.asarray(self.linear @ point + self.shift)
+
+    def solve(self, point: Floats) -> Floats:
+        """Return which programmed position lies at ``point`` of the frame below."""
+        if self.keeps_lengths:
+            return np.asarray(self.linear.T @ (point - self.shift))
+        return np.asarray(np.linalg.solve(self.linear, point - self.shift), np.float64)
+
+    @property
+    def keeps_lengths(self) -> bool:
+        """Whether lengths stay what they are (mirrors included)."""
+        return bool(np.allclose(self.linear.T @ self.linear, np.eye(3), rtol=0.0, atol=1e-12))
+
+    @property
+    def mirrors(self) -> bool:
+        """Whether right becomes left."""
+        return float(np.linalg.det(self.linear)) < 0.0
+
+    @property
+    def keeps_circles(self) -> bool:
+        """Whether circles stay circles."""
+        gram = self.linear.T @ self.linear
+        return bool(np.allclose(gram, gram[0, 0] * np.eye(3), rtol=0.0, atol=1e-9 * abs(gram[0, 0])))
+
+
+def rotation_matrix(axis: int, angle: float) -> Floats:
+    """(3, 3) float64: right-handed about axis 0, 1 or 2, degrees; exact at multiples of 90."""
+    quarter = angle / 90.0
+    if quarter == math.floor(quarter) and abs(quarter) < 1e9:
+        cos, sin = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarter) % 4]
+    else:
+        cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    matrix = np.eye(3)
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    matrix[j, j] = matrix[k, k] = cos
+    matrix[j, k], matrix[k, j] = -sin, sin
+    return matrix
+
+
+def rotation_about(direction: Floats, angle: float) -> Floats:
+    """(3, 3) float64: right-handed about a unit vector, degrees (Rodrigues)."""
+    a, b, c = direction
+    cross = np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
+    radians = math.radians(math.fmod(angle, 360.0))
+    return np.asarray(np.eye(3) + math.sin(radians) * cross + (1.0 - math.cos(radians)) * (cross @ cross))

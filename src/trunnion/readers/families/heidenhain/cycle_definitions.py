@@ -1,0 +1,287 @@
+"""CYCL DEF blocks: cycles that act at once, and those that wait for their call."""
+
+import math
+import re
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.readers.common.hole_motion import CycleExecutionError, HoleMotion
+from trunnion.readers.common.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.families.heidenhain.control import HeidenhainControl, Positioning
+from trunnion.readers.families.heidenhain.cycles import (
+    CYCLES,
+    LEGACY_CYCLES,
+    MAY_BE_RAPID,
+    cycle_motions,
+    legacy_cycle_motions,
+)
+from trunnion.readers.families.heidenhain.lexer import Word, words
+from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
+from trunnion.readers.families.heidenhain.path_blocks import value_of
+from trunnion.readers.families.heidenhain.plane_frames import spatial
+from trunnion.readers.families.heidenhain.words import (
+    AXIS_SCALING,
+    BORE_MILLING,
+    CYCLES_NOT_SIMULATED,
+    DATUM,
+    DWELL,
+    MIRROR,
+    ORIENTATION,
+    PRESET,
+    ROTATION,
+    SCALING,
+    TILT,
+    TOLERANCE,
+)
+
+_NUMBER = re.compile(r"[ \t]*([0-9]{1,4})(?:\.([0-9]{1,2}))?(?![0-9.])")
+_ASSIGNED = re.compile(
+    r"[ \t]*(Q[0-9]{1,4})[ \t]*=[ \t]*(?:([+-]?)[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+))|([A-Z]+))"
+)
+_LAST = re.compile(r"([+-]?)[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+))[ \t]*$")
+
+#: What the lines of cycles 1, 2 and 17 say, by their number after the point.
+_FIELDS: Final = {
+    1: {1: "DIST", 2: "DEPTH", 3: "PLNGNG", 4: "DWELL", 5: "F"},
+    2: {1: "DIST", 2: "DEPTH", 3: "DWELL", 4: "F"},
+    17: {1: "DIST", 2: "DEPTH", 3: "PITCH"},
+}
+
+#: Rapid as a feed of a cycle.
+_RAPID: Final = ("MAX", "FMAX")
+
+#: Scales beyond these are slips.
+_LEAST_SCALE: Final = 1e-6
+_LARGEST_SCALE: Final = 1e6
+
+
+@dataclass(slots=True)
+class Cycle:
+    """A cycle that waits for its call: its number, and its values by name; those of the 200 series by Q number."""
+
+    number: int
+    values: dict[str, float] = field(default_factory=dict)
+    named: dict[int, float] = field(default_factory=dict)
+
+
+class Definitions:
+    """What CYCL DEF blocks have said."""
+
+    def __init__(self, control: HeidenhainControl, note: Note) -> None:
+        self._control = control
+        self._note = note
+        self.waiting: Cycle | None = None
+
+    def define(self, text: str, parameters: Parameters) -> None:
+        """Execute what stands behind CYCL DEF."""
+        match = _NUMBER.match(text)
+        if match is None:
+            raise KlartextError("a cycle has a number")
+        number, rest = int(match[1]), text[match.end() :].strip()
+        if match[2] is None:
+            self._with_parameters(number, rest, parameters)
+        elif int(match[2]) == 0:
+            self._begin(number, rest)
+        else:
+            self._advance(number, int(match[2]), rest, parameters)
+
+    def _begin(self, number: int, title: str) -> None:
+        """The first line of an older cycle: its title."""
+        if number in LEGACY_CYCLES or number in CYCLES_NOT_SIMULATED:
+            self.waiting = Cycle(number)
+        elif number not in _AT_ONCE:
+            self._note(f"cycle {number} {title[:40]} is unknown", Severity.ERROR)
+
+    def _advance(self, number: int, line: int, rest: str, parameters: Parameters) -> None:
+        if number in CYCLES_NOT_SIMULATED:
+            return
+        if number in LEGACY_CYCLES:
+            name = _FIELDS[number].get(line)
+            if self.waiting is None or self.waiting.number != number or name is None:
+                raise KlartextError(f"a line of cycle {number} that does not belong there")
+            self.waiting.values[name] = _last(rest, parameters)
+            return
+        control = self._control
+        match number:
+            case 7:
+                self._shift(rest, parameters)
+            case 8:
+                self._mirror(words(rest))
+            case 9:
+                control.add_event("dwell", _last(rest, parameters))
+            case 10:
+                self._rotate(words(rest), parameters)
+            case 11 | 26:
+                self._scale(words(rest), parameters)
+            case 13:
+                control.add_event("spindle", "oriented")
+            case 19:
+                self._tilt(words(rest), parameters)
+            case 32:
+                control.add_event("cycle32", rest)
+            case _:
+                self._note(f"a line of cycle {number}, which is unknown", Severity.ERROR)
+
+    # Cycles that act at once
+
+    def _shift(self, rest: str, parameters: Parameters) -> None:
+        if rest.startswith("#"):
+            self._note("cycle 7 takes a datum from a table, which only the control has", Severity.ERROR)
+            return
+        shift = list(self._control.datum.shift)
+        for word, value in _axis_values(words(rest), parameters, "XYZ"):
+            axis = "XYZ".index(word.name)
+            value *= self._control.length_unit
+            shift[axis] = shift[axis] + value if word.incremental else value
+        if any(abs(value) > LARGEST_POSITION for value in shift):
+            raise KlartextError("a shift that no machine has")
+        self._control.set_datum(replace(self._control.datum, shift=(shift[0], shift[1], shift[2])))
+
+    def _mirror(self, said: list[Word]) -> None:
+        names = [word.name for word in said]
+        if any(name not in ("X", "Y", "Z") for name in names):
+            raise KlartextError("only X, Y and Z are mirrored here")
+        mirrored = ("X" in names, "Y" in names, "Z" in names)
+        self._control.set_datum(replace(self._control.datum, mirrored=mirrored))
+
+    def _rotate(self, said: list[Word], parameters: Parameters) -> None:
+        angle = self._control.datum.angle
+        for word in said:
+            if word.name != "ROT" or word.operand is None:
+                raise KlartextError(f"unknown word {word.name}")
+            value = value_of(word.operand, parameters)
+            angle = angle + value if word.incremental else value
+        self._control.set_datum(replace(self._control.datum, angle=angle))
+
+    def _scale(self, said: list[Word], parameters: Parameters) -> None:
+        scale, centre = [1.0, 1.0, 1.0], [0.0, 0.0, 0.0]
+        for word in said:
+            if word.operand is None:
+                raise KlartextError(f"{word.name} needs a value")
+            value = value_of(word.operand, parameters)
+            if word.name in ("CCX", "CCY", "CCZ"):
+                centre["XYZ".index(word.name[2])] = value * self._control.length_unit
+                continue
+            if not _LEAST_SCALE < value < _LARGEST_SCALE:
+                raise KlartextError(f"a scale of {value:g}")
+            if word.name == "SCL":
+                scale = [value, value, value]
+            elif word.name in ("X", "Y", "Z"):
+                scale["XYZ".index(word.name)] = value
+            else:
+                raise KlartextError(f"unknown word {word.name}")
+        datum = replace(
+            self._control.datum, scale=(scale[0], scale[1], scale[2]), centre=(centre[0], centre[1], centre[2])
+        )
+        self._control.set_datum(datum)
+
+    def _tilt(self, said: list[Word], parameters: Parameters) -> None:
+        """Cycle 19: spatial angles, without a motion; that the machine is set to mean these is unconfirmed."""
+        said = [word for word in said if word.name not in ("F", "ABST", "DIST")]
+        if not said:
+            self._control.untilt(Positioning())
+            return
+        angles = {word.name: value for word, value in _axis_values(said, parameters, "ABC")}
+        linear = spatial(*(angles.get(name, 0.0) for name in "ABC"))
+        remember(parameters, self._control, self._control.tilt(linear, Positioning()))
+
+    # Cycles with Q parameters
+
+    def _with_parameters(self, number: int, rest: str, parameters: Parameters) -> None:
+        """A cycle of the 200 series, whose values are Q parameters from now on."""
+        begin = re.search(r"(?:^|[ \t])Q[0-9]{1,4}[ \t]*=", rest)
+        title, rest = (rest, "") if begin is None else (rest[: begin.start()], rest[begin.start() :])
+        named: dict[int, float] = {}
+        at = 0
+        while at < len(rest.rstrip()):
+            match = _ASSIGNED.match(rest, at)
+            if match is None:
+                raise KlartextError(f"{rest[at : at + 20].strip()} is no parameter of a cycle")
+            at = match.end()
+            target, sign, parameter, figures, word = match.groups()
+            if word in _RAPID and int(target[1:]) in MAY_BE_RAPID:
+                named[int(target[1:])] = math.inf
+                parameters.forget(canonical(target))
+                continue
+            if word is not None:
+                self._note(f"cycle {number}: {target}={word} is not simulated", Severity.ERROR)
+                continue
+            value = parameters[canonical(parameter)] if parameter else float(figures.replace(",", "."))
+            value = -value if sign == "-" else value
+            parameters[canonical(target)] = value
+            named[int(target[1:])] = value
+        if number in CYCLES or number in CYCLES_NOT_SIMULATED:
+            self.waiting = Cycle(number, named=named)
+            if number == BORE_MILLING:
+                text = "cycle 208: the tool's radius is the control's, and the path is that of the wall"
+                self._note(text, Severity.WARNING)
+        elif number == PRESET:
+            self._preset(named)
+        else:
+            self._note(f"cycle {number} {title[:40].strip()} is unknown", Severity.ERROR)
+
+    def _preset(self, named: dict[int, float]) -> None:
+        preset = named.get(339, 0.0)
+        if preset != int(preset) or not 0 <= preset < 65535:
+            raise KlartextError(f"preset {preset:g} is none")
+        self._control.set_offset(int(preset), f"preset {preset:g}")
+
+    # Calls
+
+    def called(self, parameters: Parameters) -> list[HoleMotion]:
+        """Return the motions of the cycle that was defined last, where the tool is.
+
+        Raises
+        ------
+        CycleError
+            If there is none, if it is not simulated, or if it makes no sense.
+        """
+        cycle, control = self.waiting, self._control
+        if cycle is None:
+            raise CycleExecutionError("was called before any was defined")
+        if cycle.number in CYCLES_NOT_SIMULATED:
+            raise CycleExecutionError(
+                f"{cycle.number} ({CYCLES_NOT_SIMULATED[cycle.number]}) is known but not simulated"
+            )
+        # A pitch counts in the units of lengths, and not in those of feeds.
+        rpm = float(control.rpm.current) * control.length_unit / control.feed_unit
+        if cycle.number in LEGACY_CYCLES:
+            here = float(control.commanded[control.plane_axis]) / control.length_unit
+            made = legacy_cycle_motions(cycle.number, cycle.values, rpm, here)
+        else:
+            made = cycle_motions(cycle.number, cycle.named, rpm)
+        if control.feed_unit == 1.0:
+            return made
+        return [step if step.feed is None else replace(step, feed=step.feed * control.feed_unit) for step in made]
+
+
+#: Older cycles that act as soon as they are defined.
+_AT_ONCE: Final = frozenset({
+    DATUM, MIRROR, DWELL, ROTATION, SCALING, AXIS_SCALING, ORIENTATION, TILT, TOLERANCE
+})  # fmt: skip
+
+
+def _axis_values(said: list[Word], parameters: Parameters, names: str) -> list[tuple[Word, float]]:
+    for word in said:
+        if word.operand is None or word.name not in names:
+            raise KlartextError(f"unknown word {word.name or word.text}")
+    return [(word, value_of(word.operand, parameters)) for word in said if word.operand is not None]
+
+
+def _last(text: str, parameters: Parameters) -> float:
+    """The number that a line ends in."""
+    match = _LAST.search(text)
+    if match is None:
+        raise KlartextError("a number is missing")
+    value = parameters[canonical(match[2])] if match[2] else float(match[3].replace(",", "."))
+    return -value if match[1] == "-" else value
+
+
+def remember(parameters: Parameters, control: HeidenhainControl, rotary: tuple[float, float] | None) -> None:
+    """Put the rotary position of a plane into Q120 (A), Q121 (B) and Q122 (C)."""
+    if rotary is None:
+        return
+    found = dict(zip(control.rotary_names, rotary, strict=True))
+    for number, name in zip((120, 121, 122), "ABC", strict=True):
+        parameters[f"Q{number}"] = found.get(name, 0.0)

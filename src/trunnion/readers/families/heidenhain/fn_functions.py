@@ -1,0 +1,122 @@
+"""FN functions: arithmetic with Q parameters, and jumps."""
+
+import math
+import re
+from collections.abc import Callable
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.families.heidenhain.parameters import (
+    FUNCTIONS,
+    KlartextError,
+    Parameters,
+    canonical,
+    formula,
+    guarded,
+    sound,
+)
+from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED
+
+#: A parameter that takes a value.
+ASSIGNED: Final = re.compile(r"(Q[LR]?[0-9]{1,4})[ \t]*=[ \t]*")
+
+_OPERAND: Final = r"([+-]?[ \t]*(?:Q[LR]?[0-9]{1,4}|[0-9]+[.,]?[0-9]*|[.,][0-9]+))"
+_NUMBER = re.compile(r"[ \t]*([0-9]{1,2})[ \t]*:?[ \t]*")
+
+#: Functions of two operands: the word between them, and what they do.
+_ARITHMETIC: Final[dict[int, tuple[str, Callable[[float, float], float]]]] = {
+    1: (r"\+", lambda a, b: a + b),
+    2: ("-", lambda a, b: a - b),
+    3: (r"\*", lambda a, b: a * b),
+    4: ("DIV", lambda a, b: a / b),
+    8: ("LEN", math.hypot),
+    # The angle whose sine and cosine stand as the two operands to each other.
+    13: ("ANG", lambda a, b: math.degrees(math.atan2(a, b)) % 360.0),
+}
+
+#: Functions of one operand.
+_SINGLE: Final = {5: "SQRT", 6: "SIN", 7: "COS"}
+
+#: Jumps: the word between the operands, and whether it holds.
+_CONDITIONS: Final[dict[int, tuple[str, Callable[[float, float], bool]]]] = {
+    9: ("EQU", lambda a, b: a == b),
+    10: ("NE", lambda a, b: a != b),
+    11: ("GT", lambda a, b: a > b),
+    12: ("LT", lambda a, b: a < b),
+}
+
+#: Reads what only the control knows.
+_SYSTEM: Final = 18
+
+
+def execute(text: str, parameters: Parameters, note: Note) -> str | None:
+    """Execute what stands behind FN; returns the label that it jumps to, as written, or None.
+
+    Raises
+    ------
+    KlartextError
+        If it is not understood. A parameter that it would have set has no value then.
+    """
+    match = _NUMBER.match(text)
+    if match is None:
+        raise KlartextError("FN needs a number")
+    number, rest = int(match[1]), text[match.end() :]
+    if number in _CONDITIONS:
+        return _jump(number, rest, parameters)
+    if number in FN_NOT_SIMULATED:
+        note(f"FN {number} {FN_NOT_SIMULATED[number]}: not simulated", Severity.WARNING)
+        return None
+    target = ASSIGNED.match(rest.removeprefix("SYSREAD").lstrip() if number == _SYSTEM else rest)
+    if target is None:
+        raise KlartextError(f"FN {number} is not simulated")
+    name = canonical(target[1])
+    if number == _SYSTEM:
+        parameters.forget(name)
+        note(f"FN 18 SYSREAD: only the control knows what {name} becomes", Severity.WARNING)
+        return None
+    try:
+        parameters[name] = _value(number, rest[target.end() :].strip(), parameters)
+    except KlartextError:
+        parameters.forget(name)
+        raise
+    return None
+
+
+def assign(name: str, text: str, parameters: Parameters) -> None:
+    """Set a parameter by a formula; raises as ``execute``."""
+    try:
+        parameters[canonical(name)] = formula(text, parameters)
+    except KlartextError:
+        # What it was is no longer true.
+        parameters.forget(canonical(name))
+        raise
+
+
+def _value(number: int, rest: str, parameters: Parameters) -> float:
+    if number == 0:
+        return formula(rest, parameters)
+    if number in _SINGLE:
+        word = _SINGLE[number]
+        match = re.fullmatch(rf"{word}[ \t]*{_OPERAND}", rest)
+        if match is None:
+            raise KlartextError(f"FN {number} takes {word} and one value")
+        operand = formula(match[1], parameters)
+        return guarded(lambda: FUNCTIONS[word](operand), word)
+    if number not in _ARITHMETIC:
+        raise KlartextError(f"FN {number} is not simulated")
+    word, work = _ARITHMETIC[number]
+    match = re.fullmatch(rf"{_OPERAND}[ \t]*{word}[ \t]*{_OPERAND}", rest)
+    if match is None:
+        raise KlartextError(f"FN {number} takes two values")
+    first, second = formula(match[1], parameters), formula(match[2], parameters)
+    return sound(guarded(lambda: work(first, second), f"FN {number}"))
+
+
+def _jump(number: int, rest: str, parameters: Parameters) -> str | None:
+    word, holds = _CONDITIONS[number]
+    match = re.fullmatch(rf"IF[ \t]*{_OPERAND}[ \t]*{word}[ \t]*{_OPERAND}[ \t]*GOTO[ \t]*LBL(.*)", rest.rstrip())
+    if match is None:
+        raise KlartextError(f"FN {number} takes IF, two values with {word} between them, and GOTO LBL")
+    first, second = formula(match[1], parameters), formula(match[2], parameters)
+    return match[3] if holds(first, second) else None

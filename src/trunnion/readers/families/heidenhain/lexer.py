@@ -1,0 +1,120 @@
+"""A line of Klartext cut into its parts, and a statement into its words."""
+
+import re
+from typing import Final, NamedTuple
+
+from trunnion.readers.families.heidenhain.parameters import KlartextError
+
+#: The longest statement that is looked at.
+MAX_LENGTH: Final = 4096
+
+#: More digits than any word has.
+MOST_DIGITS: Final = 40
+
+_HEAD = re.compile(r"[ \t]*(/?)[ \t]*([0-9]{1,15}(?![0-9.,]))?[ \t]*(/?)[ \t]*")
+_COMMENT = re.compile(r'(?:[^;"]|"[^"]*"?)*')
+_WORD = re.compile(
+    r"""[ \t]*(?:
+    "(?P<text>[^"]*)"
+  | (?P<name>P[123][XYZ]|DR2|HSC-MODE|[A-Z]+?):?(?:[ \t]*(?P<sign>[+-])[ \t]*|[ \t]*)
+    (?:(?P<parameter>Q[LR]?[0-9]{1,4})|(?P<number>[0-9]+[.,]?[0-9]*|[.,][0-9]+))
+  | (?P<flag>[A-Z]+[+-]?)
+  )""",
+    re.VERBOSE | re.ASCII,
+)
+
+#: Words with an I before them count from where the tool is.
+_INCREMENTAL: Final = frozenset({"IX", "IY", "IZ", "IA", "IB", "IC", "IU", "IV", "IW", "IPR", "IPA", "IROT"})
+
+
+class Line(NamedTuple):
+    """A line: number of its block or -1, whether it may be skipped, its statement in capitals but for texts, comment.
+
+    ``goes_on``: a ``~`` at its end takes the next line into the same block.
+    """
+
+    number: int
+    skipped: bool
+    statement: str
+    comment: str | None
+    goes_on: bool
+
+
+class Operand(NamedTuple):
+    """A number, or a parameter whose value is looked up when the block is executed, with its sign."""
+
+    sign: float
+    number: float
+    parameter: str
+
+
+class Word(NamedTuple):
+    """A word: its name without the I of incremental ones, and its operand; flags (FMAX, DR+) and texts have none."""
+
+    name: str
+    operand: Operand | None = None
+    incremental: bool = False
+    text: str | None = None
+
+
+def split_line(raw: str) -> Line:
+    """Cut a line into its parts."""
+    head = _HEAD.match(raw)
+    assert head is not None
+    number = int(head.group(2)) if head.group(2) else -1
+    rest = raw[head.end() :]
+    goes_on = rest.rstrip().endswith("~")
+    if goes_on:
+        rest = rest.rstrip()[:-1].rstrip()
+    comment = None
+    if rest.startswith("*"):
+        return Line(number, bool(head.group(1) or head.group(3)), "", rest[1:].strip("\r"), False)
+    if ";" in rest:
+        words = _COMMENT.match(rest)
+        assert words is not None
+        if words.end() < len(rest):
+            comment, rest = rest[words.end() + 1 :].strip("\r"), rest[: words.end()]
+    statement = rest.strip()
+    if '"' not in statement:
+        statement = statement.upper()
+    else:
+        statement = '"'.join(part if k % 2 else part.upper() for k, part in enumerate(statement.split('"')))
+    return Line(number, bool(head.group(1) or head.group(3)), statement, comment, goes_on)
+
+
+def words(statement: str, at: int = 0) -> list[Word]:
+    """Cut what follows the head of a statement into words.
+
+    Raises
+    ------
+    KlartextError
+        At the first character that belongs to no word.
+    """
+    found: list[Word] = []
+    end = len(statement.rstrip())
+    while at < end:
+        match = _WORD.match(statement, at)
+        if match is None:
+            raise KlartextError(f"{statement[at : at + 20].strip()} is no word")
+        found.append(_word(match))
+        at = match.end()
+    return found
+
+
+def _word(match: re.Match[str]) -> Word:
+    text, name, number = match["text"], match["name"], match["number"]
+    if text is not None:
+        return Word("", text=text)
+    if name is None:
+        return Word(match["flag"])
+    sign = -1.0 if match["sign"] == "-" else 1.0
+    incremental = name in _INCREMENTAL
+    operand = Operand(sign, 0.0 if number is None else number_of(number), match["parameter"] or "")
+    return Word(name[1:] if incremental else name, operand, incremental)
+
+
+def number_of(text: str) -> float:
+    """Return a number with a point or a comma."""
+    if len(text) > MOST_DIGITS:
+        raise KlartextError(f"{text[:20]}... has more than {MOST_DIGITS} digits")
+    return float(text.replace(",", "."))

@@ -1,0 +1,146 @@
+"""M words, and TOOL CALL: what acts on the machine besides its axes."""
+
+import math
+import re
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.readers.common.interpreter import ProgramEnd
+from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.families.heidenhain.control import HeidenhainControl
+from trunnion.readers.families.heidenhain.lexer import words
+from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
+from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, Block, value_of
+from trunnion.readers.families.heidenhain.words import (
+    M_AFTER_MOTION,
+    M_CALL,
+    M_CALL_MODAL,
+    M_EVENTS,
+    M_FEED_AT_TIP,
+    M_FEED_IN_DEGREES,
+    M_MACHINE,
+    M_NOT_SHORTEST,
+    M_NOT_SIMULATED,
+    M_PER_MINUTE,
+    M_PER_TURN,
+    M_PROGRAM_ENDS,
+    M_RETRACT,
+    M_SECOND_MACHINE,
+    M_SHORTEST,
+    M_SPINDLE,
+    M_TCP,
+    M_TCP_OFF,
+    M_WITHOUT_PATH_EFFECT,
+)
+
+#: M words that are looked at in other places, or change only how the control drives.
+_ELSEWHERE: Final = frozenset({M_MACHINE, M_SECOND_MACHINE, M_CALL, *M_EVENTS, *M_WITHOUT_PATH_EFFECT})
+
+_TOOL = re.compile(
+    r"[ \t]*(?P<kind>CALL|DEF)[ \t]*"
+    r'(?:"(?P<name>[^"]*)"|(?P<number>[0-9]+(?:[.,][0-9]+)?)|(?P<parameter>Q[LR]?[0-9]{1,4}))?(?![0-9.,])'
+)
+
+
+class Functions:
+    """Executes M words.
+
+    modal_call   M89: the cycle is called at every position
+    """
+
+    def __init__(self, control: HeidenhainControl, note: Note) -> None:
+        self._control = control
+        self._note = note
+        self.modal_call = False
+
+    def early(self, block: Block) -> None:
+        """Execute those that act before the motion of their block."""
+        for code, arguments in block.m:
+            if code not in M_AFTER_MOTION:
+                self._execute(code, arguments)
+
+    def late(self, block: Block) -> None:
+        """Execute those that act after it; raises ``ProgramEnd``."""
+        for code, arguments in block.m:
+            if code in M_AFTER_MOTION:
+                self._execute(code, arguments)
+
+    def _execute(self, code: int, arguments: dict[str, float | None]) -> None:
+        control = self._control
+        if code in M_SPINDLE:
+            control.spindle.set(control.row, M_SPINDLE[code])
+        for kind, value in M_EVENTS.get(code, ()):
+            control.add_event(kind, value)
+        if code in (M_SHORTEST, M_NOT_SHORTEST):
+            control.shortest_path = code == M_SHORTEST
+        elif code in (M_TCP, M_TCP_OFF):
+            control.by_angles = False
+            control.set_tcp(code == M_TCP)
+        elif code in (M_PER_TURN, M_PER_MINUTE):
+            control.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
+        elif code in (M_FEED_AT_TIP, M_FEED_IN_DEGREES):
+            control.feed_at_tip(code == M_FEED_AT_TIP)
+        elif code == M_RETRACT:
+            self._retract(arguments)
+        elif code == M_CALL_MODAL:
+            self.modal_call = True
+        elif code in M_PROGRAM_ENDS:
+            control.add_event("end", f"M{code}")
+            raise ProgramEnd
+        elif code in M_NOT_SIMULATED:
+            text, grave = M_NOT_SIMULATED[code]
+            self._note(f"M{code}: {text}", Severity.ERROR if grave else Severity.WARNING)
+        elif code not in _ELSEWHERE:
+            control.add_event("m", float(code))
+
+    def _retract(self, arguments: dict[str, float | None]) -> None:
+        control = self._control
+        distance = arguments.get("MB")
+        if distance is None and "MAX" not in arguments:
+            raise KlartextError("M140 needs MB and how far")
+        feed = arguments.get("F")
+        control.retract(
+            math.inf if distance is None else distance * control.length_unit,
+            rapid=feed is None,
+            feed=None if feed is None else feed * control.feed_unit,
+        )
+
+
+def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) -> float | None:
+    """Execute TOOL CALL or TOOL DEF; returns the feed that it says, mm/min, for F AUTO.
+
+    rest   what stands behind TOOL
+    """
+    match = _TOOL.match(rest)
+    if match is None:
+        raise KlartextError("TOOL needs CALL or DEF")
+    said = words(rest, match.end())
+    name = match["name"]
+    if match["number"]:
+        name = f"{float(match['number'].replace(',', '.')):.10g}"
+    elif match["parameter"]:
+        name = f"{parameters[canonical(match['parameter'])]:.10g}"
+    if match["kind"] == "DEF":
+        # With a length and a radius it defines a tool; without, it is the next one.
+        if name is not None and not said:
+            control.select_tool(name)
+        return None
+    values = {word.name: value_of(word.operand, parameters) for word in said if word.operand is not None}
+    flags = [word.name for word in said if word.operand is None]
+    unknown = [*(set(flags) - {"X", "Y", "Z"}), *(values.keys() - {"S", "F", "DL", "DR", "DR2"})]
+    if unknown:
+        raise KlartextError(f"unknown word {unknown[0] or 'in quotes'}")
+    feed = values.get("F")
+    if feed is not None and not 0.0 <= feed <= MAX_FEED:
+        raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}")
+    control.call_tool(name, "XYZ".index(flags[-1]) if flags else None)
+    if "S" in values:
+        control.rpm.set(control.row, abs(values["S"]))
+        control.add_event("speed", abs(values["S"]))
+    deltas = tuple(values.get(key) for key in ("DL", "DR", "DR2"))
+    if any(deltas):
+        control.add_event("delta", deltas)
+    if feed is None:
+        return None
+    control.commanded[3] = feed * control.feed_unit
+    return float(control.commanded[3])

@@ -1,0 +1,229 @@
+"""The words of path blocks, and where polar coordinates and circles lead."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.readers.common import arcs
+from trunnion.readers.common.axis_word import AxisWord, PositionMode
+from trunnion.readers.common.row_recorder import LARGEST_POSITION
+from trunnion.readers.common.virtual_control import Circle
+from trunnion.readers.families.heidenhain.control import HeidenhainControl
+from trunnion.readers.families.heidenhain.lexer import Operand, Word
+from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
+from trunnion.readers.families.heidenhain.words import M_ARGUMENTS
+
+#: Larger feeds are slips of the program.
+MAX_FEED: Final = 1e9
+
+#: More turns of a helix are none that a program means.
+MAX_TURNS: Final = 1000
+
+_AXES: Final = frozenset("XYZABCUVW")
+_VECTORS: Final = frozenset({"NX", "NY", "NZ", "TX", "TY", "TZ"})
+_FLAGS: Final = frozenset({"FMAX", "R0", "RL", "RR", "R", "DR+", "DR-", "F", "AUTO", "FAUTO", "MAX"})
+
+
+def value_of(operand: Operand, parameters: Parameters) -> float:
+    """Return what an operand stands for."""
+    if operand.parameter:
+        return operand.sign * parameters[canonical(operand.parameter)]
+    return operand.sign * operand.number
+
+
+@dataclass(slots=True)
+class Block:
+    """The words of a path block, their values looked up.
+
+    axes        axes by letter
+    vectors     components of surface normal and tool axis
+    polar       PR and PA
+    direction   1 for DR+, -1 for DR-, 0 without
+    side        RL, RR or R0
+    m           M words with what belongs to them, None for flags
+    """
+
+    axes: dict[str, AxisWord] = field(default_factory=dict)
+    vectors: dict[str, float] = field(default_factory=dict)
+    polar: dict[str, AxisWord] = field(default_factory=dict)
+    radius: float | None = None
+    direction: int = 0
+    side: str = ""
+    rapid: bool = False
+    feed: float | None = None
+    feed_of_tool: bool = False
+    m: list[tuple[int, dict[str, float | None]]] = field(default_factory=list)
+
+    @property
+    def tool_axis(self) -> Floats | None:
+        """TX TY TZ, (3,); components that are not written are 0."""
+        vector = self._vector("TX", "TY", "TZ")
+        if vector is not None and not np.any(vector):
+            raise KlartextError("the tool vector has no length")
+        return vector
+
+    @property
+    def normal(self) -> Floats | None:
+        """NX NY NZ, (3,), the same way."""
+        return self._vector("NX", "NY", "NZ")
+
+    def _vector(self, *names: str) -> Floats | None:
+        if not self.vectors.keys() & set(names):
+            return None
+        return np.array([self.vectors.get(name, 0.0) for name in names])
+
+
+def read_block(words: Sequence[Word], parameters: Parameters) -> Block:
+    """Give the words of a path block their places.
+
+    Raises
+    ------
+    KlartextError
+        For a word that no path block has, and for a parameter without a value.
+    """
+    block = Block()
+    for word in words:
+        arguments = M_ARGUMENTS.get(block.m[-1][0], frozenset()) if block.m else frozenset()
+        name = word.name
+        if word.text is not None or (name not in arguments and word.operand is None and name not in _FLAGS):
+            raise KlartextError(f"unknown word {name or word.text}")
+        value = None if word.operand is None else value_of(word.operand, parameters)
+        if name in arguments:
+            block.m[-1][1][name] = value
+        elif value is None:
+            _flag(block, name)
+        else:
+            _value(block, name, value, PositionMode.INCREMENTAL if word.incremental else PositionMode.ABSOLUTE)
+    return block
+
+
+def _flag(block: Block, name: str) -> None:
+    match name:
+        case "FMAX":
+            block.rapid = True
+        case "DR+" | "DR-":
+            block.direction = 1 if name == "DR+" else -1
+        case "RL" | "RR":
+            block.side = name
+        case "FAUTO" | "AUTO":
+            block.feed_of_tool = True
+        case "MAX":
+            block.rapid = True
+        case _:
+            if name != "F":
+                raise KlartextError(f"{name} needs a value")
+
+
+def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
+    if name in _AXES:
+        if name in block.axes:
+            raise KlartextError(f"{name} is written twice")
+        block.axes[name] = value, how
+    elif name in ("PR", "PA"):
+        block.polar[name] = value, how
+    elif name in _VECTORS:
+        block.vectors[name] = value
+    elif name == "F":
+        if not 0.0 <= value <= MAX_FEED:
+            raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}")
+        block.feed = value
+    elif name == "R":
+        # R0 switches compensation off; a radius stands before it.
+        if value == 0.0:
+            block.side = "R0"
+        else:
+            block.radius = value
+    elif name == "M":
+        if value != int(value) or not 0 <= value < 10000:
+            raise KlartextError(f"M{value:g} is no function")
+        block.m.append((int(value), {}))
+    else:
+        raise KlartextError(f"unknown word {name}{value:g}")
+
+
+# Where polar words lead
+
+
+def polar_end(control: HeidenhainControl, block: Block, *, circle: bool) -> dict[str, AxisWord]:
+    """Return the axes of LP, CP or CTP with the end in the plane among them, in the units of the program."""
+    pole = _pole(control)
+    first, second = (control.plane_axis + 1) % 3, (control.plane_axis + 2) % 3
+    here = control.commanded[:3] - pole
+    radius = math.hypot(here[first], here[second])
+    angle = math.degrees(math.atan2(here[second], here[first]))
+    if "PR" in block.polar and not circle:
+        value, how = block.polar["PR"]
+        value *= control.length_unit
+        radius = radius + value if how is PositionMode.INCREMENTAL else value
+    if "PA" in block.polar:
+        value, how = block.polar["PA"]
+        angle = angle + value if how is PositionMode.INCREMENTAL else value
+    if abs(angle) > 360.0 * MAX_TURNS or not abs(radius) < LARGEST_POSITION:
+        raise KlartextError("polar coordinates that no machine has")
+    end = {
+        "XYZ"[first]: (pole[first] + radius * math.cos(math.radians(angle))) / control.length_unit,
+        "XYZ"[second]: (pole[second] + radius * math.sin(math.radians(angle))) / control.length_unit,
+    }
+    if end.keys() & block.axes.keys():
+        raise KlartextError("polar coordinates and axes of the plane in one block")
+    return {**block.axes, **{name: (value, PositionMode.ABSOLUTE) for name, value in end.items()}}
+
+
+def _pole(control: HeidenhainControl) -> Floats:
+    if control.pole is None:
+        raise KlartextError("there is no CC before it")
+    return control.pole
+
+
+# Circles
+
+
+def circle_of(control: HeidenhainControl, head: str, block: Block) -> Circle:
+    """Return the circle of a C, CP, CR, CT or CTP block."""
+    if head in ("CT", "CTP"):
+        return partial(_tangential, control)
+    if not block.direction:
+        raise KlartextError(f"{head} needs DR+ or DR-")
+    clockwise = block.direction < 0
+    if head == "CR":
+        if block.radius is None:
+            raise KlartextError("CR needs a radius")
+        radius = block.radius * control.length_unit
+        if abs(radius) > LARGEST_POSITION:
+            raise KlartextError("a radius that no machine has")
+        return lambda start, end: arcs.by_radius(start, end, radius, control.plane_axis, clockwise, 0)
+    pole = _pole(control).copy()
+    turns = 0
+    angle, how = block.polar.get("PA", (0.0, PositionMode.ABSOLUTE))
+    if head == "CP" and how is PositionMode.INCREMENTAL:
+        if angle and (angle > 0.0) != (block.direction > 0):
+            raise KlartextError("IPA and DR have different signs")
+        turns = max(math.ceil(round(abs(angle) / 360.0, 9)) - 1, 0)
+    return lambda start, end: arcs.by_centre(start, end, pole, control.plane_axis, clockwise, turns)
+
+
+def _tangential(control: HeidenhainControl, start: Floats, end: Floats) -> arcs.Arc:
+    """The circle that goes on where the last motion went to."""
+    heading = control.heading()
+    plane = control.plane_axis
+    chord = end - start
+    chord[plane] = 0.0
+    if heading is None:
+        raise arcs.ArcError("there is no direction that the circle could go on in")
+    heading[plane] = 0.0
+    length = float(np.linalg.norm(heading))
+    if length < arcs.SAME_POINT or float(np.linalg.norm(chord)) < arcs.SAME_POINT:
+        raise arcs.ArcError("there is no direction that the circle could go on in")
+    left = np.cross(arcs.normal_of(plane, False), heading / length)
+    across = float(left @ chord)
+    if abs(across) < arcs.SAME_POINT * float(chord @ chord):
+        raise arcs.ArcError("the end lies straight ahead")
+    centre = start + left * (float(chord @ chord) / (2.0 * across))
+    if float(np.abs(centre).max()) > arcs.LARGEST_RADIUS:
+        raise arcs.ArcError("the end lies straight ahead")
+    return arcs.by_centre(start, end, centre, plane, across < 0.0, 0)

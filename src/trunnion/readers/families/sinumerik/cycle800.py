@@ -1,0 +1,65 @@
+"""CYCLE800: its sixteen values, and the plane that they ask for."""
+
+import numpy as np
+
+from trunnion.errors import Severity
+from trunnion.readers.common.affine_map import AffineMap, rotation_matrix
+from trunnion.readers.families.sinumerik.block import Call
+from trunnion.readers.families.sinumerik.control import SinumerikControl
+
+#: Larger values are none that a machine has.
+_LARGEST = 1e7
+
+
+def rotation_axes(mode: int) -> list[int] | None:
+    """Axes of the three turns of CYCLE800's ``_MODE``, 0 for X; None if it counts angles in another way.
+
+    Bits 1 and 0 name the axis of the first turn, 3 and 2 of the second, 5 and 4 of the third (01 X, 10 Y, 11 Z);
+    bits 7 and 6 are 00 for turns one after another.
+    """
+    if mode >> 6:
+        return None
+    axes = [(mode >> shift) & 3 for shift in (0, 2, 4)]
+    return None if 0 in axes else [axis - 1 for axis in axes]
+
+
+def swivel(control: SinumerikControl, made: Call) -> None:
+    """Execute a call of CYCLE800."""
+    note = control.note
+    control.add_event("cycle800", ",".join(made.written))
+    texts = [value if isinstance(value, str) else None for value in made.arguments]
+    if not made.arguments or (len(texts) > 1 and texts[1] == "0"):
+        control.set_plane(None)
+        return
+    if len(made.arguments) > 16:
+        note(f"CYCLE800 takes 16 values, not {len(made.arguments)}", Severity.ERROR)
+        return
+    numbers = [value if isinstance(value, float) else 0.0 for value in made.arguments]
+    numbers += [0.0] * (16 - len(numbers))
+    retract, _, style, mode = numbers[:4]
+    before, angles, after, direction = numbers[4:7], numbers[7:10], numbers[10:13], numbers[13]
+    if any(abs(value) > _LARGEST for value in numbers):
+        note("CYCLE800 with numbers that no machine has: it is not executed", Severity.ERROR)
+        return
+    if retract:
+        note(f"CYCLE800 retracts first (_FR {retract:g}): where to is not simulated", Severity.WARNING)
+    origin = control.length_unit * np.array(before)
+    offset = control.length_unit * np.array(after)
+    linear = np.eye(3)
+    direct = None
+    axes = rotation_axes(int(mode))
+    if int(mode) >> 6 == 3:
+        # Values come in the order of the machine's axes as written in the swivel data: first, second.
+        direct = angles[0], angles[1]
+    elif axes is None:
+        note(f"CYCLE800 with _MODE {mode:g} is not simulated", Severity.ERROR)
+        return
+    else:
+        for axis, angle in zip(axes, angles, strict=True):
+            linear = linear @ rotation_matrix(axis, angle)
+    frame = AffineMap(linear, origin)
+    if direct is None:
+        frame = frame.compose(AffineMap(np.eye(3), offset))
+    control.swivel(frame, add=int(style) % 10 == 1, direction=direction, direct=direct)
+    if direct is not None and offset.any():
+        note("CYCLE800 with direct angles: the offset after turning is not simulated", Severity.ERROR)

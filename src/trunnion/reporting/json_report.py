@@ -1,0 +1,189 @@
+"""A report as JSON: what the page says, as data. The schema stands in docs/report.md.
+
+In:     ``ReportContent`` and ``PlotSeries``.
+Out:    UTF-8 JSON, without NaN and infinities (null instead).
+"""
+
+import json
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.reporting.content import (
+    AxisExtent,
+    BlockReference,
+    Extremes,
+    OperationUsage,
+    PlanDecision,
+    ReportContent,
+    TipExtent,
+    ToolUsage,
+    finite_or_none,
+)
+from trunnion.reporting.plot_series import PlotSeries
+from trunnion.verification.results import Check, Place
+
+#: Version of the schema; it grows when a reader of older files would be misled.
+SCHEMA = 1
+
+#: Programs with more motions get no columns: as JSON they would be of no use to anybody.
+MAX_COLUMN_MOTIONS = 100_000
+
+#: Decimals of columns: finer than any control prints.
+DECIMALS = 6
+
+
+def render_json(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
+    """Yield the document, piece by piece."""
+    encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False, indent=1)
+    head = encoder.encode(_head(content)).removesuffix("\n}")
+    yield head.encode()
+    if content.motions > MAX_COLUMN_MOTIONS:
+        note = f"{content.motions} motions; columns are written for up to {MAX_COLUMN_MOTIONS}"
+        yield f',\n "columns": null,\n "columns_left_out": {json.dumps(note)}\n}}\n'.encode()
+        return
+    yield b',\n "columns": {'
+    for k, (name, column) in enumerate(_columns(content, series)):
+        values = json.dumps(column, allow_nan=False, separators=(",", ":"))
+        yield f"{',' if k else ''}\n  {json.dumps(name, ensure_ascii=False)}: {values}".encode()
+    yield b'\n },\n "columns_left_out": null\n}\n'
+
+
+def _head(content: ReportContent) -> dict[str, object]:
+    return {
+        "schema": SCHEMA,
+        "program": content.program,
+        "machine": {"key": content.machine_key, "name": content.machine},
+        "control": content.control or None,
+        "made": content.made or None,
+        "passed": content.passed,
+        "checks": [_check(check) for check in content.checks],
+        "motions": content.motions,
+        "time": {
+            "seconds": content.seconds,
+            "cutting_seconds": content.cutting_seconds,
+            "rapid_seconds": content.rapid_seconds,
+            "motions_without_time": content.untimed,
+        },
+        "tools": [_tool(tool) for tool in content.tools],
+        "operations": [_operation(operation) for operation in content.operations],
+        "decisions": [_decision(decision) for decision in content.decisions],
+        "extents": {
+            "tip": [_tip(extent) for extent in content.tip],
+            "axes": [_axis(extent) for extent in content.axes],
+        },
+    }
+
+
+def _check(check: Check) -> dict[str, object]:
+    return {
+        "key": check.key,
+        "title": check.title,
+        "passed": check.passed,
+        "summary": check.summary,
+        "worst": finite_or_none(check.worst),
+        "limit": finite_or_none(check.limit),
+        "unit": check.unit,
+        "places": [_place(place) for place in check.places],
+    }
+
+
+def _place(place: Place) -> dict[str, object]:
+    return {
+        "nc_line": place.nc_line,
+        "number": _number(place.number),
+        "cl_file": place.cl_file or None,
+        "cl_line": place.cl_line or None,
+        "value": finite_or_none(place.value),
+        "text": place.text,
+    }
+
+
+def _tool(tool: ToolUsage) -> dict[str, object]:
+    return {
+        "name": tool.name,
+        "motions": tool.motions,
+        "seconds": tool.seconds,
+        "cutting_seconds": tool.cutting_seconds,
+        "rapid_seconds": tool.rapid_seconds,
+        "rpm": list(tool.rpm) if tool.rpm else None,
+        "feed": list(tool.feed) if tool.feed else None,
+        "first": _block_reference(tool.first),
+    }
+
+
+def _operation(operation: OperationUsage) -> dict[str, object]:
+    return {
+        "name": operation.name,
+        "tool": operation.tool,
+        "cl_file": operation.cl_file or None,
+        "motions": operation.motions,
+        "seconds": operation.seconds,
+        "cutting_seconds": operation.cutting_seconds,
+        "rapid_seconds": operation.rapid_seconds,
+        "first": _block_reference(operation.first) if operation.first else None,
+    }
+
+
+def _decision(decision: PlanDecision) -> dict[str, object]:
+    return {
+        "operation": decision.operation,
+        "cl_file": decision.cl_file or None,
+        "cl_line": decision.cl_line or None,
+        "about": decision.about,
+        "text": decision.text,
+    }
+
+
+def _tip(extent: TipExtent) -> dict[str, object]:
+    return {"name": extent.name, "unit": "mm", "whole": _extremes(extent.whole), "cutting": _extremes(extent.cutting)}
+
+
+def _axis(extent: AxisExtent) -> dict[str, object]:
+    return {
+        "name": extent.name,
+        "unit": "deg" if extent.unit == "°" else extent.unit,
+        "whole": _extremes(extent.extremes),
+        "limits": [extent.low_limit, extent.high_limit],
+        "endless": extent.endless,
+        "placed": extent.has_known_zero,
+        "margin": extent.margin,
+    }
+
+
+def _extremes(extremes: Extremes | None) -> dict[str, object] | None:
+    if extremes is None:
+        return None
+    return {
+        "low": extremes.low,
+        "high": extremes.high,
+        "low_at": _block_reference(extremes.low_at),
+        "high_at": _block_reference(extremes.high_at),
+    }
+
+
+def _block_reference(block: BlockReference) -> dict[str, object]:
+    return {"nc_line": block.nc_line, "number": _number(block.number), "nc_file": block.file or None}
+
+
+def _number(number: int) -> int | None:
+    return number if number >= 0 else None
+
+
+def _columns(content: ReportContent, series: PlotSeries) -> Iterator[tuple[str, list[float] | list[int] | list[str]]]:
+    """Yield the columns under the names that the schema gives them; one value a motion, so without the first point."""
+    yield "nc_line", series.lines["block"][1:].tolist()
+    yield "number", series.lines["number"][1:].tolist()
+    yield "cl_line", series.lines["cl"][1:].tolist()
+    if "file" in series.lines:
+        yield "nc_file", [series.files[file] for file in series.lines["file"][1:]]
+    if series.timed:
+        yield "time", np.round(series.time()[1:], DECIMALS).tolist()
+    names = [f"axis {axis.name}" for axis in content.axes]
+    for k, name in enumerate(names):
+        yield name, np.round(series.values[f"axis{k}"][1:].astype(np.float64), DECIMALS).tolist()
+    for k, axis in enumerate(content.axes):
+        if f"speed{k}" in series.values:
+            speeds = series.values[f"speed{k}"][1:].astype(np.float64)
+            yield f"speed {axis.name}", np.round(speeds, DECIMALS).tolist()
+    yield "tip_feed", np.round(series.values["feed"][1:].astype(np.float64), DECIMALS).tolist()

@@ -1,0 +1,1 @@
+"""How far the program is from its CL files, and which deviations it declares."""

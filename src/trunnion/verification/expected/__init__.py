@@ -1,0 +1,1 @@
+"""What the CL files ask for: the path, its circles and its holes, in the frame of the program."""

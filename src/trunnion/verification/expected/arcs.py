@@ -1,0 +1,89 @@
+"""Circles of a CL file: where a point on them should be.
+
+Units: mm and radians.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.verification.expected.path import ExpectedPath
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arc:
+    """One circle or helix from ``start`` to ``end``; what the file rounds off is spread evenly along it."""
+
+    start: Floats
+    end: Floats
+    centre: Floats
+    normal: Floats
+    sweep: float
+
+    @property
+    def radial(self) -> Floats:
+        """From the axis to the start, (3,)."""
+        arm = self.start - self.centre
+        return np.asarray(arm - (arm @ self.normal) * self.normal)
+
+    @property
+    def radius(self) -> float:
+        """Distance of the start from the axis."""
+        return float(np.linalg.norm(self.radial))
+
+    @property
+    def slope(self) -> float:
+        """How much it rises on a millimetre of its way round."""
+        return abs(float((self.end - self.start) @ self.normal)) / max(self.radius * self.sweep, 1e-9)
+
+    @property
+    def open(self) -> float:
+        """How far the end is from where the circle ends, seen along its axis, mm: what the file rounds off."""
+        radial, across = self.radial, np.cross(self.normal, self.radial)
+        off = self.end - self.centre - np.cos(self.sweep) * radial - np.sin(self.sweep) * across
+        return float(np.linalg.norm(off - (off @ self.normal) * self.normal))
+
+    def fractions(self, points: Floats) -> Floats:
+        """How much of the arc is done at points near it, in order, (k,)."""
+        arm = points - self.centre
+        across = np.cross(self.normal, self.radial)
+        angle = np.unwrap(np.concatenate(([0.0], np.arctan2(arm @ across, arm @ self.radial))))[1:]
+        if len(angle) and angle[0] < -1e-9:
+            angle = angle + 2.0 * np.pi
+        return np.asarray(angle / self.sweep)
+
+    def at(self, fraction: Floats) -> Floats:
+        """Points at these fractions, (k, 3)."""
+        angle = (fraction * self.sweep)[:, None]
+        radial, across = self.radial, np.cross(self.normal, self.radial)
+        height = self.start - self.centre - radial
+        circle = self.centre + height + np.cos(angle) * radial + np.sin(angle) * across
+        last = self.centre + height + np.cos(self.sweep) * radial + np.sin(self.sweep) * across
+        return np.asarray(circle + fraction[:, None] * (self.end - last))
+
+    def deviation(self, points: Floats) -> Floats:
+        """From where they should be to where points are, (k, 3)."""
+        return np.asarray(points - self.at(self.fractions(points)))
+
+
+def arc_of(expected: ExpectedPath, row: int) -> Arc:
+    """The circle that ends at a row."""
+    arcs = expected.arcs
+    k = int(np.searchsorted(arcs.row, row))
+    start, end = expected.point(row - 1).tip, expected.point(row).tip
+    centre, normal = arcs.centre[k], arcs.normal[k]
+    a, b = start - centre, end - centre
+    angle = float(np.arctan2(np.cross(a, b) @ normal, a @ b - (a @ normal) * (b @ normal))) % (2.0 * np.pi)
+    if min(angle, 2.0 * np.pi - angle) * float(arcs.radius[k]) < 1e-4:
+        angle = 2.0 * np.pi
+    return Arc(start, end, centre, normal, angle + 2.0 * np.pi * float(arcs.full_turns[k]))
+
+
+def turned(begin: Floats, end: Floats, fraction: Floats) -> Floats:
+    """Vectors on the great circle from ``begin`` to ``end``, (k, 3)."""
+    angle = float(np.arctan2(np.linalg.norm(np.cross(begin, end)), begin @ end))
+    if angle < 1e-9:
+        return np.asarray(begin + fraction[:, None] * (end - begin))
+    weights = np.sin((1.0 - fraction) * angle), np.sin(fraction * angle)
+    return np.asarray((weights[0][:, None] * begin + weights[1][:, None] * end) / np.sin(angle))
