@@ -189,10 +189,10 @@ def at_pole(machine: Machine, moves: Moves, options: PlanOptions) -> str:
     took = time.perf_counter() - begin
     rotary = motion.rotary
     share = speed_shares(machine, motion.operation, rotary).max(axis=1)
-    leaned = motion.deviations
-    joints = np.zeros((len(leaned.rotary), 5))
-    joints[:, list(machine.rotary)] = leaned.rotary
-    apart = np.linalg.norm(forward(machine, joints)[1] - moves.axis[leaned.leaned], axis=1)
+    deviations = motion.deviations
+    joints = np.zeros((len(deviations.leaned_rotary), 5))
+    joints[:, list(machine.rotary)] = deviations.leaned_rotary
+    apart = np.linalg.norm(forward(machine, joints)[1] - moves.axis[deviations.leaned_rows], axis=1)
     lean = float(np.degrees(2.0 * np.arcsin(0.5 * apart)).max(initial=0.0))
     cells = (f"{100.0 * share.max():.0f} %", f"{int((share > 1.0).sum())}", f"{lean:.4f}")
     return " | ".join((*cells, f"{operation_seconds(machine, motion):.1f}", f"{1e3 * took:.0f}"))

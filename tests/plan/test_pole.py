@@ -268,7 +268,7 @@ def test_the_turn_out_of_the_pole_is_spread_over_the_approach_without_any_lean()
 def test_by_default_everything_stays_and_the_log_names_place_axis_and_cure() -> None:
     operation = straight_past(0.05)
     found = planned(operation, explain=True)
-    assert not len(found.motions[0].deviations)
+    assert found.motions[0].deviations.is_empty
     np.testing.assert_array_equal(found.motions[0].operation.moves.axis, operation.moves.axis)
     said = [decision for decision in found.decisions if decision.topic is DecisionTopic.SPEED]
     assert len(said) == 1
@@ -310,8 +310,8 @@ def test_a_lowered_feed_is_what_the_axes_can_do_and_no_less() -> None:
     assert low.any()
     assert share.max() < 1.0
     assert share[low].min() > 0.98
-    np.testing.assert_array_equal(motion.deviations.slowed, np.flatnonzero(low))
-    np.testing.assert_array_equal(motion.deviations.feed, feeds(found)[low])
+    np.testing.assert_array_equal(motion.deviations.slowed_rows, np.flatnonzero(low))
+    np.testing.assert_array_equal(motion.deviations.slowed_feed, feeds(found)[low])
     assert [d.topic for d in found.decisions if d.topic in (DecisionTopic.SPEED, DecisionTopic.FEED)] == [
         DecisionTopic.FEED
     ]

@@ -12,11 +12,12 @@ from trunnion.cl import read_cl
 from trunnion.cli.post import WrittenProgram, plan_program, write_for_proof
 from trunnion.controls import load_control
 from trunnion.machines import Machine, load_machine
+from trunnion.model.deviations import Deviations
 from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Toolpath
 from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
-from trunnion.verification import DeclaredDeviations, Verification, verify
+from trunnion.verification import Verification, verify
 
 ROWS = 81
 
@@ -31,7 +32,7 @@ class Posted:
     text: list[str]
     folder: Path
 
-    def verified(self, text: list[str] | None = None, deviations: DeclaredDeviations | None = None) -> Verification:
+    def verified(self, text: list[str] | None = None, deviations: Deviations | None = None) -> Verification:
         """The program, or another text in its place, against the CL file and what was agreed upon."""
         file = self.folder / "again.mpf"
         file.write_text("\n".join(self.text if text is None else text) + "\n", encoding="utf-8")
@@ -40,7 +41,7 @@ class Posted:
         return verify(run, [self.path], tolerances=allowed, settings=self.claim.settings)
 
     @property
-    def deviations(self) -> DeclaredDeviations:
+    def deviations(self) -> Deviations:
         assert self.claim.allowed[0].deviations is not None
         return self.claim.allowed[0].deviations
 
@@ -96,8 +97,7 @@ def test_a_leaning_program_is_proven_as_it_says(mode: PoleStrategy, tmp_path: Pa
 
 
 def test_without_its_claim_it_fails(leaning: Posted) -> None:
-    nothing = DeclaredDeviations(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
-    assert "axis" in failed(leaning.verified(deviations=nothing))
+    assert "axis" in failed(leaning.verified(deviations=Deviations.none()))
 
 
 def test_a_wrong_rotary_position_is_found_in_every_row(leaning: Posted) -> None:
@@ -112,11 +112,11 @@ def test_a_wrong_rotary_position_is_found_in_every_row(leaning: Posted) -> None:
                     )
                     if "SUPA" not in line:
                         assert "axis" in failed(found), (line, change)
-    assert tried > 4 * len(leaning.deviations.leaned)
+    assert tried > 4 * len(leaning.deviations.leaned_rows)
 
 
 def test_a_lean_beyond_what_was_asked_for_is_not_believed(leaning: Posted) -> None:
-    off = check(leaning.verified(deviations=replace(leaning.deviations, lean=0.03)), "axis")
+    off = check(leaning.verified(deviations=replace(leaning.deviations, max_lean=0.03)), "axis")
     assert not off.passed
     assert "more than the 0.03 asked for" in off.places[0].text
     assert off.places[0].cl_line in range(12, 12 + ROWS)
@@ -124,7 +124,7 @@ def test_a_lean_beyond_what_was_asked_for_is_not_believed(leaning: Posted) -> No
 
 def test_a_claim_about_other_rows_is_not_met(leaning: Posted) -> None:
     deviations = leaning.deviations
-    moved = replace(deviations, leaned=deviations.leaned + 1)
+    moved = replace(deviations, leaned_rows=deviations.leaned_rows + 1)
     assert "axis" in failed(leaning.verified(deviations=moved))
 
 
@@ -149,7 +149,7 @@ def test_every_wrong_feed_is_found(slowed: Posted) -> None:
 def test_a_feed_lower_than_needed_or_higher_than_asked_for_is_not_believed(
     factor: float, text: str, slowed: Posted
 ) -> None:
-    deviations = replace(slowed.deviations, feed=slowed.deviations.feed * factor)
+    deviations = replace(slowed.deviations, slowed_feed=slowed.deviations.slowed_feed * factor)
     found = check(slowed.verified(deviations=deviations), "feed")
     assert not found.passed
     assert any(text in place.text for place in found.places)

@@ -26,7 +26,7 @@ _LEAST_POLE_SINE = 1e-3
 
 def program_tolerances(program: Program) -> "list[Tolerances]":
     """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
-    from trunnion.verification import DeclaredDeviations, Tolerances
+    from trunnion.verification import Tolerances
 
     control, machine = program.control, program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
@@ -57,10 +57,7 @@ def program_tolerances(program: Program) -> "list[Tolerances]":
             tip += math.radians(angle) * float(np.abs(motion.operation.moves.tip).max())
         if motion.mode is MachiningMode.WITHOUT_TCP:
             tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
-        apart = motion.deviations
-        deviations = (
-            DeclaredDeviations(apart.lean, apart.leaned, apart.rotary, apart.slowed, apart.feed) if len(apart) else None
-        )
+        deviations = None if motion.deviations.is_empty else motion.deviations
         if not motion.starts_operation:
             before = allowed.pop()
             tip, angle, normal = max(tip, before.tip), max(angle, before.angle), max(normal, before.normal)

@@ -3,10 +3,9 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-import numpy as np
-
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Floats
 from trunnion.errors import Problem
+from trunnion.model.deviations import Deviations
 from trunnion.model.frames import into_plane
 from trunnion.model.toolpath import Frame, Operation
 
@@ -28,32 +27,6 @@ class MachiningMode(StrEnum):
     TILTED = "tilted plane"
     TCP = "TCP"
     WITHOUT_TCP = "without TCP"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Deviations:
-    """Where an operation is not made as its CL file has it; rows are those of the CL file, growing.
-
-    lean    degrees by which the tool axis may lean at the rows ``leaned``
-    leaned  (k,) int64
-    rotary  (k, 2) float64  positions of the rotary axes there, as ``Motion`` has them
-    slowed  (m,) int64      rows with another feed
-    feed    (m,) float64    that feed, in the unit of the CL file's
-    """
-
-    lean: float
-    leaned: Ints
-    rotary: Floats
-    slowed: Ints
-    feed: Floats
-
-    @staticmethod
-    def none() -> "Deviations":
-        """Everything as it is in the CL file."""
-        return Deviations(0.0, np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0))
-
-    def __len__(self) -> int:
-        return len(self.leaned) + len(self.slowed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,8 +9,9 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.machines import Machine, inverse
+from trunnion.model.deviations import Deviations
 from trunnion.model.frames import into_frame, into_plane, relative_frame
-from trunnion.model.motion import Decision, DecisionTopic, Deviations, MachiningMode, Motion, Plan, PoleStrategy
+from trunnion.model.motion import Decision, DecisionTopic, MachiningMode, Motion, Plan, PoleStrategy
 from trunnion.model.toolpath import CycleOn, Frame, Kind, Moves, Operation, Toolpath
 from trunnion.planning.holes.cycles import (
     HoleCycleError,
@@ -297,7 +298,7 @@ def _plan_operation(task: OperationTask) -> _PlannedOperation:
     planned = PlannedOperation(machine, file, operation, poses.rotary, poses.state, task.keep_slides)
     needed = _rewinds(planned, poses, options.clearance)
     operation, slowed, too_fast = limit_speeds(replace(task, operation=operation), poses, needed)
-    deviations = replace(leaned, slowed=slowed.slowed, feed=slowed.feed)
+    deviations = replace(leaned, slowed_rows=slowed.slowed_rows, slowed_feed=slowed.slowed_feed)
     problems = (*lacking, *_row_problems(file, moves, poses, machine), *_rewind_problems(planned, needed, options))
     if options.allow_rewinds:
         _include_retracts(poses, machine, moves, needed)

@@ -4,7 +4,7 @@ from trunnion.machines.forward import tool_axis_rows
 from trunnion.verification.comparison import Comparison, Difference, compare
 from trunnion.verification.context import Settings
 from trunnion.verification.deviations.point_deviations import compare_rows
-from trunnion.verification.expected.path import DeclaredDeviations, Tolerances
+from trunnion.verification.expected.path import Tolerances
 from trunnion.verification.kinematics.axis_motion import axis_motion_rows
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
 from trunnion.verification.results import Check, OperationRows, Place, Verification
@@ -18,7 +18,6 @@ __all__ = [
     "KERNELS",
     "Check",
     "Comparison",
-    "DeclaredDeviations",
     "Difference",
     "OperationRows",
     "Place",

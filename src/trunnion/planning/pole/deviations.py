@@ -14,7 +14,8 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine, kinematic_parameters
-from trunnion.model.motion import Decision, DecisionTopic, Deviations, PoleStrategy
+from trunnion.model.deviations import Deviations
+from trunnion.model.motion import Decision, DecisionTopic, PoleStrategy
 from trunnion.model.toolpath import Kind, Operation
 from trunnion.planning.options import PlanOptions
 from trunnion.planning.pole.lean_limits import degrees_off_pole
@@ -90,7 +91,10 @@ def handle_pole(
         problems = [_no_lean_problem(task, region, cure) for region in lacking[:_NAMED]]
     rows = found.rows
     deviations = replace(
-        Deviations.none(), lean=options.pole_angle, leaned=task.source[rows], rotary=found.poses.rotary[rows]
+        Deviations.none(),
+        max_lean=options.pole_angle,
+        leaned_rows=task.source[rows],
+        leaned_rotary=found.poses.rotary[rows],
     )
     return replace(operation, moves=found.moves), found.poses, deviations, log, problems
 
@@ -154,7 +158,7 @@ def limit_speeds(
     moves, rows = lower_feeds(task.machine, operation, poses.rotary, off_part, task.source)
     slow = replace(operation, moves=moves)
     cl, last = np.unique(task.source[rows], return_index=True)
-    deviations = replace(Deviations.none(), slowed=cl, feed=moves.feed[rows[last]])
+    deviations = replace(Deviations.none(), slowed_rows=cl, slowed_feed=moves.feed[rows[last]])
     log = list(_feed_decisions(task, rows, moves.feed))
     return slow, deviations, [*log, *_speed_decisions(replace(task, operation=slow), poses, off_part)]
 

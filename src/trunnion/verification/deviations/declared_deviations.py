@@ -14,9 +14,10 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.machines import Machine, forward
+from trunnion.model.deviations import Deviations
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.expected.path import DeclaredDeviations, ExpectedPath, Section
+from trunnion.verification.expected.path import ExpectedPath, Section
 from trunnion.verification.matching.path_matching import Matching
 
 #: What an angle between tool axes may be more than what was agreed, degrees: rounding here.
@@ -63,22 +64,30 @@ def accept_deviations(expected: ExpectedPath, machine: Machine) -> AcceptedDevia
             continue
         moves = section.operation.moves
         axis, feed = moves.axis.copy(), moves.feed.copy()
-        joints = np.zeros((len(deviations.leaned), 5))
-        joints[:, list(machine.rotary)] = deviations.rotary
-        axis[deviations.leaned] = forward(machine, joints)[1]
-        away = np.linalg.norm(axis[deviations.leaned] - moves.axis[deviations.leaned], axis=1)
+        joints = np.zeros((len(deviations.leaned_rows), 5))
+        joints[:, list(machine.rotary)] = deviations.leaned_rotary
+        axis[deviations.leaned_rows] = forward(machine, joints)[1]
+        away = np.linalg.norm(axis[deviations.leaned_rows] - moves.axis[deviations.leaned_rows], axis=1)
         off = np.degrees(2.0 * np.arcsin(np.minimum(0.5 * away, 1.0)))
-        for k in np.flatnonzero(~(off <= deviations.lean + _NOISE)).tolist():
-            text = f"the tool axis is said to lean by {off[k]:.6f} degrees, more than the {deviations.lean:g} asked for"
-            off_axis.append(DeviationFault(section.first + int(deviations.leaned[k]), float(off[k]), text))
-        feed[deviations.slowed] = deviations.feed
+        for k in np.flatnonzero(~(off <= deviations.max_lean + _NOISE)).tolist():
+            text = (
+                f"the tool axis is said to lean by {off[k]:.6f} degrees,"
+                f" more than the {deviations.max_lean:g} asked for"
+            )
+            off_axis.append(DeviationFault(section.first + int(deviations.leaned_rows[k]), float(off[k]), text))
+        feed[deviations.slowed_rows] = deviations.slowed_feed
         for k in np.flatnonzero(
-            ~((deviations.feed > 0.0) & (deviations.feed <= moves.feed[deviations.slowed]))
+            ~((deviations.slowed_feed > 0.0) & (deviations.slowed_feed <= moves.feed[deviations.slowed_rows]))
         ).tolist():
-            text = f"a feed of {deviations.feed[k]:g} is said to be a lower one than the CL file's"
-            off_feed.append(DeviationFault(section.first + int(deviations.slowed[k]), float(deviations.feed[k]), text))
+            text = f"a feed of {deviations.slowed_feed[k]:g} is said to be a lower one than the CL file's"
+            off_feed.append(
+                DeviationFault(section.first + int(deviations.slowed_rows[k]), float(deviations.slowed_feed[k]), text)
+            )
         lean, leaned = max(lean, float(off.max(initial=0.0))), leaned + len(off)
-        slowest, slowed = min(slowest, float(deviations.feed.min(initial=np.inf))), slowed + len(deviations.slowed)
+        slowest, slowed = (
+            min(slowest, float(deviations.slowed_feed.min(initial=np.inf))),
+            slowed + len(deviations.slowed_rows),
+        )
         sections.append(
             replace(section, operation=replace(section.operation, moves=replace(moves, axis=axis, feed=feed)))
         )
@@ -92,10 +101,10 @@ def misplaced_lean_positions(run: Run, expected: ExpectedPath, matching: Matchin
     columns = list(run.machine.rotary)
     for section, deviations in _agreeing(expected):
         for nc, cl in matching.pair_chunks(matching.cl.before(section.first), matching.cl.before(section.end)):
-            here, k = _among(cl - section.first, deviations.leaned)
+            here, k = _among(cl - section.first, deviations.leaned_rows)
             if not len(here):
                 continue
-            off = run.positions(nc[here]).joints[:, columns] - deviations.rotary[k]
+            off = run.positions(nc[here]).joints[:, columns] - deviations.leaned_rotary[k]
             for r, column in enumerate(columns):
                 if run.machine.axes[column].endless:
                     off[:, r] -= 360.0 * np.rint(off[:, r] / 360.0)
@@ -116,7 +125,7 @@ def needlessly_lowered_feeds(run: Run, expected: ExpectedPath, matching: Matchin
     rapid = np.array([run.machine.axes[column].rapid or np.inf for column in run.machine.rotary])
     for section, deviations in _agreeing(expected):
         for nc, cl in matching.pair_chunks(matching.cl.before(section.first), matching.cl.before(section.end)):
-            here, k = _among(cl - section.first, deviations.slowed)
+            here, k = _among(cl - section.first, deviations.slowed_rows)
             here, k = here[expected.kind(cl[here]) != Kind.ARC], k[expected.kind(cl[here]) != Kind.ARC]
             # Points between lead there as well: the way is that from the CL point before.
             first = nc[here] - 1 - matching.leading(cl[here])
@@ -128,19 +137,19 @@ def needlessly_lowered_feeds(run: Run, expected: ExpectedPath, matching: Matchin
             turned = np.abs(now.joints - before.joints)[:, list(run.machine.rotary)] + 2.0 * section.tolerances.angle
             length = np.linalg.norm(now.tip - before.tip, axis=1) - _BOTH_ENDS * section.tolerances.tip
             per_rev = expected.per_rev(cl[here])
-            rate = deviations.feed[k] * np.where(per_rev, run.state.rpm.at(nc[here]), 1.0)
+            rate = deviations.slowed_feed[k] * np.where(per_rev, run.state.rpm.at(nc[here]), 1.0)
             with np.errstate(divide="ignore", invalid="ignore"):
                 share = (turned / rapid).max(axis=1) * rate / length
             for bad in np.flatnonzero(~(share >= _NEEDED) & (length > 0.0)).tolist():
                 text = (
-                    f"the feed is lowered to {deviations.feed[k[bad]]:g}, and the rotary axes need no more than"
+                    f"the feed is lowered to {deviations.slowed_feed[k[bad]]:g}, and the rotary axes need no more than"
                     f" {100.0 * share[bad]:.0f} % of their rapid speed there"
                 )
-                broken.append(DeviationFault(int(cl[here[bad]]), float(deviations.feed[k[bad]]), text))
+                broken.append(DeviationFault(int(cl[here[bad]]), float(deviations.slowed_feed[k[bad]]), text))
     return broken
 
 
-def _agreeing(expected: ExpectedPath) -> list[tuple[Section, DeclaredDeviations]]:
+def _agreeing(expected: ExpectedPath) -> list[tuple[Section, Deviations]]:
     return [
         (section, section.tolerances.deviations)
         for section in expected.sections

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import InputError, Problem
+from trunnion.model.deviations import Deviations
 from trunnion.model.toolpath import (
     Arcs,
     Coolant,
@@ -36,32 +37,6 @@ from trunnion.verification.expected.holes import Hole, SpindleSpeed, cycle_holes
 _SIDES = {"LEFT": 1, "RIGHT": -1}
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DeclaredDeviations:
-    """Rows of an operation at which a program says that it is not as the CL file has it
-    (``trunnion.verification.deviations.declared_deviations``).
-
-    lean    degrees by which the tool axis may lean at the rows ``leaned``, as it was asked for
-    leaned  (k,) int64      rows, growing
-    rotary  (k, 2) float64  positions of the rotary axes there, degrees
-    slowed  (m,) int64      rows with a lower feed, growing
-    feed    (m,) float64    that feed, in the unit of the CL file's
-    """
-
-    lean: float
-    leaned: Ints
-    rotary: Floats
-    slowed: Ints
-    feed: Floats
-
-    def without(self, holes: Flags) -> "DeclaredDeviations":
-        """The same where the rows that are holes (n,) are not counted, and nothing is agreed upon at them."""
-        place, lean, slow = np.cumsum(~holes) - 1, ~holes[self.leaned], ~holes[self.slowed]
-        return DeclaredDeviations(
-            self.lean, place[self.leaned[lean]], self.rotary[lean], place[self.slowed[slow]], self.feed[slow]
-        )
-
-
 @dataclass(frozen=True, slots=True)
 class Tolerances:
     """How far a program may be from its CL points: mm in each coordinate, degrees in each rotary axis.
@@ -79,7 +54,7 @@ class Tolerances:
     angle: float = 0.001
     chord: float = 0.001
     feed: float = 0.005
-    deviations: DeclaredDeviations | None = None
+    deviations: Deviations | None = None
     centre: float = 0.0
     normal: float = 1e-6
     plane: bool = False
@@ -181,7 +156,7 @@ class ExpectedPath:
             found += [replace(hole, tools=tools, lengths=call.lengths, digit=limit.feed) for hole in holes]
             spindle = spindle_at(seen, len(seen.moves), spindle)
             if limit.deviations is not None and rows.any():
-                limit = replace(limit, deviations=limit.deviations.without(rows))
+                limit = replace(limit, deviations=limit.deviations.without_rows(rows))
             sections.append(Section(path.file, operation, first, limit))
             first += len(operation.moves)
         self.sections: tuple[Section, ...] = tuple(sections)
