@@ -27,7 +27,7 @@ from trunnion.errors import InputError, RefusedError
 from trunnion.machines import Machine, load_machine
 from trunnion.model.run import offset_name
 from trunnion.model.toolpath import LoadTool, Moves, Toolpath
-from trunnion.output.euler_angles import euler_zxz_angles
+from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families.fanuc.writer import comment, escape_comment, validate_settings
 from trunnion.readers import run_program
 from trunnion.verification import Verification, failures, verify

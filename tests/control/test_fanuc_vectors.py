@@ -23,8 +23,12 @@ from trunnion.machines import Machine, Mount, inverse, load_machine
 from trunnion.model.motion import MachiningMode
 from trunnion.model.run import Orientation, ProgrammedWord
 from trunnion.model.toolpath import Moves, Toolpath
+from trunnion.output.coordinates.tool_vectors import (
+    first_row_at_other_pose,
+    leading_axis_pose_is_planned,
+    tool_vectors_at,
+)
 from trunnion.output.program import Program
-from trunnion.output.tool_vectors import first_row_at_other_pose, leading_axis_pose_is_planned, tool_vectors_at
 from trunnion.output.validation import check_program
 from trunnion.readers import run_program
 

@@ -16,7 +16,7 @@ from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.errors import Severity
 from trunnion.machines import load_machine
-from trunnion.output.hole_positions import _lowest_clearance
+from trunnion.output.holes.holes_under_tcp import _lowest_clearance
 from trunnion.readers import run_program
 
 CLEAR = HEAD.replace("FEDRAT/MMPM,500.0\nGOTO/10.0,0.0,5.0\n", "")

@@ -17,7 +17,7 @@ from trunnion.errors import InputError, RefusedError
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.output.axis_coordinates import FEED_AT_TIP
+from trunnion.output.coordinates.axis_coordinates import FEED_AT_TIP
 from trunnion.readers import run_program
 from trunnion.verification import Settings, Tolerances, failures, verify
 

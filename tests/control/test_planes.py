@@ -16,7 +16,7 @@ from trunnion.cli import main
 from trunnion.controls import load_control
 from trunnion.errors import InputError
 from trunnion.machines import Machine, load_machine, shipped_machines
-from trunnion.output.euler_angles import tait_bryan_angles
+from trunnion.output.coordinates.euler_angles import tait_bryan_angles
 from trunnion.output.families.sinumerik import writer as sinumerik
 from trunnion.output.families.sinumerik.writer import swivel_axes
 from trunnion.readers import run_program

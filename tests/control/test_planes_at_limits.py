@@ -15,7 +15,7 @@ from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.machines import Machine, forward, load_machine
 from trunnion.model.toolpath import Frame, LoadTool, SpindleOn, Toolpath
-from trunnion.output.plane_from_pose import with_plane_inside_limits
+from trunnion.output.coordinates.plane_from_pose import with_plane_inside_limits
 from trunnion.planning import plan
 from trunnion.readers import run_program
 from trunnion.verification import failures, verify

@@ -13,7 +13,7 @@ from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.families import load_interpreter
 from trunnion.machines import load_machine
-from trunnion.output.euler_angles import euler_zxz_angles
+from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families.heidenhain import writer as heidenhain
 from trunnion.output.families.sinumerik import writer as sinumerik
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from trunnion.controls.words import ABSENT, BlockNumbers, NumberFormat, Word, round_to_counts
 from trunnion.errors import RefusedError
-from trunnion.output.block_writer import BlockWriter
+from trunnion.output.blocks.block_writer import BlockWriter
 
 COORDINATE = NumberFormat(5, zero="0.0", least=-1e11, greatest=1e11)
 WORDS = [

@@ -13,7 +13,7 @@ from trunnion.controls.definition import SURFACE_NORMAL_WORDS
 from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn
-from trunnion.output.plane_from_pose import with_plane_inside_limits
+from trunnion.output.coordinates.plane_from_pose import with_plane_inside_limits
 from trunnion.output.program import Program
 from trunnion.planning.linearization.arc_chords import flat_arcs, radius_change
 

@@ -5,7 +5,7 @@ Out:    the NC program, through the block writer.
 """
 
 from trunnion.controls.words import round_column
-from trunnion.output.block_writer import write_blocks
+from trunnion.output.blocks.block_writer import write_blocks
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import SubprogramOutput

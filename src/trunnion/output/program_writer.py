@@ -33,9 +33,9 @@ from trunnion.model.toolpath import (
     SpindleOn,
     Stop,
 )
-from trunnion.output.hole_blocks import write_holes
-from trunnion.output.motion_blocks import MotionBlockWriter
-from trunnion.output.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
+from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
+from trunnion.output.holes.hole_blocks import write_holes
 from trunnion.output.program import Program, effective_setting, template_suffix
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
 from trunnion.output.template_values import LoadedTool, TemplateValues, spindle_values

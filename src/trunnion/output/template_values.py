@@ -15,7 +15,7 @@ from trunnion.machines import inverse
 from trunnion.machines.motion_time import format_duration
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import LoadTool, Sense, SpindleOn
-from trunnion.output.extents import extents
+from trunnion.output.coordinates.extents import extents
 from trunnion.output.program import Program, effective_setting, motion_block_words, rotary_counts
 from trunnion.planning import operation_seconds
 

@@ -26,10 +26,16 @@ from trunnion.model.toolpath import (
     SpindleOff,
     SpindleOn,
 )
-from trunnion.output.axis_coordinates import FEED_AT_TIP, feed_format, feed_rule, feed_words, to_axis_coordinates
-from trunnion.output.hole_positions import check_holes_under_tcp
+from trunnion.output.coordinates.axis_coordinates import (
+    FEED_AT_TIP,
+    feed_format,
+    feed_rule,
+    feed_words,
+    to_axis_coordinates,
+)
+from trunnion.output.coordinates.tool_vectors import first_row_at_other_pose
+from trunnion.output.holes.holes_under_tcp import check_holes_under_tcp
 from trunnion.output.program import Program, effective_setting, effective_settings, motion_block_words, template_suffix
-from trunnion.output.tool_vectors import first_row_at_other_pose
 from trunnion.planning.holes.cycles import (
     Cycle,
     HoleCycleError,

@@ -17,7 +17,7 @@ from trunnion.controls.family_writer import ArcWords, Codes, Formats, Unsupporte
 from trunnion.controls.template import Value
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
-from trunnion.output.euler_angles import euler_zxz_angles
+from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families import iso
 from trunnion.output.families.fanuc.cycles import cycle_lines, is_valid_shift
 from trunnion.output.families.iso import row_words as row_words

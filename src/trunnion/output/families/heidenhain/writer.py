@@ -23,7 +23,7 @@ from trunnion.controls.template import Value
 from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
-from trunnion.output.euler_angles import tait_bryan_angles
+from trunnion.output.coordinates.euler_angles import tait_bryan_angles
 from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
 from trunnion.output.families.heidenhain.cycles import cycle_definition
 from trunnion.planning.holes.cycles import Cycle, SpindleState

@@ -18,7 +18,7 @@ from trunnion.controls.family_writer import (
 from trunnion.controls.template import Value
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
-from trunnion.output.euler_angles import tait_bryan_angles
+from trunnion.output.coordinates.euler_angles import tait_bryan_angles
 from trunnion.output.families import iso
 from trunnion.output.families.iso import arc_words as arc_words
 from trunnion.output.families.iso import event_words as event_words

@@ -17,7 +17,7 @@ from trunnion.machines import Machine, forward, inverse, slide_positions
 from trunnion.model.frames import frame_from_vectors
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Frame
-from trunnion.output.euler_angles import euler_zxz_angles, tait_bryan_angles
+from trunnion.output.coordinates.euler_angles import euler_zxz_angles, tait_bryan_angles
 
 #: Decimals of vectors that say a plane.
 _VECTOR_DECIMALS: Final = 7

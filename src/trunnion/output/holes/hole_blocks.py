@@ -11,8 +11,8 @@ from trunnion.controls.family_writer import EACH_HOLE, FIRST_HOLE, HOLES_IN_PLAN
 from trunnion.controls.words import round_to_counts
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn
-from trunnion.output.hole_positions import write_holes_under_tcp
-from trunnion.output.motion_blocks import MotionBlockWriter
+from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.output.holes.holes_under_tcp import write_holes_under_tcp
 from trunnion.output.program import effective_settings
 from trunnion.planning.holes.cycles import Cycle, SpindleState, cycle_feed, cycle_from_event
 

@@ -17,11 +17,11 @@ from trunnion.controls.words import ABSENT, round_to_counts
 from trunnion.errors import InputError, Problem
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, Coolant, Kind, LoadTool, Phase, SpindleOn
-from trunnion.output.axis_coordinates import AxisCoordinates, feed_rule, feed_words, to_axis_coordinates
-from trunnion.output.block_writer import BLOCK_NUMBER_BYTES, CHUNK, BlockWriter
+from trunnion.output.blocks.block_writer import BLOCK_NUMBER_BYTES, CHUNK, BlockWriter
+from trunnion.output.blocks.surface_normals import contact_rows, normal_words
+from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, feed_rule, feed_words, to_axis_coordinates
+from trunnion.output.coordinates.tool_vectors import first_row_at_other_pose, nearest_pose_is_planned, tool_vectors_at
 from trunnion.output.program import Program, effective_setting, effective_settings, motion_block_words, rotary_counts
-from trunnion.output.surface_normals import contact_rows, normal_words
-from trunnion.output.tool_vectors import first_row_at_other_pose, nearest_pose_is_planned, tool_vectors_at
 
 _PHASE_KEYS = {
     Phase.RAPID: "rapid",

@@ -19,7 +19,7 @@ from trunnion.controls.family_writer import EACH_HOLE, WordEvent
 from trunnion.controls.words import round_to_counts
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
-from trunnion.output.motion_blocks import MotionBlockWriter
+from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.program import effective_settings
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, SpindleState, cycle_feed, cycle_from_event
 

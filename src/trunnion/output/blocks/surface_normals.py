@@ -11,7 +11,7 @@ from trunnion.controls.definition import SURFACE_NORMAL_WORDS
 from trunnion.controls.words import round_to_counts
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Moves
-from trunnion.output.block_writer import BlockWriter
+from trunnion.output.blocks.block_writer import BlockWriter
 
 
 def contact_rows(motion: Motion, part: slice) -> Flags:

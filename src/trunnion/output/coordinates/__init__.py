@@ -1,0 +1,1 @@
+"""The numbers that words print: axis coordinates, tool vectors, planes and their angles."""

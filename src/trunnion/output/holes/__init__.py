@@ -1,0 +1,1 @@
+"""Hole-making cycles as blocks."""
