@@ -10,12 +10,13 @@ import pytest
 from tests.paths import YL569
 from tests.report.cases import Page, blade
 from trunnion.cli import main
-from trunnion.reporting import PlanDecision, write_report
+from trunnion.model.motion import Decision, DecisionTopic
+from trunnion.reporting import write_report
 from trunnion.verification import OperationRows
 
 DECIDED = [
-    PlanDecision("BLADE", "blade.cls", 12, "start", "starts at C 1.000 B 2.000"),
-    PlanDecision("<b>BLADE</b>", "blade.cls", 40, "pole", "axis C holds & turns <script>\x00"),
+    Decision("blade.cls", "BLADE", 12, 0, DecisionTopic.START, "starts at C 1.000 B 2.000"),
+    Decision("blade.cls", "<b>BLADE</b>", 40, 7, DecisionTopic.POLE, "axis C holds & turns <script>\x00"),
 ]
 
 

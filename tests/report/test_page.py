@@ -13,7 +13,7 @@ from trunnion.machines.motion_time import format_duration
 from trunnion.model.columns import StepColumn
 from trunnion.reporting import write_report
 from trunnion.reporting.column_encoding import decode_column
-from trunnion.reporting.html_page import format_number
+from trunnion.reporting.html_text import format_number
 from trunnion.verification.results import Check, Verification
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'--><!--&amp;"

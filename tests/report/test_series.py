@@ -6,15 +6,15 @@ from numpy.typing import NDArray
 
 from tests.report.cases import blade, waves
 from trunnion.reporting.column_encoding import decode_column, encode_column
-from trunnion.reporting.plot_series import (
+from trunnion.reporting.detail_levels import (
     BUCKETS_IN_VIEW,
     MAX_DIRECT_POINTS,
     bucket_of,
-    collect_series,
     detail_levels,
     extreme_rows,
     select_rows,
 )
+from trunnion.reporting.plot_series import collect_series
 
 SINGLES = st.floats(-1e6, 1e6, width=32)
 

@@ -68,13 +68,9 @@ def check_report_name(file: str) -> None:
 
 def save_report(verification: "Verification", file: str, decisions: Sequence[Decision] = ()) -> None:
     """Write the report of a verification, with what the planner decided."""
-    from trunnion.reporting import PlanDecision, write_report
+    from trunnion.reporting import write_report
 
-    write_report(
-        verification,
-        Path(file),
-        decisions=[PlanDecision(d.operation, d.file, d.line, d.topic, d.text) for d in decisions],
-    )
+    write_report(verification, Path(file), decisions=decisions)
 
 
 def default_settings(machine: Machine) -> Mapping[str, str]:

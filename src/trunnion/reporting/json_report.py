@@ -1,7 +1,7 @@
-"""A report as JSON: what the page says, as data. The schema stands in docs/report.md.
+"""A report as JSON: the content of the page as data. docs/report.md has the schema.
 
 In:     ``ReportContent`` and ``PlotSeries``.
-Out:    UTF-8 JSON, without NaN and infinities (null instead).
+Out:    UTF-8 JSON, with null for NaN and infinities.
 """
 
 import json
@@ -9,24 +9,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.reporting.content import (
-    AxisExtent,
-    BlockReference,
-    Extremes,
-    OperationUsage,
-    PlanDecision,
-    ReportContent,
-    TipExtent,
-    ToolUsage,
-    finite_or_none,
-)
+from trunnion.model.motion import Decision
+from trunnion.reporting.content import ReportContent
+from trunnion.reporting.extents import AxisExtent, BlockReference, Extremes, TipExtent
 from trunnion.reporting.plot_series import PlotSeries
+from trunnion.reporting.text import finite_or_none
+from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification.results import Check, Place
 
-#: Version of the schema; it grows when a reader of older files would be misled.
+#: Version of the schema. It rises when programs that read older files would be misled.
 SCHEMA = 1
 
-#: Programs with more motions get no columns: as JSON they would be of no use to anybody.
+#: Programs with more motions get no columns: so much JSON is of no use.
 MAX_COLUMN_MOTIONS = 100_000
 
 #: Decimals of columns: finer than any control prints.
@@ -108,7 +102,7 @@ def _tool(tool: ToolUsage) -> dict[str, object]:
         "rapid_seconds": tool.rapid_seconds,
         "rpm": list(tool.rpm) if tool.rpm else None,
         "feed": list(tool.feed) if tool.feed else None,
-        "first": _block_reference(tool.first),
+        "first": _block(tool.first),
     }
 
 
@@ -121,16 +115,16 @@ def _operation(operation: OperationUsage) -> dict[str, object]:
         "seconds": operation.seconds,
         "cutting_seconds": operation.cutting_seconds,
         "rapid_seconds": operation.rapid_seconds,
-        "first": _block_reference(operation.first) if operation.first else None,
+        "first": _block(operation.first) if operation.first else None,
     }
 
 
-def _decision(decision: PlanDecision) -> dict[str, object]:
+def _decision(decision: Decision) -> dict[str, object]:
     return {
         "operation": decision.operation,
-        "cl_file": decision.cl_file or None,
-        "cl_line": decision.cl_line or None,
-        "about": decision.about,
+        "cl_file": decision.file or None,
+        "cl_line": decision.line or None,
+        "about": decision.topic,
         "text": decision.text,
     }
 
@@ -146,7 +140,7 @@ def _axis(extent: AxisExtent) -> dict[str, object]:
         "whole": _extremes(extent.extremes),
         "limits": [extent.low_limit, extent.high_limit],
         "endless": extent.endless,
-        "placed": extent.has_known_zero,
+        "placed": extent.zero_known,
         "margin": extent.margin,
     }
 
@@ -157,12 +151,12 @@ def _extremes(extremes: Extremes | None) -> dict[str, object] | None:
     return {
         "low": extremes.low,
         "high": extremes.high,
-        "low_at": _block_reference(extremes.low_at),
-        "high_at": _block_reference(extremes.high_at),
+        "low_at": _block(extremes.low_at),
+        "high_at": _block(extremes.high_at),
     }
 
 
-def _block_reference(block: BlockReference) -> dict[str, object]:
+def _block(block: BlockReference) -> dict[str, object]:
     return {"nc_line": block.nc_line, "number": _number(block.number), "nc_file": block.file or None}
 
 
@@ -171,7 +165,7 @@ def _number(number: int) -> int | None:
 
 
 def _columns(content: ReportContent, series: PlotSeries) -> Iterator[tuple[str, list[float] | list[int] | list[str]]]:
-    """Yield the columns under the names that the schema gives them; one value a motion, so without the first point."""
+    """Yield the columns by the names of the schema, one value a motion: without the point before the first one."""
     yield "nc_line", series.lines["block"][1:].tolist()
     yield "number", series.lines["number"][1:].tolist()
     yield "cl_line", series.lines["cl"][1:].tolist()
@@ -179,11 +173,14 @@ def _columns(content: ReportContent, series: PlotSeries) -> Iterator[tuple[str, 
         yield "nc_file", [series.files[file] for file in series.lines["file"][1:]]
     if series.timed:
         yield "time", np.round(series.time()[1:], DECIMALS).tolist()
-    names = [f"axis {axis.name}" for axis in content.axes]
-    for k, name in enumerate(names):
-        yield name, np.round(series.values[f"axis{k}"][1:].astype(np.float64), DECIMALS).tolist()
+    for k, axis in enumerate(content.axes):
+        yield f"axis {axis.name}", _rounded(series, f"axis{k}")
     for k, axis in enumerate(content.axes):
         if f"speed{k}" in series.values:
-            speeds = series.values[f"speed{k}"][1:].astype(np.float64)
-            yield f"speed {axis.name}", np.round(speeds, DECIMALS).tolist()
-    yield "tip_feed", np.round(series.values["feed"][1:].astype(np.float64), DECIMALS).tolist()
+            yield f"speed {axis.name}", _rounded(series, f"speed{k}")
+    yield "tip_feed", _rounded(series, "feed")
+
+
+def _rounded(series: PlotSeries, column: str) -> list[float]:
+    values: list[float] = np.round(series.values[column][1:].astype(np.float64), DECIMALS).tolist()
+    return values

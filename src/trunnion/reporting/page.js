@@ -26,7 +26,7 @@
   // ------------------------------------------------------------------------------------------------------------------
   // Columns
 
-  /* The reverse of pack.py: base64, deflate, bytes sorted by place, differences of 32-bit words. */
+  /* The reverse of column_encoding.py: base64, deflate, bytes sorted by place, differences of 32-bit words. */
   async function unpack(id) {
     const element = byId(id);
     const text = atob(element.textContent);

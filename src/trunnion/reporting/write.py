@@ -1,4 +1,4 @@
-"""A report into a file: the form by its suffix, written whole or not at all.
+"""Writing a report to a file: its format by the suffix, the file whole or not at all.
 
 In:     a ``Verification`` and a path.
 Out:    the file.
@@ -9,7 +9,8 @@ from pathlib import Path
 
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
-from trunnion.reporting.content import PlanDecision, ReportContent, collect_content
+from trunnion.model.motion import Decision
+from trunnion.reporting.content import ReportContent, collect_content
 from trunnion.reporting.html_page import render_page
 from trunnion.reporting.json_report import render_json
 from trunnion.reporting.plot_series import PlotSeries, collect_series
@@ -17,27 +18,27 @@ from trunnion.verification.results import Verification
 
 
 def write_report(
-    verification: Verification, path: Path, *, control: str = "", made: str = "", decisions: Sequence[PlanDecision] = ()
+    verification: Verification, path: Path, *, control: str = "", made: str = "", decisions: Sequence[Decision] = ()
 ) -> None:
-    """Write a report: a page for ``.html``, data for ``.json``. The same input makes the same bytes.
+    """Write a report: a page for ``.html``, data for ``.json``. The same input gives the same bytes.
 
     Parameters
     ----------
     verification
-        What was found out about the program.
+        The result of checking the program, with columns (``trunnion.verification.verify``).
     path
-        The file to write; one that exists is replaced when the new one is complete.
+        The file to write. An existing one is replaced when the new one is complete.
     control
-        Name of the control as the report shows it; by default the key that the machine's definition names.
+        Name of the control for the report; by default the key in the machine's definition.
     made
-        Text that says when, or by whom, the report was made. Nothing is said by default.
+        When or by whom the report was made, in words. By default the report does not mention it.
     decisions
-        Why the program was planned as it is, in the order of its operations.
+        The decisions of the planner, in the order of its operations.
 
     Raises
     ------
     InputError
-        When the suffix is another, or the file cannot be written.
+        For any other suffix, and for a file that cannot be written.
     """
     render = RENDERERS.get(path.suffix.lower())
     if render is None:
@@ -47,7 +48,7 @@ def write_report(
             sink.write(piece)
 
 
-#: Suffix -> what makes the bytes, piece by piece.
+#: Suffix -> the function that yields the bytes, piece by piece.
 RENDERERS: dict[str, Callable[[ReportContent, PlotSeries], Iterator[bytes]]] = {
     ".html": render_page,
     ".json": render_json,

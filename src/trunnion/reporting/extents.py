@@ -1,0 +1,125 @@
+"""How far the tool tip and the axes travel in a program, and the blocks where they turn back.
+
+Units:  mm and degrees.
+"""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.machines import Axis
+from trunnion.model.run import ProgrammedWord, Run
+from trunnion.reporting.text import clean
+
+
+@dataclass(frozen=True, slots=True)
+class BlockReference:
+    """A block of the program; ``file`` is the name of the subprogram it is in, empty for the program itself."""
+
+    nc_line: int
+    number: int
+    file: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Extremes:
+    """Lowest and highest value of a quantity, and the blocks that reach them."""
+
+    low: float
+    high: float
+    low_at: BlockReference
+    high_at: BlockReference
+
+
+@dataclass(frozen=True, slots=True)
+class TipExtent:
+    """Extremes of the tip along one direction of the workpiece frame, mm; ``cutting`` is without rapids."""
+
+    name: str
+    whole: Extremes | None
+    cutting: Extremes | None
+
+
+@dataclass(frozen=True, slots=True)
+class AxisExtent:
+    """Extremes of an axis, and its limits.
+
+    zero_known  whether values and limits count from the same zero: not for the slides of a machine without a workpiece
+                zero
+    margin      distance to the nearer limit, or the part of the travel that is left where the zero is not known;
+                negative if exceeded
+    """
+
+    name: str
+    unit: str
+    extremes: Extremes | None
+    low_limit: float | None
+    high_limit: float | None
+    endless: bool
+    zero_known: bool
+    margin: float | None
+
+
+def block_reference(run: Run, row: int) -> BlockReference:
+    """The block of a row."""
+    file = int(run.file[row])
+    return BlockReference(
+        int(run.line[row]), int(run.block_number[row]), clean(Path(run.files[file]).name) if file else ""
+    )
+
+
+def tip_extent(run: Run, k: int, cutting: Flags) -> TipExtent:
+    """The extent of the tip along direction ``k``; ``cutting`` (n,) is False for rapids."""
+    whole = _extremes(run, run.tip[:, k], np.arange(len(run)))
+    return TipExtent("XYZ"[k], whole, _extremes(run, run.tip[:, k], np.flatnonzero(cutting)))
+
+
+def axis_extent(run: Run, k: int, axis: Axis) -> AxisExtent:
+    """The extent of an axis, which is column ``k`` of ``run.joints``."""
+    extremes = _extremes(run, run.joints[:, k], travel_rows(run, axis))
+    low, high = (value if math.isfinite(value) else None for value in (axis.low, axis.high))
+    zero_known = is_zero_known(run, axis)
+    return AxisExtent(
+        name=clean(axis.name),
+        unit="°" if axis.is_rotary else "mm",
+        extremes=extremes,
+        low_limit=low,
+        high_limit=high,
+        endless=axis.endless,
+        zero_known=zero_known,
+        margin=None if axis.endless or extremes is None else _margin(extremes, low, high, zero_known),
+    )
+
+
+def is_zero_known(run: Run, axis: Axis) -> bool:
+    """Whether the values of an axis can be compared with its limits: for a slide that takes a workpiece zero."""
+    return axis.is_rotary or run.machine.workpiece_zero is not None
+
+
+def travel_rows(run: Run, axis: Axis) -> Ints:
+    """Rows that count for the travel of an axis: for a slide, not those in machine coordinates."""
+    if axis.is_rotary:
+        return np.arange(len(run))
+    linear = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
+    return np.flatnonzero(~run.machine_frame & (run.tcp | ((run.programmed & linear) != 0)))
+
+
+def _extremes(run: Run, values: Floats, rows: Ints) -> Extremes | None:
+    """Extremes of a column in ``rows``; None if no value there is finite."""
+    rows = rows[np.isfinite(values[rows])]
+    if not len(rows):
+        return None
+    low, high = int(rows[np.argmin(values[rows])]), int(rows[np.argmax(values[rows])])
+    return Extremes(float(values[low]), float(values[high]), block_reference(run, low), block_reference(run, high))
+
+
+def _margin(extremes: Extremes, low: float | None, high: float | None, zero_known: bool) -> float | None:
+    """Distance from the extremes to the nearer limit; None if it cannot be told."""
+    if not zero_known:
+        return None if low is None or high is None else (high - low) - (extremes.high - extremes.low)
+    margins = [extremes.low - low] if low is not None else []
+    margins += [high - extremes.high] if high is not None else []
+    return min(margins, default=None)

@@ -1,0 +1,225 @@
+"""The words and tables of the HTML page: verdict, checks, worst places, operations, tools, decisions, extents.
+
+In:     ``ReportContent``.
+Out:    HTML, with all text from outside escaped.
+"""
+
+from collections.abc import Sequence
+
+from trunnion.machines.motion_time import format_duration
+from trunnion.reporting.content import ReportContent
+from trunnion.reporting.extents import AxisExtent, BlockReference, Extremes, TipExtent
+from trunnion.reporting.html_text import (
+    capitalised,
+    counted,
+    escape,
+    format_fixed,
+    format_limit,
+    format_number,
+    format_range,
+    with_unit,
+)
+from trunnion.reporting.usage import OperationUsage, ToolUsage
+from trunnion.verification.results import Check, Place
+
+#: Places that the page shows for each check; the JSON report has all of them.
+MAX_PLACES = 12
+
+
+def page_body(content: ReportContent) -> str:
+    """Return the page from its body tag up to the plots."""
+    tables = (_operation_table(content), _tool_table(content), _decisions(content), _extents(content))
+    parts = (_title(content), _checks(content.checks), _worst_places(content.checks), *tables)
+    return "<body>\n<main>\n" + "".join(parts)
+
+
+def _title(content: ReportContent) -> str:
+    failed = sum(not check.passed for check in content.checks)
+    count = len(content.checks)
+    if not content.passed:
+        mark, word, more = "✗", "Failed", f"{failed} of {counted(count, 'check')}; the program must not run as it is"
+    elif count:
+        mark, word, more = "✓", "Passed", f"{counted(count, 'check')}, all passed"
+    else:
+        mark, word, more = "–", "Nothing checked", ""
+    state = "bad" if not content.passed else "good" if count else "none"
+    items = [
+        ("Machine", content.machine),
+        ("Control", content.control),
+        ("Motions", f"{content.motions:,}".replace(",", "\u202f")),
+        ("Time", format_duration(content.seconds)),
+        ("in cuts", format_duration(content.cutting_seconds)),
+        ("in rapids", format_duration(content.rapid_seconds)),
+        ("Made", content.made),
+    ]
+    entries = "".join(
+        f"<div><dt>{name}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in items if value
+    )
+    untimed = (
+        f'<p class="note">{counted(content.untimed, "motion")} without a known time.</p>' if content.untimed else ""
+    )
+    return f"""<header>
+<div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span><div><strong>{word}</strong>
+<span>{more}</span></div></div>
+<h1><bdi>{escape(content.program)}</bdi></h1>
+<dl>{entries}</dl>
+{untimed}</header>
+"""
+
+
+def _checks(checks: Sequence[Check]) -> str:
+    if not checks:
+        return ""
+    rows = [
+        f'<tr class="{"good" if check.passed else "bad"}">'
+        f"<td>{_result(check)}</td><th scope=row>{capitalised(check.title)}</th>"
+        f"<td class=n>{with_unit(check.worst, check.unit)}</td><td class=n>{with_unit(check.limit, check.unit)}</td>"
+        f"<td>{escape(check.summary)}</td></tr>"
+        for check in checks
+    ]
+    return _section("Checks", _table(("Result", "Check", "#Worst", "#Limit", "Summary"), rows, "tight"))
+
+
+def _result(check: Check) -> str:
+    return '<span class="tag">✓ passed</span>' if check.passed else '<span class="tag">✗ failed</span>'
+
+
+def _worst_places(checks: Sequence[Check]) -> str:
+    """The worst places of each check, failed checks first."""
+    tables = [_check_places(check) for check in sorted(checks, key=lambda check: check.passed) if check.places]
+    return _section("Worst places", "".join(tables)) if tables else ""
+
+
+def _check_places(check: Check) -> str:
+    rows = [
+        f"<tr><td class=n>{format_number(place.value)}</td>"
+        f"<td class=n>{_number(place.number)}</td><td class=n>{place.nc_line}</td><td class=n>{_cl_line(place)}</td>"
+        f"<td>{escape(place.text)}</td>"
+        f'<td class=go><button type=button data-line="{place.nc_line}" data-cl="{place.cl_line}">plot</button></td>'
+        "</tr>"
+        for place in check.places[:MAX_PLACES]
+    ]
+    more = len(check.places) - MAX_PLACES
+    note = f'<p class="note">and {more} more, in the JSON report</p>' if more > 0 else ""
+    headings = ("#Value", "#Block", "#NC line", "#CL line", "What", "-")
+    state = "good" if check.passed else "bad"
+    return (
+        f'<h3 class="{state}">{_result(check)} {capitalised(check.title)}</h3>{_table(headings, rows, "tight")}{note}'
+    )
+
+
+def _cl_line(place: Place) -> str:
+    if not place.cl_line:
+        return ""
+    return f'<span title="{escape(place.cl_file)}">{place.cl_line}</span>' if place.cl_file else str(place.cl_line)
+
+
+def _tool_table(content: ReportContent) -> str:
+    rows = [_tool(tool) for tool in content.tools]
+    headings = ("Tool", "#Motions", "#Time", "#in cuts", "#in rapids", "#S rev/min", "#F mm/min", "#From")
+    return _section("Tools and times", _table(headings, rows)) if rows else ""
+
+
+def _tool(tool: ToolUsage) -> str:
+    name = f"<bdi>{escape(tool.name)}</bdi>" if tool.name else "<em>before the first tool</em>"
+    return (
+        f"<tr><th scope=row>{name}</th><td class=n>{tool.motions}</td><td class=n>{format_duration(tool.seconds)}</td>"
+        f"<td class=n>{format_duration(tool.cutting_seconds)}</td>"
+        f"<td class=n>{format_duration(tool.rapid_seconds)}</td>"
+        f"<td class=n>{format_range(tool.rpm)}</td><td class=n>{format_range(tool.feed)}</td>"
+        f"<td class=n>{_block(tool.first)}</td></tr>"
+    )
+
+
+def _operation_table(content: ReportContent) -> str:
+    rows = [_operation(operation) for operation in content.operations]
+    headings = ("Operation", "Tool", "#Motions", "#Time", "#in cuts", "#in rapids", "#From")
+    return _section("Operations and times", _table(headings, rows)) if rows else ""
+
+
+def _operation(operation: OperationUsage) -> str:
+    first = _block(operation.first) if operation.first else ""
+    return (
+        f'<tr><th scope=row title="{escape(operation.cl_file)}"><bdi>{escape(operation.name)}</bdi></th>'
+        f"<td><bdi>{escape(operation.tool)}</bdi></td><td class=n>{operation.motions}</td>"
+        f"<td class=n>{format_duration(operation.seconds)}</td>"
+        f"<td class=n>{format_duration(operation.cutting_seconds)}</td>"
+        f"<td class=n>{format_duration(operation.rapid_seconds)}</td><td class=n>{first}</td></tr>"
+    )
+
+
+def _decisions(content: ReportContent) -> str:
+    """The decisions of the planner and their reasons."""
+    rows = [
+        f"<tr><td><bdi>{escape(decision.operation)}</bdi></td>"
+        f'<td class=n title="{escape(decision.file)}">{decision.line or ""}</td>'
+        f"<td>{escape(decision.topic)}</td><td>{escape(decision.text)}</td></tr>"
+        for decision in content.decisions
+    ]
+    headings = ("Operation", "#CL line", "About", "Decision and why")
+    return _section("Decisions", _table(headings, rows, "tight")) if rows else ""
+
+
+def _extents(content: ReportContent) -> str:
+    axes = [_axis(axis) for axis in content.axes]
+    tips = [_tip(extent) for extent in content.tip]
+    headings = ("Axis", "#From", "at", "#To", "at", "#Limits", "#Margin")
+    tip_heads = ("Tip, mm", "#From", "at", "#To", "at", "#In cuts from", "#to")
+    return _section("Extents", f'<div class="pair">{_table(headings, axes)}{_table(tip_heads, tips)}</div>')
+
+
+def _axis(axis: AxisExtent) -> str:
+    limits = "endless" if axis.endless else "not stated"
+    if not axis.endless and (axis.low_limit is not None or axis.high_limit is not None):
+        limits = f"{format_limit(axis.low_limit)} … {format_limit(axis.high_limit)}"
+    if not axis.zero_known and axis.low_limit is not None and axis.high_limit is not None:
+        limits = f"travel {format_number(axis.high_limit - axis.low_limit)}"
+    state = "bad" if axis.margin is not None and axis.margin < 0.0 else ""
+    margin = "" if axis.margin is None else f"{axis.margin:.3f}".replace("-", "−")
+    name = f"{escape(axis.name)} <small>{axis.unit}</small>"
+    return (
+        f'<tr class="{state}"><th scope=row>{name}</th>{_extremes(axis.extremes)}'
+        f"<td class=n>{limits}</td><td class=n><strong>{margin}</strong></td></tr>"
+    )
+
+
+def _tip(extent: TipExtent) -> str:
+    cutting = extent.cutting
+    cuts = (format_fixed(cutting.low), format_fixed(cutting.high)) if cutting else ("", "")
+    return (
+        f"<tr><th scope=row>{extent.name}</th>{_extremes(extent.whole)}"
+        f"<td class=n>{cuts[0]}</td><td class=n>{cuts[1]}</td></tr>"
+    )
+
+
+def _extremes(extremes: Extremes | None) -> str:
+    if extremes is None:
+        return "<td></td>" * 4
+    ends = ((extremes.low, extremes.low_at), (extremes.high, extremes.high_at))
+    return "".join(f"<td class=n>{format_fixed(value)}</td><td class=at>{_block(block)}</td>" for value, block in ends)
+
+
+def _section(title: str, body: str) -> str:
+    return f"<section>\n<h2>{title}</h2>\n{body}\n</section>\n"
+
+
+def _table(headings: Sequence[str], rows: Sequence[str], kind: str = "") -> str:
+    """Return a table. A heading with ``#`` is that of a column of numbers, ``-`` is an empty one."""
+    cells = "".join(
+        f"<th scope=col class=n>{head[1:]}</th>" if head[0] == "#" else f"<th scope=col>{head.strip('-')}</th>"
+        for head in headings
+    )
+    body = "\n".join(rows)
+    head = f"<thead><tr>{cells}</tr></thead>"
+    return f'<div class="wide {kind}"><table>\n{head}\n<tbody>\n{body}\n</tbody></table></div>\n'
+
+
+def _block(block: BlockReference) -> str:
+    """Return a block by its number, or by its line if it has none."""
+    place = _number(block.number) or f"line {block.nc_line}"
+    line = f"{block.file}:{block.nc_line}" if block.file else f"line {block.nc_line}"
+    return f'<span title="{escape(line)}">{place}</span>'
+
+
+def _number(number: int) -> str:
+    return f"N{number}" if number >= 0 else ""

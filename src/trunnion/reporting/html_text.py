@@ -1,0 +1,67 @@
+"""Text and numbers as HTML."""
+
+import html
+import math
+
+
+def escape(value: object) -> str:
+    """Return text escaped for HTML and for attributes in double quotes."""
+    return html.escape(str(value), quote=True)
+
+
+def format_number(value: float | None) -> str:
+    """Return a number with four significant digits, as a power of ten only if very large or small.
+
+    >>> format_number(0.00123456), format_number(12345.6), format_number(-0.5), format_number(None), format_number(3e-9)
+    ('0.001235', '12346', '−0.5', '', '3e−09')
+    """
+    if value is None or math.isnan(value):
+        return ""
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    size = abs(value)
+    if size == 0.0 or 1e-5 <= size < 1e9:
+        decimals = max(0, 3 - math.floor(math.log10(size))) if size else 0
+        digits = f"{value:.{decimals}f}"
+        digits = digits.rstrip("0").rstrip(".") if "." in digits else digits
+    else:
+        digits = f"{value:.3g}"
+    return digits.replace("-", "−")
+
+
+def format_fixed(value: float) -> str:
+    """Return a number with three decimals."""
+    return f"{value:.3f}".replace("-0.000", "0.000").replace("-", "−")
+
+
+def format_limit(value: float | None) -> str:
+    """Return a limit in words."""
+    return "no limit" if value is None else format_number(value)
+
+
+def with_unit(value: float | None, unit: str) -> str:
+    """Return a number and its unit; nothing for None."""
+    digits = format_number(value)
+    return f"{digits} <small>{escape('°' if unit == 'deg' else unit)}</small>" if digits and unit else digits
+
+
+def capitalised(title: str) -> str:
+    """Return a title, escaped, with a capital letter."""
+    return escape(title[:1].upper() + title[1:])
+
+
+def format_range(values: tuple[float, float] | None) -> str:
+    """Return a lowest and a highest value, once if they are alike."""
+    if values is None:
+        return ""
+    low, high = map(format_number, values)
+    return low if low == high else f"{low} … {high}"
+
+
+def counted(count: int, thing: str) -> str:
+    """Return a number of things in words.
+
+    >>> counted(1, "check"), counted(3, "check")
+    ('1 check', '3 checks')
+    """
+    return f"{count} {thing}" + ("" if count == 1 else "s")

@@ -1,0 +1,24 @@
+"""Text and numbers for every form of report: without characters that no file can hold, and without NaN.
+
+Escaping is left to each form.
+"""
+
+import math
+import re
+
+#: Control characters except tab and line feed: not every form can hold them.
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff]")
+
+
+def clean(text: str) -> str:
+    """Return the text with U+FFFD for each character that UTF-8, HTML or JSON cannot hold.
+
+    >>> clean("hub\\x00 \\udcff 轮毂")
+    'hub\ufffd \ufffd 轮毂'
+    """
+    return _CONTROL.sub("\ufffd", text.encode("utf-16", "surrogatepass").decode("utf-16", "replace"))
+
+
+def finite_or_none(value: float | None) -> float | None:
+    """Return the value, or None for infinities and NaN."""
+    return value if value is not None and math.isfinite(value) else None

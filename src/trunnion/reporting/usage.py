@@ -1,0 +1,89 @@
+"""Times, speeds and feeds of the tools and operations of a program.
+
+Units:  seconds, rev/min, mm/min.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats
+from trunnion.model.run import Run
+from trunnion.reporting.extents import BlockReference, block_reference
+from trunnion.reporting.text import clean
+from trunnion.verification.results import OperationRows, Verification
+
+
+@dataclass(frozen=True, slots=True)
+class ToolUsage:
+    """What one tool does; ``rpm`` and ``feed`` (mm/min) are lowest and highest in cuts, None if not programmed."""
+
+    name: str
+    motions: int
+    seconds: float
+    cutting_seconds: float
+    rapid_seconds: float
+    rpm: tuple[float, float] | None
+    feed: tuple[float, float] | None
+    first: BlockReference
+
+
+@dataclass(frozen=True, slots=True)
+class OperationUsage:
+    """What one operation of a CL file takes, its approach included; ``first`` is None if it has no motion."""
+
+    name: str
+    tool: str
+    cl_file: str
+    motions: int
+    seconds: float
+    cutting_seconds: float
+    rapid_seconds: float
+    first: BlockReference | None
+
+
+def durations(verification: Verification) -> tuple[Floats, Flags]:
+    """Seconds of each row, (n,) float64, 0 where not known; and whether they are known, (n,) bool."""
+    known = np.isfinite(verification.seconds) & (verification.seconds >= 0.0)
+    return np.where(known, verification.seconds, 0.0), known
+
+
+def tool_usages(run: Run, seconds: Floats, cutting: Flags) -> Iterator[ToolUsage]:
+    """Yield the tools in the order of their first motion; ``seconds`` and ``cutting`` (n,) are those of the rows."""
+    indices, first = np.unique(run.tool, return_index=True)
+    for k in np.argsort(first):
+        used = run.tool == indices[k]
+        cuts = used & cutting
+        per_minute = cuts & (run.feed_mode == 94)
+        yield ToolUsage(
+            name=clean(run.tools[indices[k]]),
+            motions=int(np.count_nonzero(used)),
+            seconds=math.fsum(seconds[used]),
+            cutting_seconds=math.fsum(seconds[cuts]),
+            rapid_seconds=math.fsum(seconds[used & ~cutting]),
+            rpm=_range(run.rpm[cuts & (run.spindle != 0)]),
+            feed=_range(run.feed[per_minute]),
+            first=block_reference(run, int(first[k])),
+        )
+
+
+def operation_usage(run: Run, operation: OperationRows, seconds: Floats, cutting: Flags) -> OperationUsage:
+    """The usage of one operation; ``seconds`` and ``cutting`` (n,) are those of all rows."""
+    rows = slice(operation.first, operation.end)
+    return OperationUsage(
+        name=clean(operation.name),
+        tool=clean(operation.tool),
+        cl_file=clean(operation.cl_file),
+        motions=operation.end - operation.first,
+        seconds=math.fsum(seconds[rows]),
+        cutting_seconds=math.fsum(seconds[rows][cutting[rows]]),
+        rapid_seconds=math.fsum(seconds[rows][~cutting[rows]]),
+        first=block_reference(run, operation.first) if operation.end > operation.first else None,
+    )
+
+
+def _range(values: Floats) -> tuple[float, float] | None:
+    finite = values[np.isfinite(values)]
+    return (float(finite.min()), float(finite.max())) if len(finite) else None
