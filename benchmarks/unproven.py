@@ -28,7 +28,7 @@ def main() -> None:
 
         machine = load_machine(name)
         control = load_control(machine.control)
-        options = PlanOptions(modes=control.modes({}))
+        options = PlanOptions()
         program, _ = plan_program([next(coming)], machine, control, {}, False, options)
         with atomic_file(target) as sink:
             write_program(program, sink)

@@ -44,7 +44,7 @@ def planned(name: str) -> tuple[Program, PlanOptions, Toolpath]:
     """The program of a case for its machine."""
     machine, toolpath = load_machine(name), read_cl(CASES[name])
     control = load_control(machine.control)
-    options = PlanOptions(modes=control.modes({}))
+    options = PlanOptions()
     return plan_program([toolpath], machine, control, {}, True, options)[0], options, toolpath
 
 

@@ -24,6 +24,7 @@ from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError
 from trunnion.machines import Machine, load_machine
 from trunnion.model.toolpath import Moves, Toolpath
+from trunnion.output.capabilities import control_capabilities
 from trunnion.readers import run_program
 from trunnion.verification import Settings, Verification, failures, verify
 
@@ -193,7 +194,7 @@ def test_milling_in_planes_with_circles_is_proven(
     parts = [data.draw(circles(direction(*turn))) for turn in turns]
     text = "".join(START.replace("OP1", f"OP{k}") + part + END for k, part in enumerate(parts))
     written = proven(read(text, folder), folder)
-    level = parse_plan_options({}, CONTROL).negligible_tilt  # what leans less is upright, for nobody prints it
+    level = control_capabilities(CONTROL, {}).negligible_tilt  # what leans less is upright, for nobody prints it
     tilted = sum(axis[2] < 0.0 or float(np.hypot(*axis[:2])) >= level for axis in (direction(*t) for t in turns))
     assert written.count("G154\n") == 2 * tilted  # taken up, and the plane of the machine at the end
     assert not re.search(r"G[23] .*Z.*I.*J", written), "circles in G17 do not rise"

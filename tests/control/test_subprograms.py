@@ -40,6 +40,7 @@ from trunnion.model.toolpath import (
     Tool,
     Toolpath,
 )
+from trunnion.output.capabilities import control_capabilities
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import END_RESERVE_BYTES, MIN_SUBPROGRAM_BYTES, SubprogramNames, SubprogramOutput
@@ -103,7 +104,9 @@ def written(
     """The program in one file as it runs, and in several; None where there can be none."""
     model = MACHINES[machine]
     control = load_control(model.control.unread_copy())
-    planned = plan([toolpath], model, control.chord_tolerance, parse_plan_options({}, control))
+    planned = plan(
+        [toolpath], model, control.chord_tolerance, parse_plan_options({}, control), control_capabilities(control, {})
+    )
     program = Program(model, control, planned.motions, {"tool": "7"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None

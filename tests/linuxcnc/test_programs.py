@@ -31,7 +31,7 @@ from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.output.validation import check_program
-from trunnion.planning import PlanOptions, plan
+from trunnion.planning import ControlCapabilities, PlanOptions, plan
 from trunnion.readers import run_program
 
 
@@ -139,7 +139,13 @@ def written(
     """The program and its motions; None where there can be none. Its subroutines, if it has any, go into a folder."""
     machine, control = MACHINES[name], CONTROLS[name]
     try:
-        planned = plan([toolpath], machine, control.chord_tolerance, PlanOptions(modes=control.modes({}), tcp=tcp))
+        planned = plan(
+            [toolpath],
+            machine,
+            control.chord_tolerance,
+            PlanOptions(tcp=tcp),
+            ControlCapabilities(modes=control.modes({})),
+        )
     except (InputError, RefusedError):
         return None
     program = Program(machine, control, planned.motions, {"tool": "7"}, toolpath.file)

@@ -22,7 +22,7 @@ from trunnion.model.toolpath import (
     SpindleOn,
     Tool,
 )
-from trunnion.planning import PlanOptions
+from trunnion.planning import ControlCapabilities, PlanOptions
 from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_from_event, normalize_cycles
 from trunnion.planning.holes.hole_motion import convert_holes_to_motion, stroke_depths
 
@@ -133,7 +133,9 @@ def rows_of(path: Operation) -> list[Row]:
 def expanded(path: Operation) -> Operation:
     path = normalize_cycles(path)
     home = np.zeros(len(path.moves), bool)
-    return convert_holes_to_motion(path, PlanOptions(holes_as_motion=True), SPINDLE, home, "").operation
+    return convert_holes_to_motion(
+        path, PlanOptions(holes_as_motion=True), ControlCapabilities(), SPINDLE, home, ""
+    ).operation
 
 
 @given(drawn=drilled())
@@ -205,7 +207,12 @@ def test_threads_stay_cycles() -> None:
     tap = CycleOn(1, 7, ("TAP",), (("RAPTO", (2.0,)), ("FEDTO", (-9.0,)), ("MMPR", (1.0,))))
     path = normalize_cycles(operation([(0.0, 0.0, 9.0), (0.0, 0.0, 0.0)], [True, False], (tap,)))
     home = np.zeros(2, bool)
-    assert convert_holes_to_motion(path, PlanOptions(holes_as_motion=True), SPINDLE, home, "").operation is path
+    assert (
+        convert_holes_to_motion(
+            path, PlanOptions(holes_as_motion=True), ControlCapabilities(), SPINDLE, home, ""
+        ).operation
+        is path
+    )
 
 
 def test_the_spindle_is_the_one_that_turns_at_each_hole() -> None:

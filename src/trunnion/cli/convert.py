@@ -13,6 +13,7 @@ from trunnion.controls import Control, load_control
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.files import atomic_output
 from trunnion.machines import Machine, load_machine
+from trunnion.output.capabilities import control_capabilities
 
 if TYPE_CHECKING:
     from trunnion.conversion import Conversion
@@ -35,6 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     given = {"zero": arguments.zero, "tool_length": arguments.tool_length}
     machine = apply_setup(machine, {key: value for key, value in given.items() if value})
     options = parse_plan_options(settings, target_control)
+    capabilities = control_capabilities(target_control, settings)
     target = _target_file(arguments, target_control)
     with atomic_output(target) as output_files:
         division = program_division(settings, target_control, target, output_files)
@@ -56,7 +58,9 @@ def run(arguments: argparse.Namespace) -> int:
         else:
             paths = [converted.toolpath]
             with run_while_writing(output_files, target_machine, division) as (write_progress, run):
-                program, _ = plan_program(paths, target_machine, target_control, carried, arguments.force, options)
+                program, _ = plan_program(
+                    paths, target_machine, target_control, carried, arguments.force, options, capabilities
+                )
                 written = write_for_proof(program, output_files.main, options, write_progress, division)
             prove_program(written, run.result(), paths, output_files, target, program if arguments.force else None)
     if arguments.to_cl and carried:

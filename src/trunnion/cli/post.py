@@ -27,12 +27,13 @@ from trunnion.model.motion import Decision, MachiningMode
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.output import KERNELS as WRITING
+from trunnion.output.capabilities import control_capabilities
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.output.validation import check_program
 from trunnion.planning import KERNELS as PLANNING
-from trunnion.planning import PlanOptions, plan
+from trunnion.planning import ControlCapabilities, PlanOptions, plan
 from trunnion.readers import run_program
 
 if TYPE_CHECKING:
@@ -95,6 +96,7 @@ def plan_program(
     settings: Mapping[str, str],
     force: bool,
     options: PlanOptions,
+    capabilities: ControlCapabilities | None = None,
     *,
     explain: bool = False,
 ) -> tuple[Program, tuple[Decision, ...]]:
@@ -105,7 +107,8 @@ def plan_program(
     InputError, RefusedError
         When there can be no program, or when it must not run, unless ``force``: then its head says so.
     """
-    planned = plan(paths, machine, control.chord_tolerance, options)
+    capabilities = capabilities or control_capabilities(control, settings)
+    planned = plan(paths, machine, control.chord_tolerance, options, capabilities)
     if explain:
         print(*planned.decisions, sep="\n", file=sys.stderr)
     program = Program(machine, control, planned.motions, settings, paths[0].file)

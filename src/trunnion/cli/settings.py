@@ -7,13 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.controls import Control
-from trunnion.controls.definition import UNKNOWN_FEED
 from trunnion.errors import InputError, Problem
 from trunnion.files import OutputFiles
 from trunnion.machines import Machine
 from trunnion.model.motion import MachiningMode, PoleStrategy
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES, SubprogramOutput
-from trunnion.output.validation import unsupported_cycle_reasons
 from trunnion.planning import Clearance, ClearanceSurface, PlanOptions
 
 #: What the setting ``mode`` may say.
@@ -36,12 +34,6 @@ _CHOICES = {
     "lower_feed": ("no", "yes"),
     "cycles": ("on", "off"),
 }
-
-#: What makes a control say motion without TCP for which nobody has said what F counts.
-_FEED_CURE = (
-    'write feed_without_tcp = "all_axes" or "slides", what F counts while rotary axes turn, under [control] and under'
-    " [control.reading] of the machine's definition, if you know it; or post with TCP"
-)
 
 #: Settings that are numbers: their limits, and what to write.
 _NUMBERS = {
@@ -163,31 +155,13 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         explain=explain,
         mode=mode,
         mode_by_operation=mode_by_operation,
-        modes=control.modes(settings),
-        negligible_tilt=_smallest_printed_tilt(control),
-        mode_remedies={MachiningMode.WITHOUT_TCP: _FEED_CURE} if control.feed_without_tcp == UNKNOWN_FEED else {},
-        only_arcs_about_z=control.only_arcs_about_z,
-        helices_by_angle="arc_angle" in control.family.WORDS,
-        plane_x_from_machine=control.plane_x_from_machine,
         pole_strategy=PoleStrategy(settings.get("pole", "off")),
         absolute_frame=settings.get("frame", "first") == "absolute",
         lower_feed=settings.get("lower_feed", "no") == "yes",
-        helices=control.helices,
-        multi_turn_arcs=control.multi_turn_arcs,
-        arcs_with_tcp=not (control.vectors_exclude_angles and control.uses_tool_vectors(settings)),
-        planes_from_pose=control.plane_from_pose,
-        turns_between_holes=control.turns_between_holes(settings),
         tcp=tcp,
-        unsupported_cycle_reason=unsupported_cycle_reasons(control, settings),
         holes_as_motion=settings.get("cycles", "on") == "off",
         **known,
     )
-
-
-def _smallest_printed_tilt(control: Control) -> float:
-    """Sine of a tilt that prints as none: half the last digit of a rotary word."""
-    name = next(word.format for word in control.words if word.name == "primary")
-    return math.sin(math.radians(0.5 * 10.0 ** -control.number_formats(three_axis=False)[name].decimals))
 
 
 def program_division(

@@ -6,7 +6,7 @@ Out:    ``Motion``: the same operations in the program's coordinate system, with
 Knows nothing of text, neither of CL files nor of NC programs.
 """
 
-from trunnion.planning.options import PlanOptions
+from trunnion.planning.options import ControlCapabilities, PlanOptions
 from trunnion.planning.planner import plan
 from trunnion.planning.poses.placement import follow_nearest, solve_rotary
 from trunnion.planning.retracts.clearance import Clearance, ClearanceSurface
@@ -15,4 +15,12 @@ from trunnion.planning.speed.operation_time import operation_seconds
 #: Kernels that most programs need.
 KERNELS = (solve_rotary, follow_nearest)
 
-__all__ = ["KERNELS", "Clearance", "ClearanceSurface", "PlanOptions", "operation_seconds", "plan"]
+__all__ = [
+    "KERNELS",
+    "Clearance",
+    "ClearanceSurface",
+    "ControlCapabilities",
+    "PlanOptions",
+    "operation_seconds",
+    "plan",
+]

@@ -20,7 +20,7 @@ from trunnion.machines import Machine, forward
 from trunnion.model.frames import frame_from_vectors
 from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import Frame, Operation
-from trunnion.planning.options import PlanOptions
+from trunnion.planning.options import ControlCapabilities, PlanOptions
 
 _UP: Final = np.array([0.0, 0.0, 1.0])
 
@@ -39,7 +39,7 @@ _MIN_SINE = 1e-3
 
 def mode_of(operation: Operation, requested: MachiningMode | None, negligible_tilt: float = 0.0) -> MachiningMode:
     """How an operation is to be made; ``requested``: the user's word, or None; ``negligible_tilt`` as in
-    ``PlanOptions``."""
+    ``ControlCapabilities``."""
     if requested is not None:
         return requested
     axis = operation.moves.axis
@@ -60,25 +60,26 @@ def with_exact_upright_axis(operation: Operation) -> Operation:
 
 
 def supported_mode(
-    file: str, operation: Operation, mode: MachiningMode, options: PlanOptions
+    file: str, operation: Operation, mode: MachiningMode, options: PlanOptions, capabilities: ControlCapabilities
 ) -> tuple[MachiningMode, list[Problem]]:
-    """The manner that the control has words for, and what there is to say when it is not the one that the rule has."""
-    simultaneous = MachiningMode.TCP if options.tcp else MachiningMode.WITHOUT_TCP
-    replaceable = options.mode is None and simultaneous in options.modes
-    if mode is MachiningMode.TILTED and mode not in options.modes and replaceable:
+    """The mode in which the control can make an operation, with a warning if that is not the mode by the rule."""
+    replaceable = options.mode_for(operation.name) is None and options.simultaneous_mode in capabilities.modes
+    if mode is MachiningMode.TILTED and mode not in capabilities.modes and replaceable:
         what = f"operation {operation.name} stands in a {mode}, for which the control has no words"
         how = f"it is made {'with TCP' if options.tcp else 'without TCP'}"
-        return simultaneous, [Problem(file, operation.line, what, how, Severity.WARNING)]
-    return simultaneous if mode is MachiningMode.TCP else mode, []
+        return options.simultaneous_mode, [Problem(file, operation.line, what, how, Severity.WARNING)]
+    return options.simultaneous_mode if mode is MachiningMode.TCP else mode, []
 
 
-def mode_conflicts(file: str, operation: Operation, mode: MachiningMode, options: PlanOptions) -> list[Problem]:
-    """Why an operation cannot be made in a manner, be it the user's wish or the control's words."""
-    modes, negligible_tilt = options.modes, options.negligible_tilt
+def mode_conflicts(
+    file: str, operation: Operation, mode: MachiningMode, capabilities: ControlCapabilities
+) -> list[Problem]:
+    """Why an operation cannot be made in a mode, whether the control lacks it or the tool axis does not fit it."""
+    modes = capabilities.modes
     axis, line = operation.moves.axis, operation.moves.line
     if mode not in modes:
         what = f"operation {operation.name}: the control has no words for {mode}"
-        cure = options.mode_remedies.get(mode, f"it has words for {', '.join(sorted(modes))}")
+        cure = capabilities.mode_remedies.get(mode, f"it has words for {', '.join(sorted(modes))}")
         return [Problem(file, operation.line, what, cure)]
     if mode is MachiningMode.THREE_AXIS:
         expected, what = _UP, "the tool axis is not +Z of the program, and mode is three-axis"
@@ -86,7 +87,7 @@ def mode_conflicts(file: str, operation: Operation, mode: MachiningMode, options
         expected, what = axis[0], "the tool axis changes, and mode is tilted"
     else:
         return []
-    off = max(_SAME_AXIS, negligible_tilt if mode is MachiningMode.THREE_AXIS else 0.0)
+    off = max(_SAME_AXIS, capabilities.negligible_tilt if mode is MachiningMode.THREE_AXIS else 0.0)
     wrong = np.flatnonzero(np.abs(axis - expected).max(axis=1) > off)
     cure = "leave the setting mode out, or split the operation"
     return [Problem(file, int(line[wrong[0]]), f"operation {operation.name}: {what}", cure)] if len(wrong) else []

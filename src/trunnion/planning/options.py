@@ -1,93 +1,111 @@
-"""What whoever asks for a program may wish of its planning."""
+"""What the user asks of a plan, and what the control can do.
+
+Both are values only: nothing here knows a control by name, and nothing reads a setting.
+"""
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
-from typing import Final
+from typing import Final, TypeAlias
 
 from trunnion.model.motion import MachiningMode, PoleStrategy
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 from trunnion.planning.retracts.clearance import Clearance
 
-#: How far the tool axis may be off between CL points without TCP, degrees, unless something else is asked.
-AXIS_WITHOUT_TCP: Final = 0.05
+#: Tolerance of the tool axis between CL points without TCP, degrees, unless the user sets another.
+AXIS_TOLERANCE_WITHOUT_TCP: Final = 0.05
 
-
-def _never(cycle: Cycle, spindle: SpindleState | None) -> str:
-    """Nothing is unsaid."""
-    return ""
+#: Takes a cycle and the spindle at its holes (None: it stands still). Returns why the control has no such cycle; empty
+#: if it has one.
+CycleObjection: TypeAlias = Callable[[Cycle, SpindleState | None], str]
 
 
 @dataclass(frozen=True, slots=True)
 class PlanOptions:
-    """What is asked of a plan, and what the control can do, with defaults.
+    """What the user asks of a plan.
 
-    rewind          insert retreats where an axis must wind back in the cut; False: refuse the program
-    clearance       how far the tool draws back along its axis for that
-    engage          share of the feed with which it comes back
-    explain         write the log: what was decided and why, what the nearest neighbour would have done, where a rotary
-                    axis is too fast
-    manner          how every operation is to be made, whatever the rule says; None: by the rule
-    own_manner      the same for operations by their names; this is stronger
-    manners         those that the control has words for
-    level           sine of a tilt that the control's rotary words print as none
-    cures           what would give it words for one that it lacks
-    arcs_about_z    the control knows arcs about Z only
-    machine_x       X of a tilted plane is that of the machine once it has turned, unless the CL file has an own one
-    pole            what is done near the pole where a rotary axis would have to be too fast
-    pole_angle      by how much the tool axis may lean for that, degrees
-    absolute        the program's coordinate system is the CAM's absolute one, not that of the first operation
-    lower_feed      lower the feed where a rotary axis would have to be too fast
-    helices_by_angle  the control is told a helix by its centre and its angle, and not by its end
-    helices         the control takes circles that rise, or of more than one turn; False: they become lines
-    turns           the control takes circles and helices of more than one turn; False: they become lines
-    arcs_with_tcp   the control takes circles while it holds the tip; False: they become lines
-    pose_planes     the control takes a tilted plane from the rotary position: only circles about the tool axis stay
-                    circles there
-    turns_between_holes  where the tool axis changes between holes, they are not made in planes
-    tcp             the control holds the tip (TCP); False: the slides and rotary axes themselves are led
-    tip_tolerance   without TCP: how far the tip may be off its line between CL points, mm
-    unsaid          why the control has no cycle for a hole, with the spindle as it turns there; empty where it has one
-    holes_as_motion  holes are made as motion even where the control has a cycle
-    axis_tolerance  how far the tool axis may be off its great circle between CL points, degrees; None: with TCP it is
-                    not looked at, without TCP it is ``AXIS_WITHOUT_TCP``
+    mode                 machining mode of every operation; None: by the rule of ``trunnion.planning.machining_mode``
+    mode_by_operation    the same for single operations, by name; takes precedence over ``mode``
+    absolute_frame       the program's coordinate system is the CAM's absolute one, not that of the first operation
+    tcp                  simultaneous operations are made with TCP; False: slide positions are written
+    holes_as_motion      holes are made as motion even if the control has a cycle for them
+    allow_rewinds        insert a retract where a rotary axis must rewind in the cut; False: refuse the program
+    clearance            how far the tool retracts along its axis for a rewind
+    reengage_feed_share  share of the feed at which the tool returns to the cut after a rewind
+    pole_strategy        what is done near the pole where a rotary axis would have to be too fast
+    pole_angle           the most the tool axis may lean for that, degrees
+    lower_feed           lower the feed where a rotary axis would have to be too fast
+    tip_tolerance        without TCP: how far the tip may leave its line between CL points, mm
+    axis_tolerance       how far the tool axis may leave its great circle between CL points, degrees; None: with TCP any
+                         distance, without TCP ``AXIS_TOLERANCE_WITHOUT_TCP``
+    explain              record decisions and their reasons, what the nearest neighbour would have done, and where a
+                         rotary axis is too fast
     """
 
+    mode: MachiningMode | None = None
+    mode_by_operation: Mapping[str, MachiningMode | None] = field(default_factory=dict)
+    absolute_frame: bool = False
+    tcp: bool = True
+    holes_as_motion: bool = False
     allow_rewinds: bool = True
     clearance: Clearance = field(default_factory=partial(Clearance, 50.0))
     reengage_feed_share: float = 0.5
-    explain: bool = False
-    mode: MachiningMode | None = None
-    mode_by_operation: Mapping[str, MachiningMode | None] = field(default_factory=dict)
-    modes: frozenset[MachiningMode] = frozenset(MachiningMode)
-    negligible_tilt: float = 0.0
-    mode_remedies: Mapping[MachiningMode, str] = field(default_factory=dict)
-    only_arcs_about_z: bool = False
-    helices_by_angle: bool = False
-    plane_x_from_machine: bool = False
-    absolute_frame: bool = False
     pole_strategy: PoleStrategy = PoleStrategy.OFF
     pole_angle: float = 0.1
     lower_feed: bool = False
-    helices: bool = True
-    multi_turn_arcs: bool = True
-    arcs_with_tcp: bool = True
-    planes_from_pose: bool = False
-    turns_between_holes: bool = False
-    tcp: bool = True
     tip_tolerance: float = 0.005
-    unsupported_cycle_reason: Callable[[Cycle, SpindleState | None], str] = _never
-    holes_as_motion: bool = False
     axis_tolerance: float | None = None
+    explain: bool = False
 
-    def for_operation(self, operation: str) -> "PlanOptions":
-        """The options for the operation of this name."""
-        return replace(self, mode=self.mode_by_operation.get(operation, self.mode))
+    def mode_for(self, operation: str) -> MachiningMode | None:
+        """The mode requested for the operation of this name; None: by the rule."""
+        return self.mode_by_operation.get(operation, self.mode)
+
+    @property
+    def simultaneous_mode(self) -> MachiningMode:
+        """How an operation with a changing tool axis is made."""
+        return MachiningMode.TCP if self.tcp else MachiningMode.WITHOUT_TCP
 
     @property
     def axis_tolerance_between_points(self) -> float:
-        """How far the tool axis may be off between CL points, degrees; infinite where nobody asks."""
+        """How far the tool axis may leave its great circle between CL points, degrees; infinite: any distance."""
         if self.axis_tolerance is not None:
             return self.axis_tolerance
-        return math.inf if self.tcp else AXIS_WITHOUT_TCP
+        return math.inf if self.tcp else AXIS_TOLERANCE_WITHOUT_TCP
+
+
+def _supports_every_cycle(cycle: Cycle, spindle: SpindleState | None) -> str:
+    return ""
+
+
+@dataclass(frozen=True, slots=True)
+class ControlCapabilities:
+    """What the control can be told; by default everything.
+
+    modes                 machining modes that it has words for
+    mode_remedies         what would add a mode that it lacks, as the cure of a message
+    negligible_tilt       sine of the largest tilt that rotary words print as zero
+    only_arcs_about_z     it takes arcs about Z only
+    helices               it takes arcs that rise; False: they become lines
+    helices_by_angle      it takes a helix by centre and angle, not by its end
+    multi_turn_arcs       it takes arcs of more than one turn; False: they become lines
+    arcs_with_tcp         it takes arcs while TCP is on; False: they become lines
+    planes_from_pose      it takes a tilted plane from the rotary positions: arcs there must turn about the tool axis
+    plane_x_from_machine  X of a tilted plane is that of the machine after turning, unless the CL file gives an X
+    turns_between_holes   the tool axis may change between holes of one cycle with TCP: no plane for each axis is needed
+    cycle_objection       why it has no cycle for a hole
+    """
+
+    modes: frozenset[MachiningMode] = frozenset(MachiningMode)
+    mode_remedies: Mapping[MachiningMode, str] = field(default_factory=dict)
+    negligible_tilt: float = 0.0
+    only_arcs_about_z: bool = False
+    helices: bool = True
+    helices_by_angle: bool = False
+    multi_turn_arcs: bool = True
+    arcs_with_tcp: bool = True
+    planes_from_pose: bool = False
+    plane_x_from_machine: bool = False
+    turns_between_holes: bool = False
+    cycle_objection: CycleObjection = _supports_every_cycle

@@ -33,7 +33,7 @@ from trunnion.planning.machining_mode import (
     tilted_plane,
     with_exact_upright_axis,
 )
-from trunnion.planning.options import PlanOptions
+from trunnion.planning.options import ControlCapabilities, PlanOptions
 from trunnion.planning.pole.deviations import OperationTask, handle_pole, limit_speeds
 from trunnion.planning.poses.decision_log import PlannedOperation, describe_pose, pose_decisions
 from trunnion.planning.poses.limit_lookahead import degrees_out_of_reach, limit_remedy, limit_violation_text
@@ -56,7 +56,11 @@ _NAMED = 5
 
 
 def plan(
-    toolpaths: Sequence[Toolpath], machine: Machine, chord_tolerance: float, options: PlanOptions | None = None
+    toolpaths: Sequence[Toolpath],
+    machine: Machine,
+    chord_tolerance: float,
+    options: PlanOptions | None = None,
+    capabilities: ControlCapabilities | None = None,
 ) -> Plan:
     """Plan all operations of one program.
 
@@ -81,7 +85,7 @@ def plan(
         When no position of the machine gives a tool axis, or an operation cannot be made in the manner that is wished
         for; of that no program can be made at all.
     """
-    options = options or PlanOptions()
+    options, capabilities = options or PlanOptions(), capabilities or ControlCapabilities()
     pairs = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not pairs:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
@@ -98,32 +102,38 @@ def plan(
         except HoleCycleError as error:
             against.append(Problem(path.file, error.line, error.what, error.cure))
             continue
-        own_options, own_frame = options.for_operation(original.name), relative_frame(original.frame, program_frame)
-        mode = mode_of(operation, own_options.mode, options.negligible_tilt)
-        mode, reworded = supported_mode(path.file, operation, mode, own_options)
+        own_frame = relative_frame(original.frame, program_frame)
+        mode = mode_of(operation, options.mode_for(original.name), capabilities.negligible_tilt)
+        mode, reworded = supported_mode(path.file, operation, mode, options, capabilities)
         said += reworded
-        contradicting = mode_conflicts(path.file, operation, mode, options)
+        contradicting = mode_conflicts(path.file, operation, mode, capabilities)
         against += contradicting
         if mode is MachiningMode.THREE_AXIS and not contradicting:
             operation = with_exact_upright_axis(operation)
         plane = tilted_plane(operation.moves.axis[0], own_frame) if mode is MachiningMode.TILTED else None
         there = operation if plane is None else into_plane(operation, plane)
-        kept = arcs_a_control_takes(there, options.only_arcs_about_z, options.helices_by_angle)
-        if not options.helices:
+        kept = arcs_a_control_takes(there, capabilities.only_arcs_about_z, capabilities.helices_by_angle)
+        if not capabilities.helices:
             kept &= flat_arcs(operation)
-        if not options.multi_turn_arcs:
+        if not capabilities.multi_turn_arcs:
             kept &= operation.arcs.full_turns == 0
-        if mode is MachiningMode.TCP and not options.arcs_with_tcp:
+        if mode is MachiningMode.TCP and not capabilities.arcs_with_tcp:
             kept[:] = False
-        if plane is not None and options.planes_from_pose:
+        if plane is not None and capabilities.planes_from_pose:
             kept &= arcs_about_tool(operation)
         operation = lines_for_arcs(operation, kept, chord_tolerance)
-        planes = MachiningMode.TILTED in options.modes and own_options.mode is None
-        planes &= mode is MachiningMode.WITHOUT_TCP or not options.turns_between_holes
+        planes = MachiningMode.TILTED in capabilities.modes and options.mode_for(original.name) is None
+        planes &= mode is MachiningMode.WITHOUT_TCP or not capabilities.turns_between_holes
         parts = split_by_axis(operation) if mode in (MachiningMode.TCP, MachiningMode.WITHOUT_TCP) and planes else None
         try:
             holes = _plan_holes(
-                path.file, operation, options, mode if parts is None else MachiningMode.TILTED, parts, spindle
+                path.file,
+                operation,
+                options,
+                capabilities,
+                mode if parts is None else MachiningMode.TILTED,
+                parts,
+                spindle,
             )
         except HoleCycleError as error:
             against.append(Problem(path.file, error.line, error.what, error.cure))
@@ -134,7 +144,7 @@ def plan(
         planned_operation = _plan_operation(
             OperationTask(machine, path.file, holes.operation, original, options, keep_slides)
         )
-        if plane is not None and options.plane_x_from_machine:
+        if plane is not None and capabilities.plane_x_from_machine:
             plane = tilted_plane(
                 operation.moves.axis[0], own_frame, machine_x_direction(machine, planned_operation.poses.rotary[0])
             )
@@ -152,7 +162,7 @@ def plan(
     motions = [
         (planned_operation, motion)
         for planned_operation in planned_operations
-        for motion in planned_operation.motions(machine, options)
+        for motion in planned_operation.motions(machine, options, capabilities)
     ]
     lacking = [motion.operation for _, motion in motions if motion.mode is MachiningMode.WITHOUT_TCP]
     if lacking:
@@ -205,7 +215,7 @@ class _PlannedOperation:
     def refused(self) -> bool:
         return any(problem.severity is Severity.ERROR for problem in self.problems)
 
-    def motions(self, machine: Machine, options: PlanOptions) -> list[Motion]:
+    def motions(self, machine: Machine, options: PlanOptions, capabilities: ControlCapabilities) -> list[Motion]:
         """What is to be written."""
         operation, rotary = insert_rewinds(self.operation, self.poses.rotary, self.rewinds, options)
         if not self.parts:
@@ -215,7 +225,7 @@ class _PlannedOperation:
                 extract_rows(operation, first, end),
                 rotary[first:end].copy(),
                 self.mode,
-                self._plane_at(operation.moves.axis[first], rotary[first], machine, options),
+                self._plane_at(operation.moves.axis[first], rotary[first], machine, capabilities),
                 self.deviations if begin == 0 else Deviations.none(),
                 starts_operation=begin == 0,
                 ends_in_hole=ends_in_hole,
@@ -225,13 +235,15 @@ class _PlannedOperation:
             )
         ]
 
-    def _plane_at(self, axis: Floats, rotary: Floats, machine: Machine, options: PlanOptions) -> Frame | None:
+    def _plane_at(
+        self, axis: Floats, rotary: Floats, machine: Machine, capabilities: ControlCapabilities
+    ) -> Frame | None:
         """The plane of one of the parts, under a tool axis (3,) with the rotary axes at (2,), degrees."""
         if self.mode is not MachiningMode.TILTED:
             return None
         assert self.plane is not None
         return tilted_plane(
-            axis, self.plane, machine_x_direction(machine, rotary) if options.plane_x_from_machine else None
+            axis, self.plane, machine_x_direction(machine, rotary) if capabilities.plane_x_from_machine else None
         )
 
 
@@ -250,6 +262,7 @@ def _plan_holes(
     file: str,
     operation: Operation,
     options: PlanOptions,
+    capabilities: ControlCapabilities,
     mode: MachiningMode,
     parts: Sequence[tuple[int, int]] | None,
     spindle: SpindleState | None,
@@ -263,14 +276,14 @@ def _plan_holes(
     )
 
     moves, why = operation.moves, ""
-    along_tool = mode is MachiningMode.TCP and options.turns_between_holes and not options.holes_as_motion
+    along_tool = mode is MachiningMode.TCP and capabilities.turns_between_holes and not options.holes_as_motion
     if mode in (MachiningMode.TCP, MachiningMode.WITHOUT_TCP) and not along_tool:
         why = f"no cycle goes along a tilted axis {'with TCP' if mode is MachiningMode.TCP else 'without TCP'}"
         turns = axis_change_rows(operation)
         parts = row_ranges(turns[moves.kind[turns] == Kind.RAPID], len(moves))
     home = np.zeros(len(moves), np.bool_)
     home[[first for first, _ in parts or ()]] = True
-    drilled = convert_holes_to_motion(operation, options, spindle, home, why)
+    drilled = convert_holes_to_motion(operation, options, capabilities, spindle, home, why)
     begins = drilled.first
     kept = [(int(begins[first]), int(begins[end])) for first, end in parts or ()]
     ends_in_hole = [bool(begins[end] - begins[end - 1] > 1) for _, end in parts or ()]

@@ -28,7 +28,7 @@ from trunnion.planning.holes.cycles import (
     spindle_state_at,
 )
 from trunnion.planning.linearization.row_insertion import insert_rows
-from trunnion.planning.options import PlanOptions
+from trunnion.planning.options import ControlCapabilities, PlanOptions
 
 #: Why holes are made as motion whose cycles could be said.
 REQUESTED: Final = "it is asked for"
@@ -94,7 +94,12 @@ class _Holes:
 
 
 def convert_holes_to_motion(
-    operation: Operation, options: PlanOptions, held: SpindleState | None, home: Flags, why: str
+    operation: Operation,
+    options: PlanOptions,
+    capabilities: ControlCapabilities,
+    held: SpindleState | None,
+    home: Flags,
+    why: str,
 ) -> HolesAsMotion:
     """Make holes as motion where the control cannot say their cycles.
 
@@ -116,7 +121,7 @@ def convert_holes_to_motion(
     HoleCycleError
         When a cycle that would be made as motion leaves out what must be said.
     """
-    every = list(_cycles(operation, options, held, why))
+    every = list(_cycles(operation, options, capabilities, held, why))
     wanted = [holes for holes in every if holes.why]
     rows = np.arange(len(operation.moves) + 1)
     if not wanted:
@@ -155,7 +160,9 @@ def convert_holes_to_motion(
     return HolesAsMotion(made, first, tuple(_told(wanted)))
 
 
-def _cycles(operation: Operation, options: PlanOptions, held: SpindleState | None, why: str) -> Iterator[_Holes]:
+def _cycles(
+    operation: Operation, options: PlanOptions, capabilities: ControlCapabilities, held: SpindleState | None, why: str
+) -> Iterator[_Holes]:
     """The holes of an operation, cycle by cycle; what is wrong with a cycle is left to whoever says it."""
     changes = [event.row for event in operation.events if isinstance(event, SpindleOn | SpindleOff)]
     for event, end in cycle_row_ranges(operation):
@@ -164,9 +171,7 @@ def _cycles(operation: Operation, options: PlanOptions, held: SpindleState | Non
         except HoleCycleError:
             continue
         spindle = spindle_state_at(operation.events, event.row, held)
-        reason = (
-            why or options.unsupported_cycle_reason(cycle, spindle) or (REQUESTED if options.holes_as_motion else "")
-        )
+        reason = why or capabilities.cycle_objection(cycle, spindle) or (REQUESTED if options.holes_as_motion else "")
         reason = reason if cycle.method in CONVERTIBLE else ""
         rows = sorted({event.row, *(row for row in changes if event.row < row < end), end})
         for first, last in pairwise(rows):
