@@ -111,7 +111,7 @@ def post_and_prove(cls: Path, program: Path) -> dict[str, Any]:
     watch = Watch()
     toolpath = read_cl(cls)
     watch = step("read the CL file", watch)
-    planned = plan([toolpath], machine, control.chord_tolerance)
+    planned = plan([toolpath], machine, control.arcs.chord_tolerance)
     watch = step("plan", watch)
     with program.open("wb") as sink:
         write_program(Program(machine, control, planned.motions, {}, str(cls)), sink)

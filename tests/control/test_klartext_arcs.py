@@ -97,7 +97,7 @@ def test_arcs_and_helices_are_proven(path: tuple[Moves, Arcs], folder: Path) -> 
 
 
 def by_radius(control: Control) -> Control:
-    return replace(control, arcs_by_radius=True)
+    return replace(control, arcs=replace(control.arcs, by_radius=True))
 
 
 @settings(max_examples=120)

@@ -105,7 +105,11 @@ def written(
     model = MACHINES[machine]
     control = load_control(model.control.unread_copy())
     planned = plan(
-        [toolpath], model, control.chord_tolerance, parse_plan_options({}, control), control_capabilities(control, {})
+        [toolpath],
+        model,
+        control.arcs.chord_tolerance,
+        parse_plan_options({}, control),
+        control_capabilities(control, {}),
     )
     program = Program(model, control, planned.motions, {"tool": "7"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):

@@ -38,9 +38,9 @@ AXES = st.one_of(
 
 def posted(toolpath: Toolpath, given: dict[str, str], planes: bool = True) -> bytes | None:
     """The program; None where there can be none. Without ``planes`` one that would have tilted planes goes with TCP."""
-    planned = plan([toolpath], MACHINE, CONTROL.chord_tolerance)
+    planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance)
     if not planes and any(motion.plane is not None for motion in planned.motions):
-        planned = plan([toolpath], MACHINE, CONTROL.chord_tolerance, PlanOptions(mode=MachiningMode.TCP))
+        planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance, PlanOptions(mode=MachiningMode.TCP))
     program = Program(MACHINE, CONTROL, planned.motions, given, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None

@@ -142,7 +142,7 @@ def written(
         planned = plan(
             [toolpath],
             machine,
-            control.chord_tolerance,
+            control.arcs.chord_tolerance,
             PlanOptions(tcp=tcp),
             ControlCapabilities(modes=control.modes({})),
         )

@@ -22,8 +22,7 @@ from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.cli.settings import apply_setup
-from trunnion.controls import Control, load_control
-from trunnion.controls.definition import library
+from trunnion.controls import Control, control_library, load_control
 from trunnion.families import FAMILIES as CONTROL_FAMILIES
 from trunnion.families import load_writer
 from trunnion.machines import Machine, load_machine, shipped_machines
@@ -32,7 +31,9 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import CycleOn
 from trunnion.readers import run_program
 
-CONTROLS = sorted(entry.name.removesuffix(".toml") for entry in library().iterdir() if entry.name.endswith(".toml"))
+CONTROLS = sorted(
+    entry.name.removesuffix(".toml") for entry in control_library().iterdir() if entry.name.endswith(".toml")
+)
 
 #: Each example is another path; the first one of Hypothesis is the simplest there is.
 FEW = settings(

@@ -61,7 +61,7 @@ class Posted:
 def post(model: Machine, path: Toolpath, options: PlanOptions) -> Posted:
     """Plan, write, read back and prove, whatever speaks against the plan."""
     control = load_control(model.control)
-    planned = plan([path], model, control.chord_tolerance, options)
+    planned = plan([path], model, control.arcs.chord_tolerance, options)
     program = Program(model, control, planned.motions, {}, "part.cls")
     assert [p for p in check_program(program) if p.severity is Severity.ERROR] == []
     with TemporaryDirectory() as folder:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.controls.definition import SURFACE_NORMAL_WORDS
 from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS
+from trunnion.controls.vocabulary import SURFACE_NORMAL_WORDS
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn
 from trunnion.output.coordinates.plane_from_pose import with_plane_inside_limits
@@ -62,12 +62,12 @@ def program_tolerances(program: Program) -> "list[Tolerances]":
             before = allowed.pop()
             tip, angle, normal = max(tip, before.tip), max(angle, before.angle), max(normal, before.normal)
             deviations = before.deviations
-        found = 2.0 * MAX_CENTRE_ERROR_DIGITS * half["X"] if control.arcs_by_radius else 0.0
+        found = 2.0 * MAX_CENTRE_ERROR_DIGITS * half["X"] if control.arcs.by_radius else 0.0
         allowed.append(
             Tolerances(
                 tip,
                 angle,
-                control.chord_tolerance,
+                control.arcs.chord_tolerance,
                 half["feed"],
                 deviations,
                 centre=found,

@@ -108,7 +108,7 @@ def plan_program(
         When there can be no program, or when it must not run, unless ``force``: then its head says so.
     """
     capabilities = capabilities or control_capabilities(control, settings)
-    planned = plan(paths, machine, control.chord_tolerance, options, capabilities)
+    planned = plan(paths, machine, control.arcs.chord_tolerance, options, capabilities)
     if explain:
         print(*planned.decisions, sep="\n", file=sys.stderr)
     program = Program(machine, control, planned.motions, settings, paths[0].file)

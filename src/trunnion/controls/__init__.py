@@ -1,9 +1,10 @@
-"""Controls: the language of each as data, and what a family of controls must be able to say.
+"""Controls: the language of each as data, and the interface for what data cannot express.
 
 In:     TOML (``controls/library`` and the ``[control]`` table of a machine).
 Out:    ``Control``, read and checked.
 """
 
-from trunnion.controls.definition import Control, load_control
+from trunnion.controls.definition import Control
+from trunnion.controls.loading import control_library, load_control
 
-__all__ = ["Control", "load_control"]
+__all__ = ["Control", "control_library", "load_control"]

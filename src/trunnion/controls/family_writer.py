@@ -1,15 +1,13 @@
-"""The seam between what all controls share and what a family of them says in its own way.
+"""The interface of a control family's writer: what words and templates of a definition cannot express.
 
-In:     events, arcs, planes and rows, with the codes and number formats of the control's definition.
-Out:    the words and lines that say them.
-
-A family is a module that has everything of ``FamilyWriter``; ``trunnion.output.families.registry`` names those that
-there are. Programs, their order and their modal state are made by ``trunnion.output.program_writer`` for all of them.
+A writer is a module with everything that ``FamilyWriter`` lists; ``trunnion.families`` names the writers that there
+are. It turns events, arcs, cycles and planes into words and lines, with the codes and number formats of the
+definition. The sequence of a program and its modal state are common to all families (``trunnion.output``).
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Final, Protocol
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.template import Value
@@ -21,43 +19,34 @@ from trunnion.planning.holes.cycles import Cycle, SpindleState
 Formats = Mapping[str, NumberFormat]
 Codes = Mapping[str, int]
 
-#: In the call of a cycle: here stand X and Y of the first hole, which then has no block of its own.
-FIRST_HOLE = "{at}"
+#: Events that are words and can join a motion block.
+WordEvent = SpindleOn | SpindleOff | Coolant | CutterComp
 
-#: In the call of a cycle: here stand X and Y of every hole, each of which is said by all lines of the call.
-EACH_HOLE = "{each}"
+#: Placeholder in a line of ``cycle_call`` for X and Y of the first hole, which then has no block of its own.
+FIRST_HOLE: Final = "{at}"
 
+#: Placeholder in a line of ``cycle_call`` for X and Y of each hole: all lines are written for every hole.
+EACH_HOLE: Final = "{each}"
 
-#: The words of circles that are told by their radius, in families that can say them so.
-RADIUS_ARC_WORDS = ("arc_by_radius", "arc_radius")
-
-#: So many of its last digits may the centre be off that a control finds by a radius; beyond that it is told the centre.
-MAX_CENTRE_ERROR_DIGITS = 2.0
-
-#: The setting that says how holes are made between which the tool axis changes, on controls that have several ways, and
-#: the way that all have which know tilted planes: each axis has its plane. Any other turns the tool from hole to hole.
-HOLES_SETTING, HOLES_IN_PLANES = "holes", "planes"
+#: Greatest error of the centre that a control computes from a radius, in last digits; beyond it the centre is written.
+MAX_CENTRE_ERROR_DIGITS: Final = 2.0
 
 
 class UnsupportedFeatureError(Exception):
-    """A family has no way to say something; ``what`` it is, and the ``cure``."""
+    """The family cannot express something: ``what`` it is, and the ``cure``."""
 
     def __init__(self, what: str, cure: str) -> None:
         super().__init__(what)
         self.what, self.cure = what, cure
 
 
-#: Events that are words, and may join a motion block.
-WordEvent = SpindleOn | SpindleOff | Coolant | CutterComp
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class ArcWords:
-    """What makes rows of a table into arcs.
+    """The words that turn rows of a block table into arcs.
 
     columns  word -> (a,) int64 counts, one for each arc
-    forced   word -> (a,) int64 1 where the word is written though it prints as before
-    lines    (a,) a line of its own before each arc's block, empty where it needs none; None: no block does
+    forced   word -> (a,) int64, 1 where the word is written even if it is modal and unchanged
+    lines    (a,) a line before the block of each arc, empty for none; None: no arc needs one
     """
 
     columns: Mapping[str, Ints]
@@ -66,13 +55,13 @@ class ArcWords:
 
 
 class FamilyWriter(Protocol):
-    """What words and templates of a definition cannot say; a module of functions without any state.
+    """The writer of a control family: a module of functions without state.
 
-    WORDS    the words that its motion blocks need besides the axes; a definition must have them all
-    CODES    the codes that it asks of its definitions
-    PLANES   the ways it has to say a tilted plane, the usual one first; templates are called after them
-    CHOICES  the settings of its definitions that have but a few values, with those, the usual one first
-    FIELDS   the values that its templates may print besides those of all families: what ``values`` returns
+    WORDS            words of its motion blocks besides the axes; a definition must define all of them
+    CODES            codes that its definitions must give
+    PLANE_COMMANDS   its commands for tilted planes, the default first; template names end with them
+    SETTING_CHOICES  settings of its definitions with a fixed set of values, the default first
+    TEMPLATE_FIELDS  values that its templates may print besides the common ones: the keys of ``template_values``
     """
 
     WORDS: tuple[str, ...]
@@ -82,53 +71,53 @@ class FamilyWriter(Protocol):
     TEMPLATE_FIELDS: frozenset[str]
 
     def comment(self, text: str) -> list[str]:
-        """Lines that the control ignores, whatever the text is."""
+        """Return a text as comment lines, whatever characters are in it."""
 
     def escape_comment(self, text: str) -> str:
-        """A text as it may stand in the comments that templates hold."""
+        """Return a text without what would end or break a comment of a template."""
 
     def tool_call(self, number: int, name: str, by_name: bool) -> str:
-        """What templates print for the tool: its number, or its name.
+        """Return the tool as a tool change names it: its number, or its name.
 
         Raises
         ------
-        UnsayableError
-            When the control cannot call it so.
+        UnsupportedFeatureError
+            If the control cannot call the tool so.
         """
 
     def dwell(self, event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
-        """The lines that wait; ``rpm`` is the spindle's speed, None while it stands.
+        """Return the lines of a dwell; ``rpm`` is the spindle speed, None while the spindle is stopped.
 
         Raises
         ------
-        UnsayableError
-            When the control cannot wait so.
+        UnsupportedFeatureError
+            If the control cannot dwell so.
         """
 
     def stop(self, event: Stop, codes: Codes) -> list[str]:
-        """The lines that stop the program."""
+        """Return the lines of a program stop."""
 
     def message(self, event: Message) -> list[str]:
-        """The lines that speak to the reader of the program or to the operator."""
+        """Return the lines of a comment for the reader of the program, or of a message to the operator."""
 
     def event_words(self, event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
-        """The words of an event that joins a motion block, with their values."""
+        """Return the words of an event and their values; they join a motion block."""
 
     def first_block_words(
         self, motion: Motion, tool: str, register: int, settings: Mapping[str, str]
     ) -> dict[str, float]:
-        """The words that join the first block of a motion's rows, such as those of the tool's length.
+        """Return the words that join the first motion block, such as those of the tool length.
 
-        Where X and Y are gone to before Z, they stand in the block with Z.
+        Where the tool goes to X and Y before Z, they are in the block with Z.
 
         Parameters
         ----------
         motion
-            All rows of one manner, in one plane.
+            All rows of one machining mode, in one plane.
         tool
-            What ``tool_call`` returned for the tool in the spindle, or the setting of the run.
+            The tool as ``tool_call`` returned it, or as the run's setting gives it.
         register
-            Of its length, as LOAD/TOOL names it; 0 for none.
+            Of the tool length, as LOAD/TOOL names it; 0 for none.
         settings
             Those of the run over those of the definition.
         """
@@ -136,53 +125,53 @@ class FamilyWriter(Protocol):
     def validate_operation(
         self, operation: Operation, spindle_known: bool
     ) -> list[tuple[int, UnsupportedFeatureError]]:
-        """What the control would refuse in an operation though it has words for it, with lines of the CL file.
+        """Return what the control would reject in an operation, with lines of the CL file.
 
-        ``spindle_known`` says whether a speed is in force from an operation before.
+        ``spindle_known`` tells whether a spindle speed is active from an earlier operation.
         """
 
     def validate_settings(self, settings: Mapping[str, str]) -> list[tuple[str, str]]:
-        """Settings besides ``SETTING_CHOICES`` that make no sense, with what to write in their place."""
+        """Return the invalid settings, each with its cure; those of ``SETTING_CHOICES`` are checked elsewhere."""
 
     def cycle_call(
-        self, cycle: Cycle, top: float, turning: SpindleState | None, settings: Mapping[str, str], formats: Formats
+        self, cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats
     ) -> list[str]:
-        """The lines that make a hole-making cycle modal: each position that follows is a hole.
+        """Return the lines that make a drilling cycle modal: every position that follows is a hole.
 
-        A line with ``FIRST_HOLE`` in it is the first hole too, with its position there and the feed at its end. Lines
-        of which one has ``EACH_HOLE`` in it are no cycle: they make one hole, and are said for each.
+        A line with ``FIRST_HOLE`` drills the first hole itself, with X and Y in that place and the feed at its end.
+        Lines of which one has ``EACH_HOLE`` make a single hole, and are written for each.
 
         Parameters
         ----------
         cycle
             With a retract height.
         top
-            Z of the points of the holes, mm.
-        turning
-            The spindle; None while it stands.
+            Z of the hole points, mm.
+        spindle
+            None while it is stopped.
         settings
-            Those of the run over those of the definition. ``HOLES_SETTING`` is ``HOLES_IN_PLANES`` unless each hole
-            has its own tool axis: then ``top`` is along it, and ``EACH_HOLE`` is a line alone, before those of a
-            hole's cycle.
+            Those of the run over those of the definition. ``HOLES_SETTING`` is ``HOLES_IN_PLANES`` unless each hole has
+            its own tool axis: then ``top`` is measured along that axis, and ``EACH_HOLE`` is a line alone, before those
+            of a hole's cycle.
         formats
             Of the definition.
 
         Raises
         ------
         CycleError
-            When the cycle cannot be said.
+            If the control cannot make the cycle.
         """
 
     def cycle_cancel(self) -> list[str]:
-        """The lines that end a modal cycle."""
+        """Return the lines that cancel a modal cycle."""
 
     def row_words(self, rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
-        """The words that say how rows are gone to: word -> (n,) int64 counts, for every row as if none were an arc."""
+        """Return the motion and feed-mode words of n rows, as if none were an arc: word -> (n,) int64 counts."""
 
     def arc_words(
         self, arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool
     ) -> ArcWords:
-        """The words that make rows into arcs.
+        """Return the words that turn rows into arcs.
 
         Parameters
         ----------
@@ -191,21 +180,20 @@ class FamilyWriter(Protocol):
         tip : (n, 3) float64
             End points of the whole operation, mm.
         rows : (a,) int64
-            Indices into ``arcs`` of those that are wanted.
+            Indices into ``arcs`` of the arcs to write.
         codes, formats
             Of the definition.
         by_radius
-            Say circles by their radius where that is safe; only families with the words ``RADIUS_ARC_WORDS`` are asked
-            to.
+            Program circles by their radius where that is safe; only for families with ``RADIUS_ARC_WORDS``.
         """
 
     def template_values(self, settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-        """What ``TEMPLATE_FIELDS`` names, in one operation.
+        """Return the values of ``TEMPLATE_FIELDS`` for one operation.
 
         Parameters
         ----------
         settings
             Those of the run over those of the definition.
         plane : (3, 3) float64
-            X, Y and Z of the operation's tilted plane as columns, as seen from the program; None without one.
+            X, Y and Z of the operation's tilted plane as columns, in program coordinates; None without one.
         """

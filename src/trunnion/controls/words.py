@@ -1,7 +1,7 @@
 """Number formats and words.
 
-A number is rounded once, to a whole count of its last printed digit, and from there on it is an integer: what is
-compared for modality is what is printed, and -0.0004 with three decimals is simply 0.
+A number is rounded once, to a count: a whole number of its last printed digit. Modal words are compared by their
+counts, which is what is printed: -0.0004 with three decimals is 0.
 """
 
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.jit import njit
 
-#: The count that stands for "this word is not in this block".
+#: The count of a word that is not in the block.
 ABSENT = np.iinfo(np.int64).min
 
-#: Beyond this count doubles no longer hold every last digit.
+#: Above this count a double no longer holds every last digit.
 LARGEST_COUNT = 2**53
 
 
@@ -22,13 +22,13 @@ LARGEST_COUNT = 2**53
 class NumberFormat:
     """How a number is printed.
 
-    decimals        digits after the point; the number is rounded to them, half to even on the exact binary value
-    point           whether a decimal point is printed (``20.``); without decimals there is none
-    leading_zero    ``0.5`` rather than ``.5``
-    trailing_zeros  ``20.000`` rather than ``20.``
-    plus            ``+20.`` rather than ``20.``
-    zero            what stands for zero, such as ``0.0``; empty: as the other rules have it
-    least, greatest limits of the value; beyond them the word is refused
+    decimals         digits after the point; the exact binary value is rounded to them, halves to even
+    point            print a decimal point behind whole numbers (``20.``), if there are decimals
+    leading_zero     ``0.5`` rather than ``.5``
+    trailing_zeros   ``20.000`` rather than ``20.``
+    plus             ``+20.`` rather than ``20.``
+    zero             the text for zero, such as ``0.0``; empty: by the other rules
+    least, greatest  limits of the value; a program with a number beyond them is refused
     """
 
     decimals: int
@@ -41,11 +41,11 @@ class NumberFormat:
     greatest: float = 99999999.0
 
     def text(self, value: float) -> str:
-        """``value`` as it is printed."""
+        """Return ``value`` as it is printed."""
         return self.text_of_count(int(round_to_counts(np.array([value]), self.decimals)[0]))
 
     def text_of_count(self, count: int) -> str:
-        """The printed form of a whole count of last digits. The slow twin of the block kernel's digits."""
+        """Return the printed form of a count; the slow twin of the block kernel's digits."""
         if count == 0 and self.zero:
             return self.zero
         sign = "-" if count < 0 else "+" if self.plus else ""
@@ -60,11 +60,15 @@ class NumberFormat:
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """An address and its number: ``key`` names it in definitions, ``letter`` is what is printed before the number.
+    """An address and its number.
 
-    A modal word is left out of a block when it would print as it last did. ``closing`` is what stands behind the
-    number, one character or none. A bare word is letters without a number, such as ``FMAX``: it stands wherever its
-    column has any count, is never modal, and makes no block by itself.
+    key      its name in definitions
+    letter   printed before the number
+    format   of the number
+    modal    leave the word out of a block if it would print as it did last
+    closing  one character printed behind the number, or none
+    bare     letters without a number, such as ``FMAX``: printed wherever the column has a count, never modal, and no
+             block by itself
     """
 
     key: str
@@ -75,7 +79,7 @@ class Word:
     bare: bool = False
 
     def text(self, value: float) -> str:
-        """The whole word, such as ``X-.31289``."""
+        """Return the whole word, such as ``X-.31289``."""
         return self.letter if self.bare else self.letter + self.format.text(value) + self.closing
 
 
@@ -111,16 +115,16 @@ def round_column(value: Floats, scale: float, out: Ints) -> None:
 
 
 def round_to_counts(value: Floats, decimals: int, out: Ints | None = None) -> Ints:
-    """Values as whole counts of the last printed digit, rounded as ``f"{value:.{decimals}f}"`` rounds.
+    """Return values as counts, rounded as ``f"{value:.{decimals}f}"`` rounds.
 
     Parameters
     ----------
     value : (n,) float64
-        NaN stands for an absent word.
+        NaN for an absent word.
     decimals
         Digits after the point, at most 9.
     out : (n,) int64, optional
-        Where to put the counts.
+        Array for the counts.
 
     Returns
     -------
@@ -130,7 +134,7 @@ def round_to_counts(value: Floats, decimals: int, out: Ints | None = None) -> In
     Raises
     ------
     OverflowError
-        When a count would not fit the digits of a double.
+        If a count has more digits than a double.
     """
     if out is None:
         out = np.empty(len(value), np.int64)
@@ -145,9 +149,13 @@ def round_to_counts(value: Floats, decimals: int, out: Ints | None = None) -> In
 
 @dataclass(frozen=True, slots=True)
 class BlockNumbers:
-    """Block numbers: letter (may be empty), first number, step, the highest before they start again; or none.
+    """How blocks are numbered.
 
-    Lines of text that begin with one of the characters ``unnumbered`` have neither a number nor a skip sign.
+    letter       before the number; may be empty
+    start, step  of the numbers
+    highest      after it the numbers start again
+    numbered     False: blocks have no numbers
+    unnumbered   lines of text that begin with one of these characters have neither a number nor a skip sign
     """
 
     letter: str = "N"

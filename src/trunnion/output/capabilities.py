@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from trunnion.controls import Control
-from trunnion.controls.definition import UNKNOWN_FEED
+from trunnion.controls.vocabulary import UNKNOWN_FEED
 from trunnion.model.motion import MachiningMode
 from trunnion.output.validation import unsupported_cycle_reasons
 from trunnion.planning import ControlCapabilities
@@ -23,10 +23,10 @@ def control_capabilities(control: Control, settings: Mapping[str, str]) -> Contr
         modes=control.modes(settings),
         mode_remedies={MachiningMode.WITHOUT_TCP: _FEED_REMEDY} if control.feed_without_tcp == UNKNOWN_FEED else {},
         negligible_tilt=_negligible_tilt(control),
-        only_arcs_about_z=control.only_arcs_about_z,
-        helices=control.helices,
+        only_arcs_about_z=control.arcs.only_about_z,
+        helices=control.arcs.helices,
         helices_by_angle="arc_angle" in control.family.WORDS,
-        multi_turn_arcs=control.multi_turn_arcs,
+        multi_turn_arcs=control.arcs.multi_turn,
         arcs_with_tcp=not (control.vectors_exclude_angles and control.uses_tool_vectors(settings)),
         planes_from_pose=control.plane_from_pose,
         plane_x_from_machine=control.plane_x_from_machine,

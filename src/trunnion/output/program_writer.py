@@ -12,9 +12,9 @@ from typing import BinaryIO, Final
 
 import numpy as np
 
-from trunnion.controls.definition import SPINDLE_ON
 from trunnion.controls.family_writer import WordEvent
 from trunnion.controls.template import Value
+from trunnion.controls.vocabulary import SPINDLE_ON
 from trunnion.controls.words import round_to_counts
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import (

@@ -5,7 +5,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from trunnion.controls.definition import Control
-from trunnion.controls.family_writer import HOLES_IN_PLANES, HOLES_SETTING, UnsupportedFeatureError
+from trunnion.controls.family_writer import UnsupportedFeatureError
+from trunnion.controls.vocabulary import HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Mount

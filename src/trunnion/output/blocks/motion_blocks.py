@@ -11,8 +11,8 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.controls.definition import ORIENT_BY_AXES_WORD, ORIENT_BY_VECTOR_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.family_writer import WordEvent
+from trunnion.controls.vocabulary import ORIENT_BY_AXES_WORD, ORIENT_BY_VECTOR_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT, round_to_counts
 from trunnion.errors import InputError, Problem
 from trunnion.model.motion import MachiningMode, Motion
@@ -283,7 +283,7 @@ class MotionBlockWriter:
         inside = np.flatnonzero((arcs.row >= start) & (arcs.row < stop))
         if len(inside):
             formats = {word.key: word.format for word in self._words}
-            words = self.family.arc_words(arcs, moves.tip, inside, control.codes, formats, control.arcs_by_radius)
+            words = self.family.arc_words(arcs, moves.tip, inside, control.codes, formats, control.arcs.by_radius)
             at = arcs.row[inside] - start
             for word in (*TOOL_VECTOR_WORDS, VECTOR_LINE_WORD) if by_vector else ():  # the tool axis rests on a circle
                 if word in columns:

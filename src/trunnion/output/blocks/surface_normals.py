@@ -7,7 +7,7 @@ Out:    flags, and counts of the last printed digit.
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
-from trunnion.controls.definition import SURFACE_NORMAL_WORDS
+from trunnion.controls.vocabulary import SURFACE_NORMAL_WORDS
 from trunnion.controls.words import round_to_counts
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Moves

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
-from trunnion.controls.definition import TOOL_VECTOR_WORDS
+from trunnion.controls.vocabulary import TOOL_VECTOR_WORDS
 from trunnion.controls.words import Word, round_to_counts
 from trunnion.machines import AngleOutput, Machine, Mount, forward, inverse
 from trunnion.model.motion import Motion

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.controls.definition import CYCLE_CALL_WORD
-from trunnion.controls.family_writer import EACH_HOLE, FIRST_HOLE, HOLES_IN_PLANES, HOLES_SETTING, WordEvent
+from trunnion.controls.family_writer import EACH_HOLE, FIRST_HOLE, WordEvent
+from trunnion.controls.vocabulary import CYCLE_CALL_WORD, HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.controls.words import round_to_counts
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn

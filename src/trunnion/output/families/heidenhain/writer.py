@@ -11,15 +11,9 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.controls.family_writer import (
-    RADIUS_ARC_WORDS,
-    ArcWords,
-    Codes,
-    Formats,
-    UnsupportedFeatureError,
-    WordEvent,
-)
+from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
+from trunnion.controls.vocabulary import RADIUS_ARC_WORDS
 from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop

@@ -7,15 +7,9 @@ one by one.
 from collections.abc import Mapping
 
 from trunnion.arrays import Floats
-from trunnion.controls.family_writer import (
-    EACH_HOLE,
-    HOLES_IN_PLANES,
-    HOLES_SETTING,
-    Codes,
-    Formats,
-    UnsupportedFeatureError,
-)
+from trunnion.controls.family_writer import EACH_HOLE, Codes, Formats, UnsupportedFeatureError
 from trunnion.controls.template import Value
+from trunnion.controls.vocabulary import HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles

@@ -1,0 +1,267 @@
+"""From the ``[control]`` table of a definition to a ``Control``, with every mistake reported at once."""
+
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+
+from trunnion.controls.definition import ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
+from trunnion.controls.family_writer import FamilyWriter
+from trunnion.controls.template import Template
+from trunnion.controls.vocabulary import (
+    AXIS_WORDS,
+    COMMON_TEMPLATE_FIELDS,
+    COOLANTS,
+    FEEDS_WITHOUT_TCP,
+    FIVE_AXIS,
+    HOLE_APPROACH_HEIGHTS,
+    PHASES,
+    RADIUS_ARC_WORDS,
+    REQUIRED_TEMPLATES,
+    SPINDLE_ON,
+    SUBPROGRAM_TEMPLATES,
+    TOOL_TYPES,
+    WITHOUT_TCP,
+)
+from trunnion.controls.words import BlockNumbers, NumberFormat
+from trunnion.definitions import Table, resolve_extends
+from trunnion.families import FAMILIES, load_writer
+
+
+def control_library() -> Traversable:
+    """Return the folder of the shipped control definitions."""
+    return files("trunnion.controls").joinpath("library")
+
+
+def load_control(own: Table) -> Control:
+    """Read the definition of a control.
+
+    Parameters
+    ----------
+    own
+        The ``[control]`` table of a machine. The definition that its ``extends`` names is merged under it.
+
+    Raises
+    ------
+    InputError
+        With every mistake, each at its file and line.
+    """
+    table = resolve_extends(own, control_library())
+    family = _load_family(table)
+    words = (*AXIS_WORDS, *family.WORDS)
+    formats = {entry.text("name"): _read_format(entry) for entry in table.tables("format")}
+    templates, settings = table.table("templates"), table.table("settings")
+    plane_from_pose = table.flag("plane_from_pose", False)
+    control = Control(
+        name=table.text("name"),
+        family=family,
+        extension=table.text("extension"),
+        longest_line=table.integer("longest_line", 1 << 20, at_least=40, at_most=1 << 20),
+        continued=table.text("continued", ""),
+        block_numbers=_read_block_numbers(table.table("block_numbers")),
+        formats=formats,
+        words=tuple(_read_word(entry, formats, words) for entry in table.tables("word")),
+        codes=_read_integers(table.table("codes"), family.CODES),
+        coolant=_read_integers(table.table("coolant"), COOLANTS, complete=False),
+        initial_modal_state=_read_integers(table.table("in_force"), words, complete=False),
+        settings=_read_settings(settings, family),
+        method_defaults=_read_method_defaults(table.tables("by_method"), settings),
+        tool_types=_read_texts(table.table("tool_types"), TOOL_TYPES),
+        phases=_read_texts(table.table("phases"), PHASES),
+        arcs=_read_arc_rules(table.table("arcs"), words),
+        plane_x_from_machine=table.text("plane_x", "program", one_of=("program", "machine")) == "machine",
+        tcp=table.flag("tcp", True),
+        feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
+        shorter_way=table.flag("shorter_way", False),
+        own_blocks=table.flag("own_blocks", False),
+        first_lines=table.integer("first_lines", 0, at_least=0, at_most=9),
+        level_approach=table.flag("level_approach", False),
+        plane_from_pose=plane_from_pose,
+        holes_from=table.text("holes_from", "above", one_of=HOLE_APPROACH_HEIGHTS),
+        subprograms=_read_subprogram_naming(table.table("subprograms")) if "subprograms" in table else None,
+        templates=_read_templates(
+            templates, _template_names(templates, family, plane_from_pose, "subprograms" in table)
+        ),
+    )
+    defined = {word.name for word in control.words}
+    for missing in dict.fromkeys(name for name in words if name not in defined):
+        table.add_problem("word", f"has no entry {missing!r}, which programs of this family need", "write it")
+    _check_templates(templates, control)
+    table.report_unread_keys()
+    table.raise_problems()
+    return control
+
+
+def _load_family(table: Table) -> FamilyWriter:
+    key = table.text("family")
+    if key not in FAMILIES:
+        known = ", ".join(FAMILIES)
+        table.add_problem("family", f"is {key!r}, for which no programs can be written yet", f"write one of {known}")
+        table.raise_problems()
+    table.mark_read("reading")  # only for the readers of programs
+    family: FamilyWriter = load_writer(key)
+    return family
+
+
+def _read_format(entry: Table) -> FormatPair:
+    decimals = entry.integer("decimals", at_least=0, at_most=9)
+    decimals_three_axis = entry.integer("decimals_three_axis", decimals, at_least=0, at_most=9)
+    common = {
+        "point": entry.flag("point", True),
+        "leading_zero": entry.flag("leading_zero", False),
+        "trailing_zeros": entry.flag("trailing_zeros", False),
+        "plus": entry.flag("plus", False),
+    }
+    zero = entry.text("zero", "")
+    least, greatest = entry.number("least", -99999999.0), entry.number("greatest", 99999999.0)
+    if len(zero) > 8:
+        entry.add_problem("zero", f"is {zero!r}", "write at most 8 characters")
+        zero = ""
+    entry.report_unread_keys()
+    pair = [
+        NumberFormat(n, zero=zero, least=least, greatest=greatest, **common) for n in (decimals, decimals_three_axis)
+    ]
+    return FormatPair(*pair)
+
+
+def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[str]) -> WordDefinition:
+    name = entry.text("name", one_of=words)
+    rotary = name.startswith(("primary", "secondary"))
+    letter = entry.text("letter", "") if rotary else entry.text("letter")
+    closing = entry.text("closing", "")
+    most = 4 if rotary else 8
+    if len(letter.encode()) > most:
+        entry.add_problem("letter", f"is {letter!r}", f"write at most {most} characters")
+        letter = letter[:1]
+    if len(closing.encode()) > 1:
+        entry.add_problem("closing", f"is {closing!r}", "write one character")
+        closing = ""
+    bare = entry.flag("bare", False)
+    number_format = "" if bare else entry.text("format", one_of=tuple(formats))
+    word = WordDefinition(name, letter, number_format, not bare and entry.flag("modal", True), closing, bare)
+    entry.report_unread_keys()
+    return word
+
+
+def _read_block_numbers(table: Table) -> BlockNumbers:
+    letter = table.text("letter", "N")
+    numbers = BlockNumbers(
+        letter,
+        table.integer("start", 10, at_least=0),
+        table.integer("step", 10, at_least=1),
+        table.integer("highest", 99999999, at_least=1, at_most=99999999),
+        table.flag("numbered", bool(letter)),
+        table.text("unnumbered", ""),
+    )
+    table.report_unread_keys()
+    return numbers
+
+
+def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) -> dict[str, int]:
+    found = {name: table.integer(name, at_least=0) for name in names if complete or name in table}
+    table.report_unread_keys()
+    return found
+
+
+def _read_texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
+    found = {name: table.text(name, "") for name in names}
+    table.report_unread_keys()
+    return found
+
+
+def _read_settings(table: Table, family: FamilyWriter) -> dict[str, str]:
+    found = {name: table.text(name) for name in list(table.keys())}
+    for name, choices in family.SETTING_CHOICES.items():
+        if found.setdefault(name, choices[0]) not in choices:
+            table.add_problem(name, f"is {found[name]!r}", f"write one of {', '.join(choices)}")
+    for name, cure in family.validate_settings(found):
+        table.add_problem(name, f"is {found[name]!r}", cure)
+    table.report_unread_keys()
+    return found
+
+
+def _read_method_defaults(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tuple[str, str], ...]]:
+    found: dict[str, tuple[tuple[str, str], ...]] = {}
+    for entry in entries:
+        name = entry.text("setting", one_of=settings.keys())
+        found[name] = (*found.get(name, ()), (entry.text("method"), entry.text("value")))
+        entry.report_unread_keys()
+    return found
+
+
+def _read_arc_rules(table: Table, words: Sequence[str]) -> ArcRules:
+    rules = ArcRules(
+        chord_tolerance=table.number("chord_tolerance", 0.001, above=0.0),
+        only_about_z=table.text("about", "XYZ", one_of=("XYZ", "Z")) == "Z",
+        by_radius=table.text("by", "centre", one_of=("centre", "radius")) == "radius",
+        helices=table.flag("helices", True),
+        multi_turn=table.flag("turns", True),
+    )
+    if rules.by_radius and not set(RADIUS_ARC_WORDS) <= set(words):
+        table.add_problem("by", "is 'radius', and the control's family has no words for that", "leave it out")
+    table.report_unread_keys()
+    return rules
+
+
+def _read_subprogram_naming(table: Table) -> SubprogramNaming:
+    letters = table.text("letters", "capital", one_of=("capital", "small"))
+    first = table.integer("first_number", 0, at_least=0, at_most=9999)
+    naming = SubprogramNaming(
+        extension=table.text("extension"),
+        capitals=letters == "capital",
+        max_length=4 if first else table.integer("longest_name", at_least=8),
+        reserved_prefixes=table.texts("reserved", ()),
+        first_number=first or None,
+        prefix=table.text("before_name", ""),
+    )
+    table.report_unread_keys()
+    return naming
+
+
+def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, subprograms: bool) -> list[str]:
+    """Return the names of the templates that a definition must have.
+
+    Those of TCP, of operations without it and of each plane command are needed only if one of them is there. The
+    template that leads from home to the next tool axis of an operation with holes is optional. Where a tilted plane
+    is taken from the rotary position, the tool may have to be retracted before the next one.
+    """
+    plane_parts = ("approach", "plane_on", *(("draw_back",) if plane_from_pose else ()), "next_plane", "operation_end")
+    groups: list[tuple[str, ...]] = [(SPINDLE_ON,)]
+    groups += [
+        tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in (FIVE_AXIS, WITHOUT_TCP)
+    ]
+    groups += [(f"next_axis_{suffix}",) for suffix in (FIVE_AXIS, WITHOUT_TCP)]
+    groups += [tuple(f"{part}_{plane}" for part in plane_parts) for plane in family.PLANE_COMMANDS]
+    used = [name for group in groups if any(name in table for name in group) for name in group]
+    return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used]
+
+
+def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
+    found = {}
+    for name in names:
+        text = table.text(name)
+        file, line = table.location(name)
+        found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
+    table.report_unread_keys()
+    return found
+
+
+def _check_templates(table: Table, control: Control) -> None:
+    """Report fields and formats that do not exist: a mistake of the definition, not of the run that prints them."""
+    known = COMMON_TEMPLATE_FIELDS | control.family.TEMPLATE_FIELDS | control.settings.keys()
+    call = control.templates.get(SUBPROGRAM_TEMPLATES[0])
+    if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
+        table.add_problem(call.name, "does not say which subprogram it calls", "write {subprogram} in it")
+    for template in control.templates.values():
+        for name, number_format in sorted(template.fields()):
+            if name not in known:
+                table.add_problem(
+                    template.name,
+                    f"prints {{{name}}}, which is neither a template field nor a setting",
+                    f"write one of {', '.join(sorted(known))}, or add it to [control.settings]",
+                )
+            if number_format and number_format not in control.formats:
+                table.add_problem(
+                    template.name,
+                    f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}",
+                    f"write one of {', '.join(sorted(control.formats))}",
+                )

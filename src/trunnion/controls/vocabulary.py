@@ -1,0 +1,80 @@
+"""The names that control definitions use: template fields, templates, words, and the values of some keys.
+
+``docs/controls`` explains each of them.
+"""
+
+from typing import Final
+
+#: Values that the templates of every family may print, besides the settings.
+COMMON_TEMPLATE_FIELDS: Final = frozenset(
+    {
+        "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
+        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine", "gauge_length",
+        "zero_x", "zero_y", "zero_z", "time", "total_time",
+        "home_x", "home_y", "home_z", "primary_home", "secondary_home",
+        "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",
+        "spindle_speed", "new_speed", "spindle_code", "subprogram",
+    }
+)  # fmt: skip
+
+#: Templates that every definition must have.
+REQUIRED_TEMPLATES: Final = (
+    "program_start", "operation_start", "first_tool", "tool_change", "approach_three_axis", "operation_end_three_axis",
+    "program_end",
+)  # fmt: skip
+
+#: Suffixes of the templates for operations with the tool along +Z, with TCP, and without TCP while rotary axes turn.
+#: Those for tilted planes end with the plane command.
+THREE_AXIS: Final = "three_axis"
+FIVE_AXIS: Final = "five_axis"
+WITHOUT_TCP: Final = "without_tcp"
+
+#: The template that starts the spindle, on controls where that takes blocks of its own.
+SPINDLE_ON: Final = "spindle_on"
+
+#: Templates for a program with subprograms: the call, the start of a subprogram, the start of one that continues an
+#: operation, and the end.
+SUBPROGRAM_TEMPLATES: Final = ("subprogram_call", "subprogram_start", "subprogram_part", "subprogram_end")
+
+#: Words of a motion block that every family has.
+AXIS_WORDS: Final = ("X", "Y", "Z", "primary", "secondary")
+
+#: The word that calls the cycle defined before, on controls that call it at each hole; also the name of its code.
+CYCLE_CALL_WORD: Final = "call"
+
+#: Words for the tool axis as a vector from tip to holder, on controls that accept it instead of rotary words; and the
+#: word that replaces ``line`` in such blocks where they need one. X, Y and Z are then written in every block.
+TOOL_VECTOR_WORDS: Final = ("axis_x", "axis_y", "axis_z")
+VECTOR_LINE_WORD: Final = "vector_line"
+
+#: Words for the surface normal at the contact point, in blocks with ``VECTOR_LINE_WORD``.
+SURFACE_NORMAL_WORDS: Final = ("surface_x", "surface_y", "surface_z")
+
+#: Words that switch between orienting by tool vectors and by rotary axes, on controls that need the switch.
+ORIENT_BY_VECTOR_WORD: Final = "by_vector"
+ORIENT_BY_AXES_WORD: Final = "by_axes"
+
+#: Words of circles that are programmed by their radius, in families that can do so.
+RADIUS_ARC_WORDS: Final = ("arc_by_radius", "arc_radius")
+
+#: The setting for holes between which the tool axis changes, and the value that all controls with tilted planes have:
+#: each tool axis gets a plane of its own. With any other value the tool turns from hole to hole under TCP.
+HOLES_SETTING: Final = "holes"
+HOLES_IN_PLANES: Final = "planes"
+
+#: The value of ``feed_without_tcp`` for a control of which it is not known what F means while rotary axes turn without
+#: TCP. Operations without TCP are then refused.
+UNKNOWN_FEED: Final = "unknown"
+
+#: Values of ``feed_without_tcp``: inverse time; the path of all axes together, with a degree as a millimetre; the path
+#: of the linear axes, or degrees where these rest.
+FEEDS_WITHOUT_TCP: Final = ("inverse_time", "all_axes", "slides", UNKNOWN_FEED)
+
+#: Values of ``holes_from``, the height at which a cycle goes to the next hole: that of the last retract; the retract
+#: height of the next hole; or the height at which the tool was when the cycle began. In the last case the tool must be
+#: at the retract height then, and G80 leaves no motion word active.
+HOLE_APPROACH_HEIGHTS: Final = ("above", "retract", "initial")
+
+PHASES: Final = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
+COOLANTS: Final = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
+TOOL_TYPES: Final = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")
