@@ -1,6 +1,5 @@
 """The families of controls: where the writer and the reader of each stand. A new family is one entry here."""
 
-from collections.abc import Callable
 from importlib import import_module
 from typing import Any, Final, NamedTuple
 
@@ -8,31 +7,30 @@ from typing import Any, Final, NamedTuple
 class FamilyEntry(NamedTuple):
     """A family of controls.
 
-    writer       module that writes its programs (``trunnion.controls.family_writer.FamilyWriter``)
-    reader       module that reads them; None: nobody does
-    interpreter  its class that runs a program
+    writer  module that writes its programs (``trunnion.controls.family_writer.FamilyWriter``)
+    reader  module whose ``READER`` reads them (``trunnion.readers.common.family_reader.FamilyReader``), or None
     """
 
     writer: str
     reader: str | None
-    interpreter: str
 
 
-def _family(folder: str, interpreter: str) -> FamilyEntry:
-    return FamilyEntry(
-        f"trunnion.output.families.{folder}.writer", f"trunnion.readers.families.{folder}.interpreter", interpreter
-    )
+def _family(folder: str) -> FamilyEntry:
+    return FamilyEntry(f"trunnion.output.families.{folder}.writer", f"trunnion.readers.families.{folder}.reader")
 
 
 #: By the name that definitions give: ``family`` under ``[control]``.
 FAMILIES: Final[dict[str, FamilyEntry]] = {
-    "sinumerik_840d": _family("sinumerik", "SinumerikInterpreter"),
-    "linuxcnc": _family("linuxcnc", "LinuxcncInterpreter"),
-    "heidenhain_itnc530": _family("heidenhain", "HeidenhainInterpreter"),
-    "heidenhain_tnc640": _family("heidenhain", "HeidenhainInterpreter"),
-    "fidia_nc15": _family("fidia", "FidiaInterpreter"),
-    "fanuc_30i": _family("fanuc", "FanucInterpreter"),
+    "sinumerik_840d": _family("sinumerik"),
+    "linuxcnc": _family("linuxcnc"),
+    "heidenhain_itnc530": _family("heidenhain"),
+    "heidenhain_tnc640": _family("heidenhain"),
+    "fidia_nc15": _family("fidia"),
+    "fanuc_30i": _family("fanuc"),
 }
+
+#: The family of machines whose definition names no control.
+DEFAULT_FAMILY: Final = "sinumerik_840d"
 
 
 def load_writer(family: str) -> Any:
@@ -40,9 +38,8 @@ def load_writer(family: str) -> Any:
     return import_module(FAMILIES[family].writer)
 
 
-def load_interpreter(family: str) -> Callable[..., Any]:
-    """The interpreter of a family's programs, imported when it is asked for."""
-    entry = FAMILIES[family]
-    assert entry.reader is not None, f"no reader of {family}"
-    interpreter: Callable[..., Any] = getattr(import_module(entry.reader), entry.interpreter)
-    return interpreter
+def load_reader(family: str) -> Any:
+    """Return the ``FamilyReader`` of a family that has one; importing its module loads no other family."""
+    module = FAMILIES[family].reader
+    assert module is not None, f"no reader of {family}"
+    return import_module(module).READER

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
-from trunnion.families import load_interpreter
+from trunnion.families import load_reader
 from trunnion.machines import load_machine
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families.heidenhain import writer as heidenhain
@@ -45,7 +45,7 @@ def frame_of(text: str, family: str, folder: Path) -> tuple[Floats, Floats]:
     machine = {"fidia_nc15": HS664RT, "sinumerik_840d": YL569}.get(family, DMU65)
     path = folder / "PLANE.NC"
     path.write_text(text, encoding="utf-8")
-    interpreter = load_interpreter(family)(path, machine)
+    interpreter = load_reader(family).interpreter(path, machine)
     interpreter.run()
     frame = interpreter.control.frame
     return frame.linear.copy(), frame.shift.copy()

@@ -10,16 +10,6 @@ import numpy as np
 _BLOCK_PREFIX = r"\s*/?\d?\s*(?:{letter}\d+)?\s*"
 _NUMBER_PREFIX = r"\s*\d+\s+/?"
 
-#: Comments and texts, which are passed over.
-_IGNORED_TEXT = {
-    "rs274": rb"\([^)\n]*\)|;[^\n]*",
-    "klartext": rb";[^\n]*|^\d+ \*[^\n]*",
-    "sinumerik": rb';[^\n]*|"[^"\n]*"',
-}
-
-#: Language of each family; the others' is rs274.
-COMMENT_SYNTAX = {"sinumerik_840d": "sinumerik", "heidenhain_itnc530": "klartext", "heidenhain_tnc640": "klartext"}
-
 #: Words of more letters than one, G words besides G0 to G3, and M words: what dense motion does not say in every block.
 _SPARSE_WORDS = rb"(?<![A-Z_])(?:[A-Z_]{2}[A-Z_0-9]*|G(?!0?[0-3](?![\d.]))\d+(?:\.\d)?|M\d+)"
 _SLASH, _NEWLINE, _RETURN = b"/\n\r"
@@ -28,15 +18,14 @@ _SLASH, _NEWLINE, _RETURN = b"/\n\r"
 class ProgramText:
     """One file of a program; lines count from 1.
 
-    ``letter`` is that of block numbers, empty for numbers without one; ``language`` a key of ``_IGNORED_TEXT``.
+    letter    of block numbers, empty for numbers without one
+    comments  regular expression of comments and texts, as in ``FamilyReader``
     """
 
-    def __init__(self, file: str, letter: str = "N", language: str = "sinumerik") -> None:
+    def __init__(self, file: str, letter: str, comments: bytes) -> None:
         self._prefix = re.compile(_BLOCK_PREFIX.format(letter=letter) if letter else _NUMBER_PREFIX)
         self._prefix_starts = (letter, "/") if letter else tuple("0123456789")
-        self._word_pattern = re.compile(
-            _IGNORED_TEXT[language] + b"|(" + _SPARSE_WORDS + b")", re.IGNORECASE | re.MULTILINE
-        )
+        self._word_pattern = re.compile(comments + b"|(" + _SPARSE_WORDS + b")", re.IGNORECASE | re.MULTILINE)
         self._data = Path(file).read_bytes()
         try:
             self._data.decode("utf-8")

@@ -21,7 +21,7 @@ from trunnion.controls.template import Template
 from trunnion.conversion.event_builder import EventBuilder
 from trunnion.conversion.moves import build_arcs, build_moves
 from trunnion.conversion.program_events import ProgramEvent, collect_events
-from trunnion.conversion.program_text import COMMENT_SYNTAX, ProgramText
+from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.settings import parse_number, settings_from_headers
 from trunnion.conversion.template_matching import family_value_expressions, line_patterns, match_lines
 from trunnion.conversion.unsupported import (
@@ -36,8 +36,7 @@ from trunnion.conversion.unsupported import (
 from trunnion.errors import Problem
 from trunnion.model.run import ProgrammedWord, Run, offset_name
 from trunnion.model.toolpath import Frame, Kind, LoadTool, Operation, Phase, Tool, Toolpath
-from trunnion.readers import uses_length_numbers
-from trunnion.readers.common.settings import family_of
+from trunnion.readers import reader_of
 from trunnion.verification import restore_rapids
 
 _PHASE_BY_NAME = {
@@ -115,9 +114,9 @@ class _ToolpathBuilder:
     def __init__(self, run: Run, control: Control) -> None:
         self._run = run
         self._control = control
-        self._family = family_of(run.machine)
-        language = COMMENT_SYNTAX.get(self._family, "rs274")
-        self._sources = [ProgramText(file, control.block_numbers.letter, language) for file in run.files]
+        self._reader = reader_of(run.machine)
+        letter, comments = control.block_numbers.letter, self._reader.comments
+        self._sources = [ProgramText(file, letter, comments) for file in run.files]
         self._source = self._sources[0]
         self._warn = Warnings(run.files)
         axes = run.machine.axes
@@ -156,7 +155,7 @@ class _ToolpathBuilder:
         warn_of_register_changes(run, rows, offset, self._warn)
         warn_of_interpolation(run, rows, settings.get("orientation") == "vector", self._warn)
         warn_of_poses(run, zip(rows, (operation.moves for operation in operations), strict=True), self._warn)
-        warn_of_machine_words(self._sources, self._family, self._template_lines, self._warn)
+        warn_of_machine_words(self._sources, self._reader.words_without_path, self._template_lines, self._warn)
         return Conversion(Toolpath(run.files[0], operations, settings.get("part", "")), settings, self._warn.problems)
 
     def _phases(self) -> dict[str, Phase]:
@@ -382,7 +381,7 @@ class _ToolpathBuilder:
         run, values = self._run, section.values
         phase, happened = event_builder.build(events, run, section.rows, section.line)
         lengths = run.edge[section.rows][run.edge[section.rows] > 0]
-        if len(lengths) and uses_length_numbers(run.machine):
+        if len(lengths) and self._reader.uses_length_numbers:
             register = int(lengths[0])
             happened = tuple(
                 replace(one, adjust=register) if isinstance(one, LoadTool) and one.number != register else one

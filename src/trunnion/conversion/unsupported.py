@@ -1,7 +1,7 @@
 """What a program says about the machine and a toolpath has no place for: each becomes a remark."""
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
@@ -11,11 +11,6 @@ from trunnion.errors import Problem, Severity
 from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.planning.poses.selection import choose_poses
-from trunnion.readers.families.fanuc import words as fanuc
-from trunnion.readers.families.fidia import words as fidia
-from trunnion.readers.families.heidenhain import words as heidenhain
-from trunnion.readers.families.linuxcnc import words as linuxcnc
-from trunnion.readers.families.sinumerik import words as sinumerik
 
 #: Remarks of one kind that are made one by one.
 _MAX_WARNINGS = 5
@@ -27,24 +22,6 @@ _ALWAYS_WRITTEN = frozenset(
 _SURFACE_SPEED = frozenset({"G96", "G961", "G962"})
 _TOOL_LENGTHS = frozenset({"G43", "G43.1", "G43.2", "G44"})
 _CANCELS = frozenset({"G15", "G50", "G50.1", "G13.1", "G22", "G23", "G91.1", "G90.1"})
-
-
-def _codes(tenths: Iterable[int]) -> frozenset[str]:
-    return frozenset(f"G{code / 10:g}" for code in tenths)
-
-
-#: Words of each family that drive the machine and have no effect on the path.
-_SILENT_WORDS: Mapping[str, frozenset[str]] = {
-    "sinumerik_840d": frozenset(
-        {*sinumerik.WITHOUT_PATH_EFFECT, *sinumerik.WITHOUT_PATH_EFFECT_VALUES, *sinumerik.WITHOUT_PATH_EFFECT_CALLS}
-        | {f"G{code}" for code in sinumerik.G_WITHOUT_PATH_EFFECT}
-    ),
-    "linuxcnc": _codes(linuxcnc.WITHOUT_PATH_EFFECT) | {f"M{code}" for code in linuxcnc.WITHOUT_PATH_EFFECT_M},
-    "fanuc_30i": _codes(fanuc.WITHOUT_PATH_EFFECT),
-    "fidia_nc15": _codes(fidia.WITHOUT_PATH_EFFECT),
-    "heidenhain_itnc530": frozenset(f"M{code}" for code in heidenhain.M_WITHOUT_PATH_EFFECT),
-    "heidenhain_tnc640": frozenset(f"M{code}" for code in heidenhain.M_WITHOUT_PATH_EFFECT),
-}
 
 #: Rotary axes stand where they stood within this, degrees; programs have at most five decimals.
 _SAME_ANGLE = 1e-4
@@ -71,20 +48,22 @@ class Warnings:
         return tuple(self._found)
 
 
-def warn_of_machine_words(sources: Sequence[ProgramText], family: str, known: Collection[int], warn: Warnings) -> None:
+def warn_of_machine_words(
+    sources: Sequence[ProgramText], machine_words: frozenset[str], known: Collection[int], warn: Warnings
+) -> None:
     """Say which words only drive the machine.
 
     Parameters
     ----------
     sources
         The program, and its subprograms.
-    family
-        Of the control, whose words they are.
+    machine_words
+        Words of the control's family that the path does not depend on.
     known
         Lines of the program that are lines of templates.
     """
     count = 0
-    lost_words = (_SILENT_WORDS[family] | _SURFACE_SPEED) - _ALWAYS_WRITTEN - _TOOL_LENGTHS - _CANCELS
+    lost_words = (machine_words | _SURFACE_SPEED) - _ALWAYS_WRITTEN - _TOOL_LENGTHS - _CANCELS
     written = ((file, *line) for file, source in enumerate(sources) for line in source.sparse_words())
     for file, line, words in written:
         lost = [word for word in words if _ZEROS.sub(r"\1", word) in lost_words]

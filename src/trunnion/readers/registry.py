@@ -1,15 +1,15 @@
 """Which reader reads the programs of a machine."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from trunnion.errors import InputError, Problem
-from trunnion.families import FAMILIES, load_interpreter
+from trunnion.families import FAMILIES, load_reader
 from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.model.run import Run
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, Interpreter
+from trunnion.readers.common.family_reader import FamilyReader
+from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT
 from trunnion.readers.common.settings import family_of
 
 
@@ -55,20 +55,19 @@ def run_program(
         If a file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
         control. What is only not understood is in ``Run.findings``.
     """
-    reader = reader_of(machine, family)
-    named = tuple(subprograms)
-    return reader(Path(path), machine, subprograms=named, step_limit=step_limit, skip=skip, shortest=shortest).run(
-        write_progress
+    interpreter = reader_of(machine, family).interpreter(
+        Path(path), machine, subprograms=tuple(subprograms), step_limit=step_limit, skip=skip, shortest=shortest
     )
+    return interpreter.run(write_progress)
 
 
-def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Interpreter[Any]]:
-    """Return the interpreter of a family, by default that of the machine's control.
+def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
+    """Return the reader of a family, by default that of the machine's control.
 
     Raises
     ------
     InputError
-        If nobody can read its programs yet.
+        If there is no reader for its programs yet.
     """
     name = family_of(machine) if family is None else family
     if not _has_reader(name):
@@ -76,12 +75,13 @@ def reader_of(machine: Machine, family: str | None = None) -> Callable[..., Inte
         raise InputError(
             Problem(machine.key, 0, what, f"name a machine with one of {', '.join(filter(_has_reader, FAMILIES))}")
         )
-    return load_interpreter(name)
+    reader: FamilyReader = load_reader(name)
+    return reader
 
 
 def uses_length_numbers(machine: Machine) -> bool:
-    """Whether a machine's programs call the length of the tool by a number (H), which is then the column ``edge``."""
-    return family_of(machine) in ("fanuc_30i", "linuxcnc")
+    """Whether a machine's programs select the tool length by a number (H), which is then the column ``Run.edge``."""
+    return can_read(machine) and reader_of(machine).uses_length_numbers
 
 
 def can_read(machine: Machine) -> bool:

@@ -1,19 +1,17 @@
-"""What a control's definition says to readers; all else in it is for whoever writes programs."""
+"""The settings that readers take from a control's definition; the rest of it concerns writing."""
 
 from functools import lru_cache
 from importlib.resources import files
 
 from trunnion.definitions import Table, resolve_extends
+from trunnion.families import DEFAULT_FAMILY
 from trunnion.machines import Machine
-
-#: The family of machines whose definition names no control.
-USUAL = "sinumerik_840d"
 
 
 @lru_cache(maxsize=8)
 def family_of(machine: Machine) -> str:
     """Return the family of a machine's control."""
-    return _control(machine).text("family", USUAL)
+    return _control(machine).text("family", DEFAULT_FAMILY)
 
 
 def reading_of(machine: Machine) -> Table:

@@ -1,0 +1,9 @@
+"""The reader of Fanuc 30i and 31i programs."""
+
+from typing import Final
+
+from trunnion.readers.common.family_reader import FamilyReader, g_words
+from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
+from trunnion.readers.families.fanuc.words import WITHOUT_PATH_EFFECT
+
+READER: Final = FamilyReader(FanucInterpreter, g_words(WITHOUT_PATH_EFFECT), uses_length_numbers=True)
