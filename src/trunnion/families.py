@@ -8,7 +8,7 @@ class FamilyEntry(NamedTuple):
     """A family of controls.
 
     writer  module that writes its programs (``trunnion.controls.family_writer.FamilyWriter``)
-    reader  module whose ``READER`` reads them (``trunnion.readers.common.family_reader.FamilyReader``), or None
+    reader  module whose ``READER`` reads them (``trunnion.readers.program.family_reader.FamilyReader``), or None
     """
 
     writer: str

@@ -37,7 +37,7 @@ from trunnion.model.toolpath import (
     Toolpath,
 )
 from trunnion.readers import run_program
-from trunnion.readers.common.settings import family_of
+from trunnion.readers.program.settings import family_of
 from trunnion.verification import Tolerances, compare, failures, restore_rapids, verify
 
 

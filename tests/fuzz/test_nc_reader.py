@@ -14,9 +14,9 @@ from tests.fuzz.mangle import mangle
 from trunnion.errors import InputError
 from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide
-from trunnion.readers.common import interpreter
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 from trunnion.readers.families.sinumerik.text import SinumerikText
+from trunnion.readers.program import interpreter
 
 
 @pytest.fixture(scope="module")

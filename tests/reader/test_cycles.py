@@ -5,7 +5,7 @@ import pytest
 from tests.reader.conftest import Runner, close
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common.hole_motion import CycleExecutionError
+from trunnion.readers.control.hole_motion import CycleExecutionError
 from trunnion.readers.families.sinumerik.cycles import peck_depths
 
 

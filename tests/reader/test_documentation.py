@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.readers.common import interpreter, source_text
 from trunnion.readers.families.sinumerik import cycles, expressions, flow, words
 from trunnion.readers.families.sinumerik.text import MAX_NESTING
+from trunnion.readers.program import interpreter, source_text
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reader.md").read_text(encoding="utf-8")
 

@@ -8,9 +8,9 @@ from trunnion.families import FAMILIES, load_reader
 from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.model.run import Run
-from trunnion.readers.common.family_reader import FamilyReader
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT
-from trunnion.readers.common.settings import family_of
+from trunnion.readers.program.family_reader import FamilyReader
+from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT
+from trunnion.readers.program.settings import family_of
 
 
 def run_program(

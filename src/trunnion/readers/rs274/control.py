@@ -8,9 +8,9 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.readers.common import arcs
-from trunnion.readers.common.row_recorder import LARGEST_POSITION
-from trunnion.readers.common.virtual_control import LINEAR, Circle, VirtualControl
+from trunnion.readers.control import arcs
+from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 
 #: Kinds of motion besides rapid and lines: G2 and G3.
 CLOCKWISE: Final = 2

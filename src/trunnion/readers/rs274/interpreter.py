@@ -11,16 +11,16 @@ import numpy as np
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.model.run import ProgrammedWord
-from trunnion.readers.common import interpreter
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.interpreter import Interpreter, ProgramEnd
-from trunnion.readers.common.scan import scan_blocks
-from trunnion.readers.common.scan_buffers import FEEDS, ROW
-from trunnion.readers.common.source_text import SourceText
-from trunnion.readers.common.virtual_control import LINEAR, RAPID
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.virtual_control import LINEAR, RAPID
+from trunnion.readers.program import interpreter
+from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
+from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, g_code_text, split_line
 from trunnion.readers.rs274.control import CLOCKWISE, COUNTER, Rs274Control
 from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.scan.buffers import FEEDS, ROW
+from trunnion.readers.scan.letter_blocks import scan_blocks
 
 #: G codes, in tenths, and what they set.
 MOTIONS: Final = {0: RAPID, 10: LINEAR, 20: CLOCKWISE, 30: COUNTER}

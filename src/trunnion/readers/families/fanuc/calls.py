@@ -7,13 +7,13 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common.interpreter import ProgramEnd
-from trunnion.readers.common.source_text import Subprograms
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.flow import ActiveProgram, Flow, ModalMacro
 from trunnion.readers.families.fanuc.settings import settings_of
 from trunnion.readers.families.fanuc.text import SUFFIXES, FanucText
 from trunnion.readers.families.fanuc.variables import Variables
+from trunnion.readers.program.interpreter import ProgramEnd
+from trunnion.readers.program.source_text import Subprograms
 from trunnion.readers.rs274.block import Block, Number
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import Rs274Interpreter

@@ -6,7 +6,7 @@ Heights are positions along the axis on the working plane, in the units of the p
 from dataclasses import dataclass
 from typing import Final
 
-from trunnion.readers.common.hole_motion import MAX_PECKS, CycleExecutionError, HoleMotion
+from trunnion.readers.control.hole_motion import MAX_PECKS, CycleExecutionError, HoleMotion
 
 #: Canned cycles, by their G code in tenths.
 CYCLES: Final = frozenset({730, 740, 760, 810, 820, 830, 840, 850, 860, 870, 880, 890})

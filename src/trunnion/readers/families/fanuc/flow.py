@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.errors import Severity
-from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.rs274 import interpreter

@@ -10,18 +10,18 @@ from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine, Mount
 from trunnion.model.run import Orientation
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, ProgramEnd
-from trunnion.readers.common.row_recorder import LARGEST_POSITION
-from trunnion.readers.common.source_text import SourceText
-from trunnion.readers.common.virtual_control import RAPID
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
+from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import cycles, words
 from trunnion.readers.families.fanuc.control import FanucControl
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
 from trunnion.readers.families.fanuc.offsets_and_frames import OffsetInterpreter
 from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import ARITHMETIC
+from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT, ProgramEnd
+from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS

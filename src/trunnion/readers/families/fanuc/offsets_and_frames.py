@@ -6,9 +6,9 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.readers.common.axis_word import AxisWord
-from trunnion.readers.common.row_recorder import LARGEST_POSITION
-from trunnion.readers.common.virtual_control import RAPID
+from trunnion.readers.control.axis_word import AxisWord
+from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.calls import CallInterpreter
 from trunnion.readers.families.fanuc.control import FanucControl

@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from trunnion.readers.common.family_reader import FamilyReader, g_words
 from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
 from trunnion.readers.families.fanuc.words import WITHOUT_PATH_EFFECT
+from trunnion.readers.program.family_reader import FamilyReader, g_words
 
 READER: Final = FamilyReader(FanucInterpreter, g_words(WITHOUT_PATH_EFFECT), uses_length_numbers=True)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.machines import Machine
-from trunnion.readers.common.settings import reading_of
+from trunnion.readers.program.settings import reading_of
 from trunnion.readers.rs274.block import Block, Number
 
 #: Letters whose whole numbers are counted in least increments: lengths, and angles.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.readers.common.source_text import SourceText
+from trunnion.readers.program.source_text import SourceText
 
 #: How names of programs end.
 SUFFIXES: Final = (".NC", ".CNC", ".TAP", ".PRG", ".TXT", "")

@@ -9,14 +9,14 @@ from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common import tool_orientation
-from trunnion.readers.common.affine_map import AffineMap
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.row_recorder import Note
-from trunnion.readers.common.scan import letter_table
-from trunnion.readers.common.settings import reading_of
-from trunnion.readers.common.virtual_control import RAPID
+from trunnion.readers.control import tool_orientation
+from trunnion.readers.control.affine_map import AffineMap
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.virtual_control import RAPID
+from trunnion.readers.program.settings import reading_of
 from trunnion.readers.rs274.control import Rs274Control
+from trunnion.readers.scan.letter_blocks import letter_table
 
 
 def feed_path_of(machine: Machine) -> FeedPath:

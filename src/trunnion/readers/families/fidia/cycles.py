@@ -6,7 +6,7 @@ positions along Z, in the units of the program.
 
 from typing import Final
 
-from trunnion.readers.common.hole_motion import MAX_PECKS, CycleExecutionError, HoleMotion
+from trunnion.readers.control.hole_motion import MAX_PECKS, CycleExecutionError, HoleMotion
 
 #: Canned cycles, by their G code in tenths.
 CYCLES: Final = frozenset({810, 820, 830, 840, 850, 860, 890})

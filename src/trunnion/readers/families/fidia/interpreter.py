@@ -8,13 +8,13 @@ from typing import Final
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common.axis_word import AxisWord
-from trunnion.readers.common.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT
-from trunnion.readers.common.source_text import SourceText, Subprograms
-from trunnion.readers.common.virtual_control import RAPID
+from trunnion.readers.control.axis_word import AxisWord
+from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
+from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fidia import cycles, words
 from trunnion.readers.families.fidia.control import FidiaControl
+from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT
+from trunnion.readers.program.source_text import SourceText, Subprograms
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Value
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, ActiveProgram, Rs274Interpreter

@@ -16,13 +16,13 @@ from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common import tool_orientation
-from trunnion.readers.common.affine_map import AffineMap
-from trunnion.readers.common.axis_word import AxisWord
-from trunnion.readers.common.row_recorder import LARGEST_POSITION, Note
-from trunnion.readers.common.virtual_control import RAPID, Circle, VirtualControl
+from trunnion.readers.control import tool_orientation
+from trunnion.readers.control.affine_map import AffineMap
+from trunnion.readers.control.axis_word import AxisWord
+from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.control.virtual_control import RAPID, Circle, VirtualControl
 from trunnion.readers.families.heidenhain.plane_frames import Datum, spatial
-from trunnion.readers.families.heidenhain.scan import letter_table
+from trunnion.readers.families.heidenhain.scan_kernel import letter_table
 
 #: How far the values of a rotary solution may lie from each other and count as the same, degrees.
 _SAME: Final = 1e-6

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from trunnion.errors import Severity
-from trunnion.readers.common.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.common.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
+from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
 from trunnion.readers.families.heidenhain.control import HeidenhainControl, Positioning
 from trunnion.readers.families.heidenhain.cycles import (
     CYCLES,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Final
 
-from trunnion.readers.common.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion, finite
+from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion, finite
 
 #: How far the tool moves off the wall of a bored hole, mm; the control has it fixed.
 DISENGAGE: Final = 0.2

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from trunnion.errors import Severity
-from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.heidenhain.parameters import (
     FUNCTIONS,
     KlartextError,

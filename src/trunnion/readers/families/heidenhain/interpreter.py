@@ -8,13 +8,10 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common import interpreter
-from trunnion.readers.common.axis_word import PositionMode
-from trunnion.readers.common.hole_motion import CycleExecutionError
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, Interpreter, ProgramEnd
-from trunnion.readers.common.source_text import SourceText, Subprograms
-from trunnion.readers.common.virtual_control import INCH, LINEAR, RAPID
-from trunnion.readers.families.heidenhain import scan
+from trunnion.readers.control.axis_word import PositionMode
+from trunnion.readers.control.hole_motion import CycleExecutionError
+from trunnion.readers.control.virtual_control import INCH, LINEAR, RAPID
+from trunnion.readers.families.heidenhain import scan_kernel
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycle_definitions import Definitions
 from trunnion.readers.families.heidenhain.fn_functions import ASSIGNED, assign, execute
@@ -25,6 +22,9 @@ from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, p
 from trunnion.readers.families.heidenhain.plane_blocks import plane_block, tcpm_block
 from trunnion.readers.families.heidenhain.text import SUFFIXES, KlartextText
 from trunnion.readers.families.heidenhain.words import BLOCKS_NOT_SIMULATED, M_CALL, M_MACHINE, M_SECOND_MACHINE, PATHS
+from trunnion.readers.program import interpreter
+from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT, Interpreter, ProgramEnd
+from trunnion.readers.program.source_text import SourceText, Subprograms
 
 #: Subprograms by label inside each other.
 MAX_LABEL_DEPTH: Final = 20
@@ -115,7 +115,7 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
 
     def _kernel(self, text: SourceText) -> None:
         control = self._control
-        scan.scan_blocks(
+        scan_kernel.scan_blocks(
             text.buffer,
             len(text.buffer),
             control.table,

@@ -5,8 +5,7 @@ import re
 from typing import Final
 
 from trunnion.errors import Severity
-from trunnion.readers.common.interpreter import ProgramEnd
-from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.lexer import words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
@@ -32,6 +31,7 @@ from trunnion.readers.families.heidenhain.words import (
     M_TCP_OFF,
     M_WITHOUT_PATH_EFFECT,
 )
+from trunnion.readers.program.interpreter import ProgramEnd
 
 #: M words that are looked at in other places, or change only how the control drives.
 _ELSEWHERE: Final = frozenset({M_MACHINE, M_SECOND_MACHINE, M_CALL, *M_EVENTS, *M_WITHOUT_PATH_EFFECT})

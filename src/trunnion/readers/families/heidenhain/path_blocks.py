@@ -9,10 +9,10 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.readers.common import arcs
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.row_recorder import LARGEST_POSITION
-from trunnion.readers.common.virtual_control import Circle
+from trunnion.readers.control import arcs
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.virtual_control import Circle
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.lexer import Operand, Word
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical

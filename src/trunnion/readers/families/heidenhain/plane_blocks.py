@@ -7,8 +7,8 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.model.run import Orientation
-from trunnion.readers.common.affine_map import rotation_matrix
-from trunnion.readers.common.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.control.affine_map import rotation_matrix
+from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
 from trunnion.readers.families.heidenhain.control import HeidenhainControl, Positioning
 from trunnion.readers.families.heidenhain.cycle_definitions import remember
 from trunnion.readers.families.heidenhain.lexer import Word

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.readers.common.affine_map import AffineMap, rotation_matrix
+from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.heidenhain.parameters import KlartextError
 
 #: Vectors shorter than this, or so nearly parallel, make no plane.

@@ -2,9 +2,9 @@
 
 from typing import Final
 
-from trunnion.readers.common.family_reader import FamilyReader
 from trunnion.readers.families.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.readers.families.heidenhain.words import M_WITHOUT_PATH_EFFECT
+from trunnion.readers.program.family_reader import FamilyReader
 
 READER: Final = FamilyReader(
     HeidenhainInterpreter,

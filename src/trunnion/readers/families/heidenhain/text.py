@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.readers.common.source_text import SourceText, decode
+from trunnion.readers.program.source_text import SourceText, decode
 
 #: How names of programs end.
 SUFFIXES: Final = (".H", "")

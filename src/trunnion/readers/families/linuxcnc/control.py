@@ -9,12 +9,12 @@ from trunnion.arrays import Codes, Floats
 from trunnion.machines import Axis, Machine, forward
 from trunnion.model import axis_positions
 from trunnion.model.columns import StepColumnBuilder
-from trunnion.readers.common import arcs
-from trunnion.readers.common.affine_map import AffineMap, rotation_matrix
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.row_recorder import Note
-from trunnion.readers.common.scan import letter_table
+from trunnion.readers.control import arcs
+from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.rs274.control import Rs274Control
+from trunnion.readers.scan.letter_blocks import letter_table
 
 #: Axes in the order of LinuxCNC's own tables.
 ORDER: Final = "XYZABC"

@@ -8,11 +8,11 @@ import numpy as np
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common.axis_word import AxisWord
-from trunnion.readers.common.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT
+from trunnion.readers.control.axis_word import AxisWord
+from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.families.linuxcnc import cycles
 from trunnion.readers.families.linuxcnc.offsets_and_frames import OffsetInterpreter
+from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common.source_text import Subprograms
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC, LOCAL, Parameters
 from trunnion.readers.families.linuxcnc.text import SUFFIXES, LinuxcncText
+from trunnion.readers.program.source_text import Subprograms
 from trunnion.readers.rs274 import interpreter
 from trunnion.readers.rs274.block import block_reader, split_line
 from trunnion.readers.rs274.expressions import BlockError, ExpressionReader

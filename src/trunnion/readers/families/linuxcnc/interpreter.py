@@ -7,8 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
-from trunnion.readers.common.axis_word import PositionMode
-from trunnion.readers.common.source_text import SourceText
+from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.families.linuxcnc import cycles
 from trunnion.readers.families.linuxcnc.control import ORDER
 from trunnion.readers.families.linuxcnc.cycle_blocks import CycleInterpreter
@@ -32,6 +31,7 @@ from trunnion.readers.families.linuxcnc.words import (
     WITHOUT_PATH_EFFECT_M,
     WORDS_OF_CODE,
 )
+from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS

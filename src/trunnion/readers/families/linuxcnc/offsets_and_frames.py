@@ -8,13 +8,13 @@ import numpy as np
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.common.affine_map import rotation_matrix
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT
-from trunnion.readers.common.row_recorder import LARGEST_POSITION
-from trunnion.readers.common.virtual_control import RAPID
+from trunnion.readers.control.affine_map import rotation_matrix
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.linuxcnc.control import ORDER, LinuxcncControl, Offset
 from trunnion.readers.families.linuxcnc.flow import OWordInterpreter
+from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
 

@@ -2,9 +2,9 @@
 
 from typing import Final
 
-from trunnion.readers.common.family_reader import FamilyReader, g_words
 from trunnion.readers.families.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.readers.families.linuxcnc.words import WITHOUT_PATH_EFFECT, WITHOUT_PATH_EFFECT_M
+from trunnion.readers.program.family_reader import FamilyReader, g_words
 
 READER: Final = FamilyReader(
     LinuxcncInterpreter,

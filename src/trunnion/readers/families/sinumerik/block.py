@@ -8,8 +8,8 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, ExpressionReader, Value, whole
 from trunnion.readers.families.sinumerik.tokens import Sort, Token
 from trunnion.readers.families.sinumerik.variables import Variables

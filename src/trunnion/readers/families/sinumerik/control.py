@@ -16,14 +16,14 @@ from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common import arcs, tool_orientation
-from trunnion.readers.common.affine_map import AffineMap
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.hole_motion import HoleMotion
-from trunnion.readers.common.row_recorder import LARGEST_POSITION, Note
-from trunnion.readers.common.scan import letter_table
-from trunnion.readers.common.settings import reading_of
-from trunnion.readers.common.virtual_control import LINEAR, Circle, VirtualControl
+from trunnion.readers.control import arcs, tool_orientation
+from trunnion.readers.control.affine_map import AffineMap
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.hole_motion import HoleMotion
+from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
+from trunnion.readers.program.settings import reading_of
+from trunnion.readers.scan.letter_blocks import letter_table
 
 #: Kinds of motion besides rapid and lines: G2, G3 and CIP.
 CLOCKWISE: Final = 2

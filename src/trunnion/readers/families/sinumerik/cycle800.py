@@ -3,7 +3,7 @@
 import numpy as np
 
 from trunnion.errors import Severity
-from trunnion.readers.common.affine_map import AffineMap, rotation_matrix
+from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from trunnion.readers.common.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion
+from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion
 
 #: How far a chip-breaking peck backs off where the program does not say it, mm.
 CHIP_BREAK: Final = 1.0

@@ -8,15 +8,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from trunnion.errors import Severity
-from trunnion.readers.common import interpreter
-from trunnion.readers.common.interpreter import ProgramEnd
-from trunnion.readers.common.row_recorder import Note
+from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
 from trunnion.readers.families.sinumerik.text import SinumerikText
 from trunnion.readers.families.sinumerik.tokens import Sort, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import TYPES
+from trunnion.readers.program import interpreter
+from trunnion.readers.program.interpreter import ProgramEnd
 
 
 @dataclass(slots=True)

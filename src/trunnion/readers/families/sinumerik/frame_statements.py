@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from trunnion.readers.common.affine_map import AffineMap, rotation_matrix
+from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 
 
 def frame_of_statement(word: str, values: Mapping[str, float], plane: int) -> AffineMap:

@@ -8,12 +8,9 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.run import Orientation
-from trunnion.readers.common.hole_motion import CycleExecutionError, finite
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, Interpreter, ProgramEnd
-from trunnion.readers.common.row_recorder import LARGEST_POSITION
-from trunnion.readers.common.scan import scan_blocks
-from trunnion.readers.common.source_text import SourceText, Subprograms
-from trunnion.readers.common.virtual_control import LINEAR, RAPID
+from trunnion.readers.control.hole_motion import CycleExecutionError, finite
+from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.sinumerik import cycles
 from trunnion.readers.families.sinumerik.block import Block, BlockReader, Call, read_call
 from trunnion.readers.families.sinumerik.control import CLOCKWISE, COUNTER, THROUGH, SinumerikControl
@@ -47,6 +44,9 @@ from trunnion.readers.families.sinumerik.words import (
     TOOL_FRAMES,
     WITHOUT_PATH_EFFECT,
 )
+from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT, Interpreter, ProgramEnd
+from trunnion.readers.program.source_text import SourceText, Subprograms
+from trunnion.readers.scan.letter_blocks import scan_blocks
 
 #: Names with arguments that the interpreter knows; all others are subprograms.
 _BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SETAL"})

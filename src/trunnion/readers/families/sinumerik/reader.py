@@ -2,7 +2,6 @@
 
 from typing import Final
 
-from trunnion.readers.common.family_reader import FamilyReader
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 from trunnion.readers.families.sinumerik.words import (
     G_WITHOUT_PATH_EFFECT,
@@ -10,6 +9,7 @@ from trunnion.readers.families.sinumerik.words import (
     WITHOUT_PATH_EFFECT_CALLS,
     WITHOUT_PATH_EFFECT_VALUES,
 )
+from trunnion.readers.program.family_reader import FamilyReader
 
 READER: Final = FamilyReader(
     SinumerikInterpreter,

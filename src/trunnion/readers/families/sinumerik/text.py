@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.readers.common.source_text import SourceText
+from trunnion.readers.program.source_text import SourceText
 
 # Blanks are matched in one place each: two runs of them side by side would take quadratic time on a line of blanks.
 _START = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[0-9]+[ \t]*)?"

@@ -18,7 +18,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Codes, Floats, Ints
 from trunnion.jit import ONE, njit, signed, unsigned
-from trunnion.readers.common.scan_buffers import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, ScanRecords, ScanTarget
+from trunnion.readers.scan.buffers import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, ScanRecords, ScanTarget
 
 NUMBER: Final = 1
 PREPARATORY: Final = 2

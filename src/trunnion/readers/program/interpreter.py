@@ -15,9 +15,9 @@ from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.run import Comment, Diagnostic, Run
-from trunnion.readers.common.scan_buffers import COMMENTS, LINE, POSITION
-from trunnion.readers.common.source_text import SourceText, Subprograms, decode
-from trunnion.readers.common.virtual_control import VirtualControl
+from trunnion.readers.control.virtual_control import VirtualControl
+from trunnion.readers.program.source_text import SourceText, Subprograms, decode
+from trunnion.readers.scan.buffers import COMMENTS, LINE, POSITION
 
 #: Blocks a program may execute besides going once through its files.
 DEFAULT_STEP_LIMIT: Final = 2_000_000

@@ -24,12 +24,12 @@ from trunnion.model import axis_positions
 from trunnion.model.columns import StepColumnBuilder, affine_matrix
 from trunnion.model.run import Orientation, ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.readers.common import arcs
-from trunnion.readers.common.affine_map import AffineMap
-from trunnion.readers.common.axis_word import AxisWord, PositionMode
-from trunnion.readers.common.hole_motion import HoleMotion
-from trunnion.readers.common.row_recorder import LARGEST_POSITION, Note, RowRecorder, within_limits
-from trunnion.readers.common.scan_buffers import KIND
+from trunnion.readers.control import arcs
+from trunnion.readers.control.affine_map import AffineMap
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.hole_motion import HoleMotion
+from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note, RowRecorder, within_limits
+from trunnion.readers.scan.buffers import KIND
 
 #: Kinds of motion in force.
 RAPID: Final = 0

@@ -8,7 +8,7 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine, inverse
 from trunnion.machines.inverse import POLE_TOLERANCE
 from trunnion.model.axis_positions import TRAVEL_TOLERANCE, nearest_turn
-from trunnion.readers.common.affine_map import rotation_about
+from trunnion.readers.control.affine_map import rotation_about
 
 
 def tool_frame(machine: Machine, rotary: tuple[float, float]) -> Floats:

@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Codes, Floats, Ints
 from trunnion.jit import njit
-from trunnion.readers.common.scan_buffers import COMMENTS, FEEDS, LINE, NORMALS, POSITION, ROW, ScanRecords, ScanTarget
+from trunnion.readers.scan.buffers import COMMENTS, FEEDS, LINE, NORMALS, POSITION, ROW, ScanRecords, ScanTarget
 
 FEED: Final = 1
 COMPENSATION: Final = 2
@@ -87,7 +87,7 @@ def scan_blocks(
     vectors   bool             TX TY TZ are allowed
     frame     (3, 4) float64   from programmed position to ``target.xyz``
     turn      (3, 3) float64   from programmed vector to ``target.vector``
-    counts    (6,) int64       see ``trunnion.readers.common.scan_buffers``, updated
+    counts    (6,) int64       see ``trunnion.readers.scan.buffers``, updated
     place     (5,) float64     programmed X Y Z, mm, feed, and feed of the row before, updated
     """
     row = counters[ROW]

@@ -1,7 +1,7 @@
 """The rows that motion blocks become, the state that goes with them, and where the axes stand after them.
 
 This half of the virtual control keeps books: it takes ends of motions and turns them into columns, by hand or from a
-scan kernel. What a programmed position means is for the other half, ``trunnion.readers.common.virtual_control``.
+scan kernel. What a programmed position means is for the other half, ``trunnion.readers.control.virtual_control``.
 """
 
 import math
@@ -28,7 +28,7 @@ from trunnion.model.run import (
     SurfaceNormals,
 )
 from trunnion.model.toolpath import Arcs, Kind
-from trunnion.readers.common.scan_buffers import (
+from trunnion.readers.scan.buffers import (
     COMMENTS,
     COUNTER_COUNT,
     FEEDS,

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from trunnion.machines import Machine
-from trunnion.readers.common.interpreter import DEFAULT_STEP_LIMIT, Interpreter
+from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT, Interpreter
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
 RS274_COMMENTS = rb"\([^)\n]*\)|;[^\n]*"

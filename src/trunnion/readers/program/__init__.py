@@ -1,0 +1,1 @@
+"""Programs as text: files, subprograms, and what the interpreters of all families share."""

@@ -1,0 +1,1 @@
+"""Scan kernels: plain motion blocks straight from bytes to columns."""
