@@ -19,17 +19,13 @@ def main() -> None:
     with ThreadPoolExecutor(1) as executor:
         coming = read_toolpaths([source], None, False, executor)
         # As the command does, all else is imported while the file is read.
-        from trunnion.cli.post import plan_program
-        from trunnion.controls import load_control
+        from trunnion.api.job import prepare
+        from trunnion.api.planning import plan_program
         from trunnion.files import atomic_file
         from trunnion.machines import load_machine
         from trunnion.output.program_writer import write_program
-        from trunnion.planning import PlanOptions
 
-        machine = load_machine(name)
-        control = load_control(machine.control)
-        options = PlanOptions()
-        program, _ = plan_program([next(coming)], machine, control, {}, False, options)
+        program = plan_program([next(coming)], prepare(load_machine(name)))[0]
         with atomic_file(target) as sink:
             write_program(program, sink)
     os._exit(0)  # as the command ends

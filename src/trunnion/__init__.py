@@ -1,9 +1,149 @@
-"""Trunnion: cutter-location files to proven NC programs for five-axis machine tools."""
+"""Trunnion: cutter-location files to proven NC programs for five-axis machine tools.
 
+    >>> import trunnion
+    >>> result = trunnion.post("tests/golden/yl569/3_blade_finish.cls", machine="yl569", settings={"title": "BLADE"})
+    >>> result.passed
+    True
+    >>> result.run.tip.shape
+    (154, 3)
+
+Functions
+
+    read_cl        CL file -> Toolpath
+    load_machine   definition -> Machine
+    plan           CL files -> Plan: motions on the machine
+    post           CL files -> NC program with its proof
+    read_program   NC program -> Run: what the control does with it
+    verify         NC program against its CL files -> Verification
+    convert        NC program -> CL file, or program for another machine
+    diff           two NC programs -> Comparison
+    write_report   Verification -> page or data
+
+They print nothing and raise ``TrunnionError``. Names are imported when they are first used.
+"""
+
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
 from trunnion.compiled import keep_kernels
 
+if TYPE_CHECKING:
+    from trunnion.api.comparing import diff as diff
+    from trunnion.api.converting import ConvertResult as ConvertResult
+    from trunnion.api.converting import convert as convert
+    from trunnion.api.observer import Observer as Observer
+    from trunnion.api.planning import plan as plan
+    from trunnion.api.posting import PostResult as PostResult
+    from trunnion.api.posting import post as post
+    from trunnion.api.proving import ProofFailedError as ProofFailedError
+    from trunnion.api.reading import load_machine as load_machine
+    from trunnion.api.reading import read_cl as read_cl
+    from trunnion.api.reading import read_program as read_program
+    from trunnion.api.reports import write_report as write_report
+    from trunnion.api.verifying import verify as verify
+    from trunnion.errors import InputError as InputError
+    from trunnion.errors import Problem as Problem
+    from trunnion.errors import RefusedError as RefusedError
+    from trunnion.errors import Severity as Severity
+    from trunnion.errors import TrunnionError as TrunnionError
+    from trunnion.machines.machine import Axis as Axis
+    from trunnion.machines.machine import Machine as Machine
+    from trunnion.model.motion import Decision as Decision
+    from trunnion.model.motion import Motion as Motion
+    from trunnion.model.motion import Plan as Plan
+    from trunnion.model.run import Run as Run
+    from trunnion.model.toolpath import Operation as Operation
+    from trunnion.model.toolpath import Toolpath as Toolpath
+    from trunnion.verification.comparison import Comparison as Comparison
+    from trunnion.verification.results import Check as Check
+    from trunnion.verification.results import Place as Place
+    from trunnion.verification.results import Verification as Verification
+
 __version__ = "0.1.0"
+
+#: Public name -> its module.
+_MODULES: Final = {
+    "Axis": "machines.machine",
+    "Check": "verification.results",
+    "Comparison": "verification.comparison",
+    "ConvertResult": "api.converting",
+    "Decision": "model.motion",
+    "InputError": "errors",
+    "Machine": "machines.machine",
+    "Motion": "model.motion",
+    "Observer": "api.observer",
+    "Operation": "model.toolpath",
+    "Place": "verification.results",
+    "Plan": "model.motion",
+    "PostResult": "api.posting",
+    "Problem": "errors",
+    "ProofFailedError": "api.proving",
+    "RefusedError": "errors",
+    "Run": "model.run",
+    "Severity": "errors",
+    "Toolpath": "model.toolpath",
+    "TrunnionError": "errors",
+    "Verification": "verification.results",
+    "convert": "api.converting",
+    "diff": "api.comparing",
+    "load_machine": "api.reading",
+    "plan": "api.planning",
+    "post": "api.posting",
+    "read_cl": "api.reading",
+    "read_program": "api.reading",
+    "verify": "api.verifying",
+    "write_report": "api.reports",
+}
+
+__all__ = [
+    "Axis",
+    "Check",
+    "Comparison",
+    "ConvertResult",
+    "Decision",
+    "InputError",
+    "Machine",
+    "Motion",
+    "Observer",
+    "Operation",
+    "Place",
+    "Plan",
+    "PostResult",
+    "Problem",
+    "ProofFailedError",
+    "RefusedError",
+    "Run",
+    "Severity",
+    "Toolpath",
+    "TrunnionError",
+    "Verification",
+    "__version__",
+    "convert",
+    "diff",
+    "load_machine",
+    "plan",
+    "post",
+    "read_cl",
+    "read_program",
+    "verify",
+    "write_report",
+]
+
+
+if not TYPE_CHECKING:  # type checkers would take any name for known
+
+    def __getattr__(name: str) -> Any:
+        """Import a public name when it is first used, so that ``import trunnion`` is quick."""
+        if name not in _MODULES:
+            raise AttributeError(f"module 'trunnion' has no attribute {name!r}")
+        value = getattr(import_module(f"trunnion.{_MODULES[name]}"), name)
+        globals()[name] = value
+        return value
+
+
+def __dir__() -> list[str]:
+    return __all__
+
 
 keep_kernels(Path(__file__).parent)

@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import sys
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -112,11 +111,10 @@ class OutputFiles:
 
 
 @contextmanager
-def atomic_output(target: str) -> Iterator[OutputFiles]:
-    """A file, and others beside it, that reach ``target`` (a path, or ``-`` for stdout) when the block ends without an
-    error.
+def atomic_output(target: str | BinaryIO) -> Iterator[OutputFiles]:
+    """A file, and others beside it, that reach ``target`` (a path or a stream) when the block ends without an error.
 
-    Others go into the folder of the first; stdout takes none.
+    Others go into the folder of the first; a stream takes none.
 
     Raises
     ------
@@ -124,16 +122,15 @@ def atomic_output(target: str) -> Iterator[OutputFiles]:
         When they cannot be written; for the first file this is found out before anything is computed. Files that were
         there before are then as they were.
     """
-    if target == "-":
+    if not isinstance(target, str):
         with tempfile.TemporaryDirectory(prefix="trunnion-") as folder:
-            files = OutputFiles(Path(folder), "stdout")
+            files = OutputFiles(Path(folder), "stream")
             try:
                 yield files
-                assert not files.other_paths, "stdout is one file"
+                assert not files.other_paths, "a stream is one file"
                 files.main.seek(0)
-                sys.stdout.flush()
-                shutil.copyfileobj(files.main, sys.stdout.buffer)
-                sys.stdout.buffer.flush()
+                shutil.copyfileobj(files.main, target)
+                target.flush()
             finally:
                 files.close()
         return

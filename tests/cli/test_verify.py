@@ -176,7 +176,7 @@ def spoil(monkeypatch: pytest.MonkeyPatch, change: Callable[[bytes], bytes]) -> 
         assert changed != whole.getvalue()
         sink.write(changed)
 
-    monkeypatch.setattr("trunnion.cli.post.write_program", wrong)
+    monkeypatch.setattr("trunnion.api.writing.write_program", wrong)
 
 
 def without_a_block(text: bytes) -> bytes:

@@ -8,16 +8,19 @@ import pytest
 from hypothesis import strategies as st
 
 from tests.control.test_program import FOOT, HEAD
+from tests.jobs import post_job
 from tests.paths import GOLDEN
 from tests.plan.naive import operation_of
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.verify.proven import unproven
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.cli import main
-from trunnion.cli.post import plan_program, write_for_proof
-from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import Control, load_control
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.model.toolpath import Arcs, LoadTool, Moves, SpindleOn, Toolpath
+from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.verification import Verification, failures, verify
 
@@ -86,11 +89,12 @@ def proven(toolpath: Toolpath, machine: Machine, control: Control, folder: Path,
         When there is no program, as over-travel and tool axes out of reach leave none.
     """
     options = parse_plan_options(given, control)
-    program, _ = plan_program([toolpath], machine, control, given, False, options)
+    program = plan_program([toolpath], post_job(machine, control, options, given))[0]
     target = folder / "part.h"
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink, options)
-    found = verify(run_program(target, machine), [toolpath], tolerances=claim.allowed, settings=claim.settings)
+        write_program(program, sink)
+        expected = expectation(program, options)
+    found = verify(run_program(target, machine), [toolpath], tolerances=expected.tolerances, settings=expected.settings)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
     assert not found.run.diagnostics, [finding.text for finding in found.run.diagnostics]
     return found

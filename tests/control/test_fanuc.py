@@ -1,6 +1,5 @@
 """Fanuc programs: the whole text of a few, and random operations of all manners written, read back and proven."""
 
-import io
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -14,12 +13,14 @@ from tests.control.test_fidia import CYCLES, END, HEIGHTS, START, circles, holes
 from tests.control.test_planes import ANGLES, SHARES, reachable
 from tests.control.test_planes import turned as about
 from tests.control.test_program import HEAD
+from tests.jobs import post_job
 from tests.machines import at_zero
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.plan.test_read_back import toolpath_of
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.cl import read_cl
-from trunnion.cli.post import plan_program, write_for_proof
-from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.controls.words import BlockNumbers
 from trunnion.conversion import convert
@@ -29,6 +30,7 @@ from trunnion.model.run import offset_name
 from trunnion.model.toolpath import LoadTool, Moves, Toolpath
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families.fanuc.writer import comment, escape_comment, validate_settings
+from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.verification import Verification, failures, verify
 
@@ -64,11 +66,12 @@ def posted(toolpath: Toolpath, folder: Path, model: Machine, **asked: str) -> tu
     """The proof of the program of a toolpath, and its text."""
     options = parse_plan_options(asked, CONTROL)
     printed = {key: value for key, value in asked.items() if key in CONTROL.settings}
-    program, _ = plan_program([toolpath], model, CONTROL, printed, False, options)
+    program = plan_program([toolpath], post_job(model, CONTROL, options, printed))[0]
     target = folder / "part.nc"
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink, options)
-    found = verify(run_program(target, model), [toolpath], tolerances=claim.allowed, settings=claim.settings)
+        write_program(program, sink)
+        expected = expectation(program, options)
+    found = verify(run_program(target, model), [toolpath], tolerances=expected.tolerances, settings=expected.settings)
     return found, target.read_text(encoding="ascii")
 
 
@@ -322,10 +325,10 @@ def test_a_control_that_taps_rigidly_by_itself_needs_no_m29(folder: Path) -> Non
     control = load_control(FANUC)
     bare = replace(control, settings={**control.settings, "rigid_tap": ""})
     path = read(UPRIGHT + f"CYCLE/TAP,{HEIGHTS}MMPR,1\nGOTO/10,5,2\nCYCLE/OFF\n" + END, folder)
-    program, _ = plan_program([path], load_machine("matsuura_mx330"), bare, {}, False, parse_plan_options({}, bare))
+    program = plan_program([path], post_job(load_machine("matsuura_mx330"), bare, parse_plan_options({}, bare), {}))[0]
     target = folder / "tap.nc"
     with target.open("wb") as sink:
-        write_for_proof(program, sink)
+        write_program(program, sink)
     assert "M29" not in target.read_text(encoding="ascii")
 
 
@@ -361,12 +364,12 @@ def test_the_work_offset_that_is_asked_for_is_the_one_that_is_proven(said: str, 
     assert set(found.run.work_offset[~found.run.machine_frame].tolist()) <= {0, code}
     check = next(check for check in found.checks if check.key == "offset")
     assert (check.passed, check.summary) == (True, f"{offset_name(code)} throughout")
-    program, _ = plan_program([path], model, CONTROL, {"work_offset": said}, False, parse_plan_options({}, CONTROL))
-    asked = write_for_proof(program, io.BytesIO()).settings
+    program = plan_program([path], post_job(model, CONTROL, parse_plan_options({}, CONTROL), {"work_offset": said}))[0]
+    expected = expectation(program).settings
     for other in ("G54", "G54.1 P4"):
         target = folder / "other.nc"
         target.write_text(text.replace(f" {said}\n", f" {other}\n"), encoding="ascii")
-        broken = [check.key for check in failures(verify(run_program(target, model), [path], settings=asked))]
+        broken = [check.key for check in failures(verify(run_program(target, model), [path], settings=expected))]
         assert "offset" in broken
     again = convert(found.run, CONTROL)
     assert again.settings.get("work_offset") == offset_name(code)
@@ -424,11 +427,12 @@ def test_block_numbers_are_every_n_th_or_none(folder: Path) -> None:
     model, path = load_machine("matsuura_mx330"), read(LEANING + END, folder)
     for numbers in (BlockNumbers("N", 5, 5, 9995, True, "%O("), BlockNumbers("N", 10, 10, 99990, False, "%O(")):
         control = replace(CONTROL, block_numbers=numbers)
-        program, _ = plan_program([path], model, control, {}, False, parse_plan_options({}, control))
+        program = plan_program([path], post_job(model, control, parse_plan_options({}, control), {}))[0]
         target = folder / "numbers.nc"
         with target.open("wb") as sink:
-            claim = write_for_proof(program, sink)
-        found = verify(run_program(target, model), [path], tolerances=claim.allowed, settings=claim.settings)
+            write_program(program, sink)
+            expected = expectation(program)
+        found = verify(run_program(target, model), [path], tolerances=expected.tolerances, settings=expected.settings)
         assert not failures(found)
         words = re.findall(r"(?m)^N(\d+) ", target.read_text(encoding="ascii"))
         assert [int(word) for word in words] == [5 * (k + 1) for k in range(17)] * numbers.numbered

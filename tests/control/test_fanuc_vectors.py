@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 from tests.control.test_fanuc import CONTROL, LEANING, MACHINES, SLOW, body, machine, proven, read
 from tests.control.test_fidia import END
 from tests.control.test_program import HEAD
+from tests.jobs import post_job
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
 from tests.plan.test_read_back import toolpath_of
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
 from trunnion.arrays import Floats
-from trunnion.cli.post import plan_program
-from trunnion.cli.settings import parse_plan_options
 from trunnion.errors import InputError, RefusedError, Severity
 from trunnion.machines import Machine, Mount, inverse, load_machine
 from trunnion.model.motion import MachiningMode
@@ -41,7 +42,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def planned(toolpath: Toolpath, model: Machine) -> Program:
-    return plan_program([toolpath], model, CONTROL, VECTORS, False, parse_plan_options(VECTORS, CONTROL))[0]
+    return plan_program([toolpath], post_job(model, CONTROL, parse_plan_options(VECTORS, CONTROL), VECTORS))[0]
 
 
 def test_a_whole_operation_by_vectors(folder: Path) -> None:

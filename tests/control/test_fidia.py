@@ -11,20 +11,23 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from tests.control.test_program import FOOT, HEAD
+from tests.jobs import post_job
 from tests.paths import FIDIA, FIDIA_HEAD
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.plan.test_read_back import toolpath_of
 from tests.verify.proven import unproven
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
-from trunnion.cli.post import plan_program, write_for_proof
-from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError
 from trunnion.machines import Machine, load_machine
 from trunnion.model.toolpath import Moves, Toolpath
 from trunnion.output.capabilities import control_capabilities
+from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.verification import Settings, Verification, failures, verify
 
@@ -71,11 +74,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def posted(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked: str) -> tuple[Verification, str]:
     """The proof of the program of a toolpath, and its text."""
-    program, _ = plan_program([toolpath], machine, CONTROL, {}, False, parse_plan_options(asked, CONTROL))
+    program = plan_program([toolpath], post_job(machine, CONTROL, parse_plan_options(asked, CONTROL), {}))[0]
     target = folder / "part.txt"
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink)
-    found = verify(run_program(target, machine), [toolpath], tolerances=claim.allowed, settings=claim.settings)
+        write_program(program, sink)
+        expected = expectation(program)
+    found = verify(run_program(target, machine), [toolpath], tolerances=expected.tolerances, settings=expected.settings)
     return found, target.read_text(encoding="utf-8")
 
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from tests.matrix.expected import WITHOUT_TCP
 from tests.matrix.paths import CYCLES, off_the_pole, operation, reachable, square, words
 from tests.matrix.test_matrix import FEW, Pair, check_proven, check_refused, pair_of, posted
+from trunnion.api.settings import apply_setup
 from trunnion.cl import read_cl
-from trunnion.cli.settings import apply_setup
 from trunnion.controls import load_control
 from trunnion.machines import Machine, load_machine
 from trunnion.model.feed_path import FeedPath

@@ -9,14 +9,17 @@ from hypothesis import strategies as st
 from tests.control.test_holes import CLEAR, HEIGHTS
 from tests.control.test_linuxcnc import FOOT, Post
 from tests.control.test_linuxcnc import post as post
+from tests.jobs import post_job
 from tests.linuxcnc.interpreter import canonical, needs_linuxcnc
 from tests.reader.test_linuxcnc_judge import agree
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.cl import read_cl
-from trunnion.cli.post import plan_program, write_for_proof
-from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError
 from trunnion.machines import load_machine
+from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.verification import failures, verify
 
@@ -152,12 +155,13 @@ def test_holes_of_all_cycles_are_proven_and_linuxcnc_makes_them_as_our_reader_do
     cl.write_text(text, encoding="utf-8")
     path = read_cl(cl)
     try:
-        program, _ = plan_program([path], MACHINE, CONTROL, {}, force=False, options=parse_plan_options({}, CONTROL))
+        program = plan_program([path], post_job(MACHINE, CONTROL, parse_plan_options({}, CONTROL), {}))[0]
     except (InputError, RefusedError):
         return  # a retract height by AUTO below the hole, or a cut that ends too low
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink)
-    found = verify(run_program(target, MACHINE), [path], tolerances=claim.allowed, settings=claim.settings)
+        write_program(program, sink)
+        expected = expectation(program)
+    found = verify(run_program(target, MACHINE), [path], tolerances=expected.tolerances, settings=expected.settings)
     assert not failures(found), [(check.key, check.summary, check.places[:2]) for check in failures(found)]
     # The judge's own tools have no length, and its stand-alone interpreter knows no remapped words.
     target.write_text(target.read_text(encoding="utf-8").replace("M429", ""), encoding="utf-8")

@@ -9,13 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.jobs import post_job
 from tests.plan.naive import moves_of, operation_of
-from trunnion.cli.post import plan_program, write_for_proof
-from trunnion.cli.settings import parse_plan_options
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.controls import load_control
 from trunnion.machines import Machine, forward, load_machine
 from trunnion.model.toolpath import Frame, LoadTool, SpindleOn, Toolpath
 from trunnion.output.coordinates.plane_from_pose import with_plane_inside_limits
+from trunnion.output.program_writer import write_program
 from trunnion.planning import plan
 from trunnion.readers import run_program
 from trunnion.verification import failures, verify
@@ -64,12 +67,13 @@ def test_a_plane_at_a_limit_is_proven(name: str, high: bool, first: float, twist
     control = load_control(model.control)
     said = {"plane": words} if words in control.family.PLANE_COMMANDS else {}
     path = at_limit(model, high, first, twist)
-    program, _ = plan_program([path], model, control, said, False, parse_plan_options(said, control))
+    program = plan_program([path], post_job(model, control, parse_plan_options(said, control), said))[0]
     with TemporaryDirectory() as folder:
         file = Path(folder) / "part.nc"
         with file.open("wb") as sink:
-            claim = write_for_proof(program, sink)
-        found = verify(run_program(file, model), [path], tolerances=claim.allowed, settings=claim.settings)
+            write_program(program, sink)
+            expected = expectation(program)
+        found = verify(run_program(file, model), [path], tolerances=expected.tolerances, settings=expected.settings)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
 
 

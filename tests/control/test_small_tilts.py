@@ -8,15 +8,18 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
+from tests.jobs import post_job
 from tests.plan.naive import moves_of, operation_of
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.arrays import Floats
-from trunnion.cli.post import plan_program, write_for_proof
-from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import LoadTool, SpindleOn, Toolpath
+from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
 
@@ -49,11 +52,12 @@ def proof(
     machine, control = MACHINES[name], CONTROLS[name]
     given = {"plane": plane} if plane else {}
     options, target = parse_plan_options(given, control), folder / "tilt.nc"
-    program, _ = plan_program([toolpath_of(axis)], machine, control, given, False, options)
+    program = plan_program([toolpath_of(axis)], post_job(machine, control, options, given))[0]
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink, options)
+        write_program(program, sink)
+        expected = expectation(program, options)
     wanted = toolpath_of(axis if beside is None else beside)
-    found = verify(run_program(target, machine), [wanted], tolerances=claim.allowed, settings=claim.settings)
+    found = verify(run_program(target, machine), [wanted], tolerances=expected.tolerances, settings=expected.settings)
     return program.motions[0].mode, found
 
 

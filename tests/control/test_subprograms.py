@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from tests.convert.toolpaths import SAYABLE, operations
 from tests.paths import YL569
+from trunnion.api.job import parse_plan_options
 from trunnion.arrays import Floats
 from trunnion.cli import main
-from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.controls.definition import SubprogramNaming
 from trunnion.errors import InputError, Severity

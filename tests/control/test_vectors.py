@@ -10,16 +10,19 @@ from hypothesis import assume, given
 from hypothesis import settings as sized
 from hypothesis import strategies as st
 
+from tests.jobs import post_job
 from tests.paths import YL569
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
 from tests.plan.test_read_back import CONTROL, MACHINES, toolpath_of
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.arrays import Floats
 from trunnion.cli import main
-from trunnion.cli.post import plan_program, write_for_proof
 from trunnion.errors import InputError, RefusedError
 from trunnion.machines import AngleOutput, Machine
 from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Moves, Toolpath
+from trunnion.output.program_writer import write_program
 from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
 from trunnion.verification import failures, verify
@@ -38,12 +41,13 @@ PATHS = st.one_of(
 
 def posted(machine: Machine, toolpath: Toolpath, folder: Path, orientation: str) -> Run:
     """The program as it runs, proven."""
-    program, _ = plan_program([toolpath], machine, CONTROL, {"orientation": orientation}, False, PlanOptions())
+    program = plan_program([toolpath], post_job(machine, CONTROL, PlanOptions(), {"orientation": orientation}))[0]
     target = folder / f"{orientation}.mpf"
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink)
+        write_program(program, sink)
+        expected = expectation(program)
     run = run_program(target, machine)
-    found = verify(run, [toolpath], tolerances=claim.allowed, settings=claim.settings)
+    found = verify(run, [toolpath], tolerances=expected.tolerances, settings=expected.settings)
     assert [(check.key, check.summary) for check in failures(found)] == []
     return run
 

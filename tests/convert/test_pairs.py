@@ -9,9 +9,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.jobs import post_job
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import Expectation, expectation
 from trunnion.arrays import Floats
-from trunnion.cli.post import WrittenProgram, plan_program, write_for_proof
-from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import Control, load_control
 from trunnion.conversion import convert, transfer_settings
 from trunnion.errors import InputError
@@ -36,6 +38,7 @@ from trunnion.model.toolpath import (
     Tool,
     Toolpath,
 )
+from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.readers.program.settings import family_of
 from trunnion.verification import Tolerances, compare, failures, restore_rapids, verify
@@ -127,16 +130,17 @@ def posted(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> R
     return made(path, site, given, target)[0]
 
 
-def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tuple[Run, WrittenProgram]:
+def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tuple[Run, Expectation]:
     """The same, and what the program says of itself."""
     options = parse_plan_options({}, site.control)
-    program, _ = plan_program([path], site.machine, site.control, given, force=False, options=options)
+    program = plan_program([path], post_job(site.machine, site.control, options, given))[0]
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink)
+        write_program(program, sink)
+        expected = expectation(program)
     run = run_program(target, site.machine)
-    found = verify(run, [path], tolerances=claim.allowed, settings=claim.settings)
+    found = verify(run, [path], tolerances=expected.tolerances, settings=expected.settings)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
-    return run, claim
+    return run, expected
 
 
 def converted(run: Run, one: Site, two: Site, target: Path) -> Run:
@@ -246,7 +250,7 @@ def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_fil
     folder = tmp_path_factory.getbasetemp()
     one = SITES[source]
     try:
-        run, claim = made(path, one, {}, folder / f"level{one.control.extension}")
+        run, expected = made(path, one, {}, folder / f"level{one.control.extension}")
     except InputError:
         assume(False)  # no room, or no words
     curved = any(operation.moves.axis[0, 2] < 1.0 and len(operation.arcs.row) for operation in path.operations)
@@ -257,7 +261,7 @@ def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_fil
         assert [str(remark) for remark in found.warnings] == []
         carried = transfer_settings(found.settings, one.control, two.control)
         there, other = made(found.toolpath, two, carried, folder / f"two{two.control.extension}")
-        both = [added(*pair) for pair in zip(claim.allowed, other.allowed, strict=True)]
+        both = [added(*pair) for pair in zip(expected.tolerances, other.tolerances, strict=True)]
         milled = [(k, each) for k, each in enumerate(path.operations) if not drills(each)]
         if len(milled) == len(path.operations):
             checks = failures(verify(there, [path], tolerances=both, settings=other.settings))

@@ -18,10 +18,10 @@ from hypothesis import strategies as st
 
 from tests.matrix.expected import FAMILIES, PAGE, REFUSED, SOMETIMES, WITHOUT_TCP, page
 from tests.matrix.paths import CYCLES, cycles, holes, off_the_pole
+from trunnion.api.settings import apply_setup
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
-from trunnion.cli.settings import apply_setup
 from trunnion.controls import Control, control_library, load_control
 from trunnion.families import FAMILIES as CONTROL_FAMILIES
 from trunnion.families import load_writer

@@ -8,14 +8,17 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.jobs import post_job
 from tests.machines import at_zero
 from tests.plan.naive import operation_of
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
-from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError, Severity
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.model.toolpath import LoadTool, Moves, SpindleOn, Toolpath
+from trunnion.output.program_writer import write_program
 from trunnion.planning import PlanOptions, plan
 from trunnion.readers import run_program
 from trunnion.verification import Verification, failures, verify
@@ -46,11 +49,12 @@ def proven(machine: Machine, toolpath: Toolpath, folder: Path) -> Verification:
     RefusedError, InputError
         When there is no program, as over-travel and tool axes out of reach leave none.
     """
-    program, _ = plan_program([toolpath], machine, CONTROL, {}, False, PlanOptions())
+    program = plan_program([toolpath], post_job(machine, CONTROL, PlanOptions(), {}))[0]
     target = folder / "part.mpf"
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink)
-    return verify(run_program(target, machine), [toolpath], tolerances=claim.allowed, settings=claim.settings)
+        write_program(program, sink)
+        expected = expectation(program)
+    return verify(run_program(target, machine), [toolpath], tolerances=expected.tolerances, settings=expected.settings)
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from tests.machines import at_zero
 from tests.plan.naive import moves_of, operation_of
+from trunnion.api.proving import expectation
 from trunnion.arrays import Codes, Floats
-from trunnion.cli.post import write_for_proof
 from trunnion.controls import load_control
 from trunnion.errors import Severity
 from trunnion.machines import Machine, forward, load_machine, shipped_machines
@@ -23,6 +23,7 @@ from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide
 from trunnion.model.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Toolpath
 from trunnion.output.program import Program
+from trunnion.output.program_writer import write_program
 from trunnion.output.validation import check_program
 from trunnion.planning import PlanOptions, plan
 from trunnion.planning.linearization.arc_chords import great_circle_points
@@ -67,10 +68,11 @@ def post(model: Machine, path: Toolpath, options: PlanOptions) -> Posted:
     with TemporaryDirectory() as folder:
         file = Path(folder) / "part.mpf"
         with file.open("wb") as sink:
-            claim = write_for_proof(program, sink, options)
+            write_program(program, sink)
+            expected = expectation(program, options)
         run = run_program(file, model)
-        found = verify(run, [path], tolerances=claim.allowed, settings=claim.settings)
-        return Posted(planned, file.read_text(encoding="utf-8"), run, found, claim.allowed, claim.settings)
+        found = verify(run, [path], tolerances=expected.tolerances, settings=expected.settings)
+        return Posted(planned, file.read_text(encoding="utf-8"), run, found, expected.tolerances, expected.settings)
 
 
 def rows_of_points(run: Run, tip: Floats, axis: Floats) -> list[int]:

@@ -6,15 +6,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.jobs import post_job
 from tests.plan.test_pole import around_pole
 from tests.verify.conftest import CL_FOOT, CL_HEAD, check
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import Expectation, expectation
 from trunnion.cl import read_cl
-from trunnion.cli.post import WrittenProgram, plan_program, write_for_proof
 from trunnion.controls import load_control
 from trunnion.machines import Machine, load_machine
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Toolpath
+from trunnion.output.program_writer import write_program
 from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
@@ -28,7 +31,7 @@ class Posted:
 
     machine: Machine
     path: Toolpath
-    claim: WrittenProgram
+    expected: Expectation
     text: list[str]
     folder: Path
 
@@ -36,14 +39,14 @@ class Posted:
         """The program, or another text in its place, against the CL file and what was agreed upon."""
         file = self.folder / "again.mpf"
         file.write_text("\n".join(self.text if text is None else text) + "\n", encoding="utf-8")
-        allowed = [replace(self.claim.allowed[0], deviations=deviations or self.deviations)]
+        allowed = [replace(self.expected.tolerances[0], deviations=deviations or self.deviations)]
         run = run_program(file, self.machine)
-        return verify(run, [self.path], tolerances=allowed, settings=self.claim.settings)
+        return verify(run, [self.path], tolerances=allowed, settings=self.expected.settings)
 
     @property
     def deviations(self) -> Deviations:
-        assert self.claim.allowed[0].deviations is not None
-        return self.claim.allowed[0].deviations
+        assert self.expected.tolerances[0].deviations is not None
+        return self.expected.tolerances[0].deviations
 
     def block(self, row: int) -> int:
         """Index of the line that goes to a CL row; row 0 is the rapid."""
@@ -60,11 +63,12 @@ def posted(folder: Path, options: PlanOptions) -> Posted:
     head = CL_HEAD.replace("GOTO/0.0,0.0,50.0,0.0,0.0,1.0\n", start).replace("500.0", "3000.0")
     source.write_text(head + "".join(points) + CL_FOOT, encoding="utf-8")
     path = read_cl(source)
-    program, _ = plan_program([path], machine, load_control(machine.control), {}, False, options)
+    program = plan_program([path], post_job(machine, load_control(machine.control), options, {}))[0]
     target = folder / "pole.mpf"
     with target.open("wb") as sink:
-        claim = write_for_proof(program, sink)
-    return Posted(machine, path, claim, target.read_text(encoding="utf-8").splitlines(), folder)
+        write_program(program, sink)
+        expected = expectation(program)
+    return Posted(machine, path, expected, target.read_text(encoding="utf-8").splitlines(), folder)
 
 
 @pytest.fixture

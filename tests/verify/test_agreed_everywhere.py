@@ -8,14 +8,17 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.jobs import post_job
 from tests.plan.naive import moves_of, operation_of
 from tests.plan.test_pole import MACHINES, around_pole, passes
-from trunnion.cli.post import plan_program, write_for_proof
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.controls import load_control
 from trunnion.errors import RefusedError
 from trunnion.machines import Machine
 from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Tool, Toolpath
+from trunnion.output.program_writer import write_program
 from trunnion.planning import PlanOptions
 from trunnion.planning.linearization.arc_chords import arcs_a_control_takes, lines_for_arcs
 from trunnion.planning.pole.deviations import source_rows
@@ -32,15 +35,16 @@ def proven(machine: Machine, operation: Operation, options: PlanOptions) -> Veri
     )
     path = Toolpath("part.cls", (operation,))
     try:
-        program, _ = plan_program([path], machine, load_control(machine.control), {}, False, options)
+        program = plan_program([path], post_job(machine, load_control(machine.control), options, {}))[0]
     except RefusedError:
         return None
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "part.mpf"
         with target.open("wb") as sink:
-            claim = write_for_proof(program, sink)
+            write_program(program, sink)
+            expected = expectation(program)
         run = run_program(target, machine)
-        return verify(run, [path], tolerances=claim.allowed, settings=claim.settings)
+        return verify(run, [path], tolerances=expected.tolerances, settings=expected.settings)
 
 
 def failed(found: Verification) -> list[str]:

@@ -10,14 +10,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.control.test_program import FOOT, HEAD
+from tests.jobs import post_job
 from tests.plan.naive import moves_of, operation_of
 from tests.plan.test_without_tcp import machine, post, toolpath
+from trunnion.api.job import parse_plan_options
+from trunnion.api.planning import plan_program
+from trunnion.api.proving import expectation
 from trunnion.cl import read_cl
-from trunnion.cli.post import plan_program, write_for_proof
-from trunnion.cli.settings import parse_plan_options
 from trunnion.controls import load_control
 from trunnion.machines import load_machine
 from trunnion.model.toolpath import Kind
+from trunnion.output.program_writer import write_program
 from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
 from trunnion.verification import Check, failures, verify
@@ -36,10 +39,11 @@ def failed(text: str, name: str, folder: Path) -> list[Check]:
     cl.write_text(text, encoding="utf-8")
     model = load_machine(name)
     control = load_control(model.control)
-    program, _ = plan_program([read_cl(cl)], model, control, {}, False, parse_plan_options({}, control))
+    program = plan_program([read_cl(cl)], post_job(model, control, parse_plan_options({}, control), {}))[0]
     with nc.open("wb") as sink:
-        claim = write_for_proof(program, sink)
-    found = verify(run_program(nc, model), [read_cl(cl)], tolerances=claim.allowed, settings=claim.settings)
+        write_program(program, sink)
+        expected = expectation(program)
+    found = verify(run_program(nc, model), [read_cl(cl)], tolerances=expected.tolerances, settings=expected.settings)
     return failures(found)
 
 

@@ -1,0 +1,70 @@
+"""Comparison of two NC programs by what they make the tool do."""
+
+from collections.abc import Sequence
+
+from trunnion import readers
+from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
+from trunnion.api.settings import check_tolerance
+from trunnion.api.verifying import rapid_feed_of
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.verification import Comparison, compare, restore_rapids
+
+
+def diff(
+    first: FilePath | Run,
+    second: FilePath | Run,
+    *,
+    machine: MachineLike,
+    to_machine: MachineLike | None = None,
+    subprograms: Sequence[FilePath] = (),
+    to_subprograms: Sequence[FilePath] = (),
+    tolerance: float = 0.001,
+    path: bool = False,
+) -> Comparison:
+    """Compare what two NC programs make the tool do, whatever their words.
+
+    Parameters
+    ----------
+    first, second
+        Programs: paths, or their runs (``trunnion.read_program``).
+    machine
+        The machine that runs the first program.
+    to_machine
+        The machine that runs the second one, if it is another.
+    subprograms, to_subprograms
+        Files of the subprograms that each program calls. No others are opened.
+    tolerance
+        How far tips may be apart, mm, and tool axes, degrees.
+    path
+        Compare where the tool goes, and whether at rapid, but not feed, spindle, tool and coolant.
+
+    Returns
+    -------
+    Comparison
+        ``same``; the first and the worst difference, with the blocks of both programs.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or no reader knows a control.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> program = "tests/golden/yl569/2_hub_rough.expected.mpf"
+    >>> trunnion.diff(program, program, machine="yl569").same
+    True
+    """
+    check_tolerance("--tolerance", tolerance)
+    one = as_machine(machine)
+    two = one if to_machine is None else as_machine(to_machine)
+    for each in (one, two):
+        readers.reader_of(each)
+    return compare(_run(first, one, subprograms), _run(second, two, to_subprograms), tolerance, path=path)
+
+
+def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath]) -> Run:
+    """The run of a program, with lines at the feed of rapids as rapids."""
+    run = program if isinstance(program, Run) else read_program(program, machine=machine, subprograms=subprograms)
+    return restore_rapids(run, rapid_feed_of(machine))

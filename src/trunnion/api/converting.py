@@ -1,0 +1,207 @@
+"""Conversion: an NC program back to a toolpath, and out again as a CL file or for another machine."""
+
+import io
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from trunnion import conversion
+from trunnion.api.job import PostJob, prepare
+from trunnion.api.observer import SILENT, Observer
+from trunnion.api.posting import PostResult, post_toolpaths
+from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
+from trunnion.api.settings import Settings, set_up_machine
+from trunnion.api.targets import OutputLike, open_target, written_text
+from trunnion.cl.write import write_cl
+from trunnion.controls import Control, load_control
+from trunnion.conversion import Conversion
+from trunnion.conversion.program_events import COMPENSATION_FINDINGS
+from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+
+#: Places that are not understood which an error names one by one.
+_MOST_NAMED = 20
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ConvertResult:
+    """A program that was converted.
+
+    toolpath  what it makes the tool do
+    settings  what it states and a toolpath has no place for, as ``trunnion.post`` takes it
+    problems  warnings: what is not carried over; errors: what was not understood and ``force`` overruled
+    posted    the program for the other machine with its proof; None: the result is a CL file
+    output    file of the result; None: it was not written to a file
+    """
+
+    toolpath: Toolpath
+    settings: Mapping[str, str]
+    problems: tuple[Problem, ...]
+    posted: PostResult | None
+    output: Path | None
+    _memory: io.BytesIO | None
+
+    def __repr__(self) -> str:
+        """Return what matters in a notebook."""
+        result = f"{len(self.toolpath.operations)} operations" if self.posted is None else repr(self.posted)
+        return f"ConvertResult({result})"
+
+    @property
+    def text(self) -> str | None:
+        """The CL file or the program; None where it went to a stream."""
+        return written_text(self.output, self._memory)
+
+
+def convert(
+    nc: FilePath,
+    *,
+    machine: MachineLike,
+    to_machine: MachineLike | None = None,
+    to_cl: bool = False,
+    output: OutputLike = None,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    settings: Settings | None = None,
+    force: bool = False,
+    observer: Observer = SILENT,
+) -> ConvertResult:
+    """Convert an NC program to a CL file, or post it for another machine and prove it.
+
+    Parameters
+    ----------
+    nc
+        The program.
+    machine
+        The machine that it is for: a name, a path or a ``Machine``.
+    to_machine, to_cl
+        One of both: the machine for which it is posted, or True for a CL file.
+    output
+        File of the result, or a binary stream; None: the result has the text. Never the program itself.
+    subprograms
+        Files of the subprograms that it calls. No others are opened.
+    zero : (3,) float, mm
+        Workpiece zero on the program's own machine.
+    tool_length
+        Length of the tool there, gauge point to tip, mm.
+    settings
+        In place of what the program states; for the other machine as ``trunnion.post`` takes them.
+    force
+        Convert what was understood, and write a program that must not run; its head says so.
+    observer
+        Hears of the progress, of warnings and of the proof.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or there is no motion at the part.
+    RefusedError
+        When the program has words that are not understood, or when the new one must not run; nothing is written.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> program = "tests/golden/yl569/2_hub_rough.expected.mpf"
+    >>> converted = trunnion.convert(program, machine="yl569", to_machine="generic_head_head_ca")
+    >>> converted.posted.passed
+    True
+    """
+    if (to_machine is None) is not to_cl:
+        raise InputError(Problem("convert", 0, "has no result or two", "give either to_machine or to_cl=True"))
+    source = as_machine(machine)
+    control = load_control(source.control)
+    job = prepare(source if to_machine is None else as_machine(to_machine), settings, force=force)
+    _check_settings(job, to_cl)
+    source = set_up_machine(source, zero, tool_length)
+    with open_target(_checked_output(output, nc)) as target:
+        divided = job.subprograms(target.files, target.path) is not None
+        reader = _Reader(str(nc), observer, force)
+        converted = reader.read(read_program(nc, machine=source, subprograms=subprograms), control)
+        if subprograms and not (divided or to_cl):
+            reader.warn_of_one_program(1 + len(subprograms))
+        carried = reader.carry(converted.settings, control, job)
+        if to_cl:
+            comments = [f"--set {key}={value}" for key, value in carried.items()]
+            reader.report(write_cl(converted.toolpath, target.files.main, comments=comments))
+            posted = None
+        else:
+            posting = replace(job, settings={**job.settings, **carried})
+            posted = post_toolpaths(
+                [converted.toolpath],
+                posting,
+                target,
+                observer,
+            )
+    result_problems = (*reader.problems, *(posted.problems if posted else ()))
+    return ConvertResult(converted.toolpath, carried, result_problems, posted, target.path, target.memory)
+
+
+def _check_settings(job: PostJob, to_cl: bool) -> None:
+    """Raise ``InputError`` for settings that have no meaning in a conversion."""
+    if "units" in job.settings:
+        raise InputError(Problem("--set", 0, "units has no meaning here", "an NC program says its units itself"))
+    if "zero" in job.settings and to_cl:
+        raise InputError(Problem("--set", 0, "zero has no meaning in a CL file", "give it to trunnion post"))
+
+
+def _checked_output(output: OutputLike, nc: FilePath) -> OutputLike:
+    """The place of the result, unless it is the program itself."""
+    if isinstance(output, (str, os.PathLike)):
+        place, source = Path(output), Path(nc)
+        if place.exists() and source.exists() and place.samefile(source):
+            raise InputError(Problem(str(output), 0, "is the program itself", "name another --output"))
+    return output
+
+
+class _Reader:
+    """Makes a toolpath of a program, and gathers what is lost on the way."""
+
+    def __init__(self, file: str, observer: Observer, force: bool) -> None:
+        self.problems: list[Problem] = []
+        self._file, self._observer, self._force = file, observer, force
+
+    def report(self, problems: Sequence[Problem]) -> None:
+        """Keep problems, and tell them."""
+        self.problems += problems
+        self._observer.problems(problems)
+
+    def read(self, run: Run, control: Control) -> Conversion:
+        """The toolpath of a run; a program that was not understood is refused."""
+        found = [Problem(one.file, one.line, one.text, "", one.severity) for one in run.diagnostics]
+        errors = [problem for problem in found if problem.severity is Severity.ERROR]
+        if errors and not self._force:
+            what = f"{len(errors)} places are not understood, and nothing is written"
+            cure = "--force converts what was understood"
+            raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
+        self.report([problem for problem in found if not problem.what.startswith(COMPENSATION_FINDINGS)])
+        converted = conversion.convert(run, control)
+        if not converted.toolpath.operations:
+            what = "there is no motion at the part in it"
+            raise InputError(Problem(self._file, 0, what, "give a program that cuts"))
+        self.report(converted.warnings)
+        return converted
+
+    def warn_of_one_program(self, files: int) -> None:
+        """Tell that a program with subprograms becomes one without."""
+        cure = "--set programs=operations writes several"
+        self.report([Problem(self._file, 0, f"{files} files become one program", cure, Severity.WARNING)])
+
+    def carry(self, stated: Mapping[str, str], control: Control, job: PostJob) -> dict[str, str]:
+        """The settings that the program states and that mean the same on the other control, under those of the job.
+
+        What is not carried over is told.
+        """
+        target = job.control
+        carried = conversion.transfer_settings(stated, control, target)
+        for key in sorted(stated.keys() - carried.keys()):
+            what = f"{key} is {stated[key]!r}, which is not carried over"
+            cure = (
+                f"{target.name} has no such setting" if key not in target.settings else f"say it as {target.name} does"
+            )
+            self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
+        carried |= job.printed
+        if "tool" in job.printed and "tool_call" not in job.printed:
+            carried.pop("tool_call", None)
+        return carried

@@ -1,0 +1,170 @@
+"""A post before its first CL file is read: machine, control and options, made of its settings."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.api.settings import RUN_SETTINGS, Settings, apply_setup, as_texts, check_settings, number_setting
+from trunnion.controls import Control, load_control
+from trunnion.errors import InputError, Problem
+from trunnion.files import OutputFiles
+from trunnion.machines import Machine
+from trunnion.model.motion import MachiningMode, PoleStrategy
+from trunnion.output.capabilities import control_capabilities
+from trunnion.output.subprograms import SubprogramOutput
+from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
+
+#: Values of the setting ``mode``.
+_MODES: Final = {
+    "auto": None,
+    "three-axis": MachiningMode.THREE_AXIS,
+    "tilted": MachiningMode.TILTED,
+    "tcp": MachiningMode.TCP,
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PostJob:
+    """How a program is posted.
+
+    machine       with its workpiece zero and tool length
+    control       with or without block numbers
+    capabilities  of the control with the settings
+    options       of the planner
+    settings      all of them, as text
+    force         write a program that must not run, with notices in its head
+    report        file of the report; None: there is none
+    columns       work out the columns of the verification
+    """
+
+    machine: Machine
+    control: Control
+    capabilities: ControlCapabilities
+    options: PlanOptions
+    settings: Mapping[str, str]
+    force: bool = False
+    report: Path | None = None
+    columns: bool = False
+
+    @property
+    def printed(self) -> dict[str, str]:
+        """The settings that templates print."""
+        return {key: value for key, value in self.settings.items() if key not in RUN_SETTINGS}
+
+    @property
+    def has_normals(self) -> bool:
+        """Whether the program states surface normals."""
+        return {**self.control.settings, **self.settings}.get("normals") == "contact"
+
+    def subprograms(self, files: OutputFiles, path: Path | None) -> SubprogramOutput | None:
+        """How the program is divided into files; None: it is one.
+
+        Parameters
+        ----------
+        files
+            Takes the subprograms.
+        path
+            Of the main program; None: it is not written to a file.
+
+        Raises
+        ------
+        InputError
+            If the control has no subprograms, there is no folder for them, or the settings contradict each other.
+        """
+        size = number_setting(self.settings, "split")
+        if self.settings.get("programs", "one") == "one":
+            if size is not None:
+                cure = "write programs=operations too"
+                raise InputError(Problem("--set", 0, "split divides subprograms, and there are none", cure))
+            return None
+        if self.control.subprograms is None:
+            what = f"programs is operations, and {self.control.name} has no words for subprograms here"
+            raise InputError(Problem("--set", 0, what, "leave it out"))
+        if path is None:
+            cure = "name a file or a folder, or programs=one"
+            raise InputError(Problem("--output", 0, "stdout takes one file", cure))
+        return SubprogramOutput(path.stem, files.add_file, None if size is None else int(size))
+
+
+def prepare(
+    machine: Machine,
+    settings: Settings | None = None,
+    *,
+    force: bool = False,
+    explain: bool = False,
+    report: Path | None = None,
+    columns: bool = False,
+) -> PostJob:
+    """Check the settings of a post, and make the job of it.
+
+    Raises
+    ------
+    InputError
+        With every setting that the control does not have or that makes no sense.
+    """
+    control = load_control(machine.control)
+    texts = as_texts(settings)
+    check_settings(texts, control)
+    if texts.get("numbers") == "off":
+        control = replace(control, block_numbers=replace(control.block_numbers, numbered=False))
+    machine = apply_setup(machine, texts)
+    options = parse_plan_options(texts, control, explain or report is not None)
+    capabilities = control_capabilities(control, texts)
+    return PostJob(machine, control, capabilities, options, texts, force, report, columns or report is not None)
+
+
+def parse_plan_options(settings: Mapping[str, str], control: Control, explain: bool = False) -> PlanOptions:
+    """The options of the planner, of settings that ``check_settings`` has checked."""
+    tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
+    if tcp and not control.tcp:
+        raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
+    mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
+    numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
+    known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
+    if "clearance" in settings:
+        known["clearance"] = _parse_clearance(settings["clearance"])
+    return PlanOptions(
+        allow_rewinds=settings.get("rewind", "insert") == "insert",
+        explain=explain,
+        mode=mode,
+        mode_by_operation=mode_by_operation,
+        pole_strategy=PoleStrategy(settings.get("pole", "off")),
+        absolute_frame=settings.get("frame", "first") == "absolute",
+        lower_feed=settings.get("lower_feed", "no") == "yes",
+        tcp=tcp,
+        holes_as_motion=settings.get("cycles", "on") == "off",
+        **known,
+    )
+
+
+def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str, MachiningMode | None]]:
+    """The setting ``mode``: that of all operations, and those of some by their names, such as ``auto,SIDES:tcp``."""
+    known = {word: mode for word, mode in _MODES.items() if tcp or mode is not MachiningMode.TCP}
+    every, own = "auto", dict[str, MachiningMode | None]()
+    for entry in text.split(","):
+        name, _, word = entry.rpartition(":")
+        if word not in known:
+            what = "mode is tcp, and there is no TCP" if word == "tcp" else f"mode is {text!r}"
+            cure = f"write one of {', '.join(known)}; OPERATION:WORD says it of one operation"
+            raise InputError(Problem("--set", 0, what, cure))
+        if name:
+            own[name] = known[word]
+        else:
+            every = word
+    return known[every], own
+
+
+def _parse_clearance(text: str) -> Clearance:
+    """The setting ``clearance``."""
+    kind, _, length = text.rpartition(":")
+    try:
+        surface, value = ClearanceSurface(kind or ClearanceSurface.DISTANCE), float(length)
+    except ValueError:
+        surface, value = ClearanceSurface.DISTANCE, math.nan
+    least = -10000.0 if surface is ClearanceSurface.PLANE else 0.1
+    if least <= value <= 10000.0:
+        return Clearance(value, surface)
+    cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
+    raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))

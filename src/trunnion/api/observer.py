@@ -1,0 +1,52 @@
+"""What is reported while work is under way: to a terminal, a notebook or a window."""
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+
+from trunnion.errors import Problem
+from trunnion.model.motion import Plan
+from trunnion.verification.results import Verification
+
+
+class Observer:
+    """Hears what happens while a program is made. Every method does nothing; override those that you need.
+
+    Methods are called in the thread that called the library, but for the progress of reading, which may come from
+    another one.
+    """
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """Warnings about an input file, the plan or the program, as they are found."""
+
+    def planned(self, plan: Plan) -> None:
+        """The program is planned, and not yet written."""
+
+    def verified(self, verification: Verification) -> None:
+        """The program is written and verified; it is refused next if a check has failed."""
+
+    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
+        """Accompany one stage of the work.
+
+        Parameters
+        ----------
+        stage
+            The name of the file that is read, or ``writing``.
+        total
+            How much there is to do.
+        unit
+            What ``total`` counts: ``B`` or ``points``.
+
+        Returns
+        -------
+        context manager
+            Entered when the stage begins; gives a function that is called now and then with how much more is done.
+        """
+        return nullcontext(_ignore)
+
+
+def _ignore(more: int) -> None:
+    """Hear of progress and do nothing."""
+
+
+#: Hears everything and does nothing.
+SILENT = Observer()

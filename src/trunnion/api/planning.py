@@ -1,0 +1,132 @@
+"""Planning: toolpaths to motions on a machine, before any text is written."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from trunnion import planning, readers
+from trunnion.api.job import PostJob, prepare
+from trunnion.api.observer import SILENT, Observer
+from trunnion.api.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.api.settings import Settings
+from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.model.motion import Plan
+from trunnion.model.toolpath import Toolpath
+from trunnion.output.program import Program
+from trunnion.output.validation import check_program
+
+
+def plan(
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    *,
+    machine: MachineLike,
+    settings: Settings | None = None,
+    strict: bool = False,
+    explain: bool = True,
+    observer: Observer = SILENT,
+) -> Plan:
+    """Plan the motion of a machine for one or more CL files.
+
+    Parameters
+    ----------
+    cl
+        CL files in the order in which they are cut: paths, or toolpaths that are already read.
+    machine
+        A name, a path or a ``Machine``.
+    settings
+        As ``trunnion.post`` takes them.
+    strict
+        Raise an error for unknown CL statements.
+    explain
+        Record why the axes are planned as they are (``Plan.decisions``).
+    observer
+        Hears of the progress and of warnings about the CL files.
+
+    Returns
+    -------
+    Plan
+        ``motions``, one for each operation or part of one: ``rotary`` (n, 2) float64, positions of the rotary axes in
+        degrees in the order of ``machine.rotary``; ``operation.moves.tip`` (n, 3) float64, mm, in the program's
+        coordinate system. ``problems`` of severity error mean that the program must not run.
+
+    Raises
+    ------
+    InputError
+        When a file or a setting cannot be used.
+    RefusedError
+        When no plan is possible: no pose of the machine gives a tool axis, or an operation cannot be made in its mode.
+
+    Notes
+    -----
+    Poses are chosen for a whole operation by dynamic programming over branches and turns; docs/planning.md.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> planned = trunnion.plan("tests/golden/yl569/2_hub_rough.cls", machine="yl569")
+    >>> planned.motions[0].rotary.shape
+    (115, 2)
+    """
+    job = prepare(as_machine(machine), settings, explain=explain)
+    toolpaths = load_toolpaths(cl, job, strict, observer)
+    return planning.plan(toolpaths, job.machine, job.control.arcs.chord_tolerance, job.options, job.capabilities)
+
+
+def load_toolpaths(
+    cl: ToolpathLike | Iterable[ToolpathLike], job: PostJob, strict: bool, observer: Observer
+) -> list[Toolpath]:
+    """The toolpaths of a post, with surface normals if the program has them; their remarks are reported."""
+    toolpaths = as_toolpaths(cl, job.settings.get("units"), strict, observer)
+    if job.has_normals:
+        from trunnion.cl.surface_normals import with_normals
+
+        toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
+    for toolpath in toolpaths:
+        observer.problems(toolpath.remarks)
+    return toolpaths
+
+
+def plan_program(
+    toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer = SILENT
+) -> tuple[Program, Plan, list[Problem]]:
+    """Plan a program and check that it can be written, and may.
+
+    Returns
+    -------
+    program
+        With a notice in its head for each problem that ``force`` overrules.
+    plan
+        Its motions and decisions.
+    problems
+        Warnings about program and plan, and what ``force`` overrules; they have been reported.
+
+    Raises
+    ------
+    InputError
+        When the control cannot be told what the toolpaths ask for.
+    RefusedError
+        When the program must not run and ``force`` is off.
+    """
+    planned = planning.plan(toolpaths, job.machine, job.control.arcs.chord_tolerance, job.options, job.capabilities)
+    observer.planned(planned)
+    file = toolpaths[0].file
+    program = Program(job.machine, job.control, planned.motions, job.printed, file)
+    problems = check_program(program)
+    if any(problem.severity is Severity.ERROR for problem in problems):
+        raise InputError(problems)
+    observer.problems(problems)
+    unproven = _missing_reader(job)
+    blocking = [problem for problem in planned.problems if problem.severity is Severity.ERROR] + unproven
+    if blocking and not job.force:
+        refused = Problem(file, 0, "no program is written", "--force writes it")
+        raise RefusedError((*planned.problems, *unproven, refused))
+    observer.problems(planned.problems)
+    notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in blocking]
+    return replace(program, notices=notices), planned, [*problems, *planned.problems]
+
+
+def _missing_reader(job: PostJob) -> list[Problem]:
+    """Why nothing can prove a program for this machine; empty where its control has a reader."""
+    if readers.can_read(job.machine):
+        return []
+    what = f"programs for {job.control.name} cannot be read back yet: nothing proves this one"
+    return [Problem(job.machine.key, 0, what)]

@@ -1,0 +1,88 @@
+"""The proof of a program: what it does, read back and run, against the toolpaths that it was made from."""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from trunnion.api.tolerances import program_tolerances
+from trunnion.errors import Problem, RefusedError
+from trunnion.model.motion import MachiningMode
+from trunnion.model.run import EXTENDED_OFFSET_BASE, Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.output.program import Program
+from trunnion.planning import PlanOptions
+from trunnion.verification import Check, Settings, Tolerances, Verification, failures, verify
+
+
+class ProofFailedError(RefusedError):
+    """The program was written and read back, and does not do what its CL files ask for.
+
+    ``verification`` has the checks that failed, with their places.
+    """
+
+    def __init__(self, problem: Problem, verification: Verification) -> None:
+        super().__init__(problem)
+        self.verification = verification
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Expectation:
+    """What the proof of a program holds against it, besides its toolpaths.
+
+    tolerances  one for each operation: half the last digit that it prints, and what follows from it
+    settings    what the settings of the post say and the toolpaths do not
+    """
+
+    tolerances: list[Tolerances]
+    settings: Settings
+
+
+def expectation(program: Program, options: PlanOptions | None = None) -> Expectation:
+    """What the proof holds against a program that was planned with these options."""
+    return Expectation(program_tolerances(program), _expected_settings(program, options or PlanOptions()))
+
+
+def prove(run: Run, toolpaths: Sequence[Toolpath], expected: Expectation, *, columns: bool) -> Verification:
+    """Verify a program that was read back; ``columns`` as ``trunnion.verification.verify`` has it."""
+    return verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=columns)
+
+
+def refusal(verification: Verification, file: str) -> ProofFailedError:
+    """The error for a program that fails; ``file`` is its first CL file."""
+    failed = ", ".join(check.key for check in failures(verification))
+    what = f"the program does not do what this file asks for: {failed}"
+    return ProofFailedError(Problem(file, 0, what, "no program is written; --force writes it"), verification)
+
+
+def failure_notices(failed: Sequence[Check]) -> list[str]:
+    """Lines for the head of a program that is written though checks have failed."""
+    return [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
+
+
+def _expected_settings(program: Program, options: PlanOptions) -> Settings:
+    """What the settings of the post say and the CL files do not."""
+    without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
+    axis_tolerance = options.axis_tolerance_between_points
+    values = {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
+    inverse_time = program.control.formats.get("inverse_time")
+    return Settings(
+        tool=values["tool"].strip('"'),
+        work_offset=_work_offset(values["work_offset"]),
+        edge=int(values["edge"]) if "edge" in values else None,
+        span=axis_tolerance if without_tcp or math.isfinite(axis_tolerance) else None,
+        span_tip=options.tip_tolerance if without_tcp else None,
+        absolute=options.absolute_frame,
+        max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,
+        max_feed=program.control.formats["feed"].five_axis.greatest,
+        rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
+    )
+
+
+def _work_offset(setting: str) -> int | None:
+    """The number of a work offset: 54 for ``G54``, 603 for ``G54.1 P3``; None where it has another name."""
+    code = setting.strip().upper().removeprefix("G")
+    extended = re.fullmatch(r"54\.1 *P0*(\d{1,3})", code)
+    if extended:
+        return EXTENDED_OFFSET_BASE + int(extended[1])
+    return int(code) if code.isdigit() else None

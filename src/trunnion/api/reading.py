@@ -1,0 +1,142 @@
+"""Inputs of the front door: CL files, machines and programs, by their names or already read."""
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TypeAlias
+
+from trunnion import cl, machines, readers
+from trunnion.api.observer import SILENT, Observer
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+
+#: A path as text or as a ``Path``.
+FilePath: TypeAlias = str | os.PathLike[str]
+
+#: A shipped machine by its name, a definition by its path, or a machine that is already loaded.
+MachineLike: TypeAlias = str | os.PathLike[str] | Machine
+
+#: A CL file by its path, or already read.
+ToolpathLike: TypeAlias = FilePath | Toolpath
+
+
+def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, observer: Observer = SILENT) -> Toolpath:
+    """Read a CL file (NX CLSF).
+
+    Parameters
+    ----------
+    path
+        The file.
+    units
+        Length unit of the file, ``"mm"`` or ``"inch"``; by default the file decides.
+    strict
+        Raise an error for an unknown statement instead of keeping it with a remark.
+    observer
+        Hears of the progress, in bytes.
+
+    Returns
+    -------
+    Toolpath
+        Operations with their points as columns, mm and unit vectors, each in its own coordinate system. ``remarks`` has
+        the warnings.
+
+    Raises
+    ------
+    InputError
+        With every problem found, if the file cannot be used.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> toolpath = trunnion.read_cl("tests/golden/yl569/2_hub_rough.cls")
+    >>> toolpath.operations[0].moves.tip.shape
+    (115, 3)
+    """
+    path = Path(path)
+    size = path.stat().st_size if path.is_file() else 0
+    with observer.progress(path.name, size, "B") as advance:
+        done = 0
+
+        def read(total: int) -> None:
+            nonlocal done
+            advance(total - done)
+            done = total
+
+        return cl.read_cl(path, units=units, strict=strict, progress=read)
+
+
+def load_machine(machine: FilePath) -> Machine:
+    """Load the definition of a machine.
+
+    Parameters
+    ----------
+    machine
+        The name of a shipped machine, such as ``"yl569"`` (``trunnion machines`` lists them), or the path of a
+        ``.toml`` file.
+
+    Raises
+    ------
+    InputError
+        With every mistake of the definition, each at its file and line.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> [axis.name for axis in trunnion.load_machine("yl569").axes]
+    ['X', 'Y', 'Z', 'B', 'C']
+    """
+    return machines.load_machine(os.fspath(machine))
+
+
+def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[FilePath] = ()) -> Run:
+    """Read an NC program as the control of a machine does, and run it.
+
+    Parameters
+    ----------
+    nc
+        The program.
+    machine
+        The machine that runs it: a name, a path or a ``Machine``.
+    subprograms
+        Files of the subprograms that it calls. No others are opened.
+
+    Returns
+    -------
+    Run
+        One row a motion, in columns: ``tip`` (n, 3) mm and ``axis`` (n, 3) unit vectors in the workpiece frame,
+        ``joints`` (n, 5) mm and degrees, ``feed``, ``tool``, ``spindle`` and more; ``events`` between the rows, and
+        ``findings``: words that are unknown or not acted upon.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or if no reader knows the control.
+
+    Notes
+    -----
+    The readers are written from the manuals of the controls and share no code with the writers.
+    """
+    return readers.run_program(Path(nc), as_machine(machine), subprograms=as_paths(subprograms))
+
+
+def as_machine(machine: MachineLike) -> Machine:
+    """The machine itself, loaded if it is named."""
+    return machine if isinstance(machine, Machine) else load_machine(machine)
+
+
+def as_paths(files: Sequence[FilePath]) -> list[Path]:
+    """Paths of files."""
+    return [Path(file) for file in files]
+
+
+def as_toolpaths(
+    cl_files: ToolpathLike | Iterable[ToolpathLike], units: str | None, strict: bool, observer: Observer
+) -> list[Toolpath]:
+    """Toolpaths in their order, read if they are named; ``units`` and ``strict`` as ``read_cl`` has them."""
+    if isinstance(cl_files, (str, os.PathLike, Toolpath)):
+        cl_files = [cl_files]
+    return [
+        each if isinstance(each, Toolpath) else read_cl(each, units=units, strict=strict, observer=observer)
+        for each in cl_files
+    ]

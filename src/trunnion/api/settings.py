@@ -1,0 +1,145 @@
+"""Settings of a post by their keys: the same for ``--set`` and for the library.
+
+In:     settings as text or numbers.
+Out:    text that is checked; numbers, points, and the machine as it is set up.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Final, TypeAlias
+
+from trunnion.controls import Control
+from trunnion.errors import InputError, Problem
+from trunnion.machines import Machine
+from trunnion.model.motion import PoleStrategy
+from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
+
+#: A setting as text, as a number, or as several numbers (``zero``).
+SettingValue: TypeAlias = str | float | Iterable[float]
+
+#: Settings by their keys.
+Settings: TypeAlias = Mapping[str, SettingValue]
+
+#: Settings with few values, the default first.
+_CHOICES: Final = {
+    "units": ("mm", "inch"),
+    "numbers": ("on", "off"),
+    "programs": ("one", "operations"),
+    "tcp": ("on", "off"),
+    "frame": ("first", "absolute"),
+    "rewind": ("insert", "none"),
+    "pole": tuple(PoleStrategy),
+    "lower_feed": ("no", "yes"),
+    "cycles": ("on", "off"),
+}
+
+#: Settings that are numbers: lowest and highest value, and what to write.
+_NUMBERS: Final = {
+    "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
+    "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
+    "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
+    "split": (
+        MIN_SUBPROGRAM_BYTES,
+        1e12,
+        f"split=BYTES, the largest size of a subprogram, at least {MIN_SUBPROGRAM_BYTES}",
+    ),
+    "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
+}
+
+#: Settings of the post itself; all others belong to the control, whose templates print them.
+RUN_SETTINGS: Final = (*_CHOICES, *_NUMBERS, "mode", "zero", "clearance")
+
+#: Lengths and angles of ``check_tolerance`` are below this.
+_GREATEST_TOLERANCE: Final = 1e6
+
+
+def as_texts(settings: Settings | None) -> dict[str, str]:
+    """Settings as text, in the form that ``--set`` takes."""
+    return {key: _as_text(value) for key, value in (settings or {}).items()}
+
+
+def _as_text(value: SettingValue) -> str:
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return ",".join(str(float(part)) for part in value)
+    return str(value)
+
+
+def check_settings(settings: Mapping[str, str], control: Control) -> None:
+    """Raise ``InputError`` for all settings that the control does not have or that make no sense."""
+    known = (*control.settings, *RUN_SETTINGS)
+    problems = [
+        Problem("--set", 0, f"{key} is no setting of {control.name}", f"write one of {', '.join(known)}")
+        for key in settings
+        if key not in known
+    ]
+    problems += [
+        Problem("--set", 0, f"{key} has a line break or a control character in it", "write it in one line")
+        for key, value in settings.items()
+        if any(ord(character) < 32 for character in value)
+    ]
+    problems += [
+        Problem("--set", 0, f"{key} is {settings[key]!r}", f"write {' or '.join(f'{key}={one}' for one in choices)}")
+        for key, choices in {**_CHOICES, **control.family.SETTING_CHOICES}.items()
+        if settings.get(key, choices[0]) not in choices
+    ]
+    problems += [
+        Problem("--set", 0, f"{key} is {settings[key]!r}", cure)
+        for key, cure in control.family.validate_settings(settings)
+    ]
+    if not settings.get("edge", "1").isdigit():
+        problems.append(Problem("--set", 0, f"edge is {settings['edge']!r}", "write a whole number, such as edge=1"))
+    if problems:
+        raise InputError(problems)
+
+
+def number_setting(settings: Mapping[str, str], key: str) -> float | None:
+    """A setting as a number; None if it is not set.
+
+    Raises
+    ------
+    InputError
+        If it is no number, or out of range.
+    """
+    text = settings.get(key)
+    if text is None:
+        return None
+    low, high, cure = _NUMBERS[key]
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high:
+        raise InputError(Problem("--set", 0, f"{key} is {text!r}", f"write {cure}"))
+    return value
+
+
+def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
+    """The machine with the workpiece zero and the tool length of the settings."""
+    if "zero" in settings:
+        machine = replace(machine, workpiece_zero=_point_setting(settings["zero"]))
+    length = number_setting(settings, "tool_length")
+    return machine if length is None else replace(machine, tool_length=length)
+
+
+def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> Machine:
+    """The machine with its workpiece zero and its tool length, mm, where they are given."""
+    given = {"zero": zero, "tool_length": tool_length}
+    return apply_setup(machine, as_texts({key: value for key, value in given.items() if value is not None}))
+
+
+def check_tolerance(option: str, value: float | None) -> None:
+    """Raise ``InputError`` for a tolerance that is not above 0."""
+    if value is not None and not 0.0 < value < _GREATEST_TOLERANCE:
+        raise InputError(Problem(option, 0, f"is {value!r}", "give a number above 0, such as 0.001"))
+
+
+def _point_setting(text: str) -> tuple[float, float, float]:
+    """The setting ``zero``: X, Y and Z in mm."""
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(
+            Problem("--set", 0, f"zero is {text!r}", "write zero=X,Y,Z: the workpiece zero on the machine, mm")
+        ) from None
+    return x, y, z

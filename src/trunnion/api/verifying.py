@@ -1,0 +1,150 @@
+"""Verification of any NC program, with or without the CL files that it was made from."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Literal
+
+from trunnion import readers, verification
+from trunnion.api.observer import SILENT, Observer
+from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths, read_program
+from trunnion.api.settings import check_tolerance, set_up_machine
+from trunnion.controls import load_control
+from trunnion.errors import InputError, Problem
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.verification import Settings, Tolerances, Verification
+
+#: Chords stand for arcs within this, mm, however small the tolerance of coordinates is.
+_LEAST_CHORD = 0.001
+
+
+def verify(
+    nc: FilePath | Run,
+    *,
+    machine: MachineLike,
+    cl: ToolpathLike | Iterable[ToolpathLike] = (),
+    subprograms: Sequence[FilePath] = (),
+    tolerance: float = 0.001,
+    span: float | None = None,
+    span_tip: float | None = None,
+    tool: str = "",
+    work_offset: str | None = None,
+    edge: int | None = None,
+    units: str | None = None,
+    frame: Literal["first", "absolute"] = "first",
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    columns: bool = True,
+    observer: Observer = SILENT,
+) -> Verification:
+    """Verify an NC program: read it, run it, and compare it with the CL files that it was made from.
+
+    Parameters
+    ----------
+    nc
+        The program: a path, or its run (``trunnion.read_program``).
+    machine
+        The machine that runs it: a name, a path or a ``Machine``.
+    cl
+        Its CL files in the order in which they are cut. Without them the program is checked by itself: travel, speeds,
+        modal state, words.
+    subprograms
+        Files of the subprograms that it calls. No others are opened.
+    tolerance
+        How far coordinates may be off, mm, and rotary axes, degrees.
+    span
+        How far the tool axis may be off its way between points, degrees; by default it is measured, not judged.
+    span_tip
+        The same for the tip without TCP, mm.
+    tool
+        Tool that is called in place of the CL file's.
+    work_offset
+        Such as ``"G55"``; by default that of the control's definition where there is a CL file.
+    edge
+        Number of the cutting edge (D); by default that of the control's definition where there is a CL file.
+    units
+        Length unit of CL files that do not state it: ``"mm"`` or ``"inch"``.
+    frame
+        Coordinate system of the program: that of the ``first`` operation, or the CAM's ``absolute`` one.
+    zero : (3,) float, mm
+        Workpiece zero on the machine; needed to check the travel of the slides against their limits.
+    tool_length
+        From the gauge point of the spindle to the tip, mm; for programs without TCP.
+    columns
+        Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
+        needs them; without them a program of any length takes little memory.
+    observer
+        Hears of the progress of reading CL files.
+
+    Returns
+    -------
+    Verification
+        ``passed``; ``checks`` with their worst values, limits and places; ``run``, the program in columns.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or no reader knows the control. A program that is wrong raises
+        nothing: its checks have failed.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> folder = "tests/golden/yl569/"
+    >>> found = trunnion.verify(folder + "2_hub_rough.expected.mpf", machine="yl569", cl=folder + "2_hub_rough.cls")
+    >>> found.passed
+    True
+    """
+    for key, value in (("tolerance", tolerance), ("span", span), ("span-tip", span_tip)):
+        check_tolerance(f"--{key}", value)
+    loaded = as_machine(machine)
+    readers.reader_of(loaded)
+    loaded = set_up_machine(loaded, zero, tool_length)
+    defaults = default_settings(loaded)
+    toolpaths = as_toolpaths(cl, units, False, observer)
+    run = nc if isinstance(nc, Run) else read_program(nc, machine=loaded, subprograms=subprograms)
+    if len(run.normals):
+        from trunnion.cl.surface_normals import with_normals
+
+        toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
+    if edge is None and toolpaths and "edge" in defaults:
+        edge = int(defaults["edge"])
+    return verification.verify(
+        run,
+        toolpaths,
+        tolerances=Tolerances(tip=tolerance, angle=tolerance, chord=max(_LEAST_CHORD, tolerance)),
+        settings=Settings(
+            tool=tool,
+            work_offset=_work_offset(work_offset, defaults.get("work_offset", "G54"), bool(toolpaths)),
+            edge=edge,
+            span=span,
+            span_tip=span_tip,
+            absolute=frame == "absolute",
+            rapid_feed=rapid_feed_of(loaded),
+        ),
+        columns=columns,
+    )
+
+
+def default_settings(machine: Machine) -> Mapping[str, str]:
+    """The settings of a control's definition; usual ones where its programs can be read but not written."""
+    try:
+        return load_control(machine.control.unread_copy()).settings
+    except InputError:
+        return {"edge": "1"}
+
+
+def rapid_feed_of(machine: Machine) -> float | None:
+    """The feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
+    feed = default_settings(machine).get("rapid_feed")
+    return float(feed) if feed else None
+
+
+def _work_offset(text: str | None, default: str, with_cl: bool) -> int | None:
+    """The number of a work offset; None: any, the same throughout."""
+    if text is None:
+        code = default.removeprefix("G")
+        return int(code) if with_cl and code.isdigit() else None
+    code = text.strip().upper().removeprefix("G")
+    if not code.isdigit():
+        raise InputError(Problem("--offset", 0, f"is {text!r}", "write it as the program does, such as G54"))
+    return int(code)

@@ -1,0 +1,100 @@
+"""Writing a program to its file, and reading it back meanwhile.
+
+In:     a planned program.
+Out:    its file, and the run of what is on the disk.
+"""
+
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import BinaryIO
+
+from trunnion import readers, verification
+from trunnion.api.observer import SILENT, Observer
+from trunnion.files import OutputFiles, WriteProgress
+from trunnion.jit import load
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.output.program import Program
+from trunnion.output.program_writer import write_program
+from trunnion.output.subprograms import SubprogramOutput
+
+
+@contextmanager
+def read_back_while_writing(
+    files: OutputFiles, machine: Machine, *, divided: bool
+) -> Iterator[tuple[WriteProgress, Future[Run | None]]]:
+    """Run a program while its file is being written; the reader is set up while the program is planned.
+
+    The run is that of the bytes in the file, as if it had begun when the file was complete.
+
+    Parameters
+    ----------
+    files
+        Where the program is written.
+    machine
+        Runs it.
+    divided
+        The program calls subprograms: the run waits for all files, as calls stand before what they call.
+
+    Yields
+    ------
+    progress
+        Is told how much of the file can be read.
+    run
+        Complete soon after the block has ended; None: no reader knows the control.
+    """
+    progress = WriteProgress()
+    with ThreadPoolExecutor(1) as executor:
+        run = executor.submit(_run, files, machine, progress, divided)
+        try:
+            yield progress, run
+            files.start_sync()
+        finally:
+            progress.finish()
+
+
+def _run(files: OutputFiles, machine: Machine, progress: WriteProgress, divided: bool) -> Run | None:
+    if not readers.can_read(machine):
+        return None
+    load(*readers.KERNELS, *verification.KERNELS)
+    if divided:
+        progress.wait_until_finished()
+    return readers.run_program(files.path, machine, subprograms=files.other_paths, write_progress=progress)
+
+
+def write(
+    program: Program,
+    sink: BinaryIO,
+    progress: WriteProgress | None = None,
+    subprograms: SubprogramOutput | None = None,
+    observer: Observer = SILENT,
+) -> None:
+    """Write a program.
+
+    Parameters
+    ----------
+    program
+        Checked by ``trunnion.output.validation.check_program``.
+    sink
+        Takes the bytes of the main program.
+    progress
+        Is told how much of them can be read back.
+    subprograms
+        How the program is divided into files; None: it is one.
+    observer
+        Hears of the progress, in points.
+    """
+    rows, done = sum(len(motion.operation.moves) for motion in program.motions), 0
+    with observer.progress("writing", rows, "points") as advance:
+
+        def written(points: int) -> None:
+            nonlocal done
+            advance(points)
+            done += points
+            if progress is not None:
+                sink.flush()
+                progress.advance(sink.tell(), sink.tell() * rows // done)
+
+        write_program(program, sink, written, subprograms)
+    sink.flush()

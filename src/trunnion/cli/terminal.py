@@ -1,0 +1,88 @@
+"""What a command tells on stderr while it works: warnings, decisions, checks, and a progress bar."""
+
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from typing import BinaryIO
+
+from trunnion.api.observer import Observer
+from trunnion.cli.progress import progress
+from trunnion.errors import Problem
+from trunnion.model.motion import Plan
+from trunnion.verification import Verification, check_lines, place_lines, time_lines
+
+#: Warnings about a program that is converted which are printed one by one.
+_MOST_PRINTED = 20
+
+
+class Terminal(Observer):
+    """Prints what happens while a program is posted.
+
+    explain   print the decisions of the planner
+    recorded  the planner records its decisions
+    """
+
+    def __init__(self, *, explain: bool = False, recorded: bool = False) -> None:
+        self._explain, self._recorded = explain, recorded
+        self._explained = False
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """Print problems, one a line."""
+        for problem in problems:
+            print(problem, file=sys.stderr)
+
+    def planned(self, plan: Plan) -> None:
+        """Print the decisions of the planner."""
+        self._explained = self._recorded and bool(plan.decisions)
+        if self._explain:
+            print(*plan.decisions, sep="\n", file=sys.stderr)
+
+    def verified(self, verification: Verification) -> None:
+        """Print one line a check, the places of failed checks, and times."""
+        places = place_lines(verification, failed_only=True)
+        for line in (*check_lines(verification), *places, *time_lines(verification)):
+            print(line, file=sys.stderr)
+        if not self._explained and _exceeds_rotary_speed(verification):
+            what = "a rotary axis cannot follow the feed everywhere; --explain says where, and what helps"
+            print(f"{verification.program}: {what}", file=sys.stderr)
+
+    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
+        """Show a progress bar."""
+        return progress(stage, total, unit)
+
+
+class ConversionTerminal(Terminal):
+    """Prints what happens while a program is converted: of long lists of warnings about it only the first."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._is_planned = False
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """Print problems, one a line."""
+        most = len(problems) if self._is_planned else _MOST_PRINTED
+        super().problems(problems[:most])
+        if len(problems) > most:
+            print(f"and {len(problems) - most} more", file=sys.stderr)
+
+    def planned(self, plan: Plan) -> None:
+        """From here on warnings are about the plan."""
+        self._is_planned = True
+        super().planned(plan)
+
+
+def output_place(output: str) -> str | BinaryIO:
+    """Where a result goes: a file, or stdout for ``-``."""
+    if output != "-":
+        return output
+    sys.stdout.flush()
+    return sys.stdout.buffer
+
+
+def _exceeds_rotary_speed(verification: Verification) -> bool:
+    """Whether a rotary axis would have to be faster than it can."""
+    names = tuple(f"{axis.name} " for axis in verification.machine.axes if axis.is_rotary)
+    return any(
+        check.key == "speed" and any(place.text.startswith(names) for place in check.places)
+        for check in verification.checks
+    )

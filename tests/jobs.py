@@ -1,0 +1,23 @@
+"""Jobs of tests that plan a program by hand."""
+
+from collections.abc import Mapping
+
+from trunnion.api.job import PostJob
+from trunnion.controls import Control
+from trunnion.machines import Machine
+from trunnion.output.capabilities import control_capabilities
+from trunnion.planning import PlanOptions
+
+
+def post_job(
+    machine: Machine,
+    control: Control,
+    options: PlanOptions | None = None,
+    settings: Mapping[str, str] | None = None,
+    *,
+    force: bool = False,
+) -> PostJob:
+    """A job with the capabilities that the control has with these settings."""
+    given = settings or {}
+    capabilities = control_capabilities(control, given)
+    return PostJob(machine, control, capabilities, options or PlanOptions(), given, force=force)
