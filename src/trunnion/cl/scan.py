@@ -10,6 +10,7 @@ The kernels check nothing but syntax: what a statement means is the business of 
 import numpy as np
 
 from trunnion.arrays import Bytes, Floats, Ints, Lines
+from trunnion.decimal_bytes import MAX_DIGITS, MAX_EXACT, POWERS_OF_TEN, parse_decimal
 from trunnion.jit import ONE, njit, signed, unsigned
 
 #: A statement longer than this is no CL statement; it bounds the memory that one statement can take.
@@ -26,13 +27,6 @@ MAKES_ROW = 1
 UNFINISHED = 2
 #: The statement is longer than ``MAX_STATEMENT_BYTES``.
 TOO_LONG = 4
-
-
-#: Powers of ten that a double holds exactly.
-_POWERS_OF_TEN = 10.0 ** np.arange(23)
-_MAX_EXACT = 1 << 53
-#: Eighteen digits always fit into an int64.
-_MAX_DIGITS = 18
 
 
 _TAB, _NEWLINE, _RETURN, _BLANK = 9, 10, 13, 32
@@ -117,9 +111,9 @@ def scan(
     return at, line_no, row, count
 
 
-@njit(cache=True)
+@njit(cache=True, forceinline=True)
 def _parse_goto(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) -> int:
-    """Read a plain ``GOTO/x,y,z[,i,j,k]`` line into a row; return where the next line begins, or 0 if it is not plain.
+    """Parse a plain ``GOTO/x,y,z[,i,j,k]`` line into a row; return the start of the next line, or 0 if it is not plain.
 
     Blanks may stand around the numbers and a ``$$`` comment behind them. No bound is checked on the way:
     the newline at the end of the buffer stops every loop.
@@ -129,69 +123,51 @@ def _parse_goto(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) ->
         if data[at] != letter:
             return 0
         at += ONE
-    while data[at] == _BLANK:
-        at += ONE
+    at = _skip_spaces(data, at)
     if data[at] != _SLASH:
         return 0
-    read = 0
-    while True:
-        at += ONE
-        while data[at] == _BLANK:
-            at += ONE
+    count = 0
+    while count == 0 or data[at] == _COMMA:
+        at = _skip_spaces(data, at + ONE)
         negative = data[at] == _MINUS
         if negative or data[at] == _PLUS:
             at += ONE
-        mantissa = 0
-        first = at
-        digit = int(data[at]) - _ZERO
-        while 0 <= digit <= 9:
-            mantissa = mantissa * 10 + digit
-            at += ONE
-            digit = int(data[at]) - _ZERO
-        digits = signed(at - first)
-        decimals = 0
-        if data[at] == _POINT:
-            at += ONE
-            first = at
-            digit = int(data[at]) - _ZERO
-            while 0 <= digit <= 9:
-                mantissa = mantissa * 10 + digit
-                at += ONE
-                digit = int(data[at]) - _ZERO
-            decimals = signed(at - first)
-            digits += decimals
-        # Whole number and power of ten are both exact here, so that one division rounds correctly.
-        if digits == 0 or digits > _MAX_DIGITS or mantissa > _MAX_EXACT:
+        mantissa, digits, decimals, _, at = parse_decimal(data, at)
+        if digits == 0 or digits > MAX_DIGITS or mantissa > MAX_EXACT or count == 6:
             return 0
-        value = mantissa / _POWERS_OF_TEN[decimals]
+        value = mantissa / POWERS_OF_TEN[decimals]
         if negative:
             value = -value
-        if read < 3:
-            tip[row, read] = value
+        if count < 3:
+            tip[row, count] = value
         else:
-            axis[row, read - 3] = value
-        read += 1
-        while data[at] == _BLANK:
-            at += ONE
-        if data[at] != _COMMA:
-            break
-        if read == 6:
-            return 0
+            axis[row, count - 3] = value
+        count += 1
+        at = _skip_spaces(data, at)
+    if count == 3:
+        axis[row, 0] = axis[row, 1] = axis[row, 2] = np.nan
+    elif count != 6:
+        return 0
+    return _next_line_after_comment(data, at)
+
+
+@njit(cache=True, forceinline=True)
+def _skip_spaces(data: Bytes, at: int) -> int:
+    """Place (uint64) of the next byte that is no space."""
+    while data[at] == _BLANK:
+        at += ONE
+    return at
+
+
+@njit(cache=True, forceinline=True)
+def _next_line_after_comment(data: Bytes, at: int) -> int:
+    """Start of the next line if nothing but a ``$$`` comment stands between ``at`` (uint64) and the newline, else 0."""
     if data[at] == _DOLLAR and data[at + ONE] == _DOLLAR:
         while data[at] != _NEWLINE:
             at += ONE
     if data[at] == _RETURN:
         at += ONE
-    if data[at] != _NEWLINE:
-        return 0
-    if read == 3:
-        axis[row, 0] = np.nan
-        axis[row, 1] = np.nan
-        axis[row, 2] = np.nan
-    elif read != 6:
-        return 0
-    following: int = signed(at + ONE)
-    return following
+    return signed(at + ONE) if data[at] == _NEWLINE else 0
 
 
 @njit(cache=True)

@@ -18,8 +18,9 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Bytes, Floats, Ints, Lines
+from trunnion.decimal_bytes import EXACT_DIGITS, POWERS_OF_TEN, parse_decimal
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jit import njit
+from trunnion.jit import ONE, njit, unsigned
 from trunnion.model.toolpath import Moves, Operation, Tool, Toolpath
 
 #: Bytes read at a time.
@@ -31,7 +32,7 @@ _MIN_DISTANCE: Final = 1e-3
 #: So much of the corner's radius may its centre circle lie beyond the tool's axis: diameters are rounded.
 _RADIUS_ROUNDING: Final = 1e-4
 
-_NEWLINE, _RETURN, _BLANK, _DOLLAR, _PLUS, _COMMA, _MINUS, _POINT, _ZERO = 10, 13, 32, 36, 43, 44, 45, 46, 48
+_NEWLINE, _RETURN, _BLANK, _DOLLAR, _PLUS, _COMMA, _MINUS = 10, 13, 32, 36, 43, 44, 45
 _CONTACT_POINT = np.frombuffer(b"CONTACT POINT", np.uint8)
 _TOOL_PATH = np.frombuffer(b"TOOL PATH", np.uint8)
 
@@ -172,32 +173,22 @@ def _contains(data: Bytes, begin: int, end: int, word: Bytes) -> bool:
 
 
 @njit(cache=True)
-def _parse_point(data: Bytes, at: int, found: Floats, row: int) -> None:
-    """Read ``x,y,z`` to the end of the line into a row, if that is what stands there."""
+def _parse_point(data: Bytes, begin: int, found: Floats, row: int) -> None:
+    """Parse ``x,y,z`` up to the end of the line into a row; anything else leaves NaN there."""
+    at = unsigned(begin)
     for k in range(3):
         while data[at] == _BLANK:
-            at += 1
+            at += ONE
         negative = data[at] == _MINUS
         if negative or data[at] == _PLUS:
-            at += 1
-        value, scale, digits = 0.0, 1.0, 0
-        while 0 <= int(data[at]) - _ZERO <= 9:
-            value = value * 10.0 + (int(data[at]) - _ZERO)
-            digits += 1
-            at += 1
-        if data[at] == _POINT:
-            at += 1
-            while 0 <= int(data[at]) - _ZERO <= 9:
-                value = value * 10.0 + (int(data[at]) - _ZERO)
-                scale *= 10.0
-                digits += 1
-                at += 1
+            at += ONE
+        mantissa, digits, decimals, _, at = parse_decimal(data, at)
         while data[at] == _BLANK:
-            at += 1
+            at += ONE
         ends = data[at] == _RETURN or data[at] == _NEWLINE
-        if digits == 0 or digits > 15 or (data[at] != _COMMA if k < 2 else not ends):
-            for other in range(3):
-                found[row, other] = np.nan
+        if digits == 0 or digits > EXACT_DIGITS or (data[at] != _COMMA if k < 2 else not ends):
+            found[row, 0] = found[row, 1] = found[row, 2] = np.nan
             return
-        found[row, k] = -value / scale if negative else value / scale
-        at += 1
+        value = mantissa / POWERS_OF_TEN[decimals]
+        found[row, k] = -value if negative else value
+        at += ONE

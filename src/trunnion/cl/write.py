@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Bytes, Floats
 from trunnion.cl.assemble import COLOUR_PHASES, RADIUS_TOLERANCE, fill_phases
 from trunnion.cl.encoding import EncodingDetector
+from trunnion.decimal_bytes import MAX_EXACT, POWERS_OF_TEN
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jit import njit
 from trunnion.model.toolpath import (
@@ -50,10 +51,7 @@ from trunnion.model.toolpath import (
 CHUNK = 1 << 15
 _MAX_LINE_BYTES = 192
 
-_POWERS_OF_TEN = 10.0 ** np.arange(23)
 _INT_POWERS_OF_TEN = 10 ** np.arange(19, dtype=np.int64)
-#: Whole numbers up to here are doubles.
-_MAX_EXACT = float(1 << 53)
 _AXIS_DECIMALS = 12
 _AXIS_DECIMALS_NEAR = 17
 #: Sine of the tilt against X, Y or Z below which a tool axis gets all decimals.
@@ -432,10 +430,10 @@ def _format_points(tip: Floats, axis: Floats, row: int, stop: int, modal_axis: F
 def _put_length(value: float, out: Bytes, at: int) -> int:
     """Write a length in 6, 9, 12 or 15 decimals, the fewest that say it exactly; return the end, or -1 if none does."""
     for decimals in range(6, 16, 3):
-        count = np.rint(abs(value) * _POWERS_OF_TEN[decimals])
-        if not count <= _MAX_EXACT:
+        count = np.rint(abs(value) * POWERS_OF_TEN[decimals])
+        if not count <= MAX_EXACT:
             return -1
-        if count / _POWERS_OF_TEN[decimals] == abs(value):
+        if count / POWERS_OF_TEN[decimals] == abs(value):
             return _put_decimal(value < 0.0, int(count), decimals, 6, out, at)
     return -1
 
@@ -451,7 +449,7 @@ def _put_axis(i: float, j: float, k: float, out: Bytes, at: int) -> int:
         if near:
             decimals = _AXIS_DECIMALS_NEAR if abs(value) < _NEAR else 15
         at = _put_decimal(
-            value < 0.0, int(np.rint(abs(value) * _POWERS_OF_TEN[decimals])), decimals, _AXIS_DECIMALS, out, at + 1
+            value < 0.0, int(np.rint(abs(value) * POWERS_OF_TEN[decimals])), decimals, _AXIS_DECIMALS, out, at + 1
         )
     return at
 
