@@ -19,12 +19,14 @@ from trunnion.arrays import Codes
 from trunnion.machines import Machine, forward, load_machine
 from trunnion.model.motion import MachiningMode, Motion, PoleStrategy
 from trunnion.model.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool, Toolpath
-from trunnion.planning import PlanOptions, operation_seconds, plan
+from trunnion.planning import ControlCapabilities, PlanOptions, operation_seconds, plan
 from trunnion.planning.linearization.point_insertion import linearize
-from trunnion.planning.poses.decision_log import PlannedOperation, rewind_rows, rotary_travel
+from trunnion.planning.poses.decision_log import ChosenPoses, rewind_rows, rotary_travel
 from trunnion.planning.poses.selection import choose_nearest_states, choose_states, poses_of_states
 from trunnion.planning.poses.states import states_of
-from trunnion.planning.speed.rotary_speed import continuous_positions, speed_shares
+from trunnion.planning.request import PlanRequest
+from trunnion.planning.rotary_positions import continuous_positions
+from trunnion.planning.speed.rotary_speed import speed_shares
 
 Floats = NDArray[np.float64]
 Choose = Callable[[Machine, Moves, bool], Codes]
@@ -144,14 +146,14 @@ def measured(machine: Machine, moves: Moves, choice: Choose) -> str:
         poses = poses_of_states(machine, moves, state, False)
         took.append(time.process_time() - begin)
     operation = Operation("", Tool(), Frame(), moves, Arcs.empty(), (), 1)
-    planned = PlannedOperation(machine, "", operation, poses.rotary, state, False)
+    planned = ChosenPoses(machine, "", operation, poses.rotary, state, False)
     beyond = int(((poses.outcome > 0) & (poses.outcome <= 5)).sum())
     note = f" and {beyond} over-travels" if beyond else ""
     over = rewind_rows(planned)
     kind = moves.kind.copy()
     kind[over] = Kind.RAPID  # a rewind leads there
     motion = Motion(replace(operation, moves=replace(moves, kind=kind)), poses.rotary, MachiningMode.TCP)
-    led = linearize("", motion, machine, PlanOptions(axis_tolerance=BETWEEN), 0.001)
+    led = linearize("", motion, PlanRequest(machine, 0.001, PlanOptions(axis_tolerance=BETWEEN), ControlCapabilities()))
     added = len(led.motion.operation.moves) - len(moves)
     held = "refused" if led.problems else f"{off_between(machine, led.motion):.4f}"
     errors = f"{off_between(machine, motion):.4f} / {held}"

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Flags, Floats
 from trunnion.model.toolpath import (
     Arcs,
     CycleOff,
@@ -22,9 +22,10 @@ from trunnion.model.toolpath import (
     SpindleOn,
     Tool,
 )
-from trunnion.planning import ControlCapabilities, PlanOptions
-from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_from_event, normalize_cycles
-from trunnion.planning.holes.hole_motion import convert_holes_to_motion, stroke_depths
+from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_from_event
+from trunnion.planning.holes.hole_motion import HoleConditions, convert_holes_to_motion
+from trunnion.planning.holes.operations import normalize_cycles
+from trunnion.planning.holes.strokes import stroke_depths
 
 SPINDLE = SpindleState(1200.0, Sense.CLW)
 LENGTH = st.integers(1, 900).map(lambda n: n / 100.0)
@@ -130,12 +131,15 @@ def rows_of(path: Operation) -> list[Row]:
     ]
 
 
+def conditions(home: Flags) -> HoleConditions:
+    """Those under which every hole becomes motion that can."""
+    return HoleConditions(SPINDLE, home, "", lambda cycle, spindle: "", prefers_motion=True)
+
+
 def expanded(path: Operation) -> Operation:
     path = normalize_cycles(path)
     home = np.zeros(len(path.moves), bool)
-    return convert_holes_to_motion(
-        path, PlanOptions(holes_as_motion=True), ControlCapabilities(), SPINDLE, home, ""
-    ).operation
+    return convert_holes_to_motion(path, conditions(home)).operation
 
 
 @given(drawn=drilled())
@@ -207,12 +211,7 @@ def test_threads_stay_cycles() -> None:
     tap = CycleOn(1, 7, ("TAP",), (("RAPTO", (2.0,)), ("FEDTO", (-9.0,)), ("MMPR", (1.0,))))
     path = normalize_cycles(operation([(0.0, 0.0, 9.0), (0.0, 0.0, 0.0)], [True, False], (tap,)))
     home = np.zeros(2, bool)
-    assert (
-        convert_holes_to_motion(
-            path, PlanOptions(holes_as_motion=True), ControlCapabilities(), SPINDLE, home, ""
-        ).operation
-        is path
-    )
+    assert convert_holes_to_motion(path, conditions(home)).operation is path
 
 
 def test_the_spindle_is_the_one_that_turns_at_each_hole() -> None:

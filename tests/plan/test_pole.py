@@ -16,7 +16,8 @@ from trunnion.model.motion import DecisionTopic, Plan, PoleStrategy
 from trunnion.model.toolpath import Moves, Operation, Toolpath
 from trunnion.planning import PlanOptions, plan
 from trunnion.planning.pole.lean_limits import closest_second_angles, degrees_off_pole, least_lean
-from trunnion.planning.pole.tool_axis_lean import LeanedMoves, lean_tool_axis
+from trunnion.planning.pole.lean_task import LeanedMoves, LeanTask
+from trunnion.planning.pole.tool_axis_lean import lean_tool_axis
 from trunnion.planning.poses.placement import REWIND
 from trunnion.planning.poses.selection import choose_poses
 from trunnion.planning.speed.rotary_speed import REST_LENGTH, speed_shares
@@ -66,7 +67,7 @@ def passes(draw: st.DrawFn, machine: Machine) -> Operation:
 def looked_after(machine: Machine, operation: Operation, mode: PoleStrategy, angle: float) -> LeanedMoves:
     moves = operation.moves
     poses = choose_poses(machine, moves, False)
-    return lean_tool_axis(machine, operation, poses, False, mode, angle, np.zeros(len(moves), bool))
+    return lean_tool_axis(LeanTask.of(machine, operation, np.zeros(len(moves), bool), angle, False), poses, mode)
 
 
 def axes_of(machine: Machine, rotary: Floats) -> Floats:
@@ -115,7 +116,7 @@ def test_where_there_is_a_way_no_rotary_axis_is_too_fast(data: st.DataObject, na
     share = speed_shares(machine, operation, found.poses.rotary).max(axis=1)
     lacking: Flags = np.zeros(len(share), bool)
     for place in found.regions:
-        if not place.found:
+        if not place.is_solved:
             lacking[place.first : place.end] = True
     # Where the tip rests a turn takes the time that it needs: no feed binds it.
     way = np.linalg.norm(np.diff(operation.moves.tip, axis=0, prepend=operation.moves.tip[:1]), axis=1)

@@ -20,8 +20,7 @@ from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Tool, Toolpath
 from trunnion.output.program_writer import write_program
 from trunnion.planning import PlanOptions
-from trunnion.planning.linearization.arc_chords import arcs_a_control_takes, lines_for_arcs
-from trunnion.planning.pole.deviations import source_rows
+from trunnion.planning.linearization.arc_chords import arcs_a_control_takes, lines_for_arcs, source_rows
 from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
 

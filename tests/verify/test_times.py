@@ -16,8 +16,8 @@ from trunnion.machines import Machine, load_machine, slide_positions
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Dwell, Operation, Toolpath
 from trunnion.planning import PlanOptions, operation_seconds, plan
+from trunnion.planning.rotary_positions import continuous_positions
 from trunnion.planning.speed.operation_time import row_durations
-from trunnion.planning.speed.rotary_speed import continuous_positions
 from trunnion.readers import run_program
 from trunnion.verification import Verification, time_lines, verify
 

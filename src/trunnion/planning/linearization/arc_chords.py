@@ -133,6 +133,25 @@ def arc_piece_counts(operation: Operation, keep: Flags, chord_tolerance: float) 
     return copies
 
 
+def source_rows(before: Operation, after: Operation) -> Ints:
+    """(n,) int64: the row of ``before`` that each row of ``after`` belongs to, in which lines may stand for arcs.
+
+    Lines for an arc carry the arc's line number; where several rows of ``before`` have it, the last of them counts.
+    """
+    count = len(before.moves)
+    if len(after.moves) == count:
+        return np.arange(count)
+    old_starts = np.flatnonzero(np.diff(before.moves.line, prepend=before.moves.line[:1] - 1))
+    new_starts = np.flatnonzero(np.diff(after.moves.line, prepend=after.moves.line[:1] - 1))
+    old_counts, new_counts = np.diff(old_starts, append=count), np.diff(new_starts, append=len(after.moves))
+    return np.concatenate(
+        [
+            np.arange(first, first + old) if old == new else np.full(new, first + old - 1)
+            for first, old, new in zip(old_starts.tolist(), old_counts.tolist(), new_counts.tolist(), strict=True)
+        ]
+    )
+
+
 def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> tuple[Floats, Floats]:
     """``pieces`` points on arc ``m``, the start left out and the end exact, and the tool axes there."""
     moves, arcs = operation.moves, operation.arcs

@@ -17,7 +17,6 @@ Angles in degrees outside of kernels, in radians within where their names say so
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -31,14 +30,6 @@ _HALVINGS: Final = 14
 
 #: No less than the rounding of angles here, rad.
 _NOISE: Final = 1e-11
-
-
-@dataclass(frozen=True, slots=True)
-class PolePassage:
-    """Rows ``first`` to ``end`` (left out) with tool axes within a cone about the pole."""
-
-    first: int
-    end: int
 
 
 def degrees_off_pole(kinematics: KinematicParameters, axis: Floats) -> Floats:

@@ -15,7 +15,7 @@ from trunnion.planning.poses.states import MAX_BEND, POLE_JUMP, REWIND_STEP, STA
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlannedOperation:
+class ChosenPoses:
     """An operation as it was planned, before rewinds are put in.
 
     file        the CL file
@@ -62,7 +62,7 @@ def rotary_steps(machine: Machine, rotary: Floats) -> Floats:
     return move
 
 
-def rewind_rows(planned: PlannedOperation) -> Ints:
+def rewind_rows(planned: ChosenPoses) -> Ints:
     """Rows that cut and that are reached only by turning over or winding back, whether or not that was marked.
 
     This is the rule of ``trunnion.planning.poses.optimizer`` applied to a finished way, such as the nearest
@@ -84,7 +84,7 @@ def rewind_rows(planned: PlannedOperation) -> Ints:
     return np.asarray(rows[cosine < np.cos(np.radians(MAX_BEND))])
 
 
-def _at_pole(planned: PlannedOperation, rows: Ints) -> Flags:
+def _at_pole(planned: ChosenPoses, rows: Ints) -> Flags:
     moves = planned.operation.moves
     return inverse(planned.machine, moves.tip[rows], moves.axis[rows]).pole
 
@@ -94,7 +94,7 @@ def rotary_travel(machine: Machine, rotary: Floats) -> float:
     return float(np.abs(rotary_steps(machine, rotary)).sum())
 
 
-def pose_decisions(planned: PlannedOperation, changes: Ints, rewound: dict[int, str]) -> list[Decision]:
+def pose_decisions(planned: ChosenPoses, changes: Ints, rewound: dict[int, str]) -> list[Decision]:
     """The log, with what the nearest neighbour would have done.
 
     Parameters
@@ -114,12 +114,12 @@ def pose_decisions(planned: PlannedOperation, changes: Ints, rewound: dict[int, 
     return [*log, _comparison(planned)]
 
 
-def _decision(planned: PlannedOperation, row: int, topic: DecisionTopic, text: str) -> Decision:
+def _decision(planned: ChosenPoses, row: int, topic: DecisionTopic, text: str) -> Decision:
     operation = planned.operation
     return Decision(planned.file, operation.name, int(operation.moves.line[max(row, 0)]), row, topic, text)
 
 
-def _start(planned: PlannedOperation) -> Decision:
+def _start(planned: ChosenPoses) -> Decision:
     """The start pose, against that which is nearest to home."""
     machine, moves = planned.machine, planned.operation.moves
     first = f"starts at {planned.describe(planned.rotary[0])}"
@@ -140,13 +140,13 @@ def _start(planned: PlannedOperation) -> Decision:
     )
 
 
-def _part(planned: PlannedOperation, rows: slice) -> PlannedOperation:
+def _part(planned: ChosenPoses, rows: slice) -> ChosenPoses:
     """Some rows of an operation, to be planned by themselves."""
     operation = replace(planned.operation, moves=planned.operation.moves.select(rows))
     return replace(planned, operation=operation, rotary=planned.rotary[rows], state=planned.state[rows])
 
 
-def _change(planned: PlannedOperation, row: int, rewound: dict[int, str]) -> Decision:
+def _change(planned: ChosenPoses, row: int, rewound: dict[int, str]) -> Decision:
     if row in rewound:
         return _decision(planned, row, DecisionTopic.REWIND, f"rewinds in the cut: {rewound[row]}")
     rotary, was, now = planned.rotary, int(planned.branch(row - 1)), int(planned.branch(row))
@@ -167,12 +167,12 @@ def _change(planned: PlannedOperation, row: int, rewound: dict[int, str]) -> Dec
     return _decision(planned, row, DecisionTopic.CHANGE, f"turns away from the cut, {ways}: {reason}")
 
 
-def _comparison(planned: PlannedOperation) -> Decision:
+def _comparison(planned: ChosenPoses) -> Decision:
     """What the nearest neighbour would have done."""
     machine, moves = planned.machine, planned.operation.moves
     state = choose_nearest_states(machine, moves, planned.keep_slides)
     poses = poses_of_states(machine, moves, state, planned.keep_slides)
-    other = PlannedOperation(machine, planned.file, planned.operation, poses.rotary, state, planned.keep_slides)
+    other = ChosenPoses(machine, planned.file, planned.operation, poses.rotary, state, planned.keep_slides)
     mine = int((planned.state & REWIND_STEP != 0).sum())
     text = (
         f"{_rewinds(mine)} and {rotary_travel(machine, planned.rotary):.0f} degrees of rotary travel;"

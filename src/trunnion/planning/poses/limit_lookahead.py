@@ -10,9 +10,9 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, inverse, slide_positions
 from trunnion.model.toolpath import Moves
+from trunnion.planning.axis_limits import limit_violation_text, limits_of, outside_limits
 from trunnion.planning.poses.optimizer import NO_CONTACT
 from trunnion.planning.poses.selection import contact_of
-from trunnion.planning.poses.states import LIMIT_TOLERANCE, limits_of
 
 #: Rows looked at together, at first; then twice as many each time.
 _CHUNK = 256
@@ -29,23 +29,6 @@ class LimitHit:
     def describe(self, machine: Machine, moves: Moves) -> str:
         """Axis, value, limit and line, as the end of a sentence."""
         return f"{limit_violation_text(machine, self.column, self.value)} in line {int(moves.line[self.row])}"
-
-
-def limit_violation_text(machine: Machine, column: int, value: float) -> str:
-    """``axis B would go to 110.00000, above its limit 100 degrees``."""
-    axis = machine.axes[column]
-    limit, word = (axis.low, "below") if value < axis.low else (axis.high, "above")
-    unit = "degrees" if axis.is_rotary else "mm"
-    return f"axis {axis.name} would go to {value:.5f}, {word} its limit {limit:g} {unit}"
-
-
-def limit_remedy(machine: Machine, column: int, value: float, other: str = "") -> str:
-    """What puts an axis back within its limits; ``other`` says why the other pose does not."""
-    axis = machine.axes[column]
-    lacking = axis.low - value if value < axis.low else value - axis.high
-    if axis.is_rotary:
-        return f"tilt the workpiece by {lacking:.3f} degrees{other}, or post for another machine"
-    return f"move the workpiece so that {axis.name} has {lacking:.3f} mm more{other}, or tilt it"
 
 
 def degrees_out_of_reach(machine: Machine, axis: Floats) -> float:
@@ -80,7 +63,7 @@ def first_limit_hit(
         values = continue_in_branch(machine, moves, part, branch, last)
         joints = slide_positions(machine, moves.tip[part], values)
         joints[:, list(machine.rotary)] = values
-        outside = (joints < low - LIMIT_TOLERANCE) | (joints > high + LIMIT_TOLERANCE)
+        outside = outside_limits(joints, low, high)
         if outside.any():
             k = int(np.argmax(outside.any(axis=1)))
             column = int(np.argmax(outside[k]))

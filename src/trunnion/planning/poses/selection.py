@@ -13,6 +13,7 @@ from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.concurrency import prefetch
 from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
 from trunnion.model.toolpath import Kind, Moves, Phase
+from trunnion.planning.axis_limits import limits_of
 from trunnion.planning.poses.optimizer import (
     CUTS,
     MAY_TOUCH,
@@ -23,7 +24,7 @@ from trunnion.planning.poses.optimizer import (
     workspace,
 )
 from trunnion.planning.poses.placement import BRANCH, follow_nearest, place_rows, solve_rotary
-from trunnion.planning.poses.states import LIMIT_TOLERANCE, STATE_BITS, SearchSpace, States, limits_of, states_of
+from trunnion.planning.poses.states import LIMIT_TOLERANCE, STATE_BITS, SearchSpace, States, states_of
 
 
 @dataclass(frozen=True, slots=True)

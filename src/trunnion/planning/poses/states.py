@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Ints
 from trunnion.machines import Axis, Machine
 from trunnion.machines.inverse import FlatArray
 
@@ -129,13 +129,3 @@ def _narrower(low: int, count: int, home: float) -> tuple[int, int]:
     """One turn less, at the end farther from home."""
     above = low + count - 1 - home / 360.0
     return (low, count - 1) if above >= home / 360.0 - low else (low + 1, count - 1)
-
-
-def limits_of(machine: Machine, keep_slides: bool) -> tuple[Floats, Floats]:
-    """Limits of all axes, (5,) float64 each, mm or degrees, infinite where none is to be kept."""
-    low = np.array([a.low for a in machine.axes])
-    high = np.array([a.high for a in machine.axes])
-    if not keep_slides:
-        slides = np.array(machine.linear)
-        low[slides], high[slides] = -np.inf, np.inf
-    return low, high

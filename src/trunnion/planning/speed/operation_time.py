@@ -8,7 +8,8 @@ from trunnion.machines.motion_time import row_seconds
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Kind, Stop
 from trunnion.planning.linearization.arc_chords import arc_sweeps
-from trunnion.planning.speed.rotary_speed import REST_LENGTH, continuous_positions, tip_speeds
+from trunnion.planning.rotary_positions import continuous_positions
+from trunnion.planning.speed.rotary_speed import REST_LENGTH, tip_speeds
 
 
 def row_durations(machine: Machine, motion: Motion) -> Floats:

@@ -14,6 +14,7 @@ from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.jit import njit
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
+from trunnion.planning.rotary_positions import is_endless
 
 #: Share of an axis' rapid speed that is planned for: printed numbers are rounded, and steps may be small.
 USABLE_SHARE: Final = 0.99
@@ -122,31 +123,6 @@ def lower_feeds(
     factor = np.repeat(np.minimum.reduceat(factor, first), np.diff(first, append=len(factor)))
     factor[(moves.kind == Kind.RAPID) | np.isnan(factor)] = 1.0
     return replace(moves, feed=np.where(factor < 1.0, moves.feed * factor, moves.feed)), np.flatnonzero(factor < 1.0)
-
-
-def continuous_positions(machine: Machine, rotary: Floats) -> Floats:
-    """(n, 2) float64: displayed positions as the axes wind: endless ones go the shorter way, the others stay."""
-    turning = np.array(rotary)
-    for r, free in enumerate(is_endless(machine)):
-        if free:
-            turning[1:, r] -= 360.0 * np.cumsum(np.rint(np.diff(rotary[:, r]) / 360.0))
-    return turning
-
-
-def displayed_positions(machine: Machine, turning: Floats) -> Floats:
-    """(n, 2) float64: positions as the axes display them."""
-    shown = np.array(turning)
-    for r, column in enumerate(machine.rotary):
-        low = machine.axes[column].display_low
-        if not np.isnan(low):
-            shown[:, r] -= 360.0 * np.floor((shown[:, r] - low) / 360.0)
-    return shown
-
-
-def is_endless(machine: Machine) -> tuple[bool, bool]:
-    """Which rotary axes have no limits, and so go the shorter way."""
-    first, second = (not np.isfinite(machine.limits[column]).any() for column in machine.rotary)
-    return bool(first), bool(second)
 
 
 def _kernel_columns(

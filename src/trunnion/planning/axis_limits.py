@@ -1,0 +1,41 @@
+"""Limits of the axes: what they are, which values are beyond them, and how messages put it."""
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats
+from trunnion.machines import Machine
+from trunnion.planning.poses.states import LIMIT_TOLERANCE
+
+
+def limits_of(machine: Machine, keep_slides: bool) -> tuple[Floats, Floats]:
+    """Lowest and highest values of all axes, (5,) float64 each, mm or degrees.
+
+    They are infinite where no limit is to be kept; without ``keep_slides`` that is so for slides.
+    """
+    low, high = machine.limits.T.copy()
+    if not keep_slides:
+        slides = np.array(machine.linear)
+        low[slides], high[slides] = -np.inf, np.inf
+    return low, high
+
+
+def outside_limits(values: Floats, low: Floats, high: Floats) -> Flags:
+    """Which axis values are beyond their limits by more than ``LIMIT_TOLERANCE``; shapes broadcast."""
+    return np.asarray((values < low - LIMIT_TOLERANCE) | (values > high + LIMIT_TOLERANCE))
+
+
+def limit_violation_text(machine: Machine, column: int, value: float) -> str:
+    """Such as ``axis B would go to 110.00000, above its limit 100 degrees``."""
+    axis = machine.axes[column]
+    limit, side = (axis.low, "below") if value < axis.low else (axis.high, "above")
+    unit = "degrees" if axis.is_rotary else "mm"
+    return f"axis {axis.name} would go to {value:.5f}, {side} its limit {limit:g} {unit}"
+
+
+def limit_remedy(machine: Machine, column: int, value: float, remark: str = "") -> str:
+    """What brings an axis back within its limits, as the cure of a message with a ``remark``."""
+    axis = machine.axes[column]
+    lacking = axis.low - value if value < axis.low else value - axis.high
+    if axis.is_rotary:
+        return f"tilt the workpiece by {lacking:.3f} degrees{remark}, or post for another machine"
+    return f"move the workpiece so that {axis.name} has {lacking:.3f} mm more{remark}, or tilt it"

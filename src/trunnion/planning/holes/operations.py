@@ -1,0 +1,119 @@
+"""Operations with hole-making cycles: which rows are holes, and where the tool axis changes between them."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Ints
+from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Kind, Operation
+from trunnion.planning.holes.cycles import HoleCycleError
+
+#: Tool axes are the same if no component differs by more than this; CL files print seven decimals or more.
+_SAME_AXIS: Final = 1e-7
+
+
+def normalize_cycles(operation: Operation) -> Operation:
+    """Return the operation with cycles around holes only, a rapid into every hole, and RTRCTO,AUTO as a distance.
+
+    Raises
+    ------
+    HoleCycleError
+        When AUTO stands for the height before the cycle, and no point is before it.
+    """
+    if not any(isinstance(event, CycleOn) for event in operation.events):
+        return operation
+    holes, moves = _hole_rows(operation), operation.moves
+    events: list[Event] = []
+    cycle: CycleOn | None = None
+    edges = np.flatnonzero(np.diff(holes, prepend=False, append=False)).tolist()
+    for row in sorted({*edges, *(event.row for event in operation.events)}):
+        here = [event for event in operation.events if event.row == row]
+        is_hole = row < len(moves) and bool(holes[row])
+        changes = any(isinstance(event, CycleOn | CycleOff) for event in here)
+        if cycle is not None and (changes or not is_hole):
+            events.append(CycleOff(row, cycle.line))
+            cycle = None
+        events += [event for event in here if not isinstance(event, CycleOn | CycleOff)]
+        if is_hole and cycle is None:
+            cycle = replace(_with_retract_distance(operation, _cycle_at(operation, row)), row=row)
+            events.append(cycle)
+    kind = np.where(holes, np.uint8(Kind.RAPID), moves.kind)
+    return replace(operation, moves=replace(moves, kind=kind), events=tuple(events))
+
+
+def _hole_rows(operation: Operation) -> Flags:
+    """(n,) bool: the row is a hole: a cycle is on there, and it is no rapid."""
+    is_on = np.zeros(len(operation.moves), bool)
+    for event in operation.events:
+        if isinstance(event, CycleOn | CycleOff):
+            is_on[event.row :] = isinstance(event, CycleOn)
+    return np.asarray(is_on & (operation.moves.kind != Kind.RAPID))
+
+
+def _cycle_at(operation: Operation, row: int) -> CycleOn:
+    """The cycle in force at a row that is a hole."""
+    return next(e for e in reversed(operation.events) if isinstance(e, CycleOn) and e.row <= row)
+
+
+def _with_retract_distance(operation: Operation, event: CycleOn) -> CycleOn:
+    """RTRCTO,AUTO as a distance: that of the point before the cycle from its first hole, along the tool axis."""
+    words = dict(event.words)
+    if words.get("RTRCTO") != "AUTO":
+        return event
+    moves = operation.moves
+    if event.row == 0:
+        cure = "put a point before the cycle, or write RTRCTO,distance"
+        raise HoleCycleError("RTRCTO,AUTO before any point", cure, event.line)
+    height = float((moves.tip[event.row - 1] - moves.tip[event.row]) @ moves.axis[event.row])
+    words.pop("RTRCTO")
+    return replace(event, values=(*event.values, ("RTRCTO", (height,))), words=tuple(words.items()))
+
+
+def cycle_row_ranges(operation: Operation) -> Iterator[tuple[CycleOn, int]]:
+    """The cycles of a normalized operation, each with the row after its last hole."""
+    cycle: CycleOn | None = None
+    for event in operation.events:
+        if isinstance(event, CycleOn | CycleOff) and cycle is not None:
+            yield cycle, event.row
+        if isinstance(event, CycleOn | CycleOff):
+            cycle = event if isinstance(event, CycleOn) else None
+
+
+def split_by_axis(operation: Operation) -> list[tuple[int, int]] | None:
+    """Rows, first and end, of each stretch with one tool axis in an operation with holes.
+
+    None without holes, or if the operation cannot be split there: it has arcs, or its axis changes in a cut.
+    """
+    if not any(isinstance(event, CycleOn) for event in operation.events) or len(operation.arcs.row):
+        return None
+    turns = axis_change_rows(operation)
+    if (operation.moves.kind[turns] != Kind.RAPID).any():
+        return None
+    return row_ranges(turns, len(operation.moves))
+
+
+def axis_change_rows(operation: Operation) -> Ints:
+    """Rows whose tool axis differs from that of the row before."""
+    return np.flatnonzero(np.abs(np.diff(operation.moves.axis, axis=0)).max(axis=1, initial=0.0) > _SAME_AXIS) + 1
+
+
+def row_ranges(starts: Ints, count: int) -> list[tuple[int, int]]:
+    """Rows, first and end, of the parts of ``count`` rows; ``starts`` are the first rows of all parts but the first."""
+    return list(pairwise([0, *starts.tolist(), count]))
+
+
+def extract_rows(operation: Operation, first: int, end: int) -> Operation:
+    """Rows ``first`` to ``end`` of an operation, with the cycle in force at their start. No arc may cross into them."""
+    moves, arcs = operation.moves, operation.arcs
+    is_last = end == len(moves)
+    inside = [e for e in operation.events if first <= e.row < end or (is_last and e.row == end)]
+    before = [e for e in operation.events if isinstance(e, CycleOn | CycleOff) and e.row < first]
+    events = [replace(event, row=event.row - first) for event in inside]
+    if before and isinstance(before[-1], CycleOn) and not any(isinstance(e, CycleOff) and e.row == 0 for e in events):
+        events.insert(0, replace(before[-1], row=0))
+    here = (arcs.row >= first) & (arcs.row < end)
+    kept = Arcs(arcs.row[here] - first, arcs.centre[here], arcs.normal[here], arcs.radius[here], arcs.full_turns[here])
+    return replace(operation, moves=moves.select(slice(first, end)), arcs=kept, events=tuple(events))

@@ -1,0 +1,81 @@
+"""The motions that make one hole: strokes, returns to clear the chips, and the retract."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.model.toolpath import Kind
+from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod
+
+#: A rapid back into a hole ends this far above the drilled depth, and a chip-breaking stroke returns as far, mm.
+REENTRY_CLEARANCE: Final = 0.5
+
+#: Heights are the same if they differ by no more than this, mm.
+SAME_HEIGHT: Final = 1e-9
+
+#: The most strokes that a hole may have.
+_MOST_STROKES: Final = 10_000
+
+
+@dataclass(frozen=True, slots=True)
+class HoleMotions:
+    """The motions in a hole from the height of RAPTO on, in their order.
+
+    heights  to which they lead, mm
+    bottom   index of the one that reaches the bottom
+    """
+
+    heights: tuple[float, ...]
+    kinds: tuple[Kind, ...]
+    bottom: int
+
+
+def hole_motions(cycle: Cycle) -> HoleMotions:
+    """The motions of a cycle whose retract height is known.
+
+    Raises
+    ------
+    HoleCycleError
+        When its strokes never reach the depth.
+    """
+    assert cycle.retract_height is not None
+    motions: list[tuple[float, Kind]] = []
+    drilled = 0.0
+    for number, depth in enumerate(stroke_depths(cycle)):
+        if number and cycle.method is HoleMethod.DEEP_DRILLING:
+            motions.append((cycle.rapid_height, Kind.RAPID))
+            if REENTRY_CLEARANCE - drilled < cycle.rapid_height - SAME_HEIGHT:
+                motions.append((REENTRY_CLEARANCE - drilled, Kind.RAPID))
+        elif number:
+            motions.append((min(REENTRY_CLEARANCE, 0.5 * drilled) - drilled, Kind.RAPID))
+        motions.append((-depth, Kind.LINEAR))
+        drilled = depth
+    bottom = len(motions) - 1
+    if cycle.method is HoleMethod.REAM:
+        motions.append((cycle.rapid_height, Kind.LINEAR))
+    if cycle.method is not HoleMethod.REAM or cycle.retract_height > cycle.rapid_height + SAME_HEIGHT:
+        motions.append((cycle.retract_height, Kind.RAPID))
+    return HoleMotions(tuple(height for height, _ in motions), tuple(kind for _, kind in motions), bottom)
+
+
+def stroke_depths(cycle: Cycle) -> list[float]:
+    """The depths below the point of the hole, mm, at which the strokes end.
+
+    Raises
+    ------
+    HoleCycleError
+        When the strokes never reach the depth, or there are too many.
+    """
+    if cycle.method not in (HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING):
+        return [cycle.depth]
+    stroke, decrement, shortest = cycle.strokes
+    if decrement < 0.0 or shortest < 0.0:
+        raise HoleCycleError("STEP with a number below 0", "write STEP,first,less,shortest")
+    depths = [min(stroke, cycle.depth)]
+    while cycle.depth - depths[-1] > SAME_HEIGHT:
+        stroke = max(stroke - decrement, min(shortest, stroke))
+        if not stroke > 0.0:
+            raise HoleCycleError("STEP without a shortest stroke", "write STEP,first,less,shortest")
+        if len(depths) >= _MOST_STROKES:
+            raise HoleCycleError(f"a hole in more than {_MOST_STROKES} strokes", "write longer ones")
+        depths.append(min(depths[-1] + stroke, cycle.depth))
+    return [*depths[:-1], cycle.depth]

@@ -1,0 +1,129 @@
+"""What is wrong with a plan, in messages: axes beyond their limits, rewinds, and slides without enough travel."""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+import numpy as np
+
+from trunnion.errors import Problem, Severity
+from trunnion.machines import Machine, inverse
+from trunnion.model.motion import PoleStrategy
+from trunnion.model.toolpath import Moves
+from trunnion.planning.axis_limits import limit_remedy, limit_violation_text, limits_of, outside_limits
+from trunnion.planning.poses.decision_log import ChosenPoses, describe_pose
+from trunnion.planning.poses.limit_lookahead import degrees_out_of_reach
+from trunnion.planning.poses.placement import BLOCKED, OUT_OF_REACH, REWIND
+from trunnion.planning.poses.selection import PlannedPoses, exceeds_travel
+from trunnion.planning.request import PlanRequest
+from trunnion.planning.retracts.rewind import Rewind, is_radius_compensated, retract_positions, slide_beyond_limits
+
+#: How many rows with the same trouble are named one by one.
+_NAMED: Final = 5
+
+
+def unknown_speed_problems(file: str, request: PlanRequest) -> Iterable[Problem]:
+    """A warning if speeds of rotary axes are to be limited, and the definition does not state them."""
+    machine, options = request.machine, request.options
+    names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
+    if names and (options.pole_strategy is not PoleStrategy.OFF or options.lower_feed):
+        what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: it is never too fast"
+        yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING)
+
+
+def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: PlanRequest) -> Iterable[Problem]:
+    """Warnings about rewinds, or errors where they are not allowed or have no room."""
+    machine, moves, options = chosen.machine, chosen.operation.moves, request.options
+    for rewind in rewinds:
+        line = int(moves.line[rewind.row])
+        if not options.allow_rewinds:
+            yield _forbidden_rewind(chosen, rewind)
+            continue
+        if not math.isfinite(rewind.retract_distance):
+            what = f"the tool must rewind here, and its axis does not lead to the clearance {options.clearance}"
+            yield Problem(chosen.file, line, what, "--set clearance=MM draws back by a distance")
+            continue
+        what = f"the tool draws back {rewind.retract_distance:g} mm in the cut to rewind, {rewind.reason}"
+        yield Problem(chosen.file, line, what, "--set rewind=none refuses it", Severity.WARNING)
+        if is_radius_compensated(chosen.operation, rewind.row):
+            what = "a rewind within cutter radius compensation"
+            yield Problem(chosen.file, line, what, "output the path without CUTCOM, or split the operation")
+        joints = retract_positions(machine, moves, rewind)
+        column = slide_beyond_limits(machine, joints) if chosen.keep_slides else None
+        if column is not None:
+            values = joints[:, column]
+            value = values.max() if values.max() > machine.axes[column].high else values.min()
+            what = f"on the retreat for a rewind {limit_violation_text(machine, column, float(value))}"
+            yield Problem(chosen.file, line, what, "--set clearance=MM draws back less; or move the workpiece")
+
+
+def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
+    row, what = rewind.row, "the rotary axes would have to rewind in the cut"
+    if rewind.limit_hit is not None:
+        row, hit = rewind.limit_hit.row, rewind.limit_hit
+        what = f"{limit_violation_text(chosen.machine, hit.column, hit.value)} in the cut"
+    cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
+    return Problem(chosen.file, int(chosen.operation.moves.line[row]), what, cure)
+
+
+def pose_problems(file: str, moves: Moves, poses: PlannedPoses, machine: Machine) -> Iterable[Problem]:
+    """Errors of poses: each kind of trouble at its first few rows, then how many more there are."""
+    outcome = poses.outcome
+    for code in np.unique(outcome[outcome > 0]).tolist() if outcome.any() else []:
+        if code == REWIND:
+            continue
+        rows = np.flatnonzero(outcome == code)
+        for row in rows[:_NAMED].tolist():
+            yield _pose_problem(file, moves, poses, machine, row)
+        if len(rows) > _NAMED:
+            more = f"the same at {len(rows) - _NAMED} further points, the last in line {moves.line[rows[-1]]}"
+            yield Problem(file, int(moves.line[rows[_NAMED]]), more)
+
+
+def _pose_problem(file: str, moves: Moves, poses: PlannedPoses, machine: Machine, row: int) -> Problem:
+    line, code = int(moves.line[row]), int(poses.outcome[row])
+    if code == OUT_OF_REACH:
+        i, j, k = moves.axis[row]
+        what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
+        lacking = f"{degrees_out_of_reach(machine, moves.axis[row]):.3f} degrees"
+        return Problem(file, line, what, f"tilt the workpiece by {lacking}, or post for a machine that reaches it")
+    if code == BLOCKED:
+        turn = f"{describe_pose(machine, poses.rotary[row - 1])} to {describe_pose(machine, poses.rotary[row])}"
+        what = f"the rotary axes must turn over within one step of the cut, {turn}, and no pose serves both its ends"
+        return Problem(file, line, what, "output the toolpath with points nearer to each other, or tilt the workpiece")
+    column, value = code - 1, float(poses.beyond_value[row])
+    cure = limit_remedy(machine, column, value, _other_pose_remark(machine, moves, poses, row))
+    return Problem(file, line, limit_violation_text(machine, column, value), cure)
+
+
+def _other_pose_remark(machine: Machine, moves: Moves, poses: PlannedPoses, row: int) -> str:
+    """Why the other pose does not help either, in brackets; empty if there is none, or it does."""
+    joints = inverse(machine, moves.tip[row : row + 1], moves.axis[row : row + 1]).joints[:, 0]
+    difference = joints[:, list(machine.rotary)] - poses.rotary[row]
+    difference -= 360.0 * np.rint(difference / 360.0)
+    distance = np.abs(difference).sum(axis=1)
+    other = joints[int(np.argmax(distance))]
+    outside = np.flatnonzero(outside_limits(other, *limits_of(machine, machine.workpiece_zero is not None)))
+    if not len(outside) or distance.max() < 1e-6:
+        return ""
+    return f" (in the other pose {machine.axes[outside[0]].name} would go to {other[outside[0]]:.5f})"
+
+
+def travel_problems(operations: Sequence[tuple[str, Moves, PlannedPoses]], machine: Machine) -> Iterable[Problem]:
+    """Slides whose travel is too short for the whole program wherever the workpiece sits, at the point farthest out.
+
+    ``operations``: CL file, moves and poses of each.
+    """
+    extremes = np.array([poses.extremes for _, _, poses in operations])
+    extremes = np.column_stack((extremes[:, :, 0].min(axis=0), extremes[:, :, 1].max(axis=0)))
+    for column in np.flatnonzero(exceeds_travel(machine, extremes)).tolist():
+        axis = machine.axes[column]
+        low, high = extremes[column].tolist()
+        end = 1 if abs(high) >= abs(low) else 0
+        file, moves, poses = next(one for one in operations if one[2].extremes[column, end] == extremes[column, end])
+        what = (
+            f"axis {axis.name} would go from {low:.3f} to {high:.3f}, {high - low:.3f} mm;"
+            f" its travel from {axis.low:g} to {axis.high:g} has room for {axis.high - axis.low:g} mm"
+        )
+        cure = "move or turn the workpiece, or post for another machine"
+        yield Problem(file, int(moves.line[poses.extreme_rows[column, end]]), what, cure)

@@ -1,0 +1,167 @@
+"""First stage: every operation in the program's coordinate system, in its machining mode, with arcs and cycles that the
+control takes.
+
+In:     operations as their CL files have them.
+Out:    ``PreparedOperation``: other arcs are lines now, other cycles are rows of motion.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion.errors import Problem, RefusedError, Severity
+from trunnion.model.frames import into_frame, into_plane, relative_frame
+from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
+from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation
+from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, spindle_state_at
+from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
+from trunnion.planning.linearization.arc_chords import arcs_a_control_takes, arcs_about_tool, flat_arcs, lines_for_arcs
+from trunnion.planning.machining_mode import (
+    mode_conflicts,
+    mode_of,
+    supported_mode,
+    tilted_plane,
+    with_exact_upright_axis,
+)
+from trunnion.planning.request import OperationPart, PlanRequest, PreparedOperation
+
+#: Modes in which the tool axis may change.
+_SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
+
+
+def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRequest) -> list[PreparedOperation]:
+    """Prepare all operations of a program.
+
+    Parameters
+    ----------
+    sources
+        CL file and operation, in the order in which they are cut.
+
+    Raises
+    ------
+    RefusedError
+        With everything that cannot be made: modes that the control lacks or the tool axis does not fit, and cycles.
+    """
+    frame = Frame() if request.options.absolute_frame else sources[0][1].frame
+    prepared: list[PreparedOperation] = []
+    errors: list[Problem] = []
+    spindle: SpindleState | None = None
+    for file, original in sources:
+        try:
+            operation, conflicts = _in_mode(_in_frame(request, file, original, frame))
+            errors += conflicts
+            prepared.append(_with_holes(_with_lines_for_arcs(operation), spindle))
+        except HoleCycleError as error:
+            errors.append(Problem(file, error.line, error.what, error.cure))
+        spindle = spindle_state_at(original.events, len(original.moves), spindle)
+    if errors:
+        raise RefusedError(errors)
+    return prepared
+
+
+def _in_frame(request: PlanRequest, file: str, original: Operation, frame: Frame) -> PreparedOperation:
+    """The operation in the program's coordinate system ``frame``, with cycles around holes only."""
+    operation = into_frame(normalize_cycles(original), frame)
+    own_frame = relative_frame(original.frame, frame)
+    return PreparedOperation(request, file, original, operation, own_frame, request.options.simultaneous_mode)
+
+
+def _in_mode(prepared: PreparedOperation) -> tuple[PreparedOperation, list[Problem]]:
+    """The operation with its machining mode, and why it cannot be made in that mode."""
+    file, operation = prepared.file, prepared.operation
+    options, capabilities = prepared.request.options, prepared.request.capabilities
+    mode = mode_of(operation, options.mode_for(operation.name), capabilities.negligible_tilt)
+    mode, warnings = supported_mode(file, operation, mode, options, capabilities)
+    conflicts = mode_conflicts(file, operation, mode, capabilities)
+    if mode is MachiningMode.THREE_AXIS and not conflicts:
+        operation = with_exact_upright_axis(operation)
+    return replace(prepared, operation=operation, mode=mode, warnings=warnings), conflicts
+
+
+def _with_lines_for_arcs(prepared: PreparedOperation) -> PreparedOperation:
+    """The operation with lines in place of the arcs that the control does not take."""
+    operation, capabilities = prepared.operation, prepared.request.capabilities
+    is_tilted = prepared.mode is MachiningMode.TILTED
+    written = operation
+    if is_tilted:
+        written = into_plane(operation, tilted_plane(operation.moves.axis[0], prepared.own_frame))
+    keep = arcs_a_control_takes(written, capabilities.only_arcs_about_z, capabilities.helices_by_angle)
+    if not capabilities.helices:
+        keep &= flat_arcs(operation)
+    if not capabilities.multi_turn_arcs:
+        keep &= operation.arcs.full_turns == 0
+    if prepared.mode is MachiningMode.TCP and not capabilities.arcs_with_tcp:
+        keep[:] = False
+    if is_tilted and capabilities.planes_from_pose:
+        keep &= arcs_about_tool(operation)
+    return prepared.with_operation(lines_for_arcs(operation, keep, prepared.request.chord_tolerance))
+
+
+def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> PreparedOperation:
+    """The operation with its parts, and with rows of motion in place of the cycles that the control lacks.
+
+    Parameters
+    ----------
+    spindle
+        The state before the operation.
+
+    Raises
+    ------
+    HoleCycleError
+        When a cycle that would become motion leaves out something.
+    """
+    operation = prepared.operation
+    if not any(isinstance(event, CycleOn) for event in operation.events):
+        return prepared
+    # Few programs have holes, and fewer have holes that are motion.
+    from trunnion.planning.holes.hole_motion import REQUESTED, HoleConditions, convert_holes_to_motion
+
+    options, capabilities = prepared.request.options, prepared.request.capabilities
+    ranges = _ranges_in_planes(prepared)
+    mode = prepared.mode if ranges is None else MachiningMode.TILTED
+    objection = ""
+    if mode in _SIMULTANEOUS and not _drills_along_tool(prepared):
+        objection = f"no cycle goes along a tilted axis {'with TCP' if mode is MachiningMode.TCP else 'without TCP'}"
+        turns = axis_change_rows(operation)
+        ranges = row_ranges(turns[operation.moves.kind[turns] == Kind.RAPID], len(operation.moves))
+    from_home = np.zeros(len(operation.moves), np.bool_)
+    from_home[[first for first, _ in ranges or ()]] = True
+    conditions = HoleConditions(spindle, from_home, objection, capabilities.cycle_objection, options.holes_as_motion)
+    holes = convert_holes_to_motion(operation, conditions)
+    new = holes.first_rows
+    log, warnings = [], list(prepared.warnings)
+    for cycles in holes.converted:
+        text = f"{cycles.description}: {cycles.reason}"
+        log.append(Decision(prepared.file, operation.name, cycles.line, -1, DecisionTopic.HOLES, text))
+        if cycles.reason != REQUESTED:
+            warnings.append(Problem(prepared.file, cycles.line, cycles.reason, cycles.description, Severity.WARNING))
+    return replace(
+        prepared,
+        operation=holes.operation,
+        mode=mode,
+        parts=[
+            OperationPart(int(new[first]), int(new[end]), ends_in_hole=bool(new[end] - new[end - 1] > 1))
+            for first, end in ranges or ()
+        ],
+        warnings=warnings,
+        log=log,
+    )
+
+
+def _ranges_in_planes(prepared: PreparedOperation) -> list[tuple[int, int]] | None:
+    """Rows of the planes in which holes along several axes are made; None: they are not made in planes."""
+    options, capabilities = prepared.request.options, prepared.request.capabilities
+    if prepared.mode not in _SIMULTANEOUS or MachiningMode.TILTED not in capabilities.modes:
+        return None
+    if options.mode_for(prepared.operation.name) is not None:
+        return None
+    if prepared.mode is MachiningMode.TCP and capabilities.turns_between_holes:
+        return None
+    return split_by_axis(prepared.operation)
+
+
+def _drills_along_tool(prepared: PreparedOperation) -> bool:
+    """Whether cycles drill along a tool axis that changes from hole to hole."""
+    options, capabilities = prepared.request.options, prepared.request.capabilities
+    return prepared.mode is MachiningMode.TCP and capabilities.turns_between_holes and not options.holes_as_motion
