@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.model.columns import RampColumnBuilder, StepColumnBuilder
+from trunnion.readers.control.row_buffer import RampColumnBuilder, StepColumnBuilder
 
 NUMBERS = st.lists(st.sampled_from([-1, 0, 1, 5, 10, 11, 12, 13, 20, 999_999_999_999_999]), max_size=30)
 CLIMBS = st.lists(st.tuples(st.integers(-1, 50), st.integers(-3, 10), st.integers(1, 6)), max_size=8).map(

@@ -69,3 +69,8 @@ def rotation_about(direction: Floats, angle: float) -> Floats:
     cross = np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
     radians = math.radians(math.fmod(angle, 360.0))
     return np.asarray(np.eye(3) + math.sin(radians) * cross + (1.0 - math.cos(radians)) * (cross @ cross))
+
+
+def affine_matrix(linear: Floats, shift: Floats) -> Floats:
+    """(3, 4) float64 from (3, 3) and (3,): applied as ``m[:, :3] @ p + m[:, 3]``."""
+    return np.ascontiguousarray(np.column_stack((linear, shift)))

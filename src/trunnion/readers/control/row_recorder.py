@@ -14,7 +14,6 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.machines.inverse import kinematic_parameters
 from trunnion.model import axis_positions
-from trunnion.model.columns import RowBuffer, StepColumnBuilder, affine_matrix
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import (
     ORIENTATION_FROM_WORDS,
@@ -28,6 +27,8 @@ from trunnion.model.run import (
     SurfaceNormals,
 )
 from trunnion.model.toolpath import Arcs, Kind
+from trunnion.readers.control.affine_map import affine_matrix
+from trunnion.readers.control.row_buffer import RowBuffer, StepColumnBuilder
 from trunnion.readers.scan.buffers import (
     COMMENTS,
     COUNTER_COUNT,

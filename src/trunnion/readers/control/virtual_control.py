@@ -21,13 +21,13 @@ from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.machines.inverse import kinematic_parameters, solve_slides
 from trunnion.model import axis_positions
-from trunnion.model.columns import StepColumnBuilder, affine_matrix
 from trunnion.model.run import Orientation, ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs
-from trunnion.readers.control.affine_map import AffineMap
+from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import HoleMotion
+from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note, RowRecorder, within_limits
 from trunnion.readers.scan.buffers import KIND
 

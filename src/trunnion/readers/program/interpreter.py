@@ -13,8 +13,8 @@ from trunnion.arrays import Ints
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.files import WriteProgress
 from trunnion.machines import Machine
-from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.run import Comment, Diagnostic, Run
+from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.source_text import SourceText, Subprograms, decode
 from trunnion.readers.scan.buffers import COMMENTS, LINE, POSITION

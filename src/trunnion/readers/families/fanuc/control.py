@@ -6,12 +6,12 @@ from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, Mount
 from trunnion.model.axis_positions import PLAIN
-from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap, rotation_about, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.scan.letter_blocks import letter_table

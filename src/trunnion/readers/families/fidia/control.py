@@ -5,13 +5,13 @@ import math
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine
-from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.program.settings import reading_of

@@ -12,13 +12,13 @@ from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, Mount, forward
 from trunnion.machines.inverse import solve_slides
 from trunnion.model import axis_positions
-from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord
+from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
 from trunnion.readers.control.virtual_control import RAPID, Circle, VirtualControl
 from trunnion.readers.families.heidenhain.plane_frames import Datum, spatial

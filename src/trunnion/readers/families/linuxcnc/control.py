@@ -8,10 +8,10 @@ import numpy as np
 from trunnion.arrays import Codes, Floats
 from trunnion.machines import Axis, Machine, forward
 from trunnion.model import axis_positions
-from trunnion.model.columns import StepColumnBuilder
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.scan.letter_blocks import letter_table

@@ -13,13 +13,13 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
-from trunnion.model.columns import StepColumnBuilder
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs, tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import HoleMotion
+from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 from trunnion.readers.program.settings import reading_of
