@@ -35,7 +35,7 @@ G_WORDS = {
     "fanuc": {
         *COMMON, *FEED_MODES, *fanuc.OFFSETS, fanuc.MORE_OFFSETS, *fanuc.WITHOUT_PATH_EFFECT, *fanuc.NOT_SIMULATED,
         *fanuc.TAKEN_AS_LINES, *fanuc.NO_MOTION, *fanuc.TAKING_AXIS_WORDS, *fanuc_cycles.CYCLES, fanuc.TCP,
-        fanuc.TCP_VECTOR, fanuc.LENGTH_OFF, fanuc.MACHINE, fanuc.TOOL_UPRIGHT, fanuc.UPRIGHT_OFF,
+        fanuc.TCP_VECTOR, fanuc.LENGTH_OFF, fanuc.MACHINE, fanuc.ALIGN_TOOL, fanuc.ROTATION_OFF,
         fanuc.MODAL_MACRO_OFF, 200, 210, 980, 990,
     },
     "fidia": {

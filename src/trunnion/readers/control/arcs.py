@@ -21,7 +21,7 @@ RADIUS_RATIO: Final = 0.001
 SAME_POINT: Final = 1e-9
 
 #: No machine makes circles with a larger radius, mm.
-LARGEST_RADIUS: Final = 1e7
+MAX_RADIUS: Final = 1e7
 
 
 class ArcError(Exception):
@@ -102,7 +102,7 @@ def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bo
     if length < SAME_POINT or not 0.0 < angle < 360.0:
         raise ArcError(f"an opening angle of {angle:g} makes no circle here")
     half = math.radians(0.5 * angle)
-    if length > 2.0 * LARGEST_RADIUS * math.sin(half):
+    if length > 2.0 * MAX_RADIUS * math.sin(half):
         raise ArcError(f"an opening angle of {angle:g} needs a radius that no machine has")
     height = 0.5 * length * math.cos(half) / math.sin(half)
     return _from_chord(start, end, chord, height, plane, clockwise, turns)
@@ -130,7 +130,7 @@ def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
         raise ArcError("the three points of the circle lie on a line")
     centre = start + (np.cross(normal, a) * float(b @ b) + np.cross(b, normal) * float(a @ a)) / (2.0 * size)
     radius = float(np.linalg.norm(start - centre))
-    if not SAME_POINT < radius < LARGEST_RADIUS:
+    if not SAME_POINT < radius < MAX_RADIUS:
         raise ArcError("the three points of the circle make no circle that a machine has")
     return Arc(end, centre, normal / math.sqrt(size), radius, turns)
 

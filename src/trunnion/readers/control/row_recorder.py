@@ -44,7 +44,7 @@ from trunnion.readers.scan.buffers import (
 )
 
 #: Larger positions (mm, degrees) are none that a machine could have.
-LARGEST_POSITION = 1e7
+MAX_POSITION = 1e7
 
 Note = Callable[[str, Severity], None]
 
@@ -194,7 +194,7 @@ class RowRecorder:
         rotary   programmed values, NaN where there are none; ``turn_rule`` as in ``trunnion.model.axis_positions``
         vector   (3,) programmed tool axis, any length
         """
-        if not within_limits(end) or any(abs(value) > LARGEST_POSITION for value in rotary):
+        if not within_limits(end) or any(abs(value) > MAX_POSITION for value in rotary):
             self.note("a position is farther away than any machine reaches: the block is not executed", Severity.ERROR)
             return False
         c = self.columns
@@ -330,4 +330,4 @@ class RowRecorder:
 
 def within_limits(point: Floats) -> bool:
     """Whether a machine could be so large, NaN being nowhere."""
-    return float(np.abs(point).max()) < LARGEST_POSITION
+    return float(np.abs(point).max()) < MAX_POSITION

@@ -35,7 +35,7 @@ def solutions(machine: Machine, normal: Floats, current_joints: Floats) -> list[
     return pairs
 
 
-def aligned(machine: Machine, rotary: tuple[float, float], along: Floats) -> tuple[float, float]:
+def align_first_axis(machine: Machine, rotary: tuple[float, float], along: Floats) -> tuple[float, float]:
     """Return the position with the first axis, which is free there, turned so that the tool's X looks ``along`` (3,).
 
     ``along`` is seen from the workpiece. Only turns about the first axis are looked at.
@@ -47,13 +47,13 @@ def aligned(machine: Machine, rotary: tuple[float, float], along: Floats) -> tup
     return axis.sense * math.degrees(math.atan2(sine, cosine)), rotary[1]
 
 
-def free(machine: Machine, rotary: tuple[float, float]) -> bool:
+def first_axis_is_free(machine: Machine, rotary: tuple[float, float]) -> bool:
     """Whether the tool axis stands along the first rotary axis, so that this one does not tilt it."""
     tool = tool_frame(machine, rotary) @ np.array(machine.spindle_direction)
     return float(np.linalg.norm(np.cross(tool, np.array(machine.axes[machine.rotary[0]].direction)))) < POLE_TOLERANCE
 
 
-def fits(machine: Machine, rotary: tuple[float, float]) -> bool:
+def is_in_travel(machine: Machine, rotary: tuple[float, float]) -> bool:
     """Whether both rotary axes have the position in their travel, in some turn."""
     axes = (machine.axes[column] for column in machine.rotary)
     return all(
@@ -65,7 +65,7 @@ def fits(machine: Machine, rotary: tuple[float, float]) -> bool:
     )
 
 
-def turned_inside(machine: Machine, rotary: tuple[float, float], current_joints: Floats) -> tuple[float, float]:
+def nearest_in_travel(machine: Machine, rotary: tuple[float, float], current_joints: Floats) -> tuple[float, float]:
     """The turns of a rotary position that lie inside the travel, nearest to where the axes stand in ``held`` (5,)."""
     first, second = (
         float(

@@ -28,7 +28,7 @@ from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.row_buffer import StepColumnBuilder
-from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note, RowRecorder, within_limits
+from trunnion.readers.control.row_recorder import MAX_POSITION, Note, RowRecorder, within_limits
 from trunnion.readers.scan.buffers import KIND
 
 #: Kinds of motion in force.
@@ -182,7 +182,7 @@ class VirtualControl(RowRecorder, ABC):
         if not abs(float(np.cross(x, y) @ z)) >= 1e-9:
             self.note("the frame would flatten space: it is not used", Severity.ERROR)
             return
-        if float(np.abs(total.linear).max()) > 1e6 or float(np.abs(total.shift).max()) > LARGEST_POSITION:
+        if float(np.abs(total.linear).max()) > 1e6 or float(np.abs(total.shift).max()) > MAX_POSITION:
             self.note("the frame is larger than any machine: it is not used", Severity.ERROR)
             return
         with self.frame_change(keep_base=keep_base):

@@ -35,8 +35,8 @@ MAX_SUBPROGRAMS: Final = 1000
 MAX_CALL_DEPTH: Final = 16
 
 #: Rows there is room for when the kernel starts, and fewer than which are too few.
-_FIRST_CAPACITY: Final = 65536
-_LEAST_ROOM: Final = 4096
+_RESERVED_ROWS: Final = 65536
+_MIN_FREE_ROWS: Final = 4096
 
 
 class ProgramEnd(Exception):  # noqa: N818 - the end of a program is no error
@@ -47,7 +47,7 @@ class ProgramEnd(Exception):  # noqa: N818 - the end of a program is no error
 class ActiveProgram:
     """A program or subprogram being executed; file as in ``Run.file``."""
 
-    text: SourceText
+    source: SourceText
     file: int
     repeats: int = 1
 
@@ -67,16 +67,16 @@ class Interpreter(ABC, Generic[A]):
             what = f"has slides {', '.join(sorted(slides))}"
             raise InputError(Problem(machine.key, 0, what, "this reader needs X, Y and Z"))
         self._path = path
-        self._named = named
+        self._subprograms = named
         self._skip = skip
-        self._limit = step_limit
+        self._step_limit = step_limit
         self._steps = 0
-        self._kept = 0
-        self._events = 0
+        self._record_count = 0
+        self._events_counted = 0
         self._findings: list[Diagnostic] = []
-        self._more = 0
+        self._unlisted = 0
         self._comments: list[Comment] = []
-        self._texts: dict[Path, tuple[SourceText, int]] = {}
+        self._sources: dict[Path, tuple[SourceText, int]] = {}
         self._file = StepColumnBuilder(0)
         self._files = [str(path)]
         self._stack: list[A] = []
@@ -87,19 +87,19 @@ class Interpreter(ABC, Generic[A]):
         """The virtual control that does what blocks say."""
 
     @abstractmethod
-    def _first(self, text: SourceText) -> A:
+    def _main_program(self, text: SourceText) -> A:
         """Return the activation of the program itself."""
 
     @abstractmethod
-    def _line(self, call: A, line: int, raw: str) -> None:
+    def _execute_line(self, active: A, line: int, raw: str) -> None:
         """Execute a line."""
 
     @abstractmethod
-    def _may_be_plain(self, text: SourceText) -> bool:
+    def _may_scan(self, text: SourceText) -> bool:
         """Whether it is worth starting the kernel at the next line."""
 
     @abstractmethod
-    def _kernel(self, text: SourceText) -> None:
+    def _scan_blocks(self, text: SourceText) -> None:
         """Let the kernel take plain blocks."""
 
     def run(self, write_progress: WriteProgress | None = None) -> Run:
@@ -108,23 +108,23 @@ class Interpreter(ABC, Generic[A]):
         if write_progress is not None:
             main.follow(write_progress)
         try:
-            self._stack.append(self._first(main))
+            self._stack.append(self._main_program(main))
             self._execute()
         except ProgramEnd:
             pass
         finally:
             main.close()
-            for text, _ in self._texts.values():
+            for text, _ in self._sources.values():
                 text.close()
         self.control.resolve_rows()
         diagnostics = list(self._findings)
-        if self._more:
-            diagnostics.append(Diagnostic(0, f"and {self._more} findings more", Severity.ERROR, self._files[0]))
+        if self._unlisted:
+            diagnostics.append(Diagnostic(0, f"and {self._unlisted} findings more", Severity.ERROR, self._files[0]))
         return self.control.finish(self._files, self._comments, diagnostics)
 
     def _note(self, text: str, severity: Severity) -> None:
         if len(self._findings) >= MAX_DIAGNOSTICS:
-            self._more += 1
+            self._unlisted += 1
             return
         file = self._files[self._file.current]
         self._findings.append(Diagnostic(self.control.line, text, severity, file))
@@ -134,123 +134,125 @@ class Interpreter(ABC, Generic[A]):
     def _execute(self) -> None:
         control = self.control
         while self._stack:
-            call = self._stack[-1]
-            text = call.text
+            active = self._stack[-1]
+            text = active.source
             if not text.fill():
-                self._leave()
+                self._leave_program()
                 continue
-            if self._may_be_plain(text):
+            if self._may_scan(text):
                 self._scan(text)
                 if not text.fill():
                     continue
             line = text.line
             control.line, control.block_number = line, -1
             raw = text.next_line()
-            self._count(1 + len(raw) // CHARACTERS_PER_STEP)
-            self._line(call, line, raw)
-            self._keep_events()
+            self._count_blocks(1 + len(raw) // CHARACTERS_PER_STEP)
+            self._execute_line(active, line, raw)
+            self._count_events()
 
     def _scan(self, text: SourceText) -> None:
         """Let the kernel take plain blocks, as many as there are."""
         control = self.control
         columns = control.columns
         while text.fill():
-            if columns.capacity - columns.n < _LEAST_ROOM:
+            if columns.capacity - columns.n < _MIN_FREE_ROWS:
                 # A little more than there will be if the program goes on as it began, once it is known how it does.
-                begun = columns.n > _FIRST_CAPACITY // 2
-                columns.reserve(_FIRST_CAPACITY, int(1.02 * text.expected(columns.n)) if begun else 0)
+                begun = columns.n > _RESERVED_ROWS // 2
+                columns.reserve(_RESERVED_ROWS, int(1.02 * text.expected_rows(columns.n)) if begun else 0)
             control.before_scan(text.position, text.line)
-            self._kernel(text)
+            self._scan_blocks(text)
             control.after_scan()
-            self._take_comments(text, control.scan_records.comments[: control.counters[COMMENTS]])
+            self._record_scanned_comments(text, control.scan_records.comments[: control.counters[COMMENTS]])
             line = int(control.counters[LINE])
             taken = line - text.line
             size = int(control.counters[POSITION]) - text.position
             text.position, text.line = int(control.counters[POSITION]), line
             control.line = line
-            self._count(taken + max(size - CHARACTERS_PER_STEP * taken, 0) // CHARACTERS_PER_STEP)
+            self._count_blocks(taken + max(size - CHARACTERS_PER_STEP * taken, 0) // CHARACTERS_PER_STEP)
             if text.position < len(text.buffer) and not control.full:
                 return
 
-    def _take_comments(self, text: SourceText, table: Ints) -> None:
+    def _record_scanned_comments(self, text: SourceText, table: Ints) -> None:
         file = self._file.current
-        self._keep(len(table), int((table[:, 3] - table[:, 2]).sum()))
+        self._count_records(len(table), int((table[:, 3] - table[:, 2]).sum()))
         for line, row, start, end in table.tolist():
             words = decode(text.buffer[start:end].tobytes()).strip("\r")
             self._comments.append(Comment(line, row, words, file))
 
-    def _comment(self, line: int, comment: str | None) -> None:
+    def _record_comment(self, line: int, comment: str | None) -> None:
         if comment is not None:
-            self._keep(1, len(comment))
+            self._count_records(1, len(comment))
             self._comments.append(Comment(line, self.control.row, comment, self._file.current))
 
     # Limits
 
-    def _count(self, blocks: int) -> None:
+    def _count_blocks(self, blocks: int) -> None:
         """Count executed blocks. Going once through each file is free."""
         self._steps += blocks
-        if self._steps <= self._limit:
+        if self._steps <= self._step_limit:
             return
-        main = self._stack[0].text
-        texts = [text for text, _ in self._texts.values()]
-        allowed = self._limit + main.known + sum(text.known for text in texts)
+        main = self._stack[0].source
+        texts = [text for text, _ in self._sources.values()]
+        allowed = self._step_limit + main.known_lines + sum(text.known_lines for text in texts)
         allowed += sum(text.size // CHARACTERS_PER_STEP for text in (main, *texts))
         if self._steps > allowed:
-            raise self._endless(f"executes more than {self._limit} blocks")
+            raise self._limit_error(f"executes more than {self._step_limit} blocks")
 
-    def _keep(self, texts: int, characters: int) -> None:
+    def _count_records(self, texts: int, characters: int) -> None:
         """Count comments and events, which are kept. What each file says once is free."""
-        self._kept += texts + characters // CHARACTERS_PER_STEP
-        if self._kept <= self._limit:
+        self._record_count += texts + characters // CHARACTERS_PER_STEP
+        if self._record_count <= self._step_limit:
             return
-        files = (self._stack[0].text, *(text for text, _ in self._texts.values()))
-        if self._kept > self._limit + sum(text.size for text in files):
-            raise self._endless(f"makes more than {self._limit} comments and events")
+        files = (self._stack[0].source, *(text for text, _ in self._sources.values()))
+        if self._record_count > self._step_limit + sum(text.size for text in files):
+            raise self._limit_error(f"makes more than {self._step_limit} comments and events")
 
-    def _keep_events(self) -> None:
-        new = self.control.events[self._events :]
+    def _count_events(self) -> None:
+        new = self.control.events[self._events_counted :]
         if new:
-            self._events += len(new)
-            self._keep(len(new), sum(len(event.value) for event in new if isinstance(event.value, str | tuple)))
+            self._events_counted += len(new)
+            self._count_records(
+                len(new), sum(len(event.value) for event in new if isinstance(event.value, str | tuple))
+            )
 
-    def _endless(self, what: str) -> InputError:
-        return self._stack[-1].text.problem(self.control.line, f"the program {what}", "does it end?")
+    def _limit_error(self, what: str) -> InputError:
+        return self._stack[-1].source.problem(self.control.line, f"the program {what}", "does it end?")
 
     # Subprograms
 
     def _check_depth(self) -> None:
         if len(self._stack) >= MAX_CALL_DEPTH:
-            raise self._stack[-1].text.problem(
+            raise self._stack[-1].source.problem(
                 self.control.line, f"calls subprograms deeper than {MAX_CALL_DEPTH} levels", "does one call itself?"
             )
 
-    def _open(self, path: Path) -> tuple[SourceText, int]:
+    def _open_subprogram(self, path: Path) -> tuple[SourceText, int]:
         """Return the text of a subprogram, at its first line, and its place in ``Run.files``; rows are now its own."""
-        if path not in self._texts:
-            if len(self._texts) >= MAX_SUBPROGRAMS:
-                raise self._endless(f"calls more than {MAX_SUBPROGRAMS} subprograms")
+        if path not in self._sources:
+            if len(self._sources) >= MAX_SUBPROGRAMS:
+                raise self._limit_error(f"calls more than {MAX_SUBPROGRAMS} subprograms")
             self._files.append(str(path))
-            self._texts[path] = self.source_type(path), len(self._files) - 1
-            text, file = self._texts[path]
+            self._sources[path] = self.source_type(path), len(self._files) - 1
+            text, file = self._sources[path]
         else:
             # The same file may be active more than once: each activation has its own place in it.
-            text, file = self._texts[path][0].restarted(), self._texts[path][1]
+            text, file = self._sources[path][0].restarted(), self._sources[path][1]
         text.first_row = self.control.row
         self._file.set(self.control.row, file)
         return text, file
 
-    def _leave(self) -> None:
+    def _leave_program(self) -> None:
         """End of a subprogram, or of the program."""
-        call = self._stack[-1]
-        call.repeats -= 1
-        if call.repeats > 0:
-            call.text.jump(1)
-            self._count(1)
+        active = self._stack[-1]
+        active.repeats -= 1
+        if active.repeats > 0:
+            active.source.jump(1)
+            self._count_blocks(1)
             return
         self._stack.pop()
-        if not call.text.whole:
-            call.text.close()
+        if not active.source.whole:
+            active.source.close()
         if not self._stack:
             raise ProgramEnd
         self._file.set(self.control.row, self._stack[-1].file)
-        self.control.line = self._stack[-1].text.line - 1
+        self.control.line = self._stack[-1].source.line - 1

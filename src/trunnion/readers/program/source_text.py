@@ -57,8 +57,8 @@ class SourceText:
         self.first_row = 0
         self._ended = False
         # A chunk, and before it what the last one held of its line.
-        self._room = bytearray(0 if whole else MAX_LINE_LENGTH + CHUNK + 1)
-        self._left = self._filled = 0
+        self._chunk = bytearray(0 if whole else MAX_LINE_LENGTH + CHUNK + 1)
+        self._remainder = self._filled = 0
         self.buffer: Bytes = np.zeros(0, np.uint8)
         self.position = 0
         self.line = 1
@@ -93,16 +93,16 @@ class SourceText:
         return len(self.buffer) if self.whole else self._size
 
     @property
-    def _behind(self) -> int:
+    def _bytes_read(self) -> int:
         """Bytes before the next line."""
         return self.position + (0 if self.whole else self._file.tell() - self._filled)
 
-    def expected(self, rows: int) -> int:
+    def expected_rows(self, rows: int) -> int:
         """How many rows there will be if the text goes on as it began, with ``rows`` up to here.
 
         A loop makes many rows of few bytes: what lies ahead bounds what may be expected of it.
         """
-        behind, size, here = self._behind, self.size, rows - self.first_row
+        behind, size, here = self._bytes_read, self.size, rows - self.first_row
         return self.first_row + min(here * size // max(behind, 1), here + (size - behind) // SHORTEST_ROW)
 
     def fill(self) -> bool:
@@ -132,23 +132,23 @@ class SourceText:
     def _read(self) -> None:
         """Take the next chunk: what is left of the last one goes before it, in the same memory."""
         self._wait(self._file.tell() + CHUNK)
-        left, end = self._left, self._filled
-        self._room[: end - left] = self._room[left:end]
+        left, end = self._remainder, self._filled
+        self._chunk[: end - left] = self._chunk[left:end]
         filled = end - left
         try:
-            got = self._file.readinto(memoryview(self._room)[filled : filled + CHUNK])
+            got = self._file.readinto(memoryview(self._chunk)[filled : filled + CHUNK])
         except OSError as error:
             raise self.problem(0, f"cannot be read: {error}") from None
         if not got:
             self._ended = True
-            self._room[filled : filled + 1] = b"\n"
+            self._chunk[filled : filled + 1] = b"\n"
             got = 1 if filled else 0
         filled += got
-        cut = self._room.rfind(b"\n", 0, filled) + 1
+        cut = self._chunk.rfind(b"\n", 0, filled) + 1
         if filled - cut > MAX_LINE_LENGTH:
             raise self.problem(self.line, f"is longer than {MAX_LINE_LENGTH} characters", "this is no program")
-        self._left, self._filled = cut, filled
-        self.buffer = np.frombuffer(self._room, np.uint8, cut)
+        self._remainder, self._filled = cut, filled
+        self.buffer = np.frombuffer(self._chunk, np.uint8, cut)
         self.buffer.setflags(write=False)
         self.position = 0
 
@@ -184,13 +184,13 @@ class SourceText:
         self._starts = np.concatenate((np.zeros(1, np.int64), np.flatnonzero(self.buffer == 10) + 1))
         self.jump(self.line)
 
-    def all(self) -> bytes:
+    def whole_bytes(self) -> bytes:
         """Return the whole program."""
         self.load()
         return self.buffer.tobytes()
 
     @property
-    def known(self) -> int:
+    def known_lines(self) -> int:
         """Number of lines, as far as it is known without holding the program whole."""
         return self.lines if self.whole else self.line
 

@@ -11,7 +11,7 @@ from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Expressio
 MAX_LENGTH: Final = 8192
 
 #: Larger codes are none that a control has.
-_LARGEST_CODE: Final = 100_000
+_MAX_CODE: Final = 100_000
 
 _NUMBERED = re.compile(r"N([0-9]{1,15})(?:\.[0-9]*)?")
 
@@ -38,7 +38,7 @@ class Block:
     words: dict[str, Number] = field(default_factory=dict)
     g: list[int] = field(default_factory=list)
     m: list[int] = field(default_factory=list)
-    settings: list[tuple[int | str, Value]] = field(default_factory=list)
+    assignments: list[tuple[int | str, Value]] = field(default_factory=list)
     used: set[str] = field(default_factory=set)
 
     def take(self, letter: str) -> float | None:
@@ -65,7 +65,7 @@ class Line:
 
     text: str
     number: int = -1
-    skipped: bool = False
+    block_skip: bool = False
     comments: tuple[str, ...] = ()
 
 
@@ -96,29 +96,29 @@ def split_line(raw: str, *, semicolon: bool) -> Line:
         comments.append(raw[begin.end() : end])
         at = end + 1
     text = "".join("".join(parts).split()).upper()
-    skipped = text.startswith("/")
-    if skipped:
+    block_skip = text.startswith("/")
+    if block_skip:
         text = text[2:] if text[1:2].isdigit() else text[1:]
     number = -1
     match = _NUMBERED.match(text)
     if match is not None:
         number = int(match.group(1))
         text = text[match.end() :]
-    return Line(text, number, skipped, tuple(comments))
+    return Line(text, number, block_skip, tuple(comments))
 
 
-def read_block(reader: ExpressionReader, twice: Callable[[str], None]) -> Block:
-    """Read the rest of a block; ``twice`` is told of words that stand in it more than once."""
+def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]) -> Block:
+    """Read the rest of a block; ``on_repeated_word`` is told of words that stand in it more than once."""
     block = Block()
     while not reader.ended:
         letter = reader.letter()
         if letter == "#":
-            key = reader.key()
-            block.settings.append((key, reader.assigned()))
+            key = reader.parameter_key()
+            block.assignments.append((key, reader.assigned_value()))
             continue
         if not "A" <= letter <= "Z":
             raise BlockError(f"{letter!r} is no word")
-        value, whole = reader.real()
+        value, whole = reader.signed_value()
         if value is None:
             # A word with a value that nobody set is as good as not written.
             continue
@@ -128,7 +128,7 @@ def read_block(reader: ExpressionReader, twice: Callable[[str], None]) -> Block:
             block.m.append(_code(value, letter, 1))
         else:
             if letter in block.words:
-                twice(letter)
+                on_repeated_word(letter)
             block.words[letter] = Number(value, whole)
     return block
 
@@ -142,7 +142,7 @@ def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> E
 
 def _code(value: float, letter: str, parts: int) -> int:
     code = round(value * parts)
-    if abs(value * parts - code) > 1e-3 or not 0 <= code < _LARGEST_CODE:
+    if abs(value * parts - code) > 1e-3 or not 0 <= code < _MAX_CODE:
         raise BlockError(f"{letter} takes a whole number" + (", or one with a tenth" if parts > 1 else ""))
     return code
 

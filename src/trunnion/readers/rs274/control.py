@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.readers.control import arcs
-from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 
 #: Kinds of motion besides rapid and lines: G2 and G3.
@@ -27,26 +27,26 @@ class Rs274Control(VirtualControl):
     relative_centres = True
 
     #: The length of the tool counts along Z.
-    _lengthened = False
+    _length_active = False
 
     @property
     def _length_offset(self) -> Floats:
-        return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self._lengthened else np.zeros(3)
+        return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self._length_active else np.zeros(3)
 
     @property
-    def lengthened(self) -> bool:
+    def length_active(self) -> bool:
         """Whether the length of the tool counts."""
-        return self._lengthened
+        return self._length_active
 
     def set_length(self, on: bool) -> None:
         """The length of the tool, if it is known, counts along Z, or no longer."""
-        if on == self._lengthened:
+        if on == self._length_active:
             return
         if not self.machine.tool_length:
-            self._lengthened = on
+            self._length_active = on
             return
         with self.frame_change():
-            self._lengthened = on
+            self._length_active = on
 
     def circle(self, params: Mapping[str, float], turns: int = 0) -> Circle | None:
         """The circle that the motion in force makes of a block; None if it makes lines.
@@ -61,7 +61,7 @@ class Rs274Control(VirtualControl):
     def _arc(self, params: Mapping[str, float], turns: int, start: Floats, end: Floats) -> arcs.Arc:
         if not 0 <= turns < MAX_TURNS:
             raise arcs.ArcError(f"a circle with {turns} turns")
-        if any(abs(value) * self.length_unit > LARGEST_POSITION for value in params.values()):
+        if any(abs(value) * self.length_unit > MAX_POSITION for value in params.values()):
             raise arcs.ArcError("a circle with numbers that no machine has")
         clockwise = self.kind == CLOCKWISE
         given = {axis: params[name] * self.length_unit for axis, name in enumerate("IJK") if name in params}

@@ -15,7 +15,7 @@ from typing import Final, Protocol
 MAX_NESTING: Final = 40
 
 #: Larger numbers are none that a machine could mean.
-LARGEST: Final = 1e300
+MAX_VALUE: Final = 1e300
 
 _NUMBER = re.compile(r"[0-9]+\.?[0-9]*|\.[0-9]+")
 _NAME = re.compile(r"<([^<>#\[\]]{1,80})>")
@@ -34,7 +34,7 @@ class Parameters(Protocol):
         """Return the value of a parameter by number or name, or raise BlockError."""
         ...
 
-    def known(self, key: int | str) -> bool:
+    def is_set(self, key: int | str) -> bool:
         """Whether a parameter has a value."""
         ...
 
@@ -48,15 +48,15 @@ class Arithmetic:
     functions   functions of one number in brackets
     pairs       functions of two numbers, ``NAME[a]/[b]`` or ``NAME[a,b]``
     bare        what follows the sign = may be an expression without brackets
-    empty       how operators that compare see a value that nobody set; None: values always count as numbers
+    compare_unset  how operators that compare see a value that nobody set; None: values always count as numbers
     """
 
     levels: tuple[tuple[str, ...], ...]
     operate: Callable[[str, float, float], float]
     functions: Mapping[str, Callable[[float], float]]
     pairs: Mapping[str, Callable[[float, float], float]]
-    bare: bool = False
-    empty: Callable[[str, Value, Value], float | None] | None = None
+    assigns_without_brackets: bool = False
+    compare_unset: Callable[[str, Value, Value], float | None] | None = None
 
 
 class ExpressionReader:
@@ -107,23 +107,23 @@ class ExpressionReader:
             )
         self.at = match.end()
         value = float(match.group())
-        if value > LARGEST:
+        if value > MAX_VALUE:
             raise BlockError("a number is larger than any machine's")
         return value, "." not in match.group()
 
-    def real(self) -> tuple[Value, bool]:
+    def signed_value(self) -> tuple[Value, bool]:
         """Return a value behind a letter or sign, and whether it was written as digits without a point."""
         self._deeper()
         try:
             if self.accept("-"):
-                value, whole = self.real()
+                value, whole = self.signed_value()
                 return (None if value is None else -value), whole
             if self.accept("+"):
-                return self.real()
+                return self.signed_value()
             if self.text.startswith("[", self.at):
                 return self.bracket(), False
             if self.accept("#"):
-                return self._parameters.value(self.key()), False
+                return self._parameters.value(self.parameter_key()), False
             name = self._function()
             if name:
                 return self._call(name), False
@@ -131,13 +131,13 @@ class ExpressionReader:
         finally:
             self._depth -= 1
 
-    def key(self) -> int | str:
+    def parameter_key(self) -> int | str:
         """Return the number or name of a parameter, behind its ``#``."""
         match = _NAME.match(self.text, self.at)
         if match is not None:
             self.at = match.end()
             return match.group(1)
-        value, _ = self.real()
+        value, _ = self.signed_value()
         if value is None or abs(value - round(value)) > 1e-4 or not 0 <= round(value) < 10_000_000:
             raise BlockError("a parameter needs a whole number")
         return round(value)
@@ -149,19 +149,19 @@ class ExpressionReader:
         self.expect("]")
         return value
 
-    def assigned(self) -> Value:
+    def assigned_value(self) -> Value:
         """Return what follows the sign of an assignment."""
         self.expect("=")
-        return self._level(0) if self._arithmetic.bare else self.real()[0]
+        return self._level(0) if self._arithmetic.assigns_without_brackets else self.signed_value()[0]
 
-    def sum(self) -> float:
+    def bracket_value(self) -> float:
         """Return the value of a bracket; what nobody set counts as 0."""
         return _plain(self.bracket())
 
     def _level(self, level: int) -> Value:
         levels = self._arithmetic.levels
         if level == len(levels):
-            return self.real()[0]
+            return self.signed_value()[0]
         left = self._level(level + 1)
         while True:
             operator = next((name for name in levels[level] if self.accept_operator(name)), None)
@@ -177,7 +177,7 @@ class ExpressionReader:
         return self.accept(name)
 
     def _apply(self, operator: str, left: Value, right: Value) -> float:
-        empty = self._arithmetic.empty
+        empty = self._arithmetic.compare_unset
         if empty is not None:
             answer = empty(operator, left, right)
             if answer is not None:
@@ -192,12 +192,12 @@ class ExpressionReader:
         if name == "EXISTS":
             self.expect("[")
             self.expect("#")
-            key = self.key()
+            key = self.parameter_key()
             self.expect("]")
-            return 1.0 if self._parameters.known(key) else 0.0
+            return 1.0 if self._parameters.is_set(key) else 0.0
         pairs = self._arithmetic.pairs
         if name not in pairs:
-            value = self.sum()
+            value = self.bracket_value()
             return _sane(lambda: self._arithmetic.functions[name](value), name)
         self.expect("[")
         first = _plain(self._level(0))
@@ -207,7 +207,7 @@ class ExpressionReader:
         else:
             self.expect("]")
             self.expect("/")
-            second = self.sum()
+            second = self.bracket_value()
         return _sane(lambda: pairs[name](first, second), name)
 
     def _deeper(self) -> None:
@@ -226,7 +226,7 @@ def _sane(work: Callable[[], float], name: str) -> float:
         value = work()
     except (ValueError, OverflowError, ZeroDivisionError):
         raise BlockError(f"{name} has no value here") from None
-    if isinstance(value, complex) or not abs(value) <= LARGEST:
+    if isinstance(value, complex) or not abs(value) <= MAX_VALUE:
         raise BlockError(f"{name} has no value here")
     return float(value)
 

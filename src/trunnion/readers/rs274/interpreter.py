@@ -51,10 +51,10 @@ PROGRAM_ENDS: Final = frozenset({2, 30})
 AXES: Final = "XYZABCUVW"
 
 #: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
-_PLAIN = re.compile(
+_PLAIN_START = re.compile(
     rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[\r\n]|G[ \t]*0?[01](?![0-9.])|[A-FXYZ][ \t]*[-+.0-9])", re.IGNORECASE
 )
-_LOOK: Final = 48
+_PREFIX_LENGTH: Final = 48
 
 
 @dataclass(slots=True)
@@ -89,12 +89,12 @@ class Rs274Interpreter(Interpreter[A]):
         """The virtual control."""
 
     @abstractmethod
-    def _text(self, call: A, line: int, text: str) -> None:
+    def _execute_block(self, active: A, line: int, text: str) -> None:
         """Execute a block without its comments; BlockError says why it cannot be done."""
 
     # Lines
 
-    def _line(self, call: A, line: int, raw: str) -> None:
+    def _execute_line(self, active: A, line: int, raw: str) -> None:
         try:
             parts = split_line(raw, semicolon=self.semicolon)
         except BlockError as error:
@@ -103,43 +103,43 @@ class Rs274Interpreter(Interpreter[A]):
         self.control.block_number = parts.number
         try:
             if parts.text.startswith("%"):
-                self._percent(call)
-            elif parts.text and not (parts.skipped and self._skip):
-                self._text(call, line, parts.text)
+                self._percent(active)
+            elif parts.text and not (parts.block_skip and self._skip):
+                self._execute_block(active, line, parts.text)
         except BlockError as error:
             self._note(f"not understood: {error}: the block is not executed", Severity.ERROR)
         finally:
             for comment in parts.comments:
-                self._comment(line, comment)
-                self._said(comment)
+                self._record_comment(line, comment)
+                self._handle_comment(comment)
 
-    def _said(self, comment: str) -> None:
+    def _handle_comment(self, comment: str) -> None:
         """Look at what a comment says, where that is more than a comment."""
 
-    def _percent(self, call: A) -> None:
+    def _percent(self, active: A) -> None:
         """Begin or end what is transferred."""
-        call.percents += 1
-        if call.percents > 1 or self.control.row > call.row:
-            self._end_of_file(call)
+        active.percents += 1
+        if active.percents > 1 or self.control.row > active.row:
+            self._end_of_file(active)
 
-    def _end_of_file(self, call: A) -> None:
+    def _end_of_file(self, active: A) -> None:
         """End at a percent sign."""
         raise ProgramEnd
 
     # Plain blocks
 
-    def _may_be_plain(self, text: SourceText) -> bool:
+    def _may_scan(self, text: SourceText) -> bool:
         control = self.control
         if self.motion not in (0, 10) or not control.absolute:
             return False
-        return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
+        return _PLAIN_START.match(text.buffer[text.position : text.position + _PREFIX_LENGTH].tobytes()) is not None
 
     @property
     @abstractmethod
     def _table(self) -> Codes:
         """What bytes mean to the kernel now."""
 
-    def _kernel(self, text: SourceText) -> None:
+    def _scan_blocks(self, text: SourceText) -> None:
         control = self.control
         first = control.columns.n
         inverse = control.feed_mode.current == 93
@@ -188,10 +188,10 @@ class Rs274Interpreter(Interpreter[A]):
 
     # Words
 
-    def _twice(self, letter: str) -> None:
+    def _report_repeated_word(self, letter: str) -> None:
         self._note(f"{letter} is written twice: the last one counts", Severity.ERROR)
 
-    def _modal(self, code: int) -> bool:
+    def _modal_g_code(self, code: int) -> bool:
         """Carry out a G code that all of them have; False if it is another one."""
         control = self.control
         if code in MOTIONS:
@@ -208,7 +208,7 @@ class Rs274Interpreter(Interpreter[A]):
             return False
         return True
 
-    def _name_code(self, code: int, named: dict[int, tuple[str, bool]], silent: frozenset[int]) -> None:
+    def _report_g_code(self, code: int, named: dict[int, tuple[str, bool]], silent: frozenset[int]) -> None:
         """Say that a G code is known and not simulated, or not known."""
         if code in RADIUS_COMPENSATION:
             self.control.compensation.set(self.control.row, RADIUS_COMPENSATION[code])
@@ -265,7 +265,7 @@ class Rs274Interpreter(Interpreter[A]):
         if missing:
             self._note("a line without a feed" if control.kind == LINEAR else "a circle without a feed", Severity.ERROR)
 
-    def _m(self, code: int) -> bool:
+    def _common_m_code(self, code: int) -> bool:
         """Carry out an M code that all of them have; False if it is another one."""
         control = self.control
         if code in SPINDLE:
@@ -281,7 +281,7 @@ class Rs274Interpreter(Interpreter[A]):
             return False
         return True
 
-    def _name_unused(self, block: Block) -> None:
+    def _report_unused_words(self, block: Block) -> None:
         """Say which words had no use."""
         for letter in block.unused():
             self._note(f"{letter} has no use in this block", Severity.ERROR)

@@ -40,7 +40,7 @@ _POWERS: Final = np.array([10.0**k for k in range(23)])
 _DIGITS: Final = 15
 
 #: Larger numbers are looked at by the interpreter, which knows how far machines reach.
-_LARGEST_NUMBER: Final = 1e5
+_MAX_NUMBER: Final = 1e5
 
 _TAB: Final = 9
 _LF: Final = 10
@@ -207,7 +207,7 @@ def scan_blocks(
                 motion = mantissa
             else:
                 value = mantissa / _POWERS[decimals]
-                if value > _LARGEST_NUMBER:
+                if value > _MAX_NUMBER:
                     plain = False
                     break
                 values[slot] = -value if negative else value

@@ -37,14 +37,14 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
         named = Subprograms(subprograms, SUFFIXES)
         super().__init__(path, machine, named, step_limit=step_limit, skip=skip)
         self._settings = settings_of(machine)
-        self._variables = Variables(self._system)
+        self._variables = Variables(self._system_value)
         self._flow = Flow(self._note, self._variables)
 
     @abstractmethod
-    def _system(self, key: int) -> float | None:
+    def _system_value(self, key: int) -> float | None:
         """Return what the control itself puts behind a number; None if it is none of its own."""
 
-    def _macro(self, call: ActiveProgram, block: Block) -> None:
+    def _macro(self, active: ActiveProgram, block: Block) -> None:
         """G65 and G66: a macro with arguments, now or after every motion."""
         number, times = block.take("P"), block.take("L")
         if number is None:
@@ -62,18 +62,18 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             arguments[words.ARGUMENTS["M"]] = float(block.m[0])
         macro = ModalMacro(_program(number), _times(times), arguments)
         if words.MODAL_MACRO in block.g:
-            call.modal = macro
+            active.modal = macro
         else:
-            self._write_row(macro.number, macro.times, macro.arguments)
+            self._enter_subprogram(macro.number, macro.times, macro.arguments)
 
     def _argument(self, letter: str, word: Number) -> float:
         if word.whole and word.value and not self._settings.calculator and letter not in "DEHMST":
             self._note(f"argument {letter} without a point: taken as it is written", Severity.WARNING)
         return word.value
 
-    def _call_modal(self, call: ActiveProgram) -> None:
-        if call.modal is not None:
-            self._write_row(call.modal.number, call.modal.times, dict(call.modal.arguments))
+    def _call_modal(self, active: ActiveProgram) -> None:
+        if active.modal is not None:
+            self._enter_subprogram(active.modal.number, active.modal.times, dict(active.modal.arguments))
 
     def _call(self, block: Block) -> None:
         """M98: P is the number, L how often; without L the digits before the last four."""
@@ -84,35 +84,35 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
         if times is None and program >= _FOUR:
             times = float(program // _FOUR)
             program %= _FOUR
-        self._write_row(program, _times(times), None)
+        self._enter_subprogram(program, _times(times), None)
 
-    def _write_row(self, number: int, times: int, arguments: dict[int, float] | None) -> None:
+    def _enter_subprogram(self, number: int, times: int, arguments: dict[int, float] | None) -> None:
         """Begin a subprogram: of this file, or of those that were named."""
         if times < 1:
             return
         self._check_depth()
         here = self._stack[-1]
-        begin = here.text.program(number)
+        begin = here.source.program(number)
         if begin is not None:
-            entered = ActiveProgram(here.text.restarted(), here.file, times)
+            entered = ActiveProgram(here.source.restarted(), here.file, times)
         else:
             path = next(
                 (
                     path
                     for name in (f"O{number:04d}", f"O{number}", f"{number:04d}", f"{number}")
-                    if (path := self._named.find(name))
+                    if (path := self._subprograms.find(name))
                 ),
                 None,
             )
             if path is None:
                 raise BlockError(f"missing subprogram O{number:04d}; name its file")
-            text, file = self._open(path)
+            text, file = self._open_subprogram(path)
             assert isinstance(text, FanucText)
             entered = ActiveProgram(text, file, times)
             begin = text.program(number) or 1
         entered.row, entered.line = self.control.row, begin
-        entered.begun = entered.text.program(number) is not None
-        entered.text.jump(begin)
+        entered.begun = entered.source.program(number) is not None
+        entered.source.jump(begin)
         entered.macro = arguments is not None
         if arguments is not None:
             self._variables.enter(arguments)
@@ -121,32 +121,32 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
                 self._note(what, Severity.WARNING)
         self._stack.append(entered)
 
-    def _return(self, call: ActiveProgram, line: int, block: Block) -> None:
+    def _return(self, active: ActiveProgram, line: int, block: Block) -> None:
         """M99: back, P the block there that goes on; in the program itself it would begin anew without end."""
         target = block.take("P")
         if len(self._stack) < 2:
             if target is not None:
-                self._flow.jump(call, line, _program(target))
+                self._flow.jump(active, line, _program(target))
                 return
             self._note("M99 begins the program anew without end: it ends here", Severity.WARNING)
             self.control.add_event("end", "M99")
             raise ProgramEnd
         deep = len(self._stack)
-        self._leave()
+        self._leave_program()
         if target is not None and len(self._stack) < deep:
             caller = self._stack[-1]
-            self._flow.jump(caller, caller.text.line - 1, _program(target))
+            self._flow.jump(caller, caller.source.line - 1, _program(target))
 
-    def _leave(self) -> None:
-        call = self._stack[-1]
-        if call.repeats > 1:
-            call.repeats -= 1
-            call.percents = 0
-            call.text.jump(call.line)
-            self._count(1)
+    def _leave_program(self) -> None:
+        active = self._stack[-1]
+        if active.repeats > 1:
+            active.repeats -= 1
+            active.percents = 0
+            active.source.jump(active.line)
+            self._count_blocks(1)
             return
-        super()._leave()
-        if call.macro:
+        super()._leave_program()
+        if active.macro:
             self._variables.leave()
 
 

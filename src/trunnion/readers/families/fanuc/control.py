@@ -109,7 +109,7 @@ class FanucControl(Rs274Control):
         self.set_plane(AffineMap(linear, shift + origin))
         self.add_event("tilt", "G68.2")
 
-    def upright(self) -> None:
+    def cancel_rotation(self) -> None:
         """G69: no rotation and no plane."""
         self.rotation = AffineMap()
         if self.tilted:
@@ -117,7 +117,7 @@ class FanucControl(Rs274Control):
             self.add_event("tilt", "")
         self.refresh()
 
-    def stand_on_plane(self) -> None:
+    def align_with_plane(self) -> None:
         """G53.1: turn the rotary axes so that the tool stands on the plane, by the way on which they turn least."""
         if not self.tilted:
             self.note("G53.1 without a plane of G68.2: it is not executed", Severity.ERROR)
@@ -125,9 +125,9 @@ class FanucControl(Rs274Control):
         self.resolve_rows()
         pairs = tool_orientation.solutions(self.machine, self.frame.linear[:, 2], self.current_joints)
         inside = [
-            tool_orientation.turned_inside(self.machine, pair, self.current_joints)
+            tool_orientation.nearest_in_travel(self.machine, pair, self.current_joints)
             for pair in pairs
-            if tool_orientation.fits(self.machine, pair)
+            if tool_orientation.is_in_travel(self.machine, pair)
         ]
         if not inside:
             self.note("G53.1: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)

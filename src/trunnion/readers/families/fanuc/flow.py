@@ -28,7 +28,7 @@ class ActiveProgram(interpreter.ActiveProgram):
     modal   the macro that G66 has called for every motion of it
     """
 
-    text: FanucText
+    source: FanucText
     line: int = 1
     begun: bool = False
     macro: bool = False
@@ -51,14 +51,14 @@ class Flow:
         self._note = note
         self._variables = variables
 
-    def accept(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> bool:
+    def accept(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> bool:
         """Execute a word of flow if one comes next."""
         match = _WORD.match(reader.text, reader.at)
         if match is None:
             return False
         reader.at = match.end()
         {"IF": self._if, "GOTO": self._goto, "WHILE": self._while, "DO": self._do, "END": self._end}[match.group()](
-            call, line, reader
+            active, line, reader
         )
         if not reader.ended:
             raise BlockError(f"something stands behind {match.group()}: {reader.rest!r}")
@@ -68,17 +68,17 @@ class Flow:
         """Return a condition; one that cannot be worked out does not hold."""
         begin = reader.at
         try:
-            return bool(reader.sum())
+            return bool(reader.bracket_value())
         except BlockError as error:
             self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR)
             reader.at = _behind_bracket(reader.text, begin)
             return False
 
-    def _if(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
+    def _if(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         holds = self._holds(reader)
         if reader.accept("GOTO"):
             if holds:
-                self._goto(call, line, reader)
+                self._goto(active, line, reader)
             reader.at = len(reader.text)
             return
         reader.expect("THEN")
@@ -86,35 +86,35 @@ class Flow:
             reader.at = len(reader.text)
             return
         reader.expect("#")
-        key = reader.key()
-        self._variables.set(key, reader.assigned())
+        key = reader.parameter_key()
+        self._variables.set(key, reader.assigned_value())
 
-    def _goto(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
-        self.jump(call, line, _whole(reader.real()[0]))
+    def _goto(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
+        self.jump(active, line, _whole(reader.signed_value()[0]))
 
     @staticmethod
-    def jump(call: ActiveProgram, line: int, number: int) -> None:
+    def jump(active: ActiveProgram, line: int, number: int) -> None:
         """Go on at a block number."""
-        target = call.text.number(number, line)
+        target = active.source.number(number, line)
         if target is None:
             raise BlockError(f"there is no block N{number} to go to")
-        call.text.jump(target)
+        active.source.jump(target)
 
-    def _while(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
+    def _while(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         holds = self._holds(reader)
         reader.expect("DO")
-        _whole(reader.real()[0])
-        end = call.text.partner(line)
+        _whole(reader.signed_value()[0])
+        end = active.source.partner(line)
         if not holds:
-            call.text.jump(end + 1)
+            active.source.jump(end + 1)
 
-    def _do(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
-        _whole(reader.real()[0])
-        call.text.partner(line)
+    def _do(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
+        _whole(reader.signed_value()[0])
+        active.source.partner(line)
 
-    def _end(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
-        _whole(reader.real()[0])
-        call.text.jump(call.text.partner(line))
+    def _end(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
+        _whole(reader.signed_value()[0])
+        active.source.jump(active.source.partner(line))
 
 
 def _whole(value: float | None) -> int:
@@ -135,5 +135,5 @@ def _behind_bracket(text: str, at: int) -> int:
 
 def assign(variables: Variables, block: Block) -> None:
     """Give variables the values that a block says."""
-    for key, value in block.settings:
+    for key, value in block.assignments:
         variables.set(key, value)

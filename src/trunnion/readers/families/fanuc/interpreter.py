@@ -12,7 +12,7 @@ from trunnion.machines import Machine, Mount
 from trunnion.model.run import Orientation
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import cycles, words
 from trunnion.readers.families.fanuc.control import FanucControl
@@ -63,14 +63,14 @@ class FanucInterpreter(OffsetInterpreter):
     def _table(self) -> Codes:
         return self._control.plain_table
 
-    def _first(self, text: SourceText) -> ActiveProgram:
+    def _main_program(self, text: SourceText) -> ActiveProgram:
         assert isinstance(text, FanucText)
         return ActiveProgram(text, 0)
 
-    def _may_be_plain(self, text: SourceText) -> bool:
-        return self._stack[-1].modal is None and super()._may_be_plain(text)
+    def _may_scan(self, text: SourceText) -> bool:
+        return self._stack[-1].modal is None and super()._may_scan(text)
 
-    def _system(self, key: int) -> float | None:
+    def _system_value(self, key: int) -> float | None:
         control = self._control
         axes = {0: "X", 1: "Y", 2: "Z", **{3 + k: name for k, name in enumerate(control.rotary_names)}}
         if 5001 <= key <= 5005 or 5041 <= key <= 5045:
@@ -87,39 +87,39 @@ class FanucInterpreter(OffsetInterpreter):
 
     # Blocks
 
-    def _text(self, call: ActiveProgram, line: int, text: str) -> None:
+    def _execute_block(self, active: ActiveProgram, line: int, text: str) -> None:
         if text[0] in "O:":
-            self._program_number(call, line, text)
+            self._program_number(active, line, text)
             return
         reader = block_reader(text, ARITHMETIC, self._variables)
-        if self._flow.accept(call, line, reader):
+        if self._flow.accept(active, line, reader):
             return
-        self._carry_out(call, line, read_block(reader, self._twice))
+        self._execute_words(active, line, read_block(reader, self._report_repeated_word))
 
-    def _program_number(self, call: ActiveProgram, line: int, text: str) -> None:
+    def _program_number(self, active: ActiveProgram, line: int, text: str) -> None:
         """An O number begins a program; where another one runs into it, that one has ended."""
         digits = text[1:]
         if not digits.isdigit() or len(digits) > 8:
             raise BlockError(f"no program number: {text[:40]!r}")
-        if call.begun and call.line != line:
+        if active.begun and active.line != line:
             self._note("the program runs into the next one: it ends here", Severity.ERROR)
-            self._end_of_file(call)
-        call.begun = True
+            self._end_of_file(active)
+        active.begun = True
 
-    def _end_of_file(self, call: ActiveProgram) -> None:
+    def _end_of_file(self, active: ActiveProgram) -> None:
         if len(self._stack) < 2:
             raise ProgramEnd
-        self._leave()
+        self._leave_program()
 
-    def _carry_out(self, call: ActiveProgram, line: int, block: Block) -> None:
+    def _execute_words(self, active: ActiveProgram, line: int, block: Block) -> None:
         control = self._control
         if words.MACRO in block.g or words.MODAL_MACRO in block.g:
-            self._macro(call, block)
+            self._macro(active, block)
             assign(self._variables, block)
             return
         for code in block.g:
             if code in (200, 210, 930, 940, 950):
-                self._modal(code)
+                self._modal_g_code(code)
         tilts = words.TILT in block.g
         if words.DWELL not in block.g:
             self._settings.scale(
@@ -131,25 +131,25 @@ class FanucInterpreter(OffsetInterpreter):
             control.select_tool(f"{tool:g}")
         for code in block.m:
             if code not in words.AFTER_MOTION:
-                self._m_word(code)
+                self._m_code(code)
         special, machine_frame = self._codes(block)
         number = block.take("H")
         if number is not None and 0 <= number < 1e6:
             self._length_number = int(number)
         # The control keeps H after G49, but no length is in force.
-        control.edge.set(control.row, self._length_number if control.lengthened else -1)
+        control.edge.set(control.row, self._length_number if control.length_active else -1)
         block.take("D")
         if special in words.TAKING_AXIS_WORDS:
             self._special(special, block)
         elif not any(code in words.NO_MOTION for code in block.g):
-            self._drive(call, block, machine_frame)
-        if words.TOOL_UPRIGHT in block.g:
-            self._stand(block)
+            self._execute_motion(active, block, machine_frame)
+        if words.ALIGN_TOOL in block.g:
+            self._align_with_plane(block)
         assign(self._variables, block)
         late = [code for code in block.m if code in words.AFTER_MOTION]
         for code in late:
-            self._late(call, line, code, block)
-        self._name_unused(block)
+            self._late(active, line, code, block)
+        self._report_unused_words(block)
 
     def _codes(self, block: Block) -> tuple[int, bool]:
         """Set what G codes set; returns the one that takes the axis words (-1: none), and whether G53 is there."""
@@ -163,12 +163,12 @@ class FanucInterpreter(OffsetInterpreter):
             elif code == words.MACHINE:
                 machine_frame = True
             elif code in MOTIONS or code in cycles.CYCLES or code == CANCEL:
-                self._begin(code)
+                self._select_motion(code)
             elif code not in (200, 210, 930, 940, 950):
-                self._g(code, block)
+                self._g_code(code, block)
         return special, machine_frame
 
-    def _begin(self, code: int) -> None:
+    def _select_motion(self, code: int) -> None:
         """Take up a motion or a cycle."""
         control = self._control
         if code in cycles.CYCLES:
@@ -182,7 +182,7 @@ class FanucInterpreter(OffsetInterpreter):
         if code in MOTIONS:
             control.kind = MOTIONS[code]
 
-    def _g(self, code: int, block: Block) -> None:
+    def _g_code(self, code: int, block: Block) -> None:
         control = self._control
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
@@ -197,20 +197,20 @@ class FanucInterpreter(OffsetInterpreter):
             control.set_length(code != words.LENGTH_OFF)
             if code == 440:
                 self._note("G44: taken as G43, the length with the other sign is not simulated", Severity.WARNING)
-        elif code == words.UPRIGHT_OFF:
-            control.upright()
+        elif code == words.ROTATION_OFF:
+            control.cancel_rotation()
         elif code in (980, 990):
             self._to_initial = code == 980
         elif code == words.MODAL_MACRO_OFF:
             self._stack[-1].modal = None
         elif code in words.TAKEN_AS_LINES:
-            self._name_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
-            self._begin(10)
+            self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
+            self._select_motion(10)
         elif code == 960:
             control.feed_mode.set(control.row, 95)
-            self._name_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
-        elif code != words.TOOL_UPRIGHT and not self._modal(code):
-            self._name_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
+            self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
+        elif code != words.ALIGN_TOOL and not self._modal_g_code(code):
+            self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
 
     def _tcp(self, code: int, block: Block) -> None:
         """G43.4 and G43.5; P says how the tool axis moves from block to block."""
@@ -235,25 +235,25 @@ class FanucInterpreter(OffsetInterpreter):
         machine = self._control.machine
         return all(machine.axes[column].mount is Mount.TOOL for column in machine.rotary)
 
-    def _m_word(self, code: int) -> None:
-        if not self._m(code):
+    def _m_code(self, code: int) -> None:
+        if not self._common_m_code(code):
             self._control.add_event("m", float(code))
 
-    def _late(self, call: ActiveProgram, line: int, code: int, block: Block) -> None:
+    def _late(self, active: ActiveProgram, line: int, code: int, block: Block) -> None:
         if code == words.CALL:
             self._call(block)
         elif code == words.RETURN:
-            self._return(call, line, block)
+            self._return(active, line, block)
         elif code == words.CALL_FILE:
             for letter in "PL":
                 block.take(letter)
             self._note("M198: programs of other folders are not called", Severity.ERROR)
         else:
-            self._m_word(code)
+            self._m_code(code)
 
     # Motion
 
-    def _drive(self, call: ActiveProgram, block: Block, machine_frame: bool) -> None:
+    def _execute_motion(self, active: ActiveProgram, block: Block, machine_frame: bool) -> None:
         """Make the motion that the words of the block ask for."""
         control = self._control
         axes = self._axis_words(block)
@@ -261,7 +261,7 @@ class FanucInterpreter(OffsetInterpreter):
         if self.motion in cycles.CYCLES:
             self._cycle(block, axes)
             if axes:
-                self._call_modal(call)
+                self._call_modal(active)
             return
         circle = self.motion in (20, 30) and any(letter in block.words for letter in "IJKR")
         if not axes and vector is None and not circle:
@@ -283,7 +283,7 @@ class FanucInterpreter(OffsetInterpreter):
             control.move(axes, vector, feed_written="F" in block.words)
         else:
             self._move(block, axes)
-        self._call_modal(call)
+        self._call_modal(active)
 
     def _vector(self, block: Block) -> Floats | None:
         """G43.5: I J K are the tool axis; those that are not written are 0 where one is."""
@@ -294,7 +294,7 @@ class FanucInterpreter(OffsetInterpreter):
         if all(value is None for value in values):
             return None
         vector = np.array([value or 0.0 for value in values])
-        if not 1e-12 < float(np.linalg.norm(vector)) < LARGEST_POSITION:
+        if not 1e-12 < float(np.linalg.norm(vector)) < MAX_POSITION:
             raise BlockError("the tool axis has no direction")
         return vector
 
@@ -330,7 +330,7 @@ class FanucInterpreter(OffsetInterpreter):
         plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
         kind = control.kind
         for _ in range(times):
-            self._count(len(made) + 1)
+            self._count_blocks(len(made) + 1)
             control.kind = RAPID
             control.move(plane, None)
             control.drill(made)

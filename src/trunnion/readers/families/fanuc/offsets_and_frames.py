@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.readers.control.axis_word import AxisWord
-from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.calls import CallInterpreter
@@ -91,7 +91,7 @@ class OffsetInterpreter(CallInterpreter):
                 self._note(f"a shift of {name} is not simulated", Severity.ERROR)
         values = [block.take(name) for name in "XYZ"]
         scaled = [None if value is None else value * self.control.length_unit for value in values]
-        if any(value is not None and abs(value) > LARGEST_POSITION for value in scaled):
+        if any(value is not None and abs(value) > MAX_POSITION for value in scaled):
             raise BlockError("a shift is larger than any machine")
         return scaled
 
@@ -126,7 +126,7 @@ class OffsetInterpreter(CallInterpreter):
         if code == words.OTHER_HOME:
             which = block.take("P")
             self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING)
-        self._count(1)
+        self._count_blocks(1)
         kind, control.kind = control.kind, RAPID
         before = control.commanded[:3].copy()
         moving = {name: word for name, word in axes.items() if not (not control.absolute and word[0] == 0.0)}
@@ -159,7 +159,7 @@ class OffsetInterpreter(CallInterpreter):
         else:
             axis[control.plane_axis] = 1.0
         length = float(np.linalg.norm(axis))
-        if angle is None or not 1e-12 < length < LARGEST_POSITION or not abs(angle) < LARGEST_POSITION:
+        if angle is None or not 1e-12 < length < MAX_POSITION or not abs(angle) < MAX_POSITION:
             raise BlockError("G68 needs an angle R, and an axis that has a direction")
         control.rotate(centre, axis / length, angle)
 
@@ -173,13 +173,13 @@ class OffsetInterpreter(CallInterpreter):
         order = block.take("Q")
         if way or (order is not None and order != 313):
             raise BlockError("G68.2 with P or Q is not simulated: only Euler angles are")
-        if any(not abs(angle) < LARGEST_POSITION for angle in angles):
+        if any(not abs(angle) < MAX_POSITION for angle in angles):
             raise BlockError("an angle is none that a plane has")
         control.tilt(origin, (angles[0], angles[1], angles[2]))
 
-    def _stand(self, block: Block) -> None:
+    def _align_with_plane(self, block: Block) -> None:
         way = block.take("P")
         if way:
             self._note(f"G53.1 P{way:g}: taken as G53.1, the way on which the axes turn least", Severity.WARNING)
-        self._count(1)
-        self.control.stand_on_plane()
+        self._count_blocks(1)
+        self.control.align_with_plane()

@@ -24,7 +24,7 @@ _LOOP = re.compile(
 
 
 @dataclass(slots=True)
-class _Places:
+class _JumpTargets:
     """Lines of O numbers, of block numbers, and of the other half of each loop; None before they are asked for."""
 
     programs: dict[int, int] | None = None
@@ -37,7 +37,7 @@ class FanucText(SourceText):
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
         # Shared by all that run the same text: see ``restarted``.
-        self._places = _Places()
+        self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole)
 
     def program(self, number: int) -> int | None:
@@ -45,14 +45,14 @@ class FanucText(SourceText):
         return self._programs().get(number)
 
     def _programs(self) -> dict[int, int]:
-        if self._places.programs is None:
+        if self._jump_targets.programs is None:
             found: dict[int, int] = {}
-            for match in _O_NUMBER.finditer(self.all()):
+            for match in _O_NUMBER.finditer(self.whole_bytes()):
                 found.setdefault(int(match.group(1)), self.line_of(match.start(1)))
-            self._places.programs = found
-        return self._places.programs
+            self._jump_targets.programs = found
+        return self._jump_targets.programs
 
-    def _part(self, line: int) -> tuple[int, int]:
+    def _program_lines(self, line: int) -> tuple[int, int]:
         """First line of the O program that a line belongs to, and the line after its last."""
         begins = sorted(self._programs().values())
         at = bisect_right(begins, line)
@@ -60,28 +60,28 @@ class FanucText(SourceText):
 
     def number(self, number: int, here: int) -> int | None:
         """Line of a block number: the next one after ``here``, else the first of the program."""
-        if self._places.numbers is None:
+        if self._jump_targets.numbers is None:
             numbers: dict[int, list[int]] = {}
-            for match in _N_NUMBER.finditer(self.all()):
+            for match in _N_NUMBER.finditer(self.whole_bytes()):
                 numbers.setdefault(int(match.group(1)), []).append(self.line_of(match.start(1)))
-            self._places.numbers = numbers
-        first, end = self._part(here)
-        lines = [line for line in self._places.numbers.get(number, []) if first <= line < end]
+            self._jump_targets.numbers = numbers
+        first, end = self._program_lines(here)
+        lines = [line for line in self._jump_targets.numbers.get(number, []) if first <= line < end]
         return next((line for line in lines if line > here), lines[0] if lines else None)
 
     def partner(self, line: int) -> int:
         """Return the line of END for a DO, of DO for an END."""
-        if self._places.loops is None:
-            self._places.loops = self._match_loops()
+        if self._jump_targets.loops is None:
+            self._jump_targets.loops = self._match_loops()
         try:
-            return self._places.loops[line]
+            return self._jump_targets.loops[line]
         except KeyError:
             raise self.problem(line, "has a DO or END that begins or ends nothing") from None
 
     def _match_loops(self) -> dict[int, int]:
         partners: dict[int, int] = {}
         open_: list[tuple[int, int]] = []
-        for match in _LOOP.finditer(self.all()):
+        for match in _LOOP.finditer(self.whole_bytes()):
             line = self.line_of(match.start(1))
             number = int(match.group(2))
             if match.group(1).upper() == b"DO":

@@ -7,7 +7,7 @@ from typing import Final
 from trunnion.readers.rs274.expressions import COMMON, Arithmetic, BlockError, Value, round_half_away
 
 #: Local variables of a macro, common ones, and the first that the control itself sets.
-LOCAL: Final = 33
+LOCAL_COUNT: Final = 33
 COMMON_FROM: Final = 100
 SYSTEM_FROM: Final = 1000
 
@@ -81,16 +81,16 @@ ARITHMETIC: Final = Arithmetic(
         "FUP": lambda a: math.copysign(math.ceil(abs(a)), a),
     },
     pairs={"ATAN": _atan, "POW": lambda a, b: float(a**b)},
-    bare=True,
-    empty=_compare_empty,
+    assigns_without_brackets=True,
+    compare_unset=_compare_empty,
 )
 
 
 class Variables:
-    """What ``#`` names; ``system`` returns what the control itself sets, None for what it does not."""
+    """What ``#`` names; ``system_value`` returns what the control itself sets, None for what it does not."""
 
-    def __init__(self, system: Callable[[int], float | None]) -> None:
-        self._system = system
+    def __init__(self, system_value: Callable[[int], float | None]) -> None:
+        self._system_value = system_value
         self._common: dict[int, float] = {}
         self._local: list[dict[int, float]] = [{}]
 
@@ -100,24 +100,24 @@ class Variables:
             raise BlockError(f"#<{key}>: variables have numbers here")
         if key == 0:
             return None
-        if key <= LOCAL:
+        if key <= LOCAL_COUNT:
             return self._local[-1].get(key)
         if COMMON_FROM <= key < SYSTEM_FROM:
             return self._common.get(key)
-        value = self._system(key)
+        value = self._system_value(key)
         if value is None:
             raise BlockError(f"#{key} is a value that only the control knows")
         return value
 
-    def known(self, key: int | str) -> bool:
+    def is_set(self, key: int | str) -> bool:
         """Whether a variable is not empty."""
         return self.value(key) is not None
 
     def set(self, key: int | str, value: Value) -> None:
         """Set a variable, or make it empty."""
-        if isinstance(key, str) or not (0 < key <= LOCAL or COMMON_FROM <= key < SYSTEM_FROM):
+        if isinstance(key, str) or not (0 < key <= LOCAL_COUNT or COMMON_FROM <= key < SYSTEM_FROM):
             raise BlockError(f"#{key} is not a variable that programs set")
-        table = self._local[-1] if key <= LOCAL else self._common
+        table = self._local[-1] if key <= LOCAL_COUNT else self._common
         if value is None:
             table.pop(key, None)
         else:

@@ -29,7 +29,7 @@ class _NoParameters:
     def value(self, key: int | str) -> Value:
         raise BlockError("parameters are not simulated")
 
-    def known(self, key: int | str) -> bool:
+    def is_set(self, key: int | str) -> bool:
         return False
 
 
@@ -69,34 +69,36 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
     def _table(self) -> Codes:
         return self._control.plain_table
 
-    def _first(self, text: SourceText) -> ActiveProgram:
+    def _main_program(self, text: SourceText) -> ActiveProgram:
         return ActiveProgram(text, 0)
 
-    def _may_be_plain(self, text: SourceText) -> bool:
+    def _may_scan(self, text: SourceText) -> bool:
         # In a plane without TCP, rotary words leave the slides where they are.
         control = self._control
-        return (control.tcp or not control.tilted) and super()._may_be_plain(text)
+        return (control.tcp or not control.tilted) and super()._may_scan(text)
 
-    def _text(self, call: ActiveProgram, line: int, text: str) -> None:
+    def _execute_block(self, active: ActiveProgram, line: int, text: str) -> None:
         tool = _TOOL.search(text)
         if tool is not None:
             text = text[: tool.start()] + text[tool.end() :]
         # The time of a dwell has two letters.
-        block = read_block(block_reader(text.replace("HD", "H"), _ARITHMETIC, _NO_PARAMETERS), self._twice)
-        if block.settings:
+        block = read_block(
+            block_reader(text.replace("HD", "H"), _ARITHMETIC, _NO_PARAMETERS), self._report_repeated_word
+        )
+        if block.assignments:
             raise BlockError("parameters are not simulated")
-        self._carry_out(block, None if tool is None else tool.group(1))
+        self._execute_words(block, None if tool is None else tool.group(1))
 
-    def _carry_out(self, block: Block, tool: str | None) -> None:
+    def _execute_words(self, block: Block, tool: str | None) -> None:
         control = self._control
         machine_frame = words.MACHINE in block.g
         begun = False
         for code in block.g:
             if code in MOTIONS or code in cycles.CYCLES or code == CANCEL:
                 begun = True
-                self._begin(code)
+                self._select_motion(code)
             elif code != words.MACHINE:
-                self._g(code, block)
+                self._g_code(code, block)
         if words.DWELL in block.g:
             self._dwell(block)
         self._feed_and_speed(block)
@@ -104,17 +106,17 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             control.select_tool(tool)
         for code in block.m:
             if code not in words.AFTER_MOTION:
-                self._m_word(code)
+                self._m_code(code)
         if tool is not None and words.TOOL not in block.m and 6 not in block.m:
             self._note(f"T{tool} without M306 or M6: the tool is only chosen", Severity.WARNING)
         if not any(code in words.NO_MOTION for code in block.g):
-            self._drive(block, machine_frame, begun)
-        self._name_unused(block)
+            self._execute_motion(block, machine_frame, begun)
+        self._report_unused_words(block)
         for code in block.m:
             if code in words.AFTER_MOTION:
-                self._m_word(code)
+                self._m_code(code)
 
-    def _begin(self, code: int) -> None:
+    def _select_motion(self, code: int) -> None:
         """Take up a motion or a cycle, or end a cycle."""
         control = self._control
         if code in cycles.CYCLES:
@@ -125,7 +127,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         self.motion = control.kind * 10 if code == CANCEL else code
         control.kind = MOTIONS[self.motion]
 
-    def _g(self, code: int, block: Block) -> None:
+    def _g_code(self, code: int, block: Block) -> None:
         control = self._control
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
@@ -143,8 +145,8 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             control.set_plane(None)
         elif code in words.TCP_ON or code in words.TCP_OFF:
             control.set_tcp(code in words.TCP_ON)
-        elif code in (930, 950, 200, 210) or (code != words.DWELL and not self._modal(code)):
-            self._name_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
+        elif code in (930, 950, 200, 210) or (code != words.DWELL and not self._modal_g_code(code)):
+            self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
 
     def _dwell(self, block: Block) -> None:
         seconds = block.take("H")
@@ -153,19 +155,19 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         else:
             self._control.add_event("dwell", seconds)
 
-    def _m_word(self, code: int) -> None:
+    def _m_code(self, code: int) -> None:
         control = self._control
         if code == words.TOOL:
             control.change_tool()
         elif code == words.RETRACT:
-            self._count(1)
+            self._count_blocks(1)
             control.retract()
-        elif not self._m(code):
+        elif not self._common_m_code(code):
             control.add_event("m", float(code))
 
     # Motion
 
-    def _drive(self, block: Block, machine_frame: bool, begun: bool) -> None:
+    def _execute_motion(self, block: Block, machine_frame: bool, begun: bool) -> None:
         """Make the motion that the words of the block ask for."""
         control = self._control
         if self.motion in cycles.CYCLES:
@@ -209,7 +211,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         if not control.commanded[3] > 0.0:
             self._note("a cycle without a feed", Severity.ERROR)
         made = self._motions()
-        self._count(len(made) + 2)
+        self._count_blocks(len(made) + 2)
         place: dict[str, AxisWord] = {name: word for name, word in axes.items() if name in "XY"}
         height = self._modal_words["Z"]
         up = float(control.commanded[2]) < height * control.length_unit

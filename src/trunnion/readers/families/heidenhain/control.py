@@ -19,7 +19,7 @@ from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.row_buffer import StepColumnBuilder
-from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.control.virtual_control import RAPID, Circle, VirtualControl
 from trunnion.readers.families.heidenhain.plane_frames import Datum, spatial
 from trunnion.readers.families.heidenhain.scan_kernel import letter_table
@@ -57,15 +57,15 @@ class HeidenhainControl(VirtualControl):
     ) -> None:
         self.shortest_path = False
         #: TCPM with AXIS SPAT: rotary words are spatial angles, and these are the last ones.
-        self.by_angles = False
+        self.spatial_angles_active = False
         self.angles = [0.0, 0.0, 0.0]
         #: Cycles 7, 8, 10 and 11 before the plane was tilted, and in it.
-        self._outside = Datum()
-        self._inside = Datum()
+        self._base_datum = Datum()
+        self._plane_datum = Datum()
         #: The first row from which on rows mean the same by their place.
-        self._since = 0
+        self._comparable_from = 0
         #: A tool has been called: where positions are those of the slides its length counts.
-        self._lengthened = False
+        self._length_active = False
         #: Pole of circles and polar coordinates, programmed position, mm.
         self.pole: Floats | None = None
         super().__init__(machine, note, file, shortest=shortest)
@@ -75,7 +75,7 @@ class HeidenhainControl(VirtualControl):
     @property
     def table(self) -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
         """What letters mean to the kernel now: rotary words only where they are positions and nothing else moves."""
-        return self._tables[self.by_angles or (self.tilted and not self.tcp)]
+        return self._tables[self.spatial_angles_active or (self.tilted and not self.tcp)]
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """With M126."""
@@ -94,7 +94,7 @@ class HeidenhainControl(VirtualControl):
     @property
     def _length_offset(self) -> Floats:
         length = np.zeros(3)
-        if self._lengthened:
+        if self._length_active:
             length[self.plane_axis] = self.machine.tool_length or 0.0
         return length
 
@@ -102,13 +102,13 @@ class HeidenhainControl(VirtualControl):
         """TOOL CALL: another tool, or None; and the axis that it lies along, which stands on the working plane."""
         if name is not None:
             self.select_tool(name)
-        longer = self._lengthened if name is None else name.strip("0") != ""
+        longer = self._length_active if name is None else name.strip("0") != ""
         along = self.plane_axis if plane is None else plane
-        if self.machine.tool_length and (longer, along) != (self._lengthened, self.plane_axis):
+        if self.machine.tool_length and (longer, along) != (self._length_active, self.plane_axis):
             with self.frame_change():
-                self._lengthened, self.plane_axis = longer, along
+                self._length_active, self.plane_axis = longer, along
         else:
-            self._lengthened, self.plane_axis = longer, along
+            self._length_active, self.plane_axis = longer, along
         if name is not None:
             self.change_tool()
 
@@ -117,7 +117,7 @@ class HeidenhainControl(VirtualControl):
     @property
     def datum(self) -> Datum:
         """What holds where programs are now: in the tilted plane, or without one."""
-        return self._inside if self.tilted else self._outside
+        return self._plane_datum if self.tilted else self._base_datum
 
     def set_datum(self, datum: Datum) -> None:
         """Shift, mirror, turn or scale; the axes stand still."""
@@ -126,12 +126,12 @@ class HeidenhainControl(VirtualControl):
         if self.program_frame is not frame:
             return
         if self.tilted:
-            if datum == Datum() and self._inside == Datum() and self._outside != Datum():
+            if datum == Datum() and self._plane_datum == Datum() and self._base_datum != Datum():
                 text = "the shift from before the tilted plane stays: taken as a reset of the plane's own (unconfirmed)"
                 self.note(text, Severity.WARNING)
-            self._inside = datum
+            self._plane_datum = datum
         else:
-            self._outside = datum
+            self._base_datum = datum
 
     # Planes
 
@@ -145,12 +145,12 @@ class HeidenhainControl(VirtualControl):
         total = base.compose(AffineMap(linear))
         normal = total.linear[:, 2] / np.linalg.norm(total.linear[:, 2])
         self.resolve_rows()
-        rotary = self._solution(normal, how)
+        rotary = self._rotary_solution(normal, how)
         if rotary is None:
             return None
-        if how.table and tool_orientation.free(self.machine, rotary):
-            rotary = self._near(tool_orientation.aligned(self.machine, rotary, total.linear[:, 0]))
-        self._position(rotary, how)
+        if how.table and tool_orientation.first_axis_is_free(self.machine, rotary):
+            rotary = self._in_reached_turn(tool_orientation.align_first_axis(self.machine, rotary, total.linear[:, 0]))
+        self._position_rotary(rotary, how)
         self._enter_plane(total)
         return rotary
 
@@ -158,32 +158,35 @@ class HeidenhainControl(VirtualControl):
         """The plane that the tool stands on with the rotary axes at these positions."""
         self.resolve_rows()
         linear = tool_orientation.tool_frame(self.machine, rotary)
-        self._position(rotary, how)
+        self._position_rotary(rotary, how)
         self._enter_plane(AffineMap(linear, self._base.shift))
 
     def untilt(self, how: Positioning) -> None:
         """PLANE RESET: no tilted plane; what was set in it ends with it."""
-        self._position((0.0, 0.0), how)
+        self._position_rotary((0.0, 0.0), how)
         if self.tilted:
-            self.set_plane(None, self._outside.frame(self.plane_axis))
-        self._inside = Datum()
+            self.set_plane(None, self._base_datum.frame(self.plane_axis))
+        self._plane_datum = Datum()
 
     @property
     def _base(self) -> AffineMap:
         """Where tilted planes begin."""
-        return self._outside.frame(self.plane_axis)
+        return self._base_datum.frame(self.plane_axis)
 
     def _enter_plane(self, plane: AffineMap) -> None:
         self.set_plane(plane)
-        self._inside = Datum()
+        self._plane_datum = Datum()
 
-    def _solution(self, normal: Floats, how: Positioning) -> tuple[float, float] | None:
+    def _rotary_solution(self, normal: Floats, how: Positioning) -> tuple[float, float] | None:
         """Rotary position that stands the tool on a plane, as the block asks for it."""
-        pairs = [self._near(pair) for pair in tool_orientation.solutions(self.machine, normal, self.current_joints)]
+        pairs = [
+            self._in_reached_turn(pair)
+            for pair in tool_orientation.solutions(self.machine, normal, self.current_joints)
+        ]
         if not pairs:
             self.note("PLANE: no rotary position stands the tool on this plane", Severity.ERROR)
             return None
-        inside = [pair for pair in pairs if tool_orientation.fits(self.machine, pair)]
+        inside = [pair for pair in pairs if tool_orientation.is_in_travel(self.machine, pair)]
         if how.sequence:
             # A master axis at zero has no sign: either sequence takes it.
             inside = [pair for pair in inside if pair[1] * how.sequence > 0.0 or abs(pair[1]) < _SAME]
@@ -194,7 +197,7 @@ class HeidenhainControl(VirtualControl):
         held = [float(self.current_joints[column]) for column in self.machine.rotary]
         return min(inside, key=lambda pair: sum(abs(value - was) for value, was in zip(pair, held, strict=True)))
 
-    def _near(self, rotary: tuple[float, float]) -> tuple[float, float]:
+    def _in_reached_turn(self, rotary: tuple[float, float]) -> tuple[float, float]:
         """The same position in the turn that the axes take to it."""
         found = []
         for column, value in zip(self.machine.rotary, rotary, strict=True):
@@ -205,7 +208,7 @@ class HeidenhainControl(VirtualControl):
             )
         return found[0], found[1]
 
-    def _position(self, rotary: tuple[float, float], how: Positioning) -> None:
+    def _position_rotary(self, rotary: tuple[float, float], how: Positioning) -> None:
         """Move the rotary axes as the block says."""
         if how.retract:
             self.retract(how.retract, rapid=how.rapid, feed=how.feed)
@@ -219,7 +222,7 @@ class HeidenhainControl(VirtualControl):
         bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND)
         slides = self.current_joints[self._slides].copy()
         if how.mode == "MOVE":
-            reached = self._reached(rotary, self.default_turn_rules)
+            reached = self._joints_after_words(rotary, self.default_turn_rules)
             tip, axis = forward(self.machine, self.current_joints[None])
             after = forward(self.machine, reached[None])[1][0]
             wanted = tip[0] + how.distance * (after - axis[0])
@@ -231,7 +234,7 @@ class HeidenhainControl(VirtualControl):
         self.move_axes(kind, slides, list(rotary), self.default_turn_rules, bits)
         self.commanded[3] = kept
 
-    def _reached(self, rotary: Sequence[float], turn_rule: int) -> Floats:
+    def _joints_after_words(self, rotary: Sequence[float], turn_rule: int) -> Floats:
         """Where the axes are once the rotary ones have followed their words, and the slides have not moved."""
         joints = self.current_joints.copy()
         for which, column in enumerate(self.machine.rotary):
@@ -252,7 +255,7 @@ class HeidenhainControl(VirtualControl):
 
     # Directions
 
-    def heading(self) -> Floats | None:
+    def end_direction(self) -> Floats | None:
         """Where the last motion went to at its end, in programmed coordinates; None if there was none."""
         if not self.row:
             return None
@@ -265,7 +268,7 @@ class HeidenhainControl(VirtualControl):
             rigid = self._slides_to_tip()
             tip = rigid[:, :3] @ tip + rigid[:, 3]
             return np.asarray(back @ np.linalg.solve(rigid[:, :3], np.cross(normal, tip - centre)))
-        if self.row - 2 < self._since:
+        if self.row - 2 < self._comparable_from:
             return None
         return np.asarray(back @ (self.columns.xyz[self.row - 1] - self.columns.xyz[self.row - 2]))
 
@@ -273,12 +276,12 @@ class HeidenhainControl(VirtualControl):
         tips = self.tip_programmed
         super()._update_maps()
         if tips != self.tip_programmed:
-            self._since = self.row
+            self._comparable_from = self.row
 
     def move_axes(self, kind: Kind, slides: Floats, rotary: list[float], turn_rule: int, bits: int) -> None:
         """Make a row of slide values and rotary values; see ``VirtualControl.move_axes``."""
         super().move_axes(kind, slides, rotary, turn_rule, bits)
-        self._since = self.row
+        self._comparable_from = self.row
 
     # Retract
 
@@ -295,7 +298,7 @@ class HeidenhainControl(VirtualControl):
         # To the end of the travel is a position of the machine, wherever the workpiece sits.
         to_the_end = math.isinf(distance)
         if to_the_end:
-            distance = self._room(slides, per_mm)
+            distance = self._free_travel(slides, per_mm)
             if math.isinf(distance):
                 self.note("M140 MB MAX: the travel of the slides is not known, the tool stays", Severity.WARNING)
                 return
@@ -310,7 +313,7 @@ class HeidenhainControl(VirtualControl):
         self.machine_rows.set(self.row, False)
         self.commanded[3] = kept
 
-    def _room(self, slides: Floats, per_mm: Floats) -> float:
+    def _free_travel(self, slides: Floats, per_mm: Floats) -> float:
         """How far the slides can go, mm along the tool axis; inf if nothing ends them."""
         room = math.inf
         for column, at, step in zip(self._slides, slides, per_mm, strict=True):
@@ -335,8 +338,8 @@ class HeidenhainControl(VirtualControl):
 
         In a tilted plane without TCP a rotary axis turns alone, and takes the programmed positions with it.
         """
-        if self.by_angles and vector is None and not machine_frame and axes.keys() & {"A", "B", "C"}:
-            vector = self._by_angles(axes)
+        if self.spatial_angles_active and vector is None and not machine_frame and axes.keys() & {"A", "B", "C"}:
+            vector = self._vector_of_angles(axes)
             axes = {name: word for name, word in axes.items() if name not in ("A", "B", "C")}
         if (
             not self.tilted
@@ -351,7 +354,7 @@ class HeidenhainControl(VirtualControl):
             self.note("rotary axes turn during a circle of a tilted plane: taken as a straight line", Severity.ERROR)
         self._turn_in_plane(axes, int(ProgrammedWord.FEED) if feed_written else 0)
 
-    def _by_angles(self, axes: Mapping[str, AxisWord]) -> Floats:
+    def _vector_of_angles(self, axes: Mapping[str, AxisWord]) -> Floats:
         for axis, name in enumerate("ABC"):
             if name in axes:
                 value, how = axes[name]
@@ -369,8 +372,8 @@ class HeidenhainControl(VirtualControl):
         rotary, turn_rule, turned = self.rotary_words(axes)
         slides = self.current_joints[self._slides].copy()
         if bits & 7:
-            reached = self._reached(rotary, turn_rule)
-            found = None if np.abs(wanted).max() > LARGEST_POSITION else self._slides_for(self._tip_of(wanted), reached)
+            reached = self._joints_after_words(rotary, turn_rule)
+            found = None if np.abs(wanted).max() > MAX_POSITION else self._slides_for(self._tip_of(wanted), reached)
             if found is None:
                 self.note("the slides cannot reach this position: the block is not executed", Severity.ERROR)
                 return

@@ -7,7 +7,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.families.heidenhain.control import HeidenhainControl, Positioning
 from trunnion.readers.families.heidenhain.cycles import (
     CYCLES,
@@ -62,7 +62,7 @@ class Cycle:
 
     number: int
     values: dict[str, float] = field(default_factory=dict)
-    named: dict[int, float] = field(default_factory=dict)
+    q_values: dict[int, float] = field(default_factory=dict)
 
 
 class Definitions:
@@ -71,7 +71,7 @@ class Definitions:
     def __init__(self, control: HeidenhainControl, note: Note) -> None:
         self._control = control
         self._note = note
-        self.waiting: Cycle | None = None
+        self.defined_cycle: Cycle | None = None
 
     def define(self, text: str, parameters: Parameters) -> None:
         """Execute what stands behind CYCL DEF."""
@@ -84,23 +84,23 @@ class Definitions:
         elif int(match[2]) == 0:
             self._begin(number, rest)
         else:
-            self._advance(number, int(match[2]), rest, parameters)
+            self._continue_definition(number, int(match[2]), rest, parameters)
 
     def _begin(self, number: int, title: str) -> None:
         """The first line of an older cycle: its title."""
         if number in LEGACY_CYCLES or number in CYCLES_NOT_SIMULATED:
-            self.waiting = Cycle(number)
-        elif number not in _AT_ONCE:
+            self.defined_cycle = Cycle(number)
+        elif number not in _IMMEDIATE:
             self._note(f"cycle {number} {title[:40]} is unknown", Severity.ERROR)
 
-    def _advance(self, number: int, line: int, rest: str, parameters: Parameters) -> None:
+    def _continue_definition(self, number: int, line: int, rest: str, parameters: Parameters) -> None:
         if number in CYCLES_NOT_SIMULATED:
             return
         if number in LEGACY_CYCLES:
             name = _FIELDS[number].get(line)
-            if self.waiting is None or self.waiting.number != number or name is None:
+            if self.defined_cycle is None or self.defined_cycle.number != number or name is None:
                 raise KlartextError(f"a line of cycle {number} that does not belong there")
-            self.waiting.values[name] = _last(rest, parameters)
+            self.defined_cycle.values[name] = _last(rest, parameters)
             return
         control = self._control
         match number:
@@ -134,7 +134,7 @@ class Definitions:
             axis = "XYZ".index(word.name)
             value *= self._control.length_unit
             shift[axis] = shift[axis] + value if word.incremental else value
-        if any(abs(value) > LARGEST_POSITION for value in shift):
+        if any(abs(value) > MAX_POSITION for value in shift):
             raise KlartextError("a shift that no machine has")
         self._control.set_datum(replace(self._control.datum, shift=(shift[0], shift[1], shift[2])))
 
@@ -184,7 +184,7 @@ class Definitions:
             return
         angles = {word.name: value for word, value in _axis_values(said, parameters, "ABC")}
         linear = spatial(*(angles.get(name, 0.0) for name in "ABC"))
-        remember(parameters, self._control, self._control.tilt(linear, Positioning()))
+        store_rotary_angles(parameters, self._control, self._control.tilt(linear, Positioning()))
 
     # Cycles with Q parameters
 
@@ -192,7 +192,7 @@ class Definitions:
         """A cycle of the 200 series, whose values are Q parameters from now on."""
         begin = re.search(r"(?:^|[ \t])Q[0-9]{1,4}[ \t]*=", rest)
         title, rest = (rest, "") if begin is None else (rest[: begin.start()], rest[begin.start() :])
-        named: dict[int, float] = {}
+        q_values: dict[int, float] = {}
         at = 0
         while at < len(rest.rstrip()):
             match = _ASSIGNED.match(rest, at)
@@ -201,7 +201,7 @@ class Definitions:
             at = match.end()
             target, sign, parameter, figures, word = match.groups()
             if word in _RAPID and int(target[1:]) in MAY_BE_RAPID:
-                named[int(target[1:])] = math.inf
+                q_values[int(target[1:])] = math.inf
                 parameters.forget(canonical(target))
                 continue
             if word is not None:
@@ -210,26 +210,26 @@ class Definitions:
             value = parameters[canonical(parameter)] if parameter else float(figures.replace(",", "."))
             value = -value if sign == "-" else value
             parameters[canonical(target)] = value
-            named[int(target[1:])] = value
+            q_values[int(target[1:])] = value
         if number in CYCLES or number in CYCLES_NOT_SIMULATED:
-            self.waiting = Cycle(number, named=named)
+            self.defined_cycle = Cycle(number, q_values=q_values)
             if number == BORE_MILLING:
                 text = "cycle 208: the tool's radius is the control's, and the path is that of the wall"
                 self._note(text, Severity.WARNING)
         elif number == PRESET:
-            self._preset(named)
+            self._preset(q_values)
         else:
             self._note(f"cycle {number} {title[:40].strip()} is unknown", Severity.ERROR)
 
-    def _preset(self, named: dict[int, float]) -> None:
-        preset = named.get(339, 0.0)
+    def _preset(self, q_values: dict[int, float]) -> None:
+        preset = q_values.get(339, 0.0)
         if preset != int(preset) or not 0 <= preset < 65535:
             raise KlartextError(f"preset {preset:g} is none")
         self._control.set_offset(int(preset), f"preset {preset:g}")
 
     # Calls
 
-    def called(self, parameters: Parameters) -> list[HoleMotion]:
+    def motions_of_call(self, parameters: Parameters) -> list[HoleMotion]:
         """Return the motions of the cycle that was defined last, where the tool is.
 
         Raises
@@ -237,7 +237,7 @@ class Definitions:
         CycleError
             If there is none, if it is not simulated, or if it makes no sense.
         """
-        cycle, control = self.waiting, self._control
+        cycle, control = self.defined_cycle, self._control
         if cycle is None:
             raise CycleExecutionError("was called before any was defined")
         if cycle.number in CYCLES_NOT_SIMULATED:
@@ -250,14 +250,14 @@ class Definitions:
             here = float(control.commanded[control.plane_axis]) / control.length_unit
             made = legacy_cycle_motions(cycle.number, cycle.values, rpm, here)
         else:
-            made = cycle_motions(cycle.number, cycle.named, rpm)
+            made = cycle_motions(cycle.number, cycle.q_values, rpm)
         if control.feed_unit == 1.0:
             return made
         return [step if step.feed is None else replace(step, feed=step.feed * control.feed_unit) for step in made]
 
 
 #: Older cycles that act as soon as they are defined.
-_AT_ONCE: Final = frozenset({
+_IMMEDIATE: Final = frozenset({
     DATUM, MIRROR, DWELL, ROTATION, SCALING, AXIS_SCALING, ORIENTATION, TILT, TOLERANCE
 })  # fmt: skip
 
@@ -278,7 +278,7 @@ def _last(text: str, parameters: Parameters) -> float:
     return -value if match[1] == "-" else value
 
 
-def remember(parameters: Parameters, control: HeidenhainControl, rotary: tuple[float, float] | None) -> None:
+def store_rotary_angles(parameters: Parameters, control: HeidenhainControl, rotary: tuple[float, float] | None) -> None:
     """Put the rotary position of a plane into Q120 (A), Q121 (B) and Q122 (C)."""
     if rotary is None:
         return

@@ -11,13 +11,13 @@ from typing import Final
 from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion, finite
 
 #: How far the tool moves off the wall of a bored hole, mm; the control has it fixed.
-DISENGAGE: Final = 0.2
+BORING_LIFT_OFF: Final = 0.2
 
 #: Feeds out of the hole, which may be rapid: infinite.
 MAY_BE_RAPID: Final = frozenset({208})
 
 #: Directions of Q214: first and second axis of the plane.
-_ASIDE: Final = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
+_LIFT_DIRECTIONS: Final = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
 
 
 class Hole:
@@ -128,7 +128,7 @@ def _ream(hole: Hole) -> list[HoleMotion]:
 
 def _bore(hole: Hole) -> list[HoleMotion]:
     """202: off the wall at the bottom, out at Q208, back over the hole."""
-    lateral = _aside(hole, DISENGAGE)
+    lateral = _lift_off(hole, BORING_LIFT_OFF)
     made = [HoleMotion(False, hole.at(hole.total), hole.feed, dwell=hole.get(211))]
     if lateral == (0.0, 0.0):
         return [*made, HoleMotion(False, hole.start, hole.out)]
@@ -140,11 +140,11 @@ def _bore(hole: Hole) -> list[HoleMotion]:
     ]
 
 
-def _aside(hole: Hole, distance: float) -> tuple[float, float]:
+def _lift_off(hole: Hole, distance: float) -> tuple[float, float]:
     direction = hole.get(214)
-    if direction not in _ASIDE:
+    if direction not in _LIFT_DIRECTIONS:
         raise CycleExecutionError(f"has Q214={direction:g}, which is no direction")
-    first, second = _ASIDE[int(direction)]
+    first, second = _LIFT_DIRECTIONS[int(direction)]
     return first * distance, second * distance
 
 
@@ -167,7 +167,7 @@ def _universal(hole: Hole) -> list[HoleMotion]:
 
 def _back_bore(hole: Hole) -> list[HoleMotion]:
     """204: past the hole aside, and up into its lower edge; Q250 is the thickness, Q251 from tip to cutting edge."""
-    lateral = _aside(hole, hole.need(252))
+    lateral = _lift_off(hole, hole.need(252))
     free = hole.at(hole.need(250) + hole.get(251) + hole.need(200))
     deep = hole.at(hole.need(250) + hole.get(251) - hole.need(249))
     slow, cut = hole.get(253), hole.need(254)

@@ -12,9 +12,9 @@ from trunnion.readers.families.heidenhain.parameters import (
     KlartextError,
     Parameters,
     canonical,
+    checked,
     formula,
     guarded,
-    sound,
 )
 from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED
 
@@ -110,7 +110,7 @@ def _value(number: int, rest: str, parameters: Parameters) -> float:
     if match is None:
         raise KlartextError(f"FN {number} takes two values")
     first, second = formula(match[1], parameters), formula(match[2], parameters)
-    return sound(guarded(lambda: work(first, second), f"FN {number}"))
+    return checked(guarded(lambda: work(first, second), f"FN {number}"))
 
 
 def _jump(number: int, rest: str, parameters: Parameters) -> str | None:

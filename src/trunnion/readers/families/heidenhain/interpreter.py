@@ -16,7 +16,7 @@ from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycle_definitions import Definitions
 from trunnion.readers.families.heidenhain.fn_functions import ASSIGNED, assign, execute
 from trunnion.readers.families.heidenhain.lexer import MAX_LENGTH, Line, split_line, words
-from trunnion.readers.families.heidenhain.machine_functions import Functions, tool_block
+from trunnion.readers.families.heidenhain.machine_functions import MFunctions, tool_block
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, polar_end, read_block
 from trunnion.readers.families.heidenhain.plane_blocks import plane_block, tcpm_block
@@ -33,8 +33,8 @@ MAX_LABEL_DEPTH: Final = 20
 _TENTH: Final = 0.1 * INCH
 
 #: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
-_PLAIN = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][Nn]?[ \t])")
-_LOOK: Final = 32
+_PLAIN_START = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][Nn]?[ \t])")
+_PREFIX_LENGTH: Final = 32
 
 #: Radius compensation: left of the path, right of it, off.
 _RADIUS_COMPENSATION: Final = {"R0": 0, "RL": 1, "RR": -1}
@@ -54,7 +54,7 @@ class ActiveProgram(interpreter.ActiveProgram):
     left      repeats that are left, by the line of the call
     """
 
-    text: KlartextText
+    source: KlartextText
     parameters: Parameters = field(default_factory=Parameters)
     returns: list[int] = field(default_factory=list)
     left: dict[int, int] = field(default_factory=dict)
@@ -79,13 +79,13 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
         self._control = HeidenhainControl(machine, self._note, self._file, shortest=shortest)
         self._definitions = Definitions(self._control, self._note)
         #: Parts of a block that goes on over several lines.
-        self._begun: list[str] = []
-        self._began = 0, -1
-        self._functions = Functions(self._control, self._note)
+        self._block_parts: list[str] = []
+        self._block_start = 0, -1
+        self._functions = MFunctions(self._control, self._note)
         self._tool_feed: float | None = None
-        self._heads: dict[str, Callable[[ActiveProgram, str], None]] = {
-            "BEGIN": self._begin,
-            "END": self._end,
+        self._handlers: dict[str, Callable[[ActiveProgram, str], None]] = {
+            "BEGIN": self._begin_program,
+            "END": self._end_program,
             "BLK": self._nothing,
             "TOOL": self._tool,
             "CYCL": self._cycle,
@@ -104,16 +104,16 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
         """The virtual control."""
         return self._control
 
-    def _first(self, text: SourceText) -> ActiveProgram:
+    def _main_program(self, text: SourceText) -> ActiveProgram:
         assert isinstance(text, KlartextText)
         return ActiveProgram(text, 0)
 
-    def _may_be_plain(self, text: SourceText) -> bool:
-        if self._begun or self._functions.modal_call or self._control.compensation.current:
+    def _may_scan(self, text: SourceText) -> bool:
+        if self._block_parts or self._functions.modal_call or self._control.compensation.current:
             return False
-        return _PLAIN.match(text.buffer[text.position : text.position + _LOOK].tobytes()) is not None
+        return _PLAIN_START.match(text.buffer[text.position : text.position + _PREFIX_LENGTH].tobytes()) is not None
 
-    def _kernel(self, text: SourceText) -> None:
+    def _scan_blocks(self, text: SourceText) -> None:
         control = self._control
         scan_kernel.scan_blocks(
             text.buffer,
@@ -133,72 +133,72 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
 
     # Lines and blocks
 
-    def _line(self, call: ActiveProgram, line: int, raw: str) -> None:
+    def _execute_line(self, active: ActiveProgram, line: int, raw: str) -> None:
         if len(raw) > MAX_LENGTH:
-            self._begun.clear()
+            self._block_parts.clear()
             self._note(f"the line is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
             return
         parts = split_line(raw)
-        if self._begun and parts.number >= 0 and not ASSIGNED.match(parts.statement):
+        if self._block_parts and parts.number >= 0 and not ASSIGNED.match(parts.statement):
             self._note("the block before it goes on (~), and a new one begins", Severity.ERROR)
-            self._finish(call)
+            self._finish(active)
             self._control.line = line
-        if parts.skipped and self._skip:
+        if parts.block_skip and self._skip:
             parts = Line(parts.number, True, "", parts.comment, False)
-        if not self._begun:
-            self._began = line, parts.number
+        if not self._block_parts:
+            self._block_start = line, parts.number
         if parts.statement:
-            self._begun.append(parts.statement)
+            self._block_parts.append(parts.statement)
         try:
-            if not (parts.goes_on and self._begun):
-                self._finish(call)
-            elif sum(map(len, self._begun)) > MAX_LENGTH:
-                self._begun.clear()
+            if not (parts.continues and self._block_parts):
+                self._finish(active)
+            elif sum(map(len, self._block_parts)) > MAX_LENGTH:
+                self._block_parts.clear()
                 self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
         finally:
-            self._comment(line, parts.comment)
+            self._record_comment(line, parts.comment)
 
-    def _finish(self, call: ActiveProgram) -> None:
+    def _finish(self, active: ActiveProgram) -> None:
         """Execute the block whose parts have come together."""
-        statement = " ".join(self._begun)
-        self._begun.clear()
+        statement = " ".join(self._block_parts)
+        self._block_parts.clear()
         if not statement:
             return
-        self._control.line, self._control.block_number = self._began
+        self._control.line, self._control.block_number = self._block_start
         try:
-            self._statement(call, statement)
+            self._statement(active, statement)
         except KlartextError as error:
             self._note(f"not understood: {statement[:80]}: {error}: the block is not executed", Severity.ERROR)
 
-    def _leave(self) -> None:
-        if self._begun:
+    def _leave_program(self) -> None:
+        if self._block_parts:
             # The last block said that it goes on, and nothing came.
             self._finish(self._stack[-1])
             return
-        super()._leave()
+        super()._leave_program()
 
-    def _statement(self, call: ActiveProgram, statement: str) -> None:
+    def _statement(self, active: ActiveProgram, statement: str) -> None:
         path, assigned = _PATH.match(statement), ASSIGNED.match(statement)
         if path is not None:
-            self._motion(call, path[0], statement[path.end() :])
+            self._motion(active, path[0], statement[path.end() :])
             return
         if assigned is not None:
-            assign(assigned[1], statement[assigned.end() :], call.parameters)
+            assign(assigned[1], statement[assigned.end() :], active.parameters)
             return
         head = _HEAD.match(statement)
         word = "" if head is None else head[0]
-        if word in self._heads:
-            self._heads[word](call, statement[len(word) :])
+        if word in self._handlers:
+            self._handlers[word](active, statement[len(word) :])
         elif word in BLOCKS_NOT_SIMULATED:
             self._note(f"{word} {BLOCKS_NOT_SIMULATED[word]}", Severity.ERROR)
         else:
             # A block of M words, or one axis on its own, needs no head.
-            self._motion(call, "L", statement)
+            self._motion(active, "L", statement)
 
-    def _nothing(self, call: ActiveProgram, rest: str) -> None:
+    def _nothing(self, active: ActiveProgram, rest: str) -> None:
         pass
 
-    def _begin(self, call: ActiveProgram, rest: str) -> None:
+    def _begin_program(self, active: ActiveProgram, rest: str) -> None:
         if not rest.split()[:1] == ["PGM"]:
             raise KlartextError("BEGIN needs PGM")
         unit = rest.split()[-1]
@@ -207,21 +207,21 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
         self._control.set_units(unit == "INCH", False)
         self._control.feed_unit = _TENTH if unit == "INCH" else 1.0
 
-    def _end(self, call: ActiveProgram, rest: str) -> None:
-        self._begun.clear()
-        self._leave()
+    def _end_program(self, active: ActiveProgram, rest: str) -> None:
+        self._block_parts.clear()
+        self._leave_program()
 
-    def _stop(self, call: ActiveProgram, rest: str) -> None:
-        block = read_block(words(rest), call.parameters)
-        self._functions.early(block)
+    def _stop(self, active: ActiveProgram, rest: str) -> None:
+        block = read_block(words(rest), active.parameters)
+        self._functions.execute_before_motion(block)
         self._control.add_event("stop")
-        self._functions.late(block)
+        self._functions.execute_after_motion(block)
 
     # Motion
 
-    def _motion(self, call: ActiveProgram, head: str, rest: str) -> None:
+    def _motion(self, active: ActiveProgram, head: str, rest: str) -> None:
         control = self._control
-        block = read_block(words(rest), call.parameters)
+        block = read_block(words(rest), active.parameters)
         machine = {M_MACHINE, M_SECOND_MACHINE} & {code for code, _ in block.m}
         self._check_axes(block)
         axes = block.axes
@@ -234,7 +234,7 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
         circle = circle_of(control, head, block) if head[0] == "C" else None
         vector = block.tool_axis
         feed = self._feed(block)
-        self._functions.early(block)
+        self._functions.execute_before_motion(block)
         if feed is not None:
             control.commanded[3] = feed
         control.kind = RAPID if block.rapid else LINEAR
@@ -260,14 +260,16 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
                 control.add_normal(block.normal)
         calls = any(code == M_CALL for code, _ in block.m)
         if calls or (self._functions.modal_call and moves and not machine):
-            self._drill(call)
+            self._drill(active)
         if calls:
             self._functions.modal_call = False
-        self._functions.late(block)
+        self._functions.execute_after_motion(block)
 
     def _check_axes(self, block: Block) -> None:
         """Say which axes the machine does not have, and take them out."""
-        known = {"X", "Y", "Z", *self._control.rotary_names} | ({"A", "B", "C"} if self._control.by_angles else set())
+        known = {"X", "Y", "Z", *self._control.rotary_names} | (
+            {"A", "B", "C"} if self._control.spatial_angles_active else set()
+        )
         for name in sorted(block.axes.keys() - known):
             self._note(f"the machine has no axis {name}: its word is not executed", Severity.ERROR)
             del block.axes[name]
@@ -280,11 +282,11 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
             raise KlartextError("F AUTO, and TOOL CALL has no F")
         return self._tool_feed if block.feed_of_tool else None
 
-    def _pole(self, call: ActiveProgram, rest: str) -> None:
+    def _pole(self, active: ActiveProgram, rest: str) -> None:
         control = self._control
         # A pole that is not understood leaves none.
         control.pole = None
-        block = read_block(words(rest), call.parameters)
+        block = read_block(words(rest), active.parameters)
         pole = control.commanded[:3].copy()
         for name, (value, how) in block.axes.items():
             if name not in ("X", "Y", "Z"):
@@ -293,29 +295,29 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
             pole[axis] = value * control.length_unit + (pole[axis] if how is PositionMode.INCREMENTAL else 0.0)
         control.pole = pole
 
-    def _drill(self, call: ActiveProgram) -> None:
+    def _drill(self, active: ActiveProgram) -> None:
         try:
-            made = self._definitions.called(call.parameters)
+            made = self._definitions.motions_of_call(active.parameters)
         except CycleExecutionError as error:
             self._note(f"the cycle {error}: it is not executed", Severity.ERROR)
             return
-        self._count(len(made))
+        self._count_blocks(len(made))
         self._control.drill(made)
 
     # Tools and cycles
 
-    def _tool(self, call: ActiveProgram, rest: str) -> None:
-        feed = tool_block(self._control, rest, call.parameters)
+    def _tool(self, active: ActiveProgram, rest: str) -> None:
+        feed = tool_block(self._control, rest, active.parameters)
         if feed is not None:
             self._tool_feed = feed
 
-    def _cycle(self, call: ActiveProgram, rest: str) -> None:
+    def _cycle(self, active: ActiveProgram, rest: str) -> None:
         match = _CYCLE.match(rest)
         if match is None:
             raise KlartextError("CYCL needs DEF or CALL")
         rest = rest[match.end() :]
         if match[1] == "DEF":
-            self._definitions.define(rest, call.parameters)
+            self._definitions.define(rest, active.parameters)
             return
         said = words(rest)
         first = said[0].name if said else ""
@@ -323,30 +325,30 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
             self._note("CYCL CALL PAT: point patterns are not simulated", Severity.ERROR)
             return
         position = first == "POS"
-        block = read_block(said[1:] if position else said, call.parameters)
+        block = read_block(said[1:] if position else said, active.parameters)
         if block.axes and not position:
             raise KlartextError("CYCL CALL takes no positions")
-        self._functions.early(block)
+        self._functions.execute_before_motion(block)
         if block.feed is not None:
             self._control.commanded[3] = block.feed * self._control.feed_unit
         if position:
             self._control.kind = LINEAR if block.feed is not None and not block.rapid else RAPID
             self._control.move(block.axes, None, feed_written=block.feed is not None)
-        self._drill(call)
-        self._functions.late(block)
+        self._drill(active)
+        self._functions.execute_after_motion(block)
 
     # Planes
 
-    def _plane(self, call: ActiveProgram, rest: str) -> None:
+    def _plane(self, active: ActiveProgram, rest: str) -> None:
         self._control.add_event("plane", rest.strip())
-        plane_block(self._control, words(rest), call.parameters, self._note)
+        plane_block(self._control, words(rest), active.parameters, self._note)
 
-    def _special(self, call: ActiveProgram, rest: str) -> None:
+    def _special(self, active: ActiveProgram, rest: str) -> None:
         match rest.split():
             case ["TCPM", *_]:
                 tcpm_block(self._control, words(rest.replace("TCPM", "", 1)), self._note)
             case ["RESET", "TCPM"]:
-                self._control.by_angles = False
+                self._control.spatial_angles_active = False
                 self._control.set_tcp(False)
             case ["MODE", "MILL"]:
                 pass
@@ -355,67 +357,67 @@ class HeidenhainInterpreter(Interpreter[ActiveProgram]):
 
     # Flow
 
-    def _label(self, call: ActiveProgram, rest: str) -> None:
-        if _target(rest, call.parameters) == "0" and call.returns:
-            call.text.jump(call.returns.pop())
+    def _label(self, active: ActiveProgram, rest: str) -> None:
+        if _target(rest, active.parameters) == "0" and active.returns:
+            active.source.jump(active.returns.pop())
 
-    def _call(self, call: ActiveProgram, rest: str) -> None:
+    def _call(self, active: ActiveProgram, rest: str) -> None:
         match = _CALL.match(rest)
         if match is None:
             raise KlartextError("CALL needs LBL or PGM")
         rest = rest[match.end() :].strip()
         if match[1] == "PGM":
-            self._write_row(rest.strip('"'))
+            self._enter_subprogram(rest.strip('"'))
             return
         where, _, again = rest.partition("REP")
-        call.text.load()
-        here = call.text.line
-        target = self._line_of(call, where)
+        active.source.load()
+        here = active.source.line
+        target = self._line_of(active, where)
         if again:
-            self._repeat(call, here, target, int(_target(again.split("/")[0], call.parameters)))
+            self._repeat(active, here, target, int(_target(again.split("/")[0], active.parameters)))
             return
-        if len(call.returns) >= MAX_LABEL_DEPTH:
+        if len(active.returns) >= MAX_LABEL_DEPTH:
             line = self._control.line
             what = f"calls labels deeper than {MAX_LABEL_DEPTH} levels"
-            raise call.text.problem(line, what, "does one call itself?")
-        call.returns.append(here)
-        call.text.jump(target)
+            raise active.source.problem(line, what, "does one call itself?")
+        active.returns.append(here)
+        active.source.jump(target)
 
-    def _repeat(self, call: ActiveProgram, here: int, target: int, times: int) -> None:
-        left = call.left.setdefault(here, times)
+    def _repeat(self, active: ActiveProgram, here: int, target: int, times: int) -> None:
+        left = active.left.setdefault(here, times)
         if left > 0:
-            call.left[here] = left - 1
-            call.text.jump(target)
+            active.left[here] = left - 1
+            active.source.jump(target)
         else:
-            del call.left[here]
+            del active.left[here]
 
-    def _line_of(self, call: ActiveProgram, where: str) -> int:
-        name = _target(where, call.parameters)
-        found = call.text.label(name)
+    def _line_of(self, active: ActiveProgram, where: str) -> int:
+        name = _target(where, active.parameters)
+        found = active.source.label(name)
         if found is None:
             self._note(f"the label {name[:60]} is missing: the program ends here", Severity.ERROR)
             raise ProgramEnd
         return found
 
-    def _write_row(self, name: str) -> None:
+    def _enter_subprogram(self, name: str) -> None:
         """Call a program, one of the files that were named."""
-        path = self._named.find(name)
+        path = self._subprograms.find(name)
         if path is None:
             self._note(f"missing program {name[:80]}: it is not executed; name its file", Severity.ERROR)
             return
         self._check_depth()
         parameters = Parameters(self._stack[-1].parameters)
-        text, file = self._open(path)
+        text, file = self._open_subprogram(path)
         assert isinstance(text, KlartextText)
         self._stack.append(ActiveProgram(text, file, parameters=parameters))
 
     # Parameters
 
-    def _function(self, call: ActiveProgram, rest: str) -> None:
-        where = execute(rest, call.parameters, self._note)
+    def _function(self, active: ActiveProgram, rest: str) -> None:
+        where = execute(rest, active.parameters, self._note)
         if where is not None:
-            call.text.load()
-            call.text.jump(self._line_of(call, where))
+            active.source.load()
+            active.source.jump(self._line_of(active, where))
 
 
 def _target(text: str, parameters: Parameters) -> str:

@@ -30,14 +30,14 @@ _INCREMENTAL: Final = frozenset({"IX", "IY", "IZ", "IA", "IB", "IC", "IU", "IV",
 class Line(NamedTuple):
     """A line: number of its block or -1, whether it may be skipped, its statement in capitals but for texts, comment.
 
-    ``goes_on``: a ``~`` at its end takes the next line into the same block.
+    ``continues``: a ``~`` at its end takes the next line into the same block.
     """
 
     number: int
-    skipped: bool
+    block_skip: bool
     statement: str
     comment: str | None
-    goes_on: bool
+    continues: bool
 
 
 class Operand(NamedTuple):
@@ -63,8 +63,8 @@ def split_line(raw: str) -> Line:
     assert head is not None
     number = int(head.group(2)) if head.group(2) else -1
     rest = raw[head.end() :]
-    goes_on = rest.rstrip().endswith("~")
-    if goes_on:
+    continues = rest.rstrip().endswith("~")
+    if continues:
         rest = rest.rstrip()[:-1].rstrip()
     comment = None
     if rest.startswith("*"):
@@ -79,7 +79,7 @@ def split_line(raw: str) -> Line:
         statement = statement.upper()
     else:
         statement = '"'.join(part if k % 2 else part.upper() for k, part in enumerate(statement.split('"')))
-    return Line(number, bool(head.group(1) or head.group(3)), statement, comment, goes_on)
+    return Line(number, bool(head.group(1) or head.group(3)), statement, comment, continues)
 
 
 def words(statement: str, at: int = 0) -> list[Word]:

@@ -34,7 +34,7 @@ from trunnion.readers.families.heidenhain.words import (
 from trunnion.readers.program.interpreter import ProgramEnd
 
 #: M words that are looked at in other places, or change only how the control drives.
-_ELSEWHERE: Final = frozenset({M_MACHINE, M_SECOND_MACHINE, M_CALL, *M_EVENTS, *M_WITHOUT_PATH_EFFECT})
+_HANDLED_ELSEWHERE: Final = frozenset({M_MACHINE, M_SECOND_MACHINE, M_CALL, *M_EVENTS, *M_WITHOUT_PATH_EFFECT})
 
 _TOOL = re.compile(
     r"[ \t]*(?P<kind>CALL|DEF)[ \t]*"
@@ -42,7 +42,7 @@ _TOOL = re.compile(
 )
 
 
-class Functions:
+class MFunctions:
     """Executes M words.
 
     modal_call   M89: the cycle is called at every position
@@ -53,13 +53,13 @@ class Functions:
         self._note = note
         self.modal_call = False
 
-    def early(self, block: Block) -> None:
+    def execute_before_motion(self, block: Block) -> None:
         """Execute those that act before the motion of their block."""
         for code, arguments in block.m:
             if code not in M_AFTER_MOTION:
                 self._execute(code, arguments)
 
-    def late(self, block: Block) -> None:
+    def execute_after_motion(self, block: Block) -> None:
         """Execute those that act after it; raises ``ProgramEnd``."""
         for code, arguments in block.m:
             if code in M_AFTER_MOTION:
@@ -74,7 +74,7 @@ class Functions:
         if code in (M_SHORTEST, M_NOT_SHORTEST):
             control.shortest_path = code == M_SHORTEST
         elif code in (M_TCP, M_TCP_OFF):
-            control.by_angles = False
+            control.spatial_angles_active = False
             control.set_tcp(code == M_TCP)
         elif code in (M_PER_TURN, M_PER_MINUTE):
             control.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
@@ -90,7 +90,7 @@ class Functions:
         elif code in M_NOT_SIMULATED:
             text, grave = M_NOT_SIMULATED[code]
             self._note(f"M{code}: {text}", Severity.ERROR if grave else Severity.WARNING)
-        elif code not in _ELSEWHERE:
+        elif code not in _HANDLED_ELSEWHERE:
             control.add_event("m", float(code))
 
     def _retract(self, arguments: dict[str, float | None]) -> None:

@@ -10,7 +10,7 @@ from typing import Final
 MAX_NESTING: Final = 40
 
 #: Larger values are none that a parameter can have.
-LARGEST: Final = 1e10
+MAX_VALUE: Final = 1e10
 
 _TOKEN = re.compile(r"[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+)|([A-Z]+)|([-+*/^%()]))")
 
@@ -40,16 +40,16 @@ class Parameters:
         return value
 
     def __setitem__(self, name: str, value: float) -> None:
-        self._table(name)[name] = sound(value)
+        self._table(name)[name] = checked(value)
 
     def forget(self, name: str) -> None:
         """Take a parameter's value away: only the control knows it."""
         self._table(name).pop(name, None)
 
 
-def sound(value: float) -> float:
+def checked(value: float) -> float:
     """Return a value, refusing what no parameter can hold."""
-    if not abs(value) <= LARGEST:
+    if not abs(value) <= MAX_VALUE:
         raise KlartextError("a value is larger than any parameter can hold")
     return value
 
@@ -60,7 +60,7 @@ def canonical(name: str) -> str:
     return f"{letter_table}{int(name[len(letter_table) :])}"
 
 
-def _raised(base: float, exponent: float) -> float:
+def _power_of(base: float, exponent: float) -> float:
     if base < 0.0 and exponent != int(exponent):
         raise ValueError
     return math.pow(base, exponent)
@@ -102,7 +102,7 @@ def formula(text: str, parameters: Parameters) -> float:
     value = parser.sum()
     if parser.token is not None:
         raise KlartextError(f"{parser.token[:20]} stands where nothing may follow")
-    return sound(value)
+    return checked(value)
 
 
 class _Parser:
@@ -134,7 +134,7 @@ class _Parser:
     def sum(self) -> float:
         value = self._product()
         while self.token in ("+", "-"):
-            value = sound(value + self._product() if self._take() == "+" else value - self._product())
+            value = checked(value + self._product() if self._take() == "+" else value - self._product())
         return value
 
     def _product(self) -> float:
@@ -142,11 +142,11 @@ class _Parser:
         while self.token in ("*", "/", "%"):
             operator, other = self._take(), self._power()
             if operator == "*":
-                value = sound(value * other)
+                value = checked(value * other)
             elif other == 0.0:
                 raise KlartextError("divides by zero")
             else:
-                value = sound(value / other) if operator == "/" else math.fmod(value, other)
+                value = checked(value / other) if operator == "/" else math.fmod(value, other)
         return value
 
     def _power(self) -> float:
@@ -154,7 +154,7 @@ class _Parser:
         while self.token == "^":
             self._take()
             exponent = self._factor()
-            value = guarded(partial(_raised, value, exponent), "^")
+            value = guarded(partial(_power_of, value, exponent), "^")
         return value
 
     def _factor(self) -> float:
@@ -182,13 +182,13 @@ class _Parser:
         if token[0] == "Q" and token[-1].isdigit():
             return self._parameters[canonical(token)]
         if token[0].isdigit() or token[0] in ".,":
-            return sound(float(token.replace(",", ".")))
+            return checked(float(token.replace(",", ".")))
         raise KlartextError(f"{token[:20]} belongs to no formula")
 
 
 def guarded(work: Callable[[], float], name: str) -> float:
     """Return what a function gives, refusing what it has no value for."""
     try:
-        return sound(work())
+        return checked(work())
     except (ValueError, OverflowError, ZeroDivisionError):
         raise KlartextError(f"{name} has no value here") from None

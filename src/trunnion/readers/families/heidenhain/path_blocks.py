@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.readers.control import arcs
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
-from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import Circle
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.lexer import Operand, Word
@@ -163,7 +163,7 @@ def polar_end(control: HeidenhainControl, block: Block, *, circle: bool) -> dict
     if "PA" in block.polar:
         value, how = block.polar["PA"]
         angle = angle + value if how is PositionMode.INCREMENTAL else value
-    if abs(angle) > 360.0 * MAX_TURNS or not abs(radius) < LARGEST_POSITION:
+    if abs(angle) > 360.0 * MAX_TURNS or not abs(radius) < MAX_POSITION:
         raise KlartextError("polar coordinates that no machine has")
     end = {
         "XYZ"[first]: (pole[first] + radius * math.cos(math.radians(angle))) / control.length_unit,
@@ -194,7 +194,7 @@ def circle_of(control: HeidenhainControl, head: str, block: Block) -> Circle:
         if block.radius is None:
             raise KlartextError("CR needs a radius")
         radius = block.radius * control.length_unit
-        if abs(radius) > LARGEST_POSITION:
+        if abs(radius) > MAX_POSITION:
             raise KlartextError("a radius that no machine has")
         return lambda start, end: arcs.by_radius(start, end, radius, control.plane_axis, clockwise, 0)
     pole = _pole(control).copy()
@@ -209,7 +209,7 @@ def circle_of(control: HeidenhainControl, head: str, block: Block) -> Circle:
 
 def _tangential(control: HeidenhainControl, start: Floats, end: Floats) -> arcs.Arc:
     """The circle that goes on where the last motion went to."""
-    heading = control.heading()
+    heading = control.end_direction()
     plane = control.plane_axis
     chord = end - start
     chord[plane] = 0.0
@@ -224,6 +224,6 @@ def _tangential(control: HeidenhainControl, start: Floats, end: Floats) -> arcs.
     if abs(across) < arcs.SAME_POINT * float(chord @ chord):
         raise arcs.ArcError("the end lies straight ahead")
     centre = start + left * (float(chord @ chord) / (2.0 * across))
-    if float(np.abs(centre).max()) > arcs.LARGEST_RADIUS:
+    if float(np.abs(centre).max()) > arcs.MAX_RADIUS:
         raise arcs.ArcError("the end lies straight ahead")
     return arcs.by_centre(start, end, centre, plane, across < 0.0, 0)

@@ -8,9 +8,9 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import rotation_matrix
-from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.families.heidenhain.control import HeidenhainControl, Positioning
-from trunnion.readers.families.heidenhain.cycle_definitions import remember
+from trunnion.readers.families.heidenhain.cycle_definitions import store_rotary_angles
 from trunnion.readers.families.heidenhain.lexer import Word
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
 from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, value_of
@@ -37,9 +37,11 @@ def plane_block(control: HeidenhainControl, said: Sequence[Word], parameters: Pa
         if len(values) != 1 or not values.keys() <= {"SPA", "SPB", "SPC"}:
             raise KlartextError("PLANE RELATIV takes one of SPA, SPB and SPC")
         ((name, angle),) = values.items()
-        remember(parameters, control, control.tilt(rotation_matrix("ABC".index(name[2]), angle), how, relative=True))
+        store_rotary_angles(
+            parameters, control, control.tilt(rotation_matrix("ABC".index(name[2]), angle), how, relative=True)
+        )
     elif kind in _KINDS:
-        remember(parameters, control, control.tilt(plane(kind, values), how))
+        store_rotary_angles(parameters, control, control.tilt(plane(kind, values), how))
     else:
         note(f"PLANE {kind} is known but not simulated", Severity.ERROR)
 
@@ -52,7 +54,7 @@ def _axial(control: HeidenhainControl, values: dict[str, float], how: Positionin
     held = [float(control.current_joints[column]) for column in control.machine.rotary]
     first, second = (values.get(name, was) for name, was in zip(control.rotary_names, held, strict=True))
     control.tilt_axial((first, second), how)
-    remember(parameters, control, (first, second))
+    store_rotary_angles(parameters, control, (first, second))
 
 
 def _positioning(
@@ -80,9 +82,9 @@ def _positioning(
                 pass
             case "F", float() if 0.0 <= value <= MAX_FEED:
                 how = replace(how, feed=value * control.feed_unit)
-            case (("DIST" | "ABST"), float()) if abs(value) * control.length_unit < LARGEST_POSITION:
+            case (("DIST" | "ABST"), float()) if abs(value) * control.length_unit < MAX_POSITION:
                 how = replace(how, distance=value * control.length_unit)
-            case "MB", float() if abs(value) * control.length_unit < LARGEST_POSITION:
+            case "MB", float() if abs(value) * control.length_unit < MAX_POSITION:
                 how = replace(how, retract=value * control.length_unit)
             case _, float():
                 if word.name in values:
@@ -118,6 +120,6 @@ def tcpm_block(control: HeidenhainControl, said: Sequence[Word], note: Note) -> 
     if len(names) % 2:
         note(f"FUNCTION TCPM: {names[-1]} stands alone", Severity.ERROR)
     control.set_tcp(True)
-    control.by_angles = by_angles
+    control.spatial_angles_active = by_angles
     control.angles = [0.0, 0.0, 0.0]
     control.set_orientation(orientation)

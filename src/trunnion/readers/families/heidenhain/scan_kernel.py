@@ -29,7 +29,7 @@ NORMAL: Final = 11  # and the two after it: NX, NY, NZ
 _POWERS: Final = np.array([10.0**k for k in range(23)])
 
 #: Larger numbers are looked at by the interpreter, which knows how far machines reach.
-_LARGEST_NUMBER: Final = 1e5
+_MAX_NUMBER: Final = 1e5
 
 _TAB: Final = 9
 _LF: Final = 10
@@ -189,7 +189,7 @@ def scan_blocks(
                     plain = False
                     break
                 value = mantissa / _POWERS[decimals]
-                if value > _LARGEST_NUMBER or (what == COMPENSATION and (mantissa != 0 or point)):
+                if value > _MAX_NUMBER or (what == COMPENSATION and (mantissa != 0 or point)):
                     plain = False
                     break
                 values[what] = -value if negative else value

@@ -17,7 +17,7 @@ _LABEL = re.compile(
 
 
 @dataclass(slots=True)
-class _Places:
+class _JumpTargets:
     """Where the labels of a text stand, found out when they are first asked for."""
 
     labels: dict[str, int] | None = None
@@ -28,15 +28,15 @@ class KlartextText(SourceText):
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
         # Shared by all that run the same text: see ``restarted``.
-        self._places = _Places()
+        self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole)
 
     def label(self, name: str) -> int | None:
         """Line of a label, by its number or its name; of several the first. Label 0 ends subprograms and is none."""
-        labels = self._places.labels
+        labels = self._jump_targets.labels
         if labels is None:
-            labels = self._places.labels = {}
-            for match in _LABEL.finditer(self.all()):
+            labels = self._jump_targets.labels = {}
+            for match in _LABEL.finditer(self.whole_bytes()):
                 number, text = match.groups()
                 key = str(int(number)) if number is not None else decode(text).upper()
                 labels.setdefault(key, self.line_of(match.start(1 if number is not None else 2)))

@@ -94,7 +94,7 @@ class LinuxcncControl(Rs274Control):
         self.set_program_frame(AffineMap(linear, shift), keep_base=False)
 
     @property
-    def turned(self) -> dict[str, float]:
+    def rotary_offsets(self) -> dict[str, float]:
         """What a programmed rotary position has to grow by to be a position of the machine, by letter."""
         offset = self.offset_of(self.system).values
         total = offset + self.shift if self.shifted else offset
@@ -103,12 +103,12 @@ class LinuxcncControl(Rs274Control):
     def position(self) -> Floats:
         """(6,) programmed positions of where the axes stand, mm and degrees."""
         self.resolve_rows()
-        turned = self.turned
+        offsets = self.rotary_offsets
         position = np.zeros(6)
         position[:3] = self.commanded[:3]
         for which, name in enumerate(self.rotary_names):
             if name in ORDER:
-                position[ORDER.index(name)] = float(self.current_joints[self.machine.rotary[which]]) - turned[name]
+                position[ORDER.index(name)] = float(self.current_joints[self.machine.rotary[which]]) - offsets[name]
         return position
 
     def machine_position(self) -> Floats:

@@ -58,7 +58,7 @@ class CycleInterpreter(OffsetInterpreter):
         )
         first, second = (control.plane_axis + 1) % 3, (control.plane_axis + 2) % 3
         lateral = float(end[first] - start[first]), float(end[second] - start[second])
-        self._count(2)
+        self._count_blocks(2)
         control.drill(
             [
                 HoleMotion(False, float(end[control.plane_axis]), feed, lateral=lateral),
@@ -124,7 +124,7 @@ class CycleInterpreter(OffsetInterpreter):
             raise BlockError("R of the cycle lies below its depth")
         still = [np.nan, np.nan]
         if old < retract:
-            self._count(1)
+            self._count_blocks(1)
             control.drill([HoleMotion(True, retract)])
             old = height = retract
         hole = cycles.Hole(
@@ -142,7 +142,7 @@ class CycleInterpreter(OffsetInterpreter):
                 place[axis] = value if control.absolute else place[axis] + value
                 bits |= 1 << axis
             first = height if count == 0 and height > retract else hole.clear
-            self._count(len(made) + 2)
+            self._count_blocks(len(made) + 2)
             place[normal] = first * scale
             if not control.add_row(Kind.RAPID, place, bits, still, 0, None):
                 return

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC, LOCAL, Parameters
+from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC, LOCAL_COUNT, Parameters
 from trunnion.readers.families.linuxcnc.text import SUFFIXES, LinuxcncText
 from trunnion.readers.program.source_text import Subprograms
 from trunnion.readers.rs274 import interpreter
@@ -23,7 +23,7 @@ _KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT
 class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram being executed, and how often its REPEAT loops have still to run, by line."""
 
-    text: LinuxcncText
+    source: LinuxcncText
     counters: dict[int, int] = field(default_factory=dict)
 
 
@@ -35,14 +35,14 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
     ) -> None:
         named = Subprograms(subprograms, SUFFIXES)
         super().__init__(path, machine, named, step_limit=step_limit, skip=skip)
-        self._parameters = Parameters(self._system)
+        self._parameters = Parameters(self._system_value)
         self._returned: float | None = None
 
     @abstractmethod
-    def _system(self, key: int | str) -> float | None:
+    def _system_value(self, key: int | str) -> float | None:
         """Return what the control itself puts behind a number or name; None if it is none of its own."""
 
-    def _o_word(self, call: ActiveProgram, line: int, reader: ExpressionReader) -> None:
+    def _o_word(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         label = self._label(reader)
         match = _KEYWORD.match(reader.text, reader.at)
         if match is None:
@@ -73,7 +73,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
         }.get(name)
         if handler is None:
             raise BlockError(f"no O word: {name[:40]}")
-        handler(call, line, reader, label)
+        handler(active, line, reader, label)
         if not reader.ended:
             self._note(f"not understood behind {name}: {reader.rest!r}", Severity.ERROR)
 
@@ -86,73 +86,73 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
                 raise BlockError("the name of an O word does not end")
             reader.at = end + 1
             return reader.text[begin : end + 1]
-        value, _ = reader.real()
+        value, _ = reader.signed_value()
         if value is None or value != int(value) or not 0 <= value < 1e9:
             raise BlockError("an O word needs a whole number or a name")
         return str(int(value))
 
-    def _nothing(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        call.text.structure(line)
+    def _nothing(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        active.source.structure(line)
 
-    def _skip_sub(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        call.text.jump(call.text.structure(line).end + 1)
+    def _skip_sub(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        active.source.jump(active.source.structure(line).end + 1)
 
-    def _return(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+    def _return(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         if len(self._stack) < 2:
             raise BlockError("the end of a subprogram outside one")
         self._returned = None
         if not reader.ended:
-            self._returned = reader.sum()
-        self._leave()
+            self._returned = reader.bracket_value()
+        self._leave_program()
 
-    def _leave(self) -> None:
+    def _leave_program(self) -> None:
         deep = len(self._stack)
-        super()._leave()
+        super()._leave_program()
         if len(self._stack) < deep:
             self._parameters.leave()
 
-    def _call(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+    def _call(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         arguments: list[float] = []
-        while not reader.ended and len(arguments) < LOCAL:
-            arguments.append(reader.sum())
+        while not reader.ended and len(arguments) < LOCAL_COUNT:
+            arguments.append(reader.bracket_value())
         self._check_depth()
-        here = call.text.subprogram(label)
+        here = active.source.subprogram(label)
         if here is not None:
-            self._file.set(self.control.row, call.file)
-            entered = ActiveProgram(call.text.restarted(), call.file)
+            self._file.set(self.control.row, active.file)
+            entered = ActiveProgram(active.source.restarted(), active.file)
             begin = here.begin
         else:
-            path = self._named.find(label.strip("<>"))
+            path = self._subprograms.find(label.strip("<>"))
             if path is None:
                 raise BlockError(f"missing subprogram O{label[:80]}; name its file")
-            text, file = self._open(path)
+            text, file = self._open_subprogram(path)
             assert isinstance(text, LinuxcncText)
             found = text.subprogram(label)
             if found is None:
-                self._file.set(self.control.row, call.file)
+                self._file.set(self.control.row, active.file)
                 raise BlockError(f"{path.name} holds no O{label[:80]} SUB")
             entered, begin = ActiveProgram(text, file), found.begin
         entered.row = self.control.row
-        entered.text.jump(begin + 1)
+        entered.source.jump(begin + 1)
         self._parameters.enter(arguments)
         self._stack.append(entered)
 
-    def _if(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        structure = call.text.structure(line)
+    def _if(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        structure = active.source.structure(line)
         if self._holds(reader):
             return
         for branch in structure.branches:
-            head = self._head(call, branch)
+            head = self._head(active, branch)
             if head is None or (head.accept("ELSEIF") and self._holds(head)):
-                call.text.jump(branch + 1)
+                active.source.jump(branch + 1)
                 return
 
-    def _head(self, call: ActiveProgram, line: int) -> ExpressionReader | None:
+    def _head(self, active: ActiveProgram, line: int) -> ExpressionReader | None:
         """Return a reader at the ELSEIF of a line; None at an ELSE or at the end."""
-        here = call.text.line
-        call.text.jump(line)
-        text = split_line(call.text.next_line(), semicolon=True).text
-        call.text.jump(here)
+        here = active.source.line
+        active.source.jump(line)
+        text = split_line(active.source.next_line(), semicolon=True).text
+        active.source.jump(here)
         reader = block_reader(text, ARITHMETIC, self._parameters)
         reader.expect("O")
         self._label(reader)
@@ -161,50 +161,50 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
     def _holds(self, reader: ExpressionReader) -> bool:
         """Return a condition; one that cannot be worked out does not hold."""
         try:
-            return bool(reader.sum())
+            return bool(reader.bracket_value())
         except BlockError as error:
             self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR)
             reader.at = len(reader.text)
             return False
 
-    def _past_branches(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+    def _past_branches(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
         """A branch that was executed ends here."""
         reader.at = len(reader.text)
-        call.text.jump(call.text.structure(line).end + 1)
+        active.source.jump(active.source.structure(line).end + 1)
 
-    def _while(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        structure = call.text.structure(line)
+    def _while(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        structure = active.source.structure(line)
         holds = self._holds(reader)
         if structure.word == "DO":
             if holds:
-                call.text.jump(structure.begin + 1)
+                active.source.jump(structure.begin + 1)
         elif not holds:
-            call.text.jump(structure.end + 1)
+            active.source.jump(structure.end + 1)
 
-    def _again(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        call.text.jump(call.text.structure(line).begin)
+    def _again(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        active.source.jump(active.source.structure(line).begin)
 
-    def _repeat(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        structure = call.text.structure(line)
+    def _repeat(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        structure = active.source.structure(line)
         times = 0
         try:
-            times = int(min(max(reader.sum(), 0.0), 1e12))
+            times = int(min(max(reader.bracket_value(), 0.0), 1e12))
         except BlockError as error:
             self._note(f"not understood: {error}: not repeated", Severity.ERROR)
             reader.at = len(reader.text)
         if times < 1:
-            call.text.jump(structure.end + 1)
-        call.counters[line] = times
+            active.source.jump(structure.end + 1)
+        active.counters[line] = times
 
-    def _end_repeat(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        begin = call.text.structure(line).begin
-        call.counters[begin] = call.counters.get(begin, 0) - 1
-        if call.counters[begin] > 0:
-            call.text.jump(begin + 1)
+    def _end_repeat(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        begin = active.source.structure(line).begin
+        active.counters[begin] = active.counters.get(begin, 0) - 1
+        if active.counters[begin] > 0:
+            active.source.jump(begin + 1)
 
-    def _break(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        call.text.jump(call.text.structure(line).end + 1)
+    def _break(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        active.source.jump(active.source.structure(line).end + 1)
 
-    def _continue(self, call: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        structure = call.text.structure(line)
-        call.text.jump(structure.begin if structure.word == "WHILE" else structure.end)
+    def _continue(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+        structure = active.source.structure(line)
+        active.source.jump(structure.begin if structure.word == "WHILE" else structure.end)

@@ -54,16 +54,16 @@ class LinuxcncInterpreter(CycleInterpreter):
     def _table(self) -> Codes:
         return self._control.plain_table
 
-    def _first(self, text: SourceText) -> ActiveProgram:
+    def _main_program(self, text: SourceText) -> ActiveProgram:
         assert isinstance(text, LinuxcncText)
         return ActiveProgram(text, 0)
 
-    def _may_be_plain(self, text: SourceText) -> bool:
-        return super()._may_be_plain(text) and not any(self._control.turned.values())
+    def _may_scan(self, text: SourceText) -> bool:
+        return super()._may_scan(text) and not any(self._control.rotary_offsets.values())
 
     # Parameters
 
-    def _system(self, key: int | str) -> float | None:
+    def _system_value(self, key: int | str) -> float | None:
         """Return what the control itself puts behind a number or name; None if it is none of its own."""
         control = self._control
         if isinstance(key, int):
@@ -98,29 +98,29 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     # Blocks
 
-    def _twice(self, letter: str) -> None:
+    def _report_repeated_word(self, letter: str) -> None:
         raise BlockError(f"{letter} is written twice")
 
-    def _said(self, comment: str) -> None:
+    def _handle_comment(self, comment: str) -> None:
         match = _MESSAGE.match(comment)
         if match is not None:
             self._control.add_event("message", match.group(1))
 
-    def _text(self, call: ActiveProgram, line: int, text: str) -> None:
+    def _execute_block(self, active: ActiveProgram, line: int, text: str) -> None:
         reader = block_reader(text, ARITHMETIC, self._parameters)
         if reader.accept("O"):
-            self._o_word(call, line, reader)
+            self._o_word(active, line, reader)
             return
-        block = read_block(reader, self._twice)
-        self._carry_out(block)
-        for key, value in block.settings:
+        block = read_block(reader, self._report_repeated_word)
+        self._execute_words(block)
+        for key, value in block.assignments:
             self._parameters.set(key, value or 0.0)
 
-    def _carry_out(self, block: Block) -> None:
+    def _execute_words(self, block: Block) -> None:
         control = self._control
         for code in block.g:
             if code in (930, 940, 950):
-                self._modal(code)
+                self._modal_g_code(code)
                 if code != 930:
                     # LinuxCNC forgets the feed, even where the mode stays what it was.
                     control.commanded[3] = np.nan
@@ -130,7 +130,7 @@ class LinuxcncInterpreter(CycleInterpreter):
             control.select_tool(f"{tool:g}")
         for code in block.m:
             if code not in _AFTER_MOTION:
-                self._m_word(code, block)
+                self._m_code(code, block)
         special = -1
         machine_frame = False
         explicit = False
@@ -144,7 +144,7 @@ class LinuxcncInterpreter(CycleInterpreter):
             elif code in cycles.CYCLES or code in (CANCEL, 930, 940, 950):
                 continue
             else:
-                self._g(code, block)
+                self._g_code(code, block)
         takes_axes = special in TAKING_AXIS_WORDS
         if takes_axes and explicit:
             raise BlockError("two G words want the axis words")
@@ -153,13 +153,13 @@ class LinuxcncInterpreter(CycleInterpreter):
         if takes_axes or any(code in NO_MOTION for code in block.g):
             self.motion = CANCEL if CANCEL in begun else self.motion
         else:
-            self._drive(block, begun[-1] if begun else None, machine_frame, explicit)
+            self._execute_motion(block, begun[-1] if begun else None, machine_frame, explicit)
         late = [code for code in block.m if code in _AFTER_MOTION]
-        self._name_unused(block)
+        self._report_unused_words(block)
         for code in late:
-            self._m_word(code, block)
+            self._m_code(code, block)
 
-    def _g(self, code: int, block: Block) -> None:
+    def _g_code(self, code: int, block: Block) -> None:
         control = self._control
         for letter in WORDS_OF_CODE.get(code, ""):
             block.take(letter)
@@ -175,15 +175,15 @@ class LinuxcncInterpreter(CycleInterpreter):
         elif code in (901, 911):
             control.relative_centres = code == 911
         elif code in TAKEN_AS_LINES:
-            self._name_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
+            self._report_g_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
             self.motion = code
         elif code == RIGID_TAP:
             self.motion = code
         elif code == 960:
             control.feed_mode.set(control.row, 95)
-            self._name_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
-        elif not self._modal(code):
-            self._name_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
+            self._report_g_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
+        elif not self._modal_g_code(code):
+            self._report_g_code(code, NOT_SIMULATED, WITHOUT_PATH_EFFECT)
 
     def _length_number(self, block: Block) -> int:
         """Which length G43 takes: that of H, or of the tool in the spindle; 0 where nobody knows its number."""
@@ -192,7 +192,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         name = self._control.tool_in_spindle
         return int(name) if name.isdigit() else 0
 
-    def _m_word(self, code: int, block: Block) -> None:
+    def _m_code(self, code: int, block: Block) -> None:
         control = self._control
         if code in (TCP_ON, TCP_OFF):
             control.set_tcp(code == TCP_ON)
@@ -208,7 +208,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         elif code == 19:
             for letter in "RQP":
                 block.take(letter)
-            self._m(code)
+            self._common_m_code(code)
         elif code in USERS:
             for letter in "PQ":
                 block.take(letter)
@@ -218,12 +218,12 @@ class LinuxcncInterpreter(CycleInterpreter):
             self._note(f"M{code}: {NOT_SIMULATED_M[code]}", Severity.ERROR)
         elif code == TCP_USER:
             self._note("M430: kinematics of the user are not known", Severity.ERROR)
-        elif not self._m(code):
+        elif not self._common_m_code(code):
             self._note(f"unknown word M{code}", Severity.ERROR)
 
     # Motion
 
-    def _drive(self, block: Block, begun: int | None, machine_frame: bool, explicit: bool) -> None:
+    def _execute_motion(self, block: Block, begun: int | None, machine_frame: bool, explicit: bool) -> None:
         """Make the motion that the words of the block ask for."""
         control = self._control
         if begun == CANCEL:
@@ -264,7 +264,7 @@ class LinuxcncInterpreter(CycleInterpreter):
             self.motion = 10
         if turns is not None and not 1 <= turns == int(turns):
             raise BlockError("P of a circle is the number of its turns")
-        self._move(block, self._programmed(axes), turns=int(turns) - 1 if turns else 0)
+        self._move(block, self._with_rotary_offsets(axes), turns=int(turns) - 1 if turns else 0)
         self.motion = here
 
 

@@ -10,7 +10,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.readers.control.affine_map import rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
-from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.linuxcnc.control import ORDER, LinuxcncControl, Offset
 from trunnion.readers.families.linuxcnc.flow import OWordInterpreter
@@ -46,7 +46,7 @@ class OffsetInterpreter(OWordInterpreter):
     ) -> None:
         super().__init__(path, machine, subprograms=subprograms, step_limit=step_limit, skip=skip)
         self._control = LinuxcncControl(machine, self._note, self._file, shortest=shortest)
-        self._homes = {code: {axis.name: float(axis.home) for axis in machine.axes} for code in HOMES}
+        self._stored_positions = {code: {axis.name: float(axis.home) for axis in machine.axes} for code in HOMES}
 
     @property
     def control(self) -> LinuxcncControl:
@@ -75,7 +75,7 @@ class OffsetInterpreter(OWordInterpreter):
         elif code in HOMES.values():
             stored = control.machine_position()
             kept = next(go for go, keep in HOMES.items() if keep == code)
-            self._homes[kept] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
+            self._stored_positions[kept] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
 
     def _axis_offset(self, code: int, block: Block) -> None:
         """G92: the present position gets new numbers; G52: the offset itself is said."""
@@ -88,7 +88,7 @@ class OffsetInterpreter(OWordInterpreter):
                 shift[axis] = value if code == 520 else shift[axis] * control.shifted + position[axis] - value
             elif not control.shifted:
                 shift[axis] = 0.0
-        if float(np.abs(shift).max()) > LARGEST_POSITION:
+        if float(np.abs(shift).max()) > MAX_POSITION:
             raise BlockError("an offset is larger than any machine")
         control.shift, control.shifted = shift, True
         control.refresh()
@@ -129,7 +129,7 @@ class OffsetInterpreter(OWordInterpreter):
                 change[axis] = inside[axis] - value
         change[:3] = rotation_matrix(2, rotation) @ change[:3]
         values = values + change
-        if float(np.abs(values).max()) > LARGEST_POSITION or abs(rotation) > LARGEST_POSITION:
+        if float(np.abs(values).max()) > MAX_POSITION or abs(rotation) > MAX_POSITION:
             raise BlockError("an offset is larger than any machine")
         control.set_values(number, Offset(values, rotation))
 
@@ -147,12 +147,12 @@ class OffsetInterpreter(OWordInterpreter):
     def _go_home(self, code: int, block: Block) -> None:
         """G28 and G30: over the point that the block says to the stored one, all axes or those of the block."""
         control = self._control
-        axes = self._programmed(self._axis_words(block))
+        axes = self._with_rotary_offsets(self._axis_words(block))
         kind, control.kind = control.kind, RAPID
-        self._count(1)
+        self._count_blocks(1)
         control.move(axes, None)
         names = axes or dict.fromkeys((*"XYZ", *control.rotary_names))
-        stored = self._homes[code]
+        stored = self._stored_positions[code]
         scale = control.length_unit
         goal: dict[str, AxisWord] = {
             name: (stored.get(name, 0.0) / (scale if name in "XYZ" else 1.0), PositionMode.ABSOLUTE) for name in names
@@ -160,9 +160,9 @@ class OffsetInterpreter(OWordInterpreter):
         control.machine_move(goal, feed_written=False)
         control.kind = kind
 
-    def _programmed(self, axes: dict[str, AxisWord]) -> dict[str, AxisWord]:
+    def _with_rotary_offsets(self, axes: dict[str, AxisWord]) -> dict[str, AxisWord]:
         """Axis words with the offsets of rotary axes in them."""
         if not self._control.absolute:
             return axes
-        turned = self._control.turned
+        turned = self._control.rotary_offsets
         return {name: (word[0] + turned.get(name, 0.0), word[1]) for name, word in axes.items()}

@@ -10,7 +10,7 @@ from trunnion.readers.rs274.expressions import COMMON, Arithmetic, BlockError, V
 MAX_NUMBER: Final = 5602
 
 #: Parameters of a subprogram's own.
-LOCAL: Final = 30
+LOCAL_COUNT: Final = 30
 
 #: Names that a program may have at most.
 MAX_VARIABLES: Final = 50_000
@@ -72,11 +72,11 @@ ARITHMETIC: Final = Arithmetic(
 class Parameters:
     """What ``#`` names: numbers, names of a subprogram's own, names with an underscore, and what the control sets.
 
-    ``system`` returns the value of a parameter that the control itself sets, None for one that it does not.
+    ``system_value`` returns the value of a parameter that the control itself sets, None for one that it does not.
     """
 
-    def __init__(self, system: Callable[[int | str], float | None]) -> None:
-        self._system = system
+    def __init__(self, system_value: Callable[[int | str], float | None]) -> None:
+        self._system_value = system_value
         self._numbers: dict[int, float] = {}
         self._global: dict[str, float] = {}
         self._local: list[dict[str, float]] = [{}]
@@ -95,15 +95,15 @@ class Parameters:
             raise BlockError(f"#{key} is a value that only the control knows")
         return 0.0
 
-    def known(self, key: int | str) -> bool:
+    def is_set(self, key: int | str) -> bool:
         """Whether EXISTS holds."""
         return self._find(key) is not None
 
     def _find(self, key: int | str) -> float | None:
         if isinstance(key, int):
-            return self._numbers.get(key, self._system(key))
+            return self._numbers.get(key, self._system_value(key))
         table = self._global if key.startswith("_") else self._local[-1]
-        return table.get(key, self._system(key))
+        return table.get(key, self._system_value(key))
 
     def set(self, key: int | str, value: float) -> None:
         """Set a parameter."""
@@ -121,9 +121,9 @@ class Parameters:
 
     def enter(self, arguments: list[float]) -> None:
         """Begin a subprogram: #1 to #30 are its own, and so are names without an underscore."""
-        self._kept.append({k: self._numbers[k] for k in range(1, LOCAL + 1) if k in self._numbers})
+        self._kept.append({k: self._numbers[k] for k in range(1, LOCAL_COUNT + 1) if k in self._numbers})
         self._local.append({})
-        for k in range(1, LOCAL + 1):
+        for k in range(1, LOCAL_COUNT + 1):
             self._numbers.pop(k, None)
         for k, value in enumerate(arguments, 1):
             self._numbers[k] = value
@@ -131,6 +131,6 @@ class Parameters:
     def leave(self) -> None:
         """End a subprogram."""
         self._local.pop()
-        for k in range(1, LOCAL + 1):
+        for k in range(1, LOCAL_COUNT + 1):
             self._numbers.pop(k, None)
         self._numbers.update(self._kept.pop())

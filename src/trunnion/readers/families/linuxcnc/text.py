@@ -38,7 +38,7 @@ class Structure:
 
 
 @dataclass(slots=True)
-class _Places:
+class _JumpTargets:
     """Subprograms by label and structures by the lines of their words; None before they are first asked for."""
 
     found: tuple[dict[str, Structure], dict[int, Structure]] | None = None
@@ -55,7 +55,7 @@ class LinuxcncText(SourceText):
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
         # Shared by all that run the same text: see ``restarted``.
-        self._places = _Places()
+        self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole)
 
     def subprogram(self, label: str) -> Structure | None:
@@ -70,15 +70,15 @@ class LinuxcncText(SourceText):
             raise self.problem(line, "has an O word that begins or ends nothing") from None
 
     def _structures(self) -> tuple[dict[str, Structure], dict[int, Structure]]:
-        if self._places.found is None:
-            self._places.found = self._match()
-        return self._places.found
+        if self._jump_targets.found is None:
+            self._jump_targets.found = self._match()
+        return self._jump_targets.found
 
     def _match(self) -> tuple[dict[str, Structure], dict[int, Structure]]:
         subprograms: dict[str, Structure] = {}
         by_line: dict[int, Structure] = {}
         open_: list[tuple[str, Structure]] = []
-        for match in _O_WORD.finditer(self.all()):
+        for match in _O_WORD.finditer(self.whole_bytes()):
             label = label_of(match.group(1).decode("latin-1"))
             word = match.group(2).decode().upper()
             line = self.line_of(match.start(1))

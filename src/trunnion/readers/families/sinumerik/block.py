@@ -11,7 +11,7 @@ from trunnion.errors import Severity
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, ExpressionReader, Value, whole
-from trunnion.readers.families.sinumerik.tokens import Sort, Token
+from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
     ACTIVE,
@@ -45,7 +45,7 @@ class Call:
 
     name: str
     arguments: list[Value | None] = field(default_factory=list)
-    written: list[str] = field(default_factory=list)
+    argument_texts: list[str] = field(default_factory=list)
     repeats: int = 1
 
 
@@ -92,9 +92,9 @@ class BlockReader:
         while (token := reader.token) is not None:
             before = reader.at
             try:
-                if token.sort is Sort.LETTER:
+                if token.kind is TokenKind.LETTER:
                     self._letter(reader, block, variables)
-                elif token.sort is Sort.NAME:
+                elif token.kind is TokenKind.NAME:
                     self._name(reader, block, variables)
                 else:
                     raise ExpressionError(f"{token.text} stands alone")
@@ -128,7 +128,7 @@ class BlockReader:
         token = reader.token
         if (
             token is not None
-            and token.sort is Sort.NUMBER
+            and token.kind is TokenKind.NUMBER
             and token.text.isdigit()
             and len(token.text) <= 5
             and reader.peek(1) == "="
@@ -166,7 +166,7 @@ class BlockReader:
             sign = -1.0 if reader.peek() == "-" else 1.0
             reader.at += 1
         token = reader.token
-        if token is None or token.sort is not Sort.NUMBER:
+        if token is None or token.kind is not TokenKind.NUMBER:
             raise ExpressionError("a number is missing")
         reader.at += 1
         return sign * token.value, PositionMode.MODAL
@@ -250,7 +250,7 @@ class BlockReader:
             value, _ = self._value(reader)
             block.words.append("SPOS")
         elif name in NOT_SIMULATED:
-            self._named(reader, name)
+            self._subprograms(reader, name)
         elif follows in ("=", "["):
             self._assignment(reader, name, variables)
         elif name == "TRAORI":
@@ -269,7 +269,7 @@ class BlockReader:
         else:
             block.calls.append(read_call(reader, name))
 
-    def _named(self, reader: ExpressionReader, name: str) -> None:
+    def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read a word that is known but not simulated, with all that belongs to it."""
         start = reader.at - 1
         if reader.peek() == "(":
@@ -294,19 +294,19 @@ def read_call(reader: ExpressionReader, name: str) -> Call:
     """Read the arguments of a call whose name was just read."""
     if reader.peek() != "(":
         return Call(name)
-    call = Call(name)
+    active = Call(name)
     reader.at += 1
     if reader.accept(")"):
-        return call
+        return active
     while True:
         start = reader.at
         if reader.peek() in (",", ")"):
-            call.arguments.append(None)
+            active.arguments.append(None)
         else:
-            call.arguments.append(reader.value())
-        call.written.append(_text(reader.tokens, start, reader.at))
+            active.arguments.append(reader.value())
+        active.argument_texts.append(_text(reader.tokens, start, reader.at))
         if reader.accept(")"):
-            return call
+            return active
         reader.expect(",")
 
 
@@ -335,6 +335,6 @@ def _code(number: float, letter: str) -> int:
 
 def _text(tokens: Sequence[Token], start: int, end: int | None = None) -> str:
     """Return tokens as they might have been written, shortened."""
-    parts = [f'"{t.text}"' if t.sort is Sort.TEXT else t.text for t in tokens[start:end]]
+    parts = [f'"{t.text}"' if t.kind is TokenKind.TEXT else t.text for t in tokens[start:end]]
     text = " ".join(parts) if len(parts) < 20 else " ".join(parts[:20]) + " ..."
     return text[:200]

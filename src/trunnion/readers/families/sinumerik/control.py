@@ -20,7 +20,7 @@ from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.row_buffer import StepColumnBuilder
-from trunnion.readers.control.row_recorder import LARGEST_POSITION, Note
+from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 from trunnion.readers.program.settings import reading_of
 from trunnion.readers.scan.letter_blocks import letter_table
@@ -99,7 +99,7 @@ class SinumerikControl(VirtualControl):
         turns = int(params.get("TURN", (0.0, PositionMode.MODAL))[0])
         if not 0 <= turns < 1000:
             raise arcs.ArcError(f"TURN={turns} is not from 0 to 999")
-        if any(abs(value) * self.length_unit > LARGEST_POSITION for value, _ in params.values()):
+        if any(abs(value) * self.length_unit > MAX_POSITION for value, _ in params.values()):
             raise arcs.ArcError("a circle with numbers that no machine has")
         if self.kind != THROUGH:
             return self._plane_arc(params, in_plane, turns, start, end)
@@ -207,7 +207,7 @@ class SinumerikControl(VirtualControl):
             frame = AffineMap(tool_orientation.tool_frame(self.machine, direct) @ frame.linear, frame.shift)
         total = outer.compose(frame)
         if rotary is None and direction:
-            rotary = self._solution(total.linear[:, 2], direction)
+            rotary = self._rotary_solution(total.linear[:, 2], direction)
         if rotary is not None:
             bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND)
             self.move_axes(
@@ -215,13 +215,13 @@ class SinumerikControl(VirtualControl):
             )
         self.set_plane(total)
 
-    def _solution(self, normal: Floats, direction: float) -> tuple[float, float] | None:
+    def _rotary_solution(self, normal: Floats, direction: float) -> tuple[float, float] | None:
         """Rotary values whose tool axis is ``normal``, with the second axis on the side of ``direction``."""
         pairs = tool_orientation.solutions(self.machine, normal, self.current_joints)
         if not pairs:
             self.note("CYCLE800: no rotary position stands the tool on this plane", Severity.ERROR)
             return None
-        inside = [pair for pair in pairs if tool_orientation.fits(self.machine, pair)]
+        inside = [pair for pair in pairs if tool_orientation.is_in_travel(self.machine, pair)]
         if not inside:
             self.note("CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return None
@@ -229,4 +229,4 @@ class SinumerikControl(VirtualControl):
         if wanted not in inside:
             self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
             wanted = inside[0]
-        return tool_orientation.turned_inside(self.machine, wanted, self.current_joints)
+        return tool_orientation.nearest_in_travel(self.machine, wanted, self.current_joints)

@@ -8,7 +8,7 @@ from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
 
 #: Larger values are none that a machine has.
-_LARGEST = 1e7
+MAX_ARGUMENT = 1e7
 
 
 def rotation_axes(mode: int) -> list[int] | None:
@@ -23,22 +23,22 @@ def rotation_axes(mode: int) -> list[int] | None:
     return None if 0 in axes else [axis - 1 for axis in axes]
 
 
-def swivel(control: SinumerikControl, made: Call) -> None:
+def swivel(control: SinumerikControl, call: Call) -> None:
     """Execute a call of CYCLE800."""
     note = control.note
-    control.add_event("cycle800", ",".join(made.written))
-    texts = [value if isinstance(value, str) else None for value in made.arguments]
-    if not made.arguments or (len(texts) > 1 and texts[1] == "0"):
+    control.add_event("cycle800", ",".join(call.argument_texts))
+    texts = [value if isinstance(value, str) else None for value in call.arguments]
+    if not call.arguments or (len(texts) > 1 and texts[1] == "0"):
         control.set_plane(None)
         return
-    if len(made.arguments) > 16:
-        note(f"CYCLE800 takes 16 values, not {len(made.arguments)}", Severity.ERROR)
+    if len(call.arguments) > 16:
+        note(f"CYCLE800 takes 16 values, not {len(call.arguments)}", Severity.ERROR)
         return
-    numbers = [value if isinstance(value, float) else 0.0 for value in made.arguments]
+    numbers = [value if isinstance(value, float) else 0.0 for value in call.arguments]
     numbers += [0.0] * (16 - len(numbers))
     retract, _, style, mode = numbers[:4]
     before, angles, after, direction = numbers[4:7], numbers[7:10], numbers[10:13], numbers[13]
-    if any(abs(value) > _LARGEST for value in numbers):
+    if any(abs(value) > MAX_ARGUMENT for value in numbers):
         note("CYCLE800 with numbers that no machine has: it is not executed", Severity.ERROR)
         return
     if retract:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Final, Protocol
 
-from trunnion.readers.families.sinumerik.tokens import Sort, Token
+from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
 
 Value = float | str
 
@@ -19,7 +19,7 @@ MAX_NESTING: Final = 40
 MAX_TEXT_LENGTH: Final = 1000
 
 #: Larger numbers are none that a machine could mean.
-LARGEST: Final = 1e300
+MAX_VALUE: Final = 1e300
 
 
 class ExpressionError(Exception):
@@ -104,7 +104,7 @@ class ExpressionReader:
     def peek(self, ahead: int = 0) -> str:
         """Text of a sign, name or letter ahead; empty for anything else."""
         at = self.at + ahead
-        if at < len(self.tokens) and self.tokens[at].sort in (Sort.SIGN, Sort.NAME, Sort.LETTER):
+        if at < len(self.tokens) and self.tokens[at].kind in (TokenKind.SIGN, TokenKind.NAME, TokenKind.LETTER):
             return self.tokens[at].text
         return ""
 
@@ -182,26 +182,26 @@ class ExpressionReader:
         if token is None:
             raise ExpressionError("a value is missing at the end of the block")
         self.at += 1
-        match token.sort, token.text:
-            case Sort.NUMBER, _:
+        match token.kind, token.text:
+            case TokenKind.NUMBER, _:
                 return token.value
-            case Sort.TEXT, text:
+            case TokenKind.TEXT, text:
                 return text
-            case Sort.SIGN, "(":
+            case TokenKind.SIGN, "(":
                 value = self._binary(0)
                 self.expect(")")
                 return value
-            case Sort.SIGN, "-":
+            case TokenKind.SIGN, "-":
                 return -_numeric(self._unary())
-            case Sort.SIGN, "+":
+            case TokenKind.SIGN, "+":
                 return _numeric(self._unary())
-            case Sort.NAME, "NOT":
+            case TokenKind.NAME, "NOT":
                 return float(not _numeric(self._unary()))
-            case Sort.NAME, "B_NOT":
+            case TokenKind.NAME, "B_NOT":
                 return float(~whole(_numeric(self._unary())))
-            case Sort.LETTER, "R":
+            case TokenKind.LETTER, "R":
                 return self._parameter()
-            case ((Sort.NAME | Sort.LETTER), name):
+            case ((TokenKind.NAME | TokenKind.LETTER), name):
                 if name in FUNCTIONS and self.peek() == "(":
                     return self._function(name)
                 return self.names.variable(name, self.index())
@@ -209,7 +209,7 @@ class ExpressionReader:
 
     def _parameter(self) -> float:
         token = self.token
-        if token is not None and token.sort is Sort.NUMBER:
+        if token is not None and token.kind is TokenKind.NUMBER:
             self.at += 1
             return self.names.parameter(whole(token.value))
         index = self.index()
@@ -242,7 +242,7 @@ def _numeric(value: Value) -> float:
 
 
 def _sound(value: float) -> float:
-    if not abs(value) < LARGEST:
+    if not abs(value) < MAX_VALUE:
         raise ExpressionError("has no finite value")
     return value
 

@@ -12,7 +12,7 @@ from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
 from trunnion.readers.families.sinumerik.text import SinumerikText
-from trunnion.readers.families.sinumerik.tokens import Sort, split_comment, tokenize
+from trunnion.readers.families.sinumerik.tokens import TokenKind, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import TYPES
 from trunnion.readers.program import interpreter
@@ -23,7 +23,7 @@ from trunnion.readers.program.interpreter import ProgramEnd
 class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram being executed, and the cycle that is modal in it."""
 
-    text: SinumerikText
+    source: SinumerikText
     variables: Variables = field(default_factory=Variables)
     modal: Call | None = None
 
@@ -56,14 +56,14 @@ class Flow:
             **dict.fromkeys(("GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS"), self._goto),
         }
 
-    def _paired(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _paired(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         """See that the word has its other half, and go on."""
-        call.text.partner(line)
+        active.source.partner(line)
 
-    def _ignore(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _ignore(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         pass
 
-    def _if(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _if(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         try:
             holds = bool(reader.number())
         except ExpressionError as error:
@@ -76,43 +76,43 @@ class Flow:
             if not word.startswith("GOTO"):
                 raise ExpressionError("a jump must follow the condition")
             if holds:
-                self._goto_from(reader, call, line)
+                self._goto_from(reader, active, line)
             return
-        middle, end = call.text.partner(line)
+        middle, end = active.source.partner(line)
         if not holds:
-            call.text.jump((middle or end) + 1)
+            active.source.jump((middle or end) + 1)
 
-    def _else(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
-        call.text.jump(call.text.partner(line)[1] + 1)
+    def _else(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        active.source.jump(active.source.partner(line)[1] + 1)
 
-    def _while(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
-        end = call.text.partner(line)[1]
+    def _while(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        end = active.source.partner(line)[1]
         try:
             holds = bool(reader.number())
         except ExpressionError:
-            call.text.jump(end + 1)
+            active.source.jump(end + 1)
             raise
         if not holds:
-            call.text.jump(end + 1)
+            active.source.jump(end + 1)
 
-    def _end_while(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
-        call.text.jump(call.text.partner(line)[1])
+    def _end_while(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        active.source.jump(active.source.partner(line)[1])
 
-    def _end_loop(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
-        call.text.jump(call.text.partner(line)[1] + 1)
+    def _end_loop(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        active.source.jump(active.source.partner(line)[1] + 1)
 
-    def _repeat(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _repeat(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         if reader.token is not None:
             raise ExpressionError("repeating a part of the program by its labels is not simulated")
-        call.text.partner(line)
+        active.source.partner(line)
 
-    def _until(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
-        begin = call.text.partner(line)[1]
+    def _until(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        begin = active.source.partner(line)[1]
         if not reader.number():
-            call.text.jump(begin + 1)
+            active.source.jump(begin + 1)
 
-    def _for(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
-        end = call.text.partner(line)[1]
+    def _for(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        end = active.source.partner(line)[1]
         try:
             name, index = self._loop_variable(reader)
             reader.expect("=")
@@ -120,33 +120,33 @@ class Flow:
             reader.expect("TO")
             last = reader.number()
         except ExpressionError:
-            call.text.jump(end + 1)
+            active.source.jump(end + 1)
             raise
-        self._set(call, name, index, value)
+        self._set(active, name, index, value)
         if value > last:
-            call.text.jump(end + 1)
+            active.source.jump(end + 1)
 
-    def _end_for(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
-        begin = call.text.partner(line)[1]
-        head = self._loop_head(call, begin)
+    def _end_for(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        begin = active.source.partner(line)[1]
+        head = self._loop_head(active, begin)
         name, index = self._loop_variable(head)
         head.expect("=")
         head.number()
         head.expect("TO")
         last = head.number()
-        value = self._get(call, name, index) + 1.0
-        self._set(call, name, index, value)
-        call.text.jump(begin + 1 if value <= last else line + 1)
+        value = self._get(active, name, index) + 1.0
+        self._set(active, name, index, value)
+        active.source.jump(begin + 1 if value <= last else line + 1)
 
-    def _loop_head(self, call: ActiveProgram, begin: int) -> ExpressionReader:
+    def _loop_head(self, active: ActiveProgram, begin: int) -> ExpressionReader:
         """Return a reader at the variable of the FOR block at a line."""
-        here = call.text.line
-        call.text.jump(begin)
-        statement_, _ = split_comment(call.text.next_line())
-        call.text.jump(here)
-        tokens = tokenize(statement_)
+        here = active.source.line
+        active.source.jump(begin)
+        statement, _ = split_comment(active.source.next_line())
+        active.source.jump(here)
+        tokens = tokenize(statement)
         at = next((k for k, token in enumerate(tokens) if token.text == "FOR"), len(tokens))
-        return ExpressionReader(tokens, call.variables, at + 1)
+        return ExpressionReader(tokens, active.variables, at + 1)
 
     def _loop_variable(self, reader: ExpressionReader) -> tuple[str, tuple[int, ...]]:
         name = reader.peek()
@@ -154,7 +154,7 @@ class Flow:
             raise ExpressionError("FOR needs a variable")
         reader.at += 1
         token = reader.token
-        if name == "R" and token is not None and token.sort is Sort.NUMBER:
+        if name == "R" and token is not None and token.kind is TokenKind.NUMBER:
             reader.at += 1
             return name, (int(min(token.value, 1e6)),)
         index = reader.index()
@@ -162,42 +162,42 @@ class Flow:
             raise ExpressionError("R needs a number")
         return name, index
 
-    def _get(self, call: ActiveProgram, name: str, index: tuple[int, ...]) -> float:
+    def _get(self, active: ActiveProgram, name: str, index: tuple[int, ...]) -> float:
         if name == "R":
-            return call.variables.parameter(index[0])
-        value = call.variables.variable(name, index)
+            return active.variables.parameter(index[0])
+        value = active.variables.variable(name, index)
         if isinstance(value, str):
             raise ExpressionError(f"{name} is a text")
         return value
 
-    def _set(self, call: ActiveProgram, name: str, index: tuple[int, ...], value: float) -> None:
+    def _set(self, active: ActiveProgram, name: str, index: tuple[int, ...], value: float) -> None:
         if name == "R":
-            call.variables.set_parameter(index[0], value)
-        elif not call.variables.assign(name, index, value):
+            active.variables.set_parameter(index[0], value)
+        elif not active.variables.assign(name, index, value):
             self._note(f"{name} is not defined in the program: taken as a global variable", Severity.WARNING)
 
-    def _goto(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _goto(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         reader.at -= 1
-        self._goto_from(reader, call, line)
+        self._goto_from(reader, active, line)
 
-    def _goto_from(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _goto_from(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         """Jump as the word says that comes next."""
         word = reader.peek()
         reader.at += 1
-        call.text.load()
+        active.source.load()
         if word == "GOTOS":
-            call.text.jump(1)
+            active.source.jump(1)
             return
         forward, backward = word in ("GOTO", "GOTOF", "GOTOC"), word in ("GOTO", "GOTOB", "GOTOC")
-        target, found = self._target(reader, call, line, forward=forward, backward=backward)
+        target, found = self._target(reader, active, line, forward=forward, backward=backward)
         if found is not None:
-            call.text.jump(found)
+            active.source.jump(found)
         elif word != "GOTOC":
             self._note(f"the target {target} of {word} is missing: the program ends here", Severity.ERROR)
             raise ProgramEnd
 
     def _target(
-        self, reader: ExpressionReader, call: ActiveProgram, line: int, *, forward: bool, backward: bool
+        self, reader: ExpressionReader, active: ActiveProgram, line: int, *, forward: bool, backward: bool
     ) -> tuple[str, int | None]:
         token = reader.token
         if token is None:
@@ -207,18 +207,18 @@ class Flow:
         if token.text == "N" and following is not None and following.text.isdigit():
             reader.at += 1
             number = int(min(following.value, 1e15))
-            return f"N{number}", call.text.number(number, line, forward=forward, backward=backward)
+            return f"N{number}", active.source.number(number, line, forward=forward, backward=backward)
         name = token.text.upper()
-        if token.sort is Sort.NAME and token.text in call.variables:
-            name = (call.variables.text(token.text) or "").upper()
-        elif token.sort is Sort.NUMBER and token.text.isdigit():
+        if token.kind is TokenKind.NAME and token.text in active.variables:
+            name = (active.variables.text(token.text) or "").upper()
+        elif token.kind is TokenKind.NUMBER and token.text.isdigit():
             number = int(min(token.value, 1e15))
-            return name, call.text.number(number, line, forward=forward, backward=backward)
+            return name, active.source.number(number, line, forward=forward, backward=backward)
         if re.fullmatch(r"N[0-9]{1,9}", name):
-            return name, call.text.number(int(name[1:]), line, forward=forward, backward=backward)
-        return name[:80], call.text.label(name, line, forward=forward, backward=backward)
+            return name, active.source.number(int(name[1:]), line, forward=forward, backward=backward)
+        return name[:80], active.source.label(name, line, forward=forward, backward=backward)
 
-    def _case(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _case(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         value = reader.number()
         reader.expect("OF")
         while reader.token is not None:
@@ -226,13 +226,13 @@ class Flow:
             if not reader.peek().startswith("GOTO"):
                 raise ExpressionError("a jump must follow the value")
             if taken:
-                self._goto_from(reader, call, line)
+                self._goto_from(reader, active, line)
                 return
             reader.at += 1
             numbered = reader.peek() == "N"
             reader.at += 2 if numbered else 1
 
-    def _def(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _def(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         kind = reader.peek()
         while kind and kind not in TYPES:
             reader.at += 1
@@ -243,44 +243,44 @@ class Flow:
         if kind == "STRING":
             reader.index()
         while True:
-            self._define(reader, call, kind)
+            self._define(reader, active, kind)
             if reader.token is None:
                 return
             reader.expect(",")
 
-    def _define(self, reader: ExpressionReader, call: ActiveProgram, kind: str) -> None:
+    def _define(self, reader: ExpressionReader, active: ActiveProgram, kind: str) -> None:
         name = reader.peek()
         token = reader.token
-        if token is None or token.sort not in (Sort.NAME, Sort.LETTER):
+        if token is None or token.kind not in (TokenKind.NAME, TokenKind.LETTER):
             raise ExpressionError("DEF needs a name")
         reader.at += 1
         number = reader.token
-        if name == "R" and number is not None and number.sort is Sort.NUMBER:
+        if name == "R" and number is not None and number.kind is TokenKind.NUMBER:
             # Some programs declare R parameters, which need none.
             reader.at += 1
             value = reader.number() if reader.accept("=") else 0.0
-            call.variables.set_parameter(int(min(number.value, 1e6)), value)
+            active.variables.set_parameter(int(min(number.value, 1e6)), value)
             return
-        if token.sort is not Sort.NAME:
+        if token.kind is not TokenKind.NAME:
             raise ExpressionError(f"{name} is no name for a variable")
         size = reader.index()
-        call.variables.define(kind, name)
+        active.variables.define(kind, name)
         if not reader.accept("="):
             return
         if reader.accept("SET"):
             for index, element in enumerate(reader.arguments()):
                 if element is not None:
-                    call.variables.assign(name, (index,), element)
+                    active.variables.assign(name, (index,), element)
         else:
             given = reader.value()
             if size:
                 self._note(f"{name}: a field takes SET(...)", Severity.ERROR)
             else:
-                call.variables.assign(name, (), given)
+                active.variables.assign(name, (), given)
 
-    def _proc(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _proc(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         """Give the arguments of the call to the names of the PROC line."""
-        handed = call.variables.handed
+        handed = active.variables.arguments
         reader.at += 1
         if not reader.accept("("):
             return
@@ -298,6 +298,6 @@ class Flow:
             reader.index()
             default = reader.value() if reader.accept("=") else None
             given = handed[place] if place < len(handed) else None
-            call.variables.define(kind, name, default if given is None else given)
+            active.variables.define(kind, name, default if given is None else given)
             place += 1
             reader.accept(",")

@@ -9,7 +9,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.run import Orientation
 from trunnion.readers.control.hole_motion import CycleExecutionError, finite
-from trunnion.readers.control.row_recorder import LARGEST_POSITION
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.sinumerik import cycles
 from trunnion.readers.families.sinumerik.block import Block, BlockReader, Call, read_call
@@ -19,7 +19,7 @@ from trunnion.readers.families.sinumerik.expressions import ExpressionError, Exp
 from trunnion.readers.families.sinumerik.flow import ActiveProgram, Flow
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement
 from trunnion.readers.families.sinumerik.text import SUFFIXES, SinumerikText
-from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Sort, Token, split_comment, tokenize
+from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Token, TokenKind, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
     CONSTANTS,
@@ -52,8 +52,8 @@ from trunnion.readers.scan.letter_blocks import scan_blocks
 _BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SETAL"})
 
 #: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
-_PLAIN = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
-_LOOK: Final = 48
+_PLAIN_START = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
+_PREFIX_LENGTH: Final = 48
 
 
 class SinumerikInterpreter(Interpreter[ActiveProgram]):
@@ -87,18 +87,18 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
         """The virtual control."""
         return self._control
 
-    def _first(self, text: SourceText) -> ActiveProgram:
+    def _main_program(self, text: SourceText) -> ActiveProgram:
         assert isinstance(text, SinumerikText)
         return ActiveProgram(text, 0, variables=Variables())
 
-    def _may_be_plain(self, text: SourceText) -> bool:
-        call = self._stack[-1]
-        if not self._control.absolute or call.modal is not None or self._control.tool_frame:
+    def _may_scan(self, text: SourceText) -> bool:
+        active = self._stack[-1]
+        if not self._control.absolute or active.modal is not None or self._control.tool_frame:
             return False
-        begin = text.buffer[text.position : text.position + _LOOK].tobytes()
-        return _PLAIN.match(begin) is not None
+        begin = text.buffer[text.position : text.position + _PREFIX_LENGTH].tobytes()
+        return _PLAIN_START.match(begin) is not None
 
-    def _kernel(self, text: SourceText) -> None:
+    def _scan_blocks(self, text: SourceText) -> None:
         control = self._control
         scan_blocks(
             text.buffer,
@@ -116,14 +116,14 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             control.scan_records,
         )
 
-    def _line(self, call: ActiveProgram, line: int, raw: str) -> None:
+    def _execute_line(self, active: ActiveProgram, line: int, raw: str) -> None:
         """Execute a line that is not plain."""
         control = self._control
         raw = raw.rstrip("\r")
         words, comment = split_comment(raw)
         stripped = words.strip()
         if not stripped or stripped.startswith("%"):
-            self._comment(line, comment)
+            self._record_comment(line, comment)
             return
         if len(words) > MAX_LENGTH:
             self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
@@ -132,13 +132,13 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
         at = 0
         if stripped.startswith("/"):
             if self._skip:
-                self._comment(line, comment)
+                self._record_comment(line, comment)
                 return
             at = 1
             level = tokens[1] if len(tokens) > 1 else None
             if (
                 level is not None
-                and level.sort is Sort.NUMBER
+                and level.kind is TokenKind.NUMBER
                 and len(level.text) == 1
                 and level.start == tokens[0].end
             ):
@@ -147,29 +147,29 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             number = tokens[at + 1].value
             control.block_number = int(number) if number < 1e15 else -1
             at += 2
-        while len(tokens) > at + 1 and tokens[at].sort is Sort.NAME and tokens[at + 1].text == ":":
+        while len(tokens) > at + 1 and tokens[at].kind is TokenKind.NAME and tokens[at + 1].text == ":":
             at += 2
         try:
             if at < len(tokens):
-                self._statement(call, line, tokens, at)
+                self._statement(active, line, tokens, at)
         finally:
-            self._comment(line, comment)
+            self._record_comment(line, comment)
 
-    def _statement(self, call: ActiveProgram, line: int, tokens: tuple[Token, ...], at: int) -> None:
+    def _statement(self, active: ActiveProgram, line: int, tokens: tuple[Token, ...], at: int) -> None:
         first = tokens[at]
-        flow = self._flow.get(first.text) if first.sort is Sort.NAME else None
+        flow = self._flow.get(first.text) if first.kind is TokenKind.NAME else None
         if flow is None:
-            self._block(call, self._reader.read(tokens, at, call.variables))
+            self._block(active, self._reader.read(tokens, at, active.variables))
             return
-        reader = ExpressionReader(tokens, call.variables, at + 1)
+        reader = ExpressionReader(tokens, active.variables, at + 1)
         try:
-            flow(reader, call, line)
+            flow(reader, active, line)
         except ExpressionError as error:
             self._note(f"not understood: {first.text}: {error}", Severity.ERROR)
 
     # Words
 
-    def _block(self, call: ActiveProgram, block: Block) -> None:
+    def _block(self, active: ActiveProgram, block: Block) -> None:
         """Carry out the words of a block, in the order in which the control does."""
         control = self._control
         machine_frame = "SUPA" in block.words
@@ -179,7 +179,7 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             machine_frame |= code in G_MACHINE
             silent |= code in G_NO_MOTION
             dwell |= code == 4
-            self._g(code)
+            self._g_code(code)
         frame = [word for word in block.words if word in FRAMES]
         for word in block.words:
             self._word(word, block)
@@ -198,7 +198,7 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
         late = [code for code in block.m if code in M_AFTER_MOTION]
         for code in block.m:
             if code not in late:
-                self._m(code)
+                self._m_code(code)
         for value in block.h:
             control.add_event("h", value)
         calls = block.calls
@@ -222,15 +222,15 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
                 machine_frame=machine_frame,
                 feed_written=block.feed is not None,
             )
-            calls = [*([call.modal] if call.modal else []), *calls]
-        for made in calls:
-            if made.name in _BUILT_IN:
-                self._call(made)
+            calls = [*([active.modal] if active.modal else []), *calls]
+        for call in calls:
+            if call.name in _BUILT_IN:
+                self._call(call)
         for code in late:
-            self._m(code)
-        self._enter_one([made for made in calls if made.name not in _BUILT_IN])
+            self._m_code(code)
+        self._enter_one([call for call in calls if call.name not in _BUILT_IN])
 
-    def _g(self, code: int) -> None:
+    def _g_code(self, code: int) -> None:
         control = self._control
         if code in G_RADIUS_COMPENSATION:
             control.compensation.set(control.row, G_RADIUS_COMPENSATION[code])
@@ -296,7 +296,7 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
         if block.axes:
             self._note("axis words beside G4 are not executed", Severity.ERROR)
 
-    def _m(self, code: int) -> None:
+    def _m_code(self, code: int) -> None:
         control = self._control
         if code in M_SPINDLE:
             control.spindle.set(control.row, M_SPINDLE[code])
@@ -308,7 +308,7 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             control.add_event("end", f"M{code}")
             raise ProgramEnd
         elif code == M_RETURN:
-            self._leave()
+            self._leave_program()
         else:
             control.add_event("m", float(code))
 
@@ -321,7 +321,7 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
         base = word.removeprefix("A")
         values: dict[str, float] = {}
         for name, (value, _) in {**block.axes, **block.params}.items():
-            if abs(value) * control.length_unit > LARGEST_POSITION:
+            if abs(value) * control.length_unit > MAX_POSITION:
                 self._note(f"{word}: {name} is larger than any machine: the frame is not used", Severity.ERROR)
                 return
             if name in ("X", "Y", "Z"):
@@ -336,42 +336,43 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
 
     # Cycles and calls
 
-    def _call(self, made: Call) -> None:
+    def _call(self, call: Call) -> None:
         """Carry out a cycle or a message."""
         control = self._control
-        name = made.name
+        name = call.name
         if name in cycles.CYCLES:
-            self._drill(made)
+            self._drill(call)
         elif name == "CYCLE832":
             values = tuple(
-                text if text in CONSTANTS else value for text, value in zip(made.written, made.arguments, strict=True)
+                text if text in CONSTANTS else value
+                for text, value in zip(call.argument_texts, call.arguments, strict=True)
             )
             control.add_event("cycle832", values)
         elif name == "CYCLE800":
-            swivel(control, made)
+            swivel(control, call)
         elif name == "MSG":
-            first = made.arguments[0] if made.arguments else ""
+            first = call.arguments[0] if call.arguments else ""
             control.add_event("message", first if isinstance(first, str) else f"{first or 0:g}")
         else:
             assert name == "SETAL"
-            control.add_event("message", f"SETAL({', '.join(made.written)})")
+            control.add_event("message", f"SETAL({', '.join(call.argument_texts)})")
 
     def _enter_one(self, calls: Sequence[Call]) -> None:
         """Call the subprogram of a block, which goes on only after all that the block says."""
         if len(calls) > 1:
             self._note("several subprograms in one block: only the first is executed", Severity.ERROR)
-        for made in calls[:1]:
-            self._write_row(made.name, made)
+        for call in calls[:1]:
+            self._enter_subprogram(call.name, call)
 
-    def _drill(self, made: Call) -> None:
+    def _drill(self, call: Call) -> None:
         control = self._control
         try:
-            numbers = [finite(self._plain_number(value)) for value in made.arguments]
-            steps = cycles.cycle_motions(made.name, numbers, float(control.rpm.current))
+            numbers = [finite(self._plain_number(value)) for value in call.arguments]
+            steps = cycles.cycle_motions(call.name, numbers, float(control.rpm.current))
         except CycleExecutionError as error:
-            self._note(f"{made.name} {error}: it is not executed", Severity.ERROR)
+            self._note(f"{call.name} {error}: it is not executed", Severity.ERROR)
             return
-        self._count(len(steps))
+        self._count_blocks(len(steps))
         control.drill(steps)
 
     @staticmethod
@@ -380,53 +381,53 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             raise CycleExecutionError("has a text where a number must stand")
         return value
 
-    def _write_row(self, name: str, made: Call) -> None:
+    def _enter_subprogram(self, name: str, call: Call) -> None:
         """Call a subprogram, one of the files that were named."""
-        path = self._named.find(name)
+        path = self._subprograms.find(name)
         if path is None:
             self._note(
                 f"unknown word or missing subprogram {name[:80]}: it is not executed; name its file, if it is one",
                 Severity.ERROR,
             )
             return
-        if made.repeats < 1:
+        if call.repeats < 1:
             return
         self._check_depth()
         variables = Variables(self._stack[-1].variables)
-        text, file = self._open(path)
+        text, file = self._open_subprogram(path)
         assert isinstance(text, SinumerikText)
-        self._stack.append(ActiveProgram(text, file, made.repeats, variables=variables))
-        self._bind(made)
+        self._stack.append(ActiveProgram(text, file, call.repeats, variables=variables))
+        self._bind(call)
 
-    def _bind(self, made: Call) -> None:
+    def _bind(self, call: Call) -> None:
         """Hand arguments to the PROC line, which reads them when it is executed."""
-        self._stack[-1].variables.hand(made.arguments)
+        self._stack[-1].variables.pass_arguments(call.arguments)
 
-    def _return(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
-        self._leave()
+    def _return(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        self._leave_program()
 
-    def _mcall(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _mcall(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         token = reader.token
         if token is None:
-            call.modal = None
+            active.modal = None
             return
-        if token.sort is Sort.LETTER and token.text == "L":
+        if token.kind is TokenKind.LETTER and token.text == "L":
             reader.at += 1
             number = reader.token
             if number is None or not number.text.isdigit():
                 raise ExpressionError("a subprogram has a number")
-            call.modal = Call(f"L{number.text}")
+            active.modal = Call(f"L{number.text}")
             return
-        if token.sort is not Sort.NAME:
+        if token.kind is not TokenKind.NAME:
             raise ExpressionError("a name must follow")
         reader.at += 1
-        call.modal = read_call(reader, token.text)
+        active.modal = read_call(reader, token.text)
 
-    def _extcall(self, reader: ExpressionReader, call: ActiveProgram, line: int) -> None:
+    def _extcall(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         inside = reader.accept("(")
         value = reader.value()
         if inside:
             reader.expect(")")
         if not isinstance(value, str):
             raise ExpressionError("takes the name of a program")
-        self._write_row(value, Call(value))
+        self._enter_subprogram(value, Call(value))

@@ -31,7 +31,7 @@ SUFFIXES: Final = (".SPF", "_SPF", ".MPF", "_MPF", "")
 
 
 @dataclass(slots=True)
-class _Places:
+class _JumpTargets:
     """Where the labels, block numbers and control words of a text stand, each found out when it is first asked for."""
 
     labels: dict[str, list[int]] | None = None
@@ -44,40 +44,40 @@ class SinumerikText(SourceText):
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
         # Shared by all that run the same text: see ``restarted``.
-        self._places = _Places()
+        self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole)
 
     def label(self, name: str, here: int, *, forward: bool, backward: bool) -> int | None:
         """Line of a label: the next one after ``here`` if ``forward``, else the last one before it."""
-        labels = self._places.labels
+        labels = self._jump_targets.labels
         if labels is None:
-            labels = self._places.labels = {}
-            for match in _LABEL.finditer(self.all()):
+            labels = self._jump_targets.labels = {}
+            for match in _LABEL.finditer(self.whole_bytes()):
                 labels.setdefault(match.group(1).decode().upper(), []).append(self.line_of(match.start(1)))
-        return _pick(labels.get(name, []), here, forward=forward, backward=backward)
+        return _choose_line(labels.get(name, []), here, forward=forward, backward=backward)
 
     def number(self, number: int, here: int, *, forward: bool, backward: bool) -> int | None:
         """Line of a block number, found like a label."""
-        numbers = self._places.numbers
+        numbers = self._jump_targets.numbers
         if numbers is None:
-            numbers = self._places.numbers = {}
-            for match in _NUMBER.finditer(self.all()):
+            numbers = self._jump_targets.numbers = {}
+            for match in _NUMBER.finditer(self.whole_bytes()):
                 numbers.setdefault(int(match.group(1)), []).append(self.line_of(match.start(1)))
-        return _pick(numbers.get(number, []), here, forward=forward, backward=backward)
+        return _choose_line(numbers.get(number, []), here, forward=forward, backward=backward)
 
     def partner(self, line: int) -> tuple[int, int]:
         """Return the lines that belong to a control word: (ELSE or 0, end) of a beginning, (0, beginning) of an end."""
-        if self._places.partners is None:
-            self._places.partners = self._match_structures()
+        if self._jump_targets.partners is None:
+            self._jump_targets.partners = self._match_structures()
         try:
-            return self._places.partners[line]
+            return self._jump_targets.partners[line]
         except KeyError:
             raise self.problem(line, "has a control word that begins or ends nothing") from None
 
     def _match_structures(self) -> dict[int, tuple[int, int]]:
         partners: dict[int, tuple[int, int]] = {}
         open_: list[tuple[str, int, int]] = []
-        for match in _STRUCTURE.finditer(self.all()):
+        for match in _STRUCTURE.finditer(self.whole_bytes()):
             word = match.group(1).decode().upper()
             rest = match.group(2)
             line = self.line_of(match.start(1))
@@ -104,7 +104,7 @@ class SinumerikText(SourceText):
         return partners
 
 
-def _pick(lines: list[int], here: int, *, forward: bool, backward: bool) -> int | None:
+def _choose_line(lines: list[int], here: int, *, forward: bool, backward: bool) -> int | None:
     if forward:
         at = bisect_right(lines, here)
         if at < len(lines):

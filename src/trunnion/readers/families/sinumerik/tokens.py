@@ -16,7 +16,7 @@ _REMEMBERED: Final = 128
 _MOST_DIGITS: Final = 40
 
 
-class Sort(IntEnum):
+class TokenKind(IntEnum):
     """What a token is."""
 
     NAME = 0
@@ -30,7 +30,7 @@ class Sort(IntEnum):
 class Token(NamedTuple):
     """One token: its text (names and letters in capitals), its number, and where it stands in the line."""
 
-    sort: Sort
+    kind: TokenKind
     text: str
     value: float
     start: int
@@ -78,7 +78,7 @@ def _tokens(statement: str) -> tuple[Token, ...]:
     while at < len(statement):
         match = _TOKEN.match(statement, at)
         if match is None:
-            tokens.append(Token(Sort.BAD, statement[at : at + 20], 0.0, at, len(statement)))
+            tokens.append(Token(TokenKind.BAD, statement[at : at + 20], 0.0, at, len(statement)))
             break
         kind = match.lastgroup
         if kind != "blank":
@@ -93,16 +93,16 @@ _remembered = lru_cache(maxsize=4096)(_tokens)
 def _token(kind: str, text: str, start: int, end: int) -> Token:
     if kind == "number":
         value = _number(text)
-        return Token(Sort.NUMBER if math.isfinite(value) else Sort.BAD, text, value, start, end)
+        return Token(TokenKind.NUMBER if math.isfinite(value) else TokenKind.BAD, text, value, start, end)
     if kind == "radix":
         base = {"H": 16, "B": 2, "D": 10}[text[1].upper()]
         try:
-            return Token(Sort.NUMBER, text, float(int(text[2:-1], base)), start, end)
+            return Token(TokenKind.NUMBER, text, float(int(text[2:-1], base)), start, end)
         except ValueError:
-            return Token(Sort.BAD, text, 0.0, start, end)
+            return Token(TokenKind.BAD, text, 0.0, start, end)
     if kind == "text":
-        return Token(Sort.TEXT, text[1:-1], 0.0, start, end)
-    sort = {"name": Sort.NAME, "letter": Sort.LETTER, "sign": Sort.SIGN}[kind]
+        return Token(TokenKind.TEXT, text[1:-1], 0.0, start, end)
+    sort = {"name": TokenKind.NAME, "letter": TokenKind.LETTER, "sign": TokenKind.SIGN}[kind]
     return Token(sort, text.upper(), 0.0, start, end)
 
 

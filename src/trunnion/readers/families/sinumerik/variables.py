@@ -24,12 +24,12 @@ class Variables:
         self._types: dict[str, str] = {}
         self._parameters: dict[int, float] = {} if shared is None else shared._parameters
         self._global: dict[str, Elements] = {} if shared is None else shared._global
-        self._count: list[int] = [0] if shared is None else shared._count
-        self.handed: list[Value | None] = []
+        self._count_blocks: list[int] = [0] if shared is None else shared._count_blocks
+        self.arguments: list[Value | None] = []
 
-    def hand(self, arguments: list[Value | None]) -> None:
+    def pass_arguments(self, arguments: list[Value | None]) -> None:
         """Keep the arguments of a call for the PROC line."""
-        self.handed = arguments
+        self.arguments = arguments
 
     def parameter(self, number: int) -> float:
         """Return an R parameter; one that nobody set is 0."""
@@ -67,8 +67,8 @@ class Variables:
             value = float(whole(math.copysign(math.floor(abs(value) + 0.5), value)))
         if kind == "BOOL" and isinstance(value, float):
             value = float(bool(value))
-        self._count[0] += 1
-        if self._count[0] > MAX_VARIABLES:
+        self._count_blocks[0] += 1
+        if self._count_blocks[0] > MAX_VARIABLES:
             self._recount()
         if kind is not None:
             self._local[name][index] = value
@@ -82,7 +82,7 @@ class Variables:
         held = sum(map(len, self._local.values())) + sum(map(len, self._global.values()))
         if held > MAX_VARIABLES // 2:
             raise ExpressionError(f"the program has more than {MAX_VARIABLES // 2} variables")
-        self._count[0] = held
+        self._count_blocks[0] = held
 
     def variable(self, name: str, index: tuple[int, ...]) -> Value:
         """Return the value of a variable or predefined name."""
