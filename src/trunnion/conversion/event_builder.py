@@ -1,11 +1,11 @@
-"""From what a program says to the phases and events of an operation."""
+"""The events of an operation, from what its section of the program contains besides motion."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import groupby
 
 import numpy as np
 
-from trunnion.arrays import Codes, Ints
+from trunnion.arrays import Ints
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
 from trunnion.model.run import Run
@@ -16,10 +16,8 @@ from trunnion.model.toolpath import (
     Dwell,
     Event,
     Insert,
-    Kind,
     LoadTool,
     Message,
-    Phase,
     SelectTool,
     Sense,
     SpindleOff,
@@ -32,164 +30,138 @@ _COOLANT_CODE = {"mist": 7, "flood": 8, "off": 9}
 
 
 class EventBuilder:
-    """Makes the events of one operation after the other; spindle and tool go on from one to the next.
+    """Builds the events of one operation after another; spindle and tool carry over from one to the next.
 
-    phases     comment -> phase
-    coolants   M number -> CL word
-    known      lines of templates: their comments and messages are said by every program
-    marked     the program names phases; without, rapids are one phase and all else is cutting
-    unspoken   of the phases that it names rapids are none
+    phase_comments   comments that name phases, and are no messages
+    coolants         M number -> CL word
+    template_lines   lines written from templates: every program of the control has their comments and messages
     """
 
     def __init__(
         self,
-        phases: Mapping[str, Phase],
+        run: Run,
+        phase_comments: Collection[str],
         coolants: Mapping[int, str],
         template_lines: Collection[int],
-        phases_marked: bool,
-        rapids_unmarked: bool,
         warn: Warnings,
     ) -> None:
         self.tool = ""
-        self._phases = phases
+        self._run = run
+        self._phase_comments = phase_comments
         self._coolants = coolants
         self._template_lines = template_lines
-        self._phases_marked = phases_marked
-        self._rapids_unmarked = rapids_unmarked
         self._warn = warn
         self._rpm = 0.0
         self._sense: Sense | None = None
         self._spindle_ran = False
 
-    def build(
-        self, program_events: Sequence[ProgramEvent], run: Run, rows: Ints, line: int
-    ) -> tuple[Codes, tuple[Event, ...]]:
-        """Phase of each row, and the events between the rows.
+    def build(self, events: Sequence[ProgramEvent], rows: Ints, line: int) -> tuple[Event, ...]:
+        """The events of an operation.
 
         Parameters
         ----------
-        said
-            What is said in the operation.
-        run, rows
-            Its ``rows`` (n,) of the run.
+        events
+            The program events of its section, in order.
+        rows
+            Its (n,) rows of the run.
         line
-            Line where the operation begins.
+            The line where it begins.
         """
-        events: list[Event] = []
+        run, found = self._run, list[Event]()
         spindle_ran, self._sense = self._spindle_ran, _SENSE_OF_SIGN[int(run.spindle[rows[0] - 1])] if rows[0] else None
-        for (row, first, file), block in groupby(
-            program_events, key=lambda program_event: (program_event.row, program_event.line, program_event.file)
-        ):
-            here, spindle_set, before = int(np.searchsorted(rows, row)), False, len(events)
-            for program_event in block:
-                in_template = program_event.file == 0 and program_event.line in self._template_lines
-                if program_event.kind == "tool_change":
-                    self._tool_change(program_event, here, len(rows), events)
-                elif program_event.kind == "speed":
-                    assert isinstance(program_event.value, float)
-                    self._rpm, spindle_set = program_event.value, True
-                elif program_event.kind == "spindle":
-                    spindle_set = self._spindle(program_event, here, events) or spindle_set
-                elif program_event.kind == "skip" or not in_template:
-                    events += self._simple_events(program_event, here, len(rows))
-            if spindle_set and self._sense is not None:
-                events.append(SpindleOn(here, first, self._rpm, self._sense))
-                self._spindle_ran = True
-            if here < len(rows) and (run.line[row], run.file[row]) != (first, file):
-                # M5 and M9 act behind the motion of their block. Said twice they get a block of their own again.
-                events += [event for event in events[before:] if _switches_off(event)]
-        spindle = any(isinstance(event, SpindleOn | SpindleOff) and event.row == 0 for event in events)
-        if spindle_ran and not spindle and run.spindle[rows[0]] == 0:
-            events.insert(0, SpindleOff(0, line))  # without a word it would turn as in the operation before
-        if not any(isinstance(event, LoadTool) for event in events) and self.tool.isdigit():
-            events.insert(0, LoadTool(0, line, int(self.tool)))
-        return self._phase(program_events, run, rows), tuple(sorted(events, key=lambda event: event.row))
+        for _, block in groupby(events, key=lambda event: (event.row, event.line, event.file)):
+            self._add_block(list(block), rows, found)
+        spindle_given = any(isinstance(event, SpindleOn | SpindleOff) and event.row == 0 for event in found)
+        if spindle_ran and not spindle_given and run.spindle[rows[0]] == 0:
+            found.insert(0, SpindleOff(0, line))  # otherwise it would turn as in the operation before
+        if not any(isinstance(event, LoadTool) for event in found) and self.tool.isdigit():
+            found.insert(0, LoadTool(0, line, int(self.tool)))
+        return tuple(sorted(found, key=lambda event: event.row))
 
-    def _phase(self, program_events: Sequence[ProgramEvent], run: Run, rows: Ints) -> Codes:
-        """(n,) uint8: the phase of each row."""
-        phase = np.full(len(rows), Phase.INITIAL, np.uint8)
-        if not self._phases_marked:
-            phase[:] = np.where(run.kind[rows] == Kind.RAPID, Phase.RAPID, Phase.CUT)
-        comment_at: dict[int, ProgramEvent] = {}
-        unused: list[ProgramEvent] = []
-        for program_event in program_events:
-            if program_event.text in self._phases and program_event.line not in self._template_lines:
-                here = int(np.searchsorted(rows, program_event.row))
-                unused += [comment_at[here]] if here in comment_at else []
-                comment_at[here] = program_event
-                phase[here:] = self._phases[program_event.text]
-        if self._rapids_unmarked:
-            phase[(phase == Phase.CUT) & (run.kind[rows] == Kind.RAPID)] = Phase.RAPID
-        unused += [comment_at[len(rows)]] if len(rows) in comment_at else []
-        for program_event in unused:
-            self._warn(program_event.line, f"no motion follows {program_event.text!r}, which is not carried over")
-        return phase
+    def _add_block(self, block: Sequence[ProgramEvent], rows: Ints, found: list[Event]) -> None:
+        """Add the events of one block to those ``found`` before."""
+        run_row, line, file = block[0].row, block[0].line, block[0].file
+        row, begin, spindle_set = int(np.searchsorted(rows, run_row)), len(found), False
+        for event in block:
+            if event.kind == "tool_change":
+                self._add_tool_change(event, row, len(rows), found)
+            elif event.kind == "speed":
+                assert isinstance(event.value, float)
+                self._rpm, spindle_set = event.value, True
+            elif event.kind == "spindle":
+                spindle_set = self._set_spindle(event, row, found) or spindle_set
+            elif event.kind == "skip" or event.file != 0 or event.line not in self._template_lines:
+                found += self._simple_events(event, row, len(rows))
+        if spindle_set and self._sense is not None:
+            found.append(SpindleOn(row, line, self._rpm, self._sense))
+            self._spindle_ran = True
+        if row < len(rows) and (self._run.line[run_row], self._run.file[run_row]) != (line, file):
+            # M5 and M9 act after the motion of their block. Given twice, they get a block of their own again.
+            found += [event for event in found[begin:] if _switches_off(event)]
 
-    def _tool_change(self, program_event: ProgramEvent, here: int, rows: int, events: list[Event]) -> None:
-        """M6; of several changes before the first motion the last one counts."""
-        before = [event for event in events if isinstance(event, LoadTool) and event.row == here == 0]
-        for event in before:
-            self._warn(event.line, f"no motion follows the change to tool {event.number}: not carried over")
-            events.remove(event)
-        if here == rows:
-            self._warn(
-                program_event.line, f"no motion follows the change to tool {program_event.value}: not carried over"
-            )
+    def _add_tool_change(self, event: ProgramEvent, row: int, row_count: int, found: list[Event]) -> None:
+        """M6. Of several changes before the first motion, the last one counts."""
+        earlier = [other for other in found if isinstance(other, LoadTool) and other.row == row == 0]
+        for other in earlier:
+            self._warn(other.line, f"no motion follows the change to tool {other.number}: not carried over")
+            found.remove(other)
+        if row == row_count:
+            self._warn(event.line, f"no motion follows the change to tool {event.value}: not carried over")
             return
-        self.tool = str(program_event.value or "").strip()
+        self.tool = str(event.value or "").strip()
         if self.tool.isdigit():
-            events.append(LoadTool(here, program_event.line, int(self.tool)))
+            found.append(LoadTool(row, event.line, int(self.tool)))
 
-    def _spindle(self, program_event: ProgramEvent, here: int, events: list[Event]) -> bool:
-        """M3, M4 or M5; returns whether the spindle turns now."""
-        if program_event.value == "oriented":
-            self._warn(program_event.line, "SPOS is not carried over")
-        elif program_event.value == "off":
+    def _set_spindle(self, event: ProgramEvent, row: int, found: list[Event]) -> bool:
+        """M3, M4 or M5; returns whether the event starts the spindle."""
+        if event.value == "oriented":
+            self._warn(event.line, "SPOS is not carried over")
+        elif event.value == "off":
             if self._sense is not None:
-                events.append(SpindleOff(here, program_event.line))
+                found.append(SpindleOff(row, event.line))
             self._sense = None
         else:
-            self._sense = Sense.CLW if program_event.value == "clockwise" else Sense.CCLW
+            self._sense = Sense.CLW if event.value == "clockwise" else Sense.CCLW
             return True
         return False
 
-    def _simple_events(self, program_event: ProgramEvent, here: int, rows: int) -> Iterator[Event]:
-        """Happenings that are events as they stand."""
-        line, value = program_event.line, program_event.value
-        match program_event.kind:
+    def _simple_events(self, event: ProgramEvent, row: int, row_count: int) -> Iterator[Event]:
+        """Program events that are events of an operation as they are."""
+        line, value = event.line, event.value
+        match event.kind:
             case "comment":
-                if program_event.text and program_event.text not in self._phases:
-                    yield Message(here, line, program_event.text)
+                if event.text and event.text not in self._phase_comments:
+                    yield Message(row, line, event.text)
             case "tool":
                 if str(value).isdigit() and int(str(value)):
-                    yield SelectTool(here, line, int(str(value)))
+                    yield SelectTool(row, line, int(str(value)))
                 else:
                     self._warn(line, f"T={value} is not carried over", "preselect tools by their number")
             case "coolant":
-                yield Coolant(here, line, self._coolants.get(_COOLANT_CODE[str(value)], str(value).upper()))
+                yield Coolant(row, line, self._coolants.get(_COOLANT_CODE[str(value)], str(value).upper()))
             case "dwell":
                 assert isinstance(value, float)
-                yield Dwell(here, line, abs(value), value < 0)
+                yield Dwell(row, line, abs(value), value < 0)
             case "stop" | "optional_stop":
-                yield Stop(here, line, program_event.kind == "optional_stop")
+                yield Stop(row, line, event.kind == "optional_stop")
             case "message":
-                yield Message(here, line, str(value or ""), display=True)
+                yield Message(row, line, str(value or ""), display=True)
             case "skip":
-                yield BlockSkip(here, line, bool(value))
+                yield BlockSkip(row, line, bool(value))
             case "comp":
                 assert isinstance(value, tuple)
-                if here < rows or value[0] != "OFF":  # every operation ends without
-                    yield CutterComp(here, line, value[0], value[1])
+                if row < row_count or value[0] != "OFF":  # every operation ends without compensation
+                    yield CutterComp(row, line, value[0], value[1])
             case "m" | "h":
                 assert isinstance(value, float)
-                if program_event.kind == "m" and int(value) in self._coolants:
-                    yield Coolant(here, line, self._coolants[int(value)])
+                if event.kind == "m" and int(value) in self._coolants:
+                    yield Coolant(row, line, self._coolants[int(value)])
                 else:
-                    yield Insert(here, line, f"{program_event.kind.upper()}{value:g}")
+                    yield Insert(row, line, f"{event.kind.upper()}{value:g}")
             case "cycle832":
                 self._warn(line, "CYCLE832 is not carried over", "see --set cycle832=… and tolerance=…")
 
 
 def _switches_off(event: Event) -> bool:
-    """Whether spindle or coolant stops."""
+    """Whether the spindle or the coolant stops."""
     return isinstance(event, SpindleOff) or (isinstance(event, Coolant) and event.kind == "OFF")

@@ -1,4 +1,8 @@
-"""The lines of templates backwards: which line of a program is which line of a template, and what it says."""
+"""A control's templates read backwards: which line of a program was written from which line of a template.
+
+In:     lines of a program, and the templates of the control that it was written for.
+Out:    the lines that were written from templates, and the values in them.
+"""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -7,31 +11,58 @@ from typing import NamedTuple
 
 from trunnion.controls.definition import Control
 from trunnion.controls.template import Template
+from trunnion.machines import Machine
 
-#: A setting that is words of a program, such as G54 or G55 O1: what stands in its place has the same letters.
+#: A setting that is one or more words of a program, such as G54 or G55 O1: its place takes words of the same letters.
 _WORD_SETTING = re.compile(r"[A-Z]+\d+(?: [A-Z]+\d+)*")
 
-#: Work offsets by G words of their own.
+#: Work offsets called by a G word of their own.
 _OFFSET_WORD = r"G5(?:[4-9](?:\.\d)?|\d\d)"
 
-#: Stands for any number where spellings are worked out.
+#: Put in for number settings, and found again in what the family makes of them.
 _ANY_NUMBER = "98765.25"
 
 _FIELD = re.compile(r"\{([A-Za-z_]\w*)(?::(\w+))?\}")
 
 
 class LinePattern(NamedTuple):
-    """One line of a template; ``value_only`` if it has nothing but a value, so that it fits nearly everything."""
+    """One line of a template; ``value_only`` if it is nothing but a value, so that it fits nearly every line."""
 
     expression: re.Pattern[str]
     value_only: bool
 
 
-def family_value_expressions(control: Control) -> dict[str, str]:
-    """What the values can be that a family makes of its settings: name -> an expression of all of them.
+class TemplatePatterns:
+    """The template lines of a control as patterns, for the programs of one machine."""
 
-    Only those that are words, such as ``M128`` or ``FUNCTION TCPM …``; where a setting is a number, any number may
-    stand there.
+    def __init__(self, control: Control, machine: Machine) -> None:
+        self._control = control
+        axes = machine.axes
+        primary, secondary = axes[machine.primary].name, axes[machine.secondary].name
+        self._known = {"primary": primary, "secondary": secondary, "machine": machine.name}
+        self._family_values = family_value_expressions(control)
+
+    def of(self, *names: str) -> list[LinePattern]:
+        """The lines of all templates whose names begin with one of ``names``, in the order of ``names``."""
+        return [line for template in self._named(names) for line in self._lines(template)]
+
+    def first_lines(self, *names: str) -> list[LinePattern]:
+        """The first line of each of these templates, unless it is only a value."""
+        firsts = [self._lines(template)[:1] for template in self._named(names)]
+        return [line for lines in firsts for line in lines if not line.value_only]
+
+    def _named(self, names: Sequence[str]) -> list[Template]:
+        templates = self._control.templates
+        return [templates[key] for name in names for key in templates if key.startswith(name)]
+
+    def _lines(self, template: Template) -> list[LinePattern]:
+        return line_patterns([template], self._known, self._control.settings, self._family_values)
+
+
+def family_value_expressions(control: Control) -> dict[str, str]:
+    """The values that a family derives from its settings: name -> regular expression of all it can be.
+
+    Only values that are words, such as ``M128`` or ``FUNCTION TCPM …``. Where a setting is a number, any number fits.
     """
     family = control.family
     numbers = {name: _ANY_NUMBER for name in control.settings if name not in family.SETTING_CHOICES}
@@ -55,8 +86,12 @@ def line_patterns(
     settings: Mapping[str, str],
     family_values: Mapping[str, str],
 ) -> list[LinePattern]:
-    """The lines of templates as patterns; some values are ``known``, the usual form of ``settings``, and how some are
-    ``family_values`` (``family_value_expressions``)."""
+    """The lines of templates as patterns.
+
+    known          values that are the same in every program of the machine
+    settings       the defaults of the control: their form is the form of the values
+    family_values  of ``family_value_expressions``
+    """
     return [_line_pattern(line, known, settings, family_values) for template in templates for line in template.lines]
 
 
@@ -71,9 +106,9 @@ def _line_pattern(
     for match in _FIELD.finditer(line):
         parts.append(re.escape(line[at : match.start()]))
         name, form = match[1], match[2]
-        usual = settings.get(name, "")
-        shape = re.sub(r"\d+", r"\\d+", usual) if _WORD_SETTING.fullmatch(usual) else ".*?"
-        shape = _OFFSET_WORD if re.fullmatch(r"G5\d", usual) else shape
+        default = settings.get(name, "")
+        shape = re.sub(r"\d+", r"\\d+", default) if _WORD_SETTING.fullmatch(default) else ".*?"
+        shape = _OFFSET_WORD if re.fullmatch(r"G5\d", default) else shape
         value = r"[-+.\d]+" if form else family_values.get(name, shape)
         parts.append(f"(?P={name})" if name in seen else f"(?P<{name}>{value})")
         seen.add(name)
@@ -84,9 +119,15 @@ def _line_pattern(
 
 
 def match_lines(lines: Sequence[tuple[int, str]], patterns: Sequence[LinePattern], values: dict[str, str]) -> set[int]:
-    """Find the templates' lines among the program's: in their order, where some may lack on either side.
+    """Find the lines of a program that were written from template lines.
 
-    Returns the lines that were found; ``values`` takes what they say, what it has already stays.
+    Both are in the same order, but either may have lines that the other lacks. ``values`` takes the values found;
+    values that it already has stay.
+
+    Returns
+    -------
+    set
+        The numbers of the lines found.
     """
     at = 0
     known: set[int] = set()

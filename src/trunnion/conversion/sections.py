@@ -1,0 +1,107 @@
+"""The sections of a program that become operations: where they begin and end, and which events belong to them."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trunnion.arrays import Ints
+from trunnion.conversion.program_events import ProgramEvent
+
+
+@dataclass(slots=True)
+class ProgramSection:
+    """The part of a program that becomes one operation.
+
+    line         line where it begins
+    first_event  index of its first event
+    end_event    index after its last event, where its path has ended; -1: not yet known
+    first_row    row of the run where it begins
+    end_row      row after its last one
+    rows         (n,) rows that move the tool at the workpiece
+    values       values found in its header and its end: name in the templates -> text
+    """
+
+    line: int
+    first_event: int
+    first_row: int
+    end_event: int = -1
+    end_row: int = 0
+    rows: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    values: dict[str, str] = field(default_factory=dict)
+
+
+def split_program(
+    events: Sequence[ProgramEvent], row_count: int, starts: Collection[int], ends: Collection[int]
+) -> list[ProgramSection]:
+    """Split a program where operations begin: at the lines ``starts``, or at tool changes if there are none.
+
+    ends   lines of comments with which the end of an operation begins
+    """
+    sections = [ProgramSection(1, 0, 0)]
+    current_start = 0
+    for k, event in enumerate(events):
+        last = sections[-1]
+        line = event.line if event.file == 0 else 0
+        if line != current_start:
+            current_start = 0
+        if starts:
+            begins = line in starts and line != current_start and event.kind != "skip"
+        else:
+            begins = event.kind == "tool_change"
+        if begins:
+            last.end_row, current_start = event.row, line
+            last.end_event = k if last.end_event < 0 else last.end_event
+            sections.append(ProgramSection(event.line, k, event.row))
+        elif event.kind == "comment" and line in ends and last.end_event < 0:
+            last.end_event = k
+    last = sections[-1]
+    last.end_row = row_count
+    last.end_event = len(events) if last.end_event < 0 else last.end_event
+    return sections
+
+
+def assign_events(
+    events: Sequence[ProgramEvent],
+    sections: Sequence[ProgramSection],
+    coolants: Mapping[int, str],
+    template_lines: Collection[int],
+) -> list[list[ProgramEvent]]:
+    """The events of each section.
+
+    An event outside of all sections belongs to the next one, or to the last if none follows. Every operation of a
+    toolpath switches its coolant on itself, so a section in which coolant keeps running gets the event that did it.
+
+    coolants         M number -> CL word
+    template_lines   lines of the program that were written from templates
+    """
+    assigned: list[list[ProgramEvent]] = []
+    begin = 0
+    for k, section in enumerate(sections):
+        end = section.end_event if k + 1 < len(sections) else len(events)
+        inside = range(section.first_event, section.end_event)
+        own = [events[n] for n in range(begin, end) if n in inside or _concerns_others(events[n], template_lines)]
+        row = int(section.rows[0])
+        running = _coolant_running(events[: section.first_event], coolants)
+        if running and not any(event.row <= row and _is_coolant(event, coolants) for event in own):
+            own.insert(0, running._replace(row=row))
+        assigned.append(own)
+        begin = end
+    return assigned
+
+
+def _coolant_running(events: Sequence[ProgramEvent], coolants: Mapping[int, str]) -> ProgramEvent | None:
+    """The event that switched on the coolant still running after ``events``."""
+    last = next((event for event in reversed(events) if _is_coolant(event, coolants)), None)
+    return None if last is None or last.value == "off" else last
+
+
+def _is_coolant(event: ProgramEvent, coolants: Mapping[int, str]) -> bool:
+    return event.kind == "coolant" or (event.kind == "m" and event.value in coolants)
+
+
+def _concerns_others(event: ProgramEvent, template_lines: Collection[int]) -> bool:
+    """Whether an event after the path of one operation has a meaning for the next one."""
+    if event.file == 0 and event.line in template_lines:
+        return False
+    return not (event.kind == "coolant" and event.value == "off") and event.kind not in ("end", "cycle832")
