@@ -241,4 +241,4 @@ def test_normals_stay_behind_when_a_program_becomes_a_cl_file(
     program: tuple[Path, Path], capfd: pytest.CaptureFixture[str]
 ) -> None:
     main(["convert", str(program[0]), "--machine", "dmu65", "--to-cl", "--output", "-"])
-    assert "4 blocks say the surface's normal, which is not carried over" in capfd.readouterr().err
+    assert "4 blocks have a surface normal, which is not carried over" in capfd.readouterr().err

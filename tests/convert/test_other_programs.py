@@ -178,7 +178,7 @@ def test_words_that_only_drive_the_machine_are_remarked_upon(programs: Programs)
 def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> None:
     remarks = programs.all("TRAORI", "G0 X0 Y0 Z0 B0 C0", "G1 X1 C90 F1", "X2").warnings
     assert [(remark.line, remark.what) for remark in remarks] == [
-        (3, "2 points place the rotary axes otherwise than their tool axis says, the first by C")
+        (3, "2 points have other rotary positions than their tool axis gives, the first in C")
     ]
 
 

@@ -1,4 +1,4 @@
-"""Programs back into toolpaths: what the reader found out about an NC program becomes a ``Toolpath`` again."""
+"""Conversion of NC programs into toolpaths, from what the reader found about them."""
 
 from trunnion.conversion.settings import transfer_settings
 from trunnion.conversion.toolpath_builder import Conversion, convert

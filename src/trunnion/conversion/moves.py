@@ -8,12 +8,12 @@ from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Arcs, Kind, Moves
 
-#: Positions are taken to so many decimals: what is beyond them comes from computing with binary fractions.
+#: Positions are rounded to this many decimals: the rest is rounding error of binary fractions.
 _DECIMALS = 9
 
 
 def build_moves(run: Run, rows: Ints, phase: Codes, warn: Warnings) -> Moves:
-    """The columns of the ``rows`` (n,) of a run; ``phase`` (n,) is a ``trunnion.model.toolpath.Phase``."""
+    """The columns of the ``rows`` (n,) of a run; ``phase`` (n,) is a ``trunnion.model.toolpath.Phase`` each."""
     feed, per_rev = _feeds(run, rows, warn)
     tip = np.round(run.tip[rows], _DECIMALS) + 0.0
     return Moves(tip, run.axis[rows], run.kind[rows], phase, feed, per_rev, run.line[rows])
@@ -33,9 +33,10 @@ def build_arcs(run: Run, rows: Ints) -> Arcs:
 
 
 def _feeds(run: Run, rows: Ints, warn: Warnings) -> tuple[Floats, Flags]:
-    """Feeds in mm/min or mm/rev, and whether per revolution.
+    """Feeds (n,) in mm/min or mm/rev, and whether they are per revolution, (n,) bool.
 
-    Rapids carry on what was in force; before the first cut there is none.
+    Rapids keep the feed in force; before the first cut it is NaN. Inverse-time feeds, and feeds along another path than
+    that of the tip, are converted to mm/min of the tip.
     """
     feed, mode = run.feed[rows], run.feed_mode[rows]
     rapid = run.kind[rows] == Kind.RAPID
@@ -47,7 +48,7 @@ def _feeds(run: Run, rows: Ints, warn: Warnings) -> tuple[Floats, Flags]:
     rescaled = np.union1d(inverse, without_tcp)
     without_feed = run.line[rows[rescaled[feed[rescaled] == 0.0]]]
     if len(without_feed):
-        what = f"{len(without_feed)} blocks turn the tool about a tip that rests: they have no feed in mm/min"
+        what = f"{len(without_feed)} blocks turn the tool about a tip at rest: they have no feed in mm/min"
         warn(int(without_feed[0]), what, "their feed becomes 0")
     last_cut = np.maximum.accumulate(np.where(rapid, -1, np.arange(len(feed))))
     feed = np.where(last_cut >= 0, feed[last_cut], np.nan)
@@ -55,7 +56,7 @@ def _feeds(run: Run, rows: Ints, warn: Warnings) -> tuple[Floats, Flags]:
 
 
 def _path_lengths(run: Run, rows: Ints) -> Floats:
-    """(n,) float64: length of the tip's way to each row, mm."""
+    """(n,) float64: length of the tip's path to each row, mm."""
     length: Floats = np.linalg.norm(run.tip[rows] - run.tip[np.maximum(rows - 1, 0)], axis=1)
     for index in np.flatnonzero(run.kind[rows] == Kind.ARC).tolist():
         length[index] = _arc_length(run, int(rows[index]))
@@ -63,6 +64,7 @@ def _path_lengths(run: Run, rows: Ints) -> Floats:
 
 
 def _arc_length(run: Run, row: int) -> float:
+    """Length of the arc or helix of a row, mm."""
     arcs = run.arcs
     index = int(np.searchsorted(arcs.row, row))
     normal = arcs.normal[index]

@@ -1,4 +1,4 @@
-"""The text of a program: what the reader's columns do not hold, by line."""
+"""The text of a program, by line: for what the columns of a run do not hold."""
 
 import re
 from collections.abc import Iterator
@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-#: What stands before the words of a block: the sign of block skip, and a number behind its letter.
+#: What precedes the words of a block: the block skip sign, and a number after its letter or without one.
 _BLOCK_PREFIX = r"\s*/?\d?\s*(?:{letter}\d+)?\s*"
 _NUMBER_PREFIX = r"\s*\d+\s+/?"
 
-#: Words of more letters than one, G words besides G0 to G3, and M words: what dense motion does not say in every block.
+#: Words that dense motion does not repeat in every block: words of several letters, M words, and G words but G0 to G3.
 _SPARSE_WORDS = rb"(?<![A-Z_])(?:[A-Z_]{2}[A-Z_0-9]*|G(?!0?[0-3](?![\d.]))\d+(?:\.\d)?|M\d+)"
 _SLASH, _NEWLINE, _RETURN = b"/\n\r"
 
@@ -18,7 +18,7 @@ _SLASH, _NEWLINE, _RETURN = b"/\n\r"
 class ProgramText:
     """One file of a program; lines count from 1.
 
-    letter    of block numbers, empty for numbers without one
+    letter    letter of block numbers, empty for numbers without one
     comments  regular expression of comments and texts, as in ``FamilyReader``
     """
 
@@ -37,29 +37,26 @@ class ProgramText:
         self.line_count = len(self._line_starts) - 1
 
     def line_text(self, number: int) -> str:
-        """A line without block skip sign and block number."""
-        line = (
-            self._data[self._line_starts[number - 1] : self._line_starts[number] - 1]
-            .decode(self._encoding)
-            .rstrip("\r")
-        )
+        """A line without its block skip sign and block number."""
+        begin, end = self._line_starts[number - 1], self._line_starts[number] - 1
+        line = self._data[begin:end].decode(self._encoding).rstrip("\r")
         prefix = self._prefix.match(line) if line.startswith(self._prefix_starts) else None
         return line[prefix.end() :] if prefix else line
 
-    def line_texts(self, first: int, stop: int) -> list[tuple[int, str]]:
-        """Numbers and texts of the lines from ``first`` up to ``stop``."""
-        return [(number, self.line_text(number)) for number in range(first, min(stop, self.line_count + 1))]
+    def line_texts(self, first: int, end: int) -> list[tuple[int, str]]:
+        """Numbers and texts of the lines from ``first`` up to ``end``."""
+        return [(number, self.line_text(number)) for number in range(first, min(end, self.line_count + 1))]
 
     def skip_changes(self) -> Iterator[tuple[int, bool]]:
-        """Lines that begin with the block skip sign after one that did not, and the reverse."""
+        """The lines where block skip signs begin (True) and where they end (False)."""
         begins = np.frombuffer(self._data + b"\n", np.uint8)[self._line_starts[:-1]]
         filled = np.flatnonzero((begins != _NEWLINE) & (begins != _RETURN))
         skipped = begins[filled] == _SLASH
-        for place in np.flatnonzero(np.diff(skipped, prepend=False)).tolist():
-            yield int(filled[place]) + 1, bool(skipped[place])
+        for change in np.flatnonzero(np.diff(skipped, prepend=False)).tolist():
+            yield int(filled[change]) + 1, bool(skipped[change])
 
     def sparse_words(self) -> Iterator[tuple[int, list[str]]]:
-        """The lines with words that dense motion does not have, and these words in capitals."""
+        """The lines with words that dense motion does not repeat, and these words in capitals."""
         line, words = 0, list[str]()
         for match in self._word_pattern.finditer(self._data):
             if match[1] is None:

@@ -1,16 +1,16 @@
-"""What the heads of a program say and a toolpath has no place for, as ``--set`` takes it."""
+"""The settings of a program: what its headers contain that does not fit into a toolpath, as ``--set`` takes it."""
 
 from collections.abc import Iterable, Mapping
 
 from trunnion.controls.definition import Control
 from trunnion.conversion.unsupported import Warnings
 
-#: Settings that say the same to every control; the others are words and habits of a family.
+#: Settings that mean the same on every control; the others are words and habits of a family.
 _COMMON_SETTINGS = frozenset(
     {"title", "part", "date", "program", "tool", "tool_call", "tolerance", "fallback_tolerance"}
 )
 
-#: Work offsets that have these names wherever they are G words.
+#: Work offsets that have the same names on all controls where they are G words.
 _COMMON_OFFSETS = frozenset({"G54", "G55", "G56", "G57"})
 
 #: Tolerances are printed with five decimals.
@@ -20,16 +20,16 @@ _SAME_TOLERANCE = 5e-6
 def settings_from_headers(
     control: Control, headers: Iterable[tuple[int, Mapping[str, str]]], warn: Warnings
 ) -> dict[str, str]:
-    """The settings that make the same heads again, as far as they are not the defaults.
+    """The settings that give the same headers again, without defaults.
 
     Parameters
     ----------
     control
-        Whose settings they are.
-    heads
-        Line and values of each operation's head.
-    remark
-        Takes what one program cannot have twice.
+        The control of the program.
+    headers
+        Line and values of each operation's header.
+    warn
+        Takes settings that differ between operations: a program has one value of each.
     """
     merged: dict[str, str] = {}
     for line, values in headers:
@@ -41,7 +41,7 @@ def settings_from_headers(
 
 
 def transfer_settings(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
-    """The settings of a program for one control that mean the same on another, as far as it has them."""
+    """The settings of a program for one control that another has too, and with the same meaning."""
     known = {name: value for name, value in settings.items() if name in target.settings}
     if control.family is target.family:
         return known
@@ -51,7 +51,7 @@ def transfer_settings(settings: Mapping[str, str], control: Control, target: Con
 
 
 def parse_number(text: str | None) -> float | None:
-    """A number, if the text is one."""
+    """The number in a text; None if it is not one."""
     try:
         return float(text) if text else None
     except ValueError:
@@ -59,7 +59,7 @@ def parse_number(text: str | None) -> float | None:
 
 
 def _header_settings(control: Control, values: Mapping[str, str]) -> dict[str, str]:
-    """The settings in a head, without those that follow from others."""
+    """The settings in a header, without those that follow from others."""
     given = {name: value for name, value in values.items() if name in control.settings}
     method = given.get("method", control.settings.get("method", ""))
     for setting in control.method_defaults:
@@ -75,6 +75,6 @@ def _header_settings(control: Control, values: Mapping[str, str]) -> dict[str, s
 
 
 def _equal_values(a: str, b: str) -> bool:
-    """Whether two settings say the same, as text or as numbers."""
+    """Whether two settings are the same, as text or as numbers."""
     first, second = parse_number(a), parse_number(b)
     return a == b or (first is not None and first == second)
