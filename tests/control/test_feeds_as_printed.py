@@ -26,11 +26,11 @@ HOLE = PATH.replace("GOTO/0,0,5\nGOTO/5,0,5", "CYCLE/DRILL,RAPTO,3,FEDTO,-9,{cyc
 @pytest.mark.parametrize(
     ("machine", "feed", "told"),
     [
-        ("yl569", "MMPR,0.0143", "warning: a feed of 0.0143 prints as 0.01; say it in mm/min (MMPM)"),
-        ("yl569", "MMPR,0.004", "error: a feed of 0.004 is less than the control can be told; say it in mm/min (MMPM)"),
+        ("yl569", "MMPR,0.0143", "warning: a feed of 0.0143 prints as 0.01; write it in mm/min (MMPM)"),
+        ("yl569", "MMPR,0.004", "error: a feed of 0.004 is below the least that the control reads; write it in mm/min (MMPM)"),
         ("yl569", "MMPR,0.25", ""),
-        ("matsuura_mx330", "MMPR,0.0143", "warning: a feed of 0.0143 prints as 0.014; say it in mm/min (MMPM)"),
-        ("hs664rt", "MMPM,0.2", "error: a feed of 0.2 is less than the control can be told; raise it"),
+        ("matsuura_mx330", "MMPR,0.0143", "warning: a feed of 0.0143 prints as 0.014; write it in mm/min (MMPM)"),
+        ("hs664rt", "MMPM,0.2", "error: a feed of 0.2 is below the least that the control reads; raise it"),
         ("hs664rt", "MMPM,2.5", "warning: a feed of 2.5 prints as 2; raise it"),
         ("hs664rt", "MMPM,333.333", ""),
     ],

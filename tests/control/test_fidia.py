@@ -287,7 +287,7 @@ def test_what_cannot_be_said_is_refused(text: str, what: str, folder: Path) -> N
 
 def test_a_feed_that_would_print_as_nothing_is_refused(folder: Path) -> None:
     for text in ("FEDRAT/MMPM,0.3\nGOTO/10,5,2\n", f"CYCLE/DRILL,{HEIGHTS}MMPM,0.3\nGOTO/10,5,2\n"):
-        with pytest.raises(InputError, match="is less than the control can be told"):
+        with pytest.raises(InputError, match="is below the least that the control reads"):
             posted(read(START + "RAPID\nGOTO/10,5,50,0,0,1\n" + text + END, folder), folder)
 
 

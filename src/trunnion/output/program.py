@@ -1,20 +1,36 @@
-"""All that one program is made from, and what its definition and the settings of the run say of it."""
+"""The input of a program: machine, control, planned motions and the settings of the run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-import numpy as np
-
-from trunnion.arrays import Floats, Ints
 from trunnion.controls.definition import Control
-from trunnion.controls.words import Word, round_to_counts
+from trunnion.controls.words import Word
 from trunnion.machines import Machine
 from trunnion.model.motion import Motion
 
 
+class RotaryWord(NamedTuple):
+    """The word of a rotary axis.
+
+    key     of the word: ``primary`` or ``secondary``
+    axis    index of the axis in ``Machine.axes``
+    column  of the axis in ``Motion.rotary``
+    """
+
+    key: str
+    axis: int
+    column: int
+
+
 @dataclass(frozen=True, slots=True)
 class Program:
-    """All that one program is made from. ``notices`` are printed at its head, as comments."""
+    """All that a program is made from.
+
+    settings  those of the run; they take precedence over the control's
+    file      the CL file, for messages
+    notices   comments at the start of the program
+    """
 
     machine: Machine
     control: Control
@@ -23,45 +39,29 @@ class Program:
     file: str = ""
     notices: Sequence[str] = ()
 
+    def effective_settings(self) -> dict[str, str]:
+        """Return the settings of the run over those of the definition."""
+        return {**self.control.settings, **{key: value for key, value in self.settings.items() if value}}
 
-def template_suffix(program: Program, motion: Motion) -> str:
-    """What the templates of this kind of operation are called."""
-    return program.control.template_suffix(motion.mode, program.settings)
+    def effective_setting(self, name: str) -> str:
+        """Return a setting of the run, or else of the definition; empty if neither has it."""
+        return self.settings.get(name) or self.control.settings.get(name, "")
 
+    def template_suffix(self, motion: Motion) -> str:
+        """Return the suffix of the templates for a motion; empty if the control cannot work in its mode."""
+        return self.control.template_suffix(motion.mode, self.settings)
 
-def effective_settings(program: Program) -> dict[str, str]:
-    """The settings of the run over those of the definition."""
-    return {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
+    def rotary_words(self) -> tuple[RotaryWord, RotaryWord]:
+        """Return the words of the primary and of the secondary rotary axis."""
+        machine = self.machine
+        primary, secondary = machine.primary, machine.secondary
+        return (
+            RotaryWord("primary", primary, machine.rotary.index(primary)),
+            RotaryWord("secondary", secondary, machine.rotary.index(secondary)),
+        )
 
-
-def effective_setting(program: Program, name: str) -> str:
-    """A setting of the run, or else that of the definition; empty where nobody has one."""
-    return program.settings.get(name) or program.control.settings.get(name, "")
-
-
-def motion_block_words(program: Program, motion: Motion) -> tuple[Word, ...]:
-    """The words of motion blocks in an operation, in their order."""
-    machine = program.machine
-    primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
-    return tuple(program.control.block_words(primary, secondary, motion.three_axis))
-
-
-def rotary_counts(machine: Machine, column: int, angle: Floats, decimals: int) -> Ints:
-    """Counts of a rotary word; an axis that displays 0 to 360 degrees prints 360 as 0.
-
-    Parameters
-    ----------
-    machine, column
-        Which axis it is, as a column of joints.
-    angle : (n,) float64
-        Degrees.
-    decimals
-        That are printed.
-    """
-    axis = machine.axes[column]
-    count = round_to_counts(np.ascontiguousarray(angle), decimals)
-    if not np.isnan(axis.display_low):
-        turn = 360 * 10**decimals
-        top = round(axis.display_low * 10**decimals) + turn
-        count[count >= top] -= turn
-    return count
+    def block_words(self, motion: Motion) -> tuple[Word, ...]:
+        """Return the words of a motion's blocks in their order."""
+        axes = self.machine.axes
+        primary, secondary = (axes[word.axis].name for word in self.rotary_words())
+        return tuple(self.control.block_words(primary, secondary, motion.three_axis))

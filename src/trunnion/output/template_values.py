@@ -1,10 +1,10 @@
-"""What templates may print in an operation: settings, tool, spindle, plane, home, times.
+"""The values that templates may print: settings, tool, spindle, plane, home position, machining times.
 
-In:     the program, the motion, and what the spindle holds and does.
-Out:    a name and a value each; None where there is none, and the line that names it is left out.
+A value is None where there is none: a template leaves out the line that names it.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -14,57 +14,82 @@ from trunnion.errors import InputError, Problem
 from trunnion.machines import inverse
 from trunnion.machines.motion_time import format_duration
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import LoadTool, Sense, SpindleOn
-from trunnion.output.coordinates.extents import extents
-from trunnion.output.program import Program, effective_setting, motion_block_words, rotary_counts
+from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn
+from trunnion.output.coordinates.extents import cut_extents
+from trunnion.output.coordinates.rotary_angles import rotary_counts
+from trunnion.output.program import Program
 from trunnion.planning import operation_seconds
 
-_NO_POSITION = (None, None, None)
+#: The value of the setting ``blank`` for a block form around all cuts.
+EXTENTS: Final = "extents"
 
-#: The setting ``blank`` of controls with a block form: the box round all that is cut.
-EXTENTS = "extents"
+_NO_POSITION: Final = (None, None, None)
 
 
 @dataclass(frozen=True, slots=True)
 class LoadedTool:
-    """The tool in the spindle: how the program calls it, and its name; both empty before the first."""
+    """The tool in the spindle: how the program called it, and its name; both empty before the first."""
 
     call: str = ""
     name: str = ""
 
 
 class TemplateValues:
-    """Works the values out; keeps the times of operations, which take long."""
+    """Computes the values of templates; keeps the machining times, which take long."""
 
     def __init__(self, program: Program) -> None:
         self._program = program
         self._family: FamilyWriter = program.control.family
-        self._second_angle_ranges: list[float] = []
+        self._seconds: list[float] = []
 
     def values(self, motion: Motion, number: int, loaded: LoadedTool, spindle: SpindleOn | None) -> dict[str, Value]:
-        """What templates may print in this operation.
+        """Return the values for an operation, or for the part of it that is one motion.
 
         Parameters
         ----------
         motion
-            Of the operation, in coordinates of the workpiece.
+            In coordinates of the workpiece.
         number
-            Of the motion among those of the program.
-        held
+            Index of the motion in the program; -1 for the last.
+        loaded
             The tool before the operation.
         spindle
-            What it does at the first row; None: nobody said so.
+            At the first row; None if it has not been started.
 
         Raises
         ------
         InputError
-            When nothing says which tool it is.
+            If there is nothing to call the tool by.
         """
-        program, operation = self._program, motion.operation
-        machine, control, tool = program.machine, program.control, operation.tool
-        values: dict[str, Value] = {**control.settings, **program.settings}
+        operation, machine = motion.operation, self._program.machine
+        found: dict[str, Value] = {
+            **self._setting_values(motion),
+            **self._rotary_values(motion),
+            **self._time_values(number),
+            **self._plane_values(motion),
+            **spindle_values(self._program, spindle),
+            **self._home_values(),
+            **self._tool_values(operation),
+            **dict(zip(("zero_x", "zero_y", "zero_z"), machine.workpiece_zero or _NO_POSITION, strict=True)),
+            "subprogram": None,
+            "machine": machine.name,
+            "gauge_length": machine.tool_length,
+            "operation": operation.name,
+            "intol": operation.intol,
+            "outtol": operation.outtol,
+            "tool": self._tool_call(operation, loaded),
+        }
+        return {
+            name: self._family.escape_comment(value) if isinstance(value, str) else value
+            for name, value in found.items()
+        }
+
+    def _setting_values(self, motion: Motion) -> dict[str, Value]:
+        """Settings, with the values that the family makes of them and the defaults that depend on the operation."""
+        control, operation = self._program.control, motion.operation
+        values: dict[str, Value] = {**control.settings, **self._program.settings}
         if values.get("blank") == EXTENTS:
-            values["blank"] = self._cut_extents()
+            values["blank"] = self._extents()
         values |= self._family.template_values(values, None if motion.plane is None else motion.plane.matrix())
         if not values.get("tolerance"):
             given = operation.intol is not None and operation.outtol is not None
@@ -73,68 +98,80 @@ class TemplateValues:
             )
         for setting in control.method_defaults:
             values[setting] = values[setting] or control.default_for_method(setting, str(values.get("method", "")))
-        ball = tool.kind == "MILL" and tool.diameter > 0 and abs(2 * tool.corner_radius - tool.diameter) < 1e-6
-        known = tool.kind != "UNKNOWN"
-        formats = {word.key: word for word in motion_block_words(program, motion)}
-        rotary = {}
-        for word, column in (("primary", machine.primary), ("secondary", machine.secondary)):
-            angle = motion.rotary[:1, machine.rotary.index(column)]
-            count = int(rotary_counts(machine, column, angle, formats[word].format.decimals)[0])
-            rotary[word] = machine.axes[column].name
-            rotary[f"{word}_word"] = formats[word].letter + formats[word].format.text_of_count(count)
-        found: dict[str, Value] = {
-            **values,
-            **rotary,
-            **self._machining_times(number),
-            **self._plane_values(motion),
-            **spindle_values(program, spindle),
-            "subprogram": None,
-            "machine": machine.name,
-            **self._home_values(),
-            "operation": operation.name,
-            "tool": self._tool_call(motion, loaded),
-            "tool_name": tool.name or None,
-            "tool_type": control.tool_types["BALL" if ball else tool.kind] if known else None,
-            "tool_diameter": tool.diameter if known else None,
-            "tool_length": tool.length if known else None,
-            "tool_corner_radius": tool.corner_radius if known else None,
-            "gauge_length": machine.tool_length,
-            **dict(zip(("zero_x", "zero_y", "zero_z"), machine.workpiece_zero or _NO_POSITION, strict=True)),
-            "intol": operation.intol,
-            "outtol": operation.outtol,
-        }
-        return {
-            name: self._family.escape_comment(value) if isinstance(value, str) else value
-            for name, value in found.items()
-        }
+        return values
 
-    def _cut_extents(self) -> str:
-        """The corners of the block form round all that is cut; empty where nothing is."""
-        found = extents(self._program.motions)
-        return "" if found is None else ",".join(f"{value:g}" for value in np.concatenate(found).tolist())
+    def _extents(self) -> str:
+        """The corners of the block form around all cuts; empty if nothing is cut."""
+        box = cut_extents(self._program.motions)
+        return "" if box is None else ",".join(f"{value:g}" for value in np.concatenate(box).tolist())
 
-    def _machining_times(self, number: int) -> dict[str, Value]:
-        """What the operation and all of them take, as people read it; worked out only where a template prints it."""
+    def _rotary_values(self, motion: Motion) -> dict[str, Value]:
+        """Name and word of both rotary axes at the first row."""
+        machine, words = self._program.machine, {word.key: word for word in self._program.block_words(motion)}
+        values: dict[str, Value] = {}
+        for key, axis, column in self._program.rotary_words():
+            word = words[key]
+            count = int(rotary_counts(machine, axis, motion.rotary[:1, column], word.format.decimals)[0])
+            values[key] = machine.axes[axis].name
+            values[f"{key}_word"] = word.letter + word.format.text_of_count(count)
+        return values
+
+    def _time_values(self, number: int) -> dict[str, Value]:
+        """Machining times of the operation and of the program; computed only if a template prints them."""
         fields = {name for template in self._program.control.templates.values() for name, _ in template.fields()}
         if not fields & {"time", "total_time"}:
             return {"time": None, "total_time": None}
-        if not self._second_angle_ranges:
-            self._second_angle_ranges = [
-                operation_seconds(self._program.machine, each) for each in self._program.motions
-            ]
+        if not self._seconds:
+            self._seconds = [operation_seconds(self._program.machine, motion) for motion in self._program.motions]
+        return {"time": format_duration(self._seconds[number]), "total_time": format_duration(sum(self._seconds))}
+
+    def _plane_values(self, motion: Motion) -> dict[str, Value]:
+        """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
+
+        ``plane_side`` is -1 for the position with the lower value of the rotary axis farther from the workpiece, and 1
+        for the other; ``plane_sign`` is the sign of that axis.
+        """
+        names = "plane_x", "plane_y", "plane_z"
+        if motion.plane is None:
+            return dict.fromkeys((*names, "plane_side", "plane_sign"))
+        moves, column = motion.operation.moves, self._program.machine.rotary[1]
+        solutions = inverse(self._program.machine, moves.tip[:1], moves.axis[:1]).joints[:, 0, column]
+        distance = solutions - motion.rotary[0, 1]
+        distance -= 360.0 * np.rint(distance / 360.0)
+        lower = np.argmin(np.abs(distance)) == np.argmin(solutions)
+        sign = "-" if motion.rotary[0, 1] < 0.0 else "+"
+        origin = dict(zip(names, motion.plane.origin, strict=True))
+        return {**origin, "plane_side": "-1" if lower else "1", "plane_sign": sign}
+
+    def _home_values(self) -> dict[str, Value]:
+        """The home position, for templates that move in machine coordinates."""
+        machine = self._program.machine
+        linear = {axis.name: axis.home for axis in machine.axes if not axis.is_rotary}
         return {
-            "time": format_duration(self._second_angle_ranges[number]),
-            "total_time": format_duration(sum(self._second_angle_ranges)),
+            **{f"home_{name.lower()}": linear.get(name) for name in "XYZ"},
+            "primary_home": machine.axes[machine.primary].home,
+            "secondary_home": machine.axes[machine.secondary].home,
         }
 
-    def _tool_call(self, motion: Motion, loaded: LoadedTool) -> str:
-        """The tool as ``T=`` takes it: the run's setting, the number of LOAD/TOOL, or else the tool's name."""
-        operation = motion.operation
+    def _tool_values(self, operation: Operation) -> dict[str, Value]:
+        tool = operation.tool
+        ball = tool.kind == "MILL" and tool.diameter > 0 and abs(2 * tool.corner_radius - tool.diameter) < 1e-6
+        known = tool.kind != "UNKNOWN"
+        return {
+            "tool_name": tool.name or None,
+            "tool_type": self._program.control.tool_types["BALL" if ball else tool.kind] if known else None,
+            "tool_diameter": tool.diameter if known else None,
+            "tool_length": tool.length if known else None,
+            "tool_corner_radius": tool.corner_radius if known else None,
+        }
+
+    def _tool_call(self, operation: Operation, loaded: LoadedTool) -> str:
+        """The tool as a tool change calls it: by the run's setting, the number of LOAD/TOOL, or else its name."""
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
-        number, name = effective_setting(self._program, "tool"), operation.tool.name
+        number, name = self._program.effective_setting("tool"), operation.tool.name
         if loaded.call and not loads and name == loaded.name:
             return loaded.call
-        if name and (effective_setting(self._program, "tool_call") == "name" or not (number or loads)):
+        if name and (self._program.effective_setting("tool_call") == "name" or not (number or loads)):
             return self._family.tool_call(0, name, by_name=True)
         if number:
             return number
@@ -143,39 +180,12 @@ class TemplateValues:
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(Problem(self._program.file, operation.line, what, "write --set tool=NUMBER"))
 
-    def _plane_values(self, motion: Motion) -> dict[str, Value]:
-        """What templates of all families may print of a tilted plane: its origin and the side of the machine.
-
-        The side is -1 or 1: of the two solutions that stand the tool on the plane, the one with the lower or the higher
-        value of the rotary axis farther from the workpiece. Where there is only one, either word means it. The sign is
-        that of this axis: "+" or "-".
-        """
-        names = "plane_x", "plane_y", "plane_z"
-        if motion.plane is None:
-            return dict.fromkeys((*names, "plane_side", "plane_sign"))
-        moves, column = motion.operation.moves, self._program.machine.rotary[1]
-        both = inverse(self._program.machine, moves.tip[:1], moves.axis[:1]).joints[:, 0, column]
-        apart = both - motion.rotary[0, 1]
-        apart -= 360.0 * np.rint(apart / 360.0)
-        lower = np.argmin(np.abs(apart)) == np.argmin(both)
-        side = "-1" if lower else "1"
-        sign = "-" if motion.rotary[0, 1] < 0.0 else "+"
-        return {**dict(zip(names, motion.plane.origin, strict=True)), "plane_side": side, "plane_sign": sign}
-
-    def _home_values(self) -> dict[str, Value]:
-        """The machine's home, for templates that say it in positions of the machine."""
-        machine = self._program.machine
-        axes = machine.axes
-        slides = {axis.name: axis.home for axis in axes if not axis.is_rotary}
-        return {
-            **{f"home_{name.lower()}": slides.get(name) for name in "XYZ"},
-            "primary_home": axes[machine.primary].home,
-            "secondary_home": axes[machine.secondary].home,
-        }
-
 
 def spindle_values(program: Program, event: SpindleOn | None) -> dict[str, Value]:
-    """Speed, also where it is not the one that was said last, and the M code of the sense; None without an event."""
+    """Return speed and M code of a spindle start; None without one.
+
+    ``new_speed`` is for lines that are written only where the speed changes.
+    """
     if event is None:
         return dict.fromkeys(("spindle_speed", "new_speed", "spindle_code"))
     code = "spindle_clockwise" if event.sense is Sense.CLW else "spindle_counterclockwise"

@@ -1,4 +1,4 @@
-"""A tilted plane as three turns about axes that are already turned: the angles that controls take."""
+"""The orientation of a tilted plane as three rotations, each about an axis that has already turned."""
 
 import math
 
@@ -6,24 +6,29 @@ from trunnion.arrays import Floats
 
 
 def tait_bryan_angles(matrix: Floats, order: tuple[int, int, int]) -> tuple[float, float, float]:
-    """Three angles, degrees, that turn the program's axes into those of a plane, each about an axis already turned.
+    """Return the angles of three rotations about three different axes that turn the program's axes into a plane's.
 
     Parameters
     ----------
     matrix : (3, 3) float64
         X, Y and Z of the plane as columns.
     order
-        The axes in the order of their turns, 0 for X; no two alike.
+        The axes of the rotations, 0 for X.
 
-    With s = 1 for the orders X Y Z, Y Z X, Z X Y and s = -1 for the others, the product of the three turns has in row i
+    Returns
+    -------
+    a, b, c
+        Degrees.
+
+    With i, j, k the order and s = 1 for X Y Z, Y Z X, Z X Y, else -1, the product of the three rotations has in row i
     the columns i: cos b cos c, j: -s cos b sin c, k: s sin b, and in column k the rows j: -s sin a cos b, k: cos a
-    cos b. Where cos b vanishes only the sum or the difference of a and c counts: c is then 0.
+    cos b. Where cos b vanishes, only the sum or the difference of a and c is determined: c is then 0.
     """
     i, j, k = order
     s = 1.0 if (j - i) % 3 == 1 else -1.0
-    across = math.hypot(matrix[i, i], matrix[i, j])
-    b = math.atan2(s * matrix[i, k], across)
-    if across < 1e-9:
+    cos_b = math.hypot(matrix[i, i], matrix[i, j])
+    b = math.atan2(s * matrix[i, k], cos_b)
+    if cos_b < 1e-9:
         a, c = math.atan2(s * matrix[k, j], matrix[j, j]), 0.0
     else:
         a, c = math.atan2(-s * matrix[j, k], matrix[k, k]), math.atan2(-s * matrix[i, j], matrix[i, i])
@@ -31,14 +36,25 @@ def tait_bryan_angles(matrix: Floats, order: tuple[int, int, int]) -> tuple[floa
 
 
 def euler_zxz_angles(matrix: Floats) -> tuple[float, float, float]:
-    """Three angles, degrees, about Z, the X that has turned with it, and the Z that has turned with both.
+    """Return the angles of rotations about Z, the X that has turned with it, and the Z that has turned with both.
 
-    The product of the three turns has in its last column sin a sin b, -cos a sin b, cos b and in its last row
-    sin b sin c, sin b cos c, cos b. Where sin b vanishes only the sum or the difference of a and c counts: c is then 0.
+    Parameters
+    ----------
+    matrix : (3, 3) float64
+        X, Y and Z of the plane as columns.
+
+    Returns
+    -------
+    a, b, c
+        Degrees.
+
+    The product of the three rotations has in its last column sin a sin b, -cos a sin b, cos b and in its last row
+    sin b sin c, sin b cos c, cos b. Where sin b vanishes, only the sum or the difference of a and c is determined: c is
+    then 0.
     """
-    across = math.hypot(matrix[0, 2], matrix[1, 2])
-    b = math.atan2(across, matrix[2, 2])
-    if across < 1e-9:
+    sin_b = math.hypot(matrix[0, 2], matrix[1, 2])
+    b = math.atan2(sin_b, matrix[2, 2])
+    if sin_b < 1e-9:
         a, c = math.atan2(matrix[1, 0], matrix[0, 0]), 0.0
     else:
         a, c = math.atan2(matrix[0, 2], -matrix[1, 2]), math.atan2(matrix[2, 0], matrix[2, 1])

@@ -1,9 +1,9 @@
-"""Tilted planes as the rotary axes stand there, for the digits that are printed.
+"""Tilted planes for the digits that are printed.
 
-Some controls take a plane from where the rotary axes stand; no words say its angles. Its zero is the work offset's, its
-axes are those of the machine turned with the tool. It is worked out for the rotary position as it is printed, so that
-rounding an angle costs nothing at the tip. Others are told angles of the plane, and find the position themselves: it
-must be within the limits for the angles as they are rounded.
+Some controls take a tilted plane from the rotary position, without angles: its origin is that of the work offset, its
+axes are those of the machine turned with the tool. Such a plane is computed for the rotary position as printed, so that
+rounding an angle does not move the tip. Other controls compute the rotary position from the angles of the plane: it
+must be within the limits for the angles as printed.
 """
 
 from dataclasses import replace
@@ -19,24 +19,34 @@ from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Frame
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles, tait_bryan_angles
 
-#: Decimals of vectors that say a plane.
+#: Decimals of vectors that describe a plane.
 _VECTOR_DECIMALS: Final = 7
 
-#: A position is surely within a limit up to this beyond it, degrees; and is the one that is meant up to this off it.
-_LIMIT_TOLERANCE, _SOLUTION_TOLERANCE = 5e-7, 0.1
+#: A control accepts a position up to this far beyond a limit, degrees.
+_LIMIT_TOLERANCE: Final = 5e-7
+
+#: A solution within this of the planned position is that position, degrees.
+_SOLUTION_TOLERANCE: Final = 0.1
 
 
 def with_plane_of_pose(machine: Machine, motion: Motion, decimals: int) -> Motion:
-    """A motion in a tilted plane, in the plane of its rotary position printed with so many decimals."""
+    """Return a motion in the tilted plane of its rotary position, as printed with ``decimals``."""
     rotary = round_to_counts(np.ascontiguousarray(motion.rotary[0]), decimals) / 10.0**decimals
     return replace(motion, plane=plane_of_pose(machine, rotary), rotary=np.tile(rotary, (len(motion.rotary), 1)))
 
 
 def with_plane_inside_limits(machine: Machine, motion: Motion, decimals: int) -> Motion:
-    """A motion whose tilted plane asks for no position beyond a limit when its angles are rounded; itself if it is one.
+    """Return a motion in a tilted plane whose rounded angles lead to no position beyond a limit.
 
-    Where it stands so near to a limit of a rotary axis, the axis keeps from it what rounding three angles comes to, and
-    the plane turns along.
+    Where the rotary axes are too near to a limit, they keep a distance from it that covers the rounding of three
+    angles, and the plane turns with them. Elsewhere it is the given motion.
+
+    Parameters
+    ----------
+    machine, motion
+        The motion, and its machine.
+    decimals
+        Of the plane's angles.
     """
     if motion.plane is None or not _exceeds_limits(machine, motion.plane, motion.rotary[0], decimals):
         return motion
@@ -50,28 +60,27 @@ def with_plane_inside_limits(machine: Machine, motion: Motion, decimals: int) ->
 
 
 def _exceeds_limits(machine: Machine, plane: Frame, rotary: Floats, decimals: int) -> bool:
-    """Whether a plane asks for a position beyond a limit, said by any three angles or vectors of that many decimals."""
+    """Whether a plane leads beyond a limit, in any of the angles or vectors that controls accept, as printed."""
     matrix = plane.matrix()
-    spatial, turns = (
-        np.round(tait_bryan_angles(matrix, (2, 1, 0)), decimals),
-        np.round(euler_zxz_angles(matrix), decimals),
-    )
+    spatial = np.round(tait_bryan_angles(matrix, (2, 1, 0)), decimals)
+    euler = np.round(euler_zxz_angles(matrix), decimals)
     normals = np.array([
         (_rotation(2, spatial[0]) @ _rotation(1, spatial[1]) @ _rotation(0, spatial[2]))[:, 2],
-        (_rotation(2, turns[0]) @ _rotation(0, turns[1]))[:, 2],
+        (_rotation(2, euler[0]) @ _rotation(0, euler[1]))[:, 2],
         np.round(matrix[:, 2], _VECTOR_DECIMALS),
     ])  # fmt: skip
-    asked = inverse(machine, np.zeros((3, 3)), normals).joints[..., list(machine.rotary)] - rotary
-    asked -= 360.0 * np.rint(asked / 360.0)
-    nearest = np.take_along_axis(asked, np.abs(asked).sum(axis=2, keepdims=True).argmin(axis=0)[None], axis=0)[0]
+    offsets = inverse(machine, np.zeros((3, 3)), normals).joints[..., list(machine.rotary)] - rotary
+    offsets -= 360.0 * np.rint(offsets / 360.0)
+    solution = np.abs(offsets).sum(axis=2, keepdims=True).argmin(axis=0)[None]
+    nearest = np.take_along_axis(offsets, solution, axis=0)[0]
     low, high = machine.limits[list(machine.rotary)].T
-    near_pole = np.abs(nearest) > _SOLUTION_TOLERANCE  # there one angle is free, and no rounding has turned it so far
+    free = np.abs(nearest) > _SOLUTION_TOLERANCE  # at the pole: no rounding turns an axis so far
     beyond = (rotary + nearest < low - _LIMIT_TOLERANCE) | (rotary + nearest > high + _LIMIT_TOLERANCE)
-    return bool((beyond & ~near_pole).any())
+    return bool((beyond & ~free).any())
 
 
 def _rotation(axis: int, angle: float) -> Floats:
-    """(3, 3): a turn about X, Y or Z (0, 1, 2) by degrees."""
+    """(3, 3): a rotation about X, Y or Z (0, 1, 2) by an angle, degrees."""
     cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     one, two = (axis + 1) % 3, (axis + 2) % 3
     matrix = np.eye(3)
@@ -81,7 +90,7 @@ def _rotation(axis: int, angle: float) -> Floats:
 
 
 def plane_of_pose(machine: Machine, rotary: Floats) -> Frame:
-    """The plane on which the tool stands at a rotary position (2,), degrees, as seen from the workpiece."""
+    """Return the plane square to the tool at a rotary position (2,), degrees, in the workpiece frame."""
     joints = np.zeros((1, 5))
     joints[0, list(machine.rotary)] = rotary
     x, y = (
@@ -91,15 +100,25 @@ def plane_of_pose(machine: Machine, rotary: Floats) -> Frame:
     return frame_from_vectors(np.zeros(3), x, y)
 
 
-def tip_after_turn(machine: Machine, place: Floats, before: Motion, after: Motion) -> Floats:
-    """Where a tool at ``place`` (3,) of one motion's plane is in that of the next, once the rotary axes have turned.
+def tip_after_turn(machine: Machine, tip: Floats, before: Motion, after: Motion) -> Floats:
+    """Return where the tip is in the next motion's plane once the rotary axes have turned to it.
 
-    The slides stand still meanwhile, mm.
+    Parameters
+    ----------
+    tip : (3,) float64
+        In the plane of ``before``, mm. The linear axes rest while the rotary axes turn.
+    before, after
+        Two motions in tilted planes.
+
+    Returns
+    -------
+    (3,) float64
+        In the plane of ``after``, mm.
     """
     assert before.plane is not None
     assert after.plane is not None
-    tip = before.plane.matrix() @ place + np.array(before.plane.origin)
-    joints = slide_positions(machine, tip[None], before.rotary[:1])
+    in_workpiece = before.plane.matrix() @ tip + np.array(before.plane.origin)
+    joints = slide_positions(machine, in_workpiece[None], before.rotary[:1])
     joints[:, list(machine.rotary)] = after.rotary[:1]
-    there = forward(machine, joints)[0][0]
-    return np.asarray(after.plane.matrix().T @ (there - np.array(after.plane.origin)))
+    turned = forward(machine, joints)[0][0]
+    return np.asarray(after.plane.matrix().T @ (turned - np.array(after.plane.origin)))

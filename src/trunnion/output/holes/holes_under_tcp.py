@@ -1,33 +1,31 @@
-"""Blocks of holes under TCP: the tool turns from hole to hole, and a cycle drills along it.
+"""Drilling cycles under TCP: the tool turns from hole to hole, and a cycle drills along it.
 
-In:     rows that are holes, each with a tool axis of its own.
+In:     rows that are holes, each with its own tool axis.
 Out:    a position block over each hole, at the retract height along the tool, and the lines of its cycle. Heights of a
-        cycle count along the tool axis from the work offset's zero, where the frame has its zero that is turned to it.
+        cycle are measured along the tool axis from the zero of the work offset, about which the frame turns.
 
-On the way from hole to hole the tip goes straight. That way must be above the point of one of both holes all the time,
-seen along its axis; where it is not, the CL file has to say a way round.
+From hole to hole the tip goes straight. All along that path it must be above the point of one of the two holes, seen
+along that hole's axis; where it is not, the CL file must have points between.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.controls.family_writer import EACH_HOLE, WordEvent
-from trunnion.controls.words import round_to_counts
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
-from trunnion.output.program import effective_settings
+from trunnion.output.holes.hole_groups import write_hole_groups
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, SpindleState, cycle_feed, cycle_from_event
 
-#: Tool axes are the same when no component differs by more than this.
-_SAME = 1e-7
+#: Tool axes are equal if no component differs by more.
+_SAME_AXIS = 1e-7
 
-#: Heights are the same within this, mm.
-_NEAR = 1e-6
+#: Heights are equal within this, mm.
+_SAME_HEIGHT = 1e-6
 
 
 def write_holes_under_tcp(
@@ -36,83 +34,79 @@ def write_holes_under_tcp(
     first: int,
     last: int,
     joining_events: Sequence[WordEvent],
-    text: int,
-    cycle: CycleOn,
-) -> int:
-    """Rows ``first`` to ``last`` as holes along the tool, with the events that join them; as
-    ``MotionBlockWriter.write_rows``."""
-    said = cycle_from_event(cycle)
-    moves = motion.operation.moves
-    heights = np.einsum("ij,ij->i", moves.tip[first:last], moves.axis[first:last])
-    printed = round_to_counts(heights, blocks.writer.word("X").format.decimals)
-    ends = {0, *(np.flatnonzero(np.diff(printed)) + 1).tolist(), *(e.row - first for e in joining_events), last - first}
-    over = replace(
-        motion, operation=replace(motion.operation, moves=replace(moves, tip=_retracted_tips(motion.operation)))
-    )
-    starts = sorted(k for k in ends if 0 <= k <= last - first)
-    for k, end in pairwise(starts):
-        row = first + k
-        while row < first + end:
-            fitting, text = blocks.fitting_holes(over, row, text)
-            stop, here = min(row + fitting, first + end), [event for event in joining_events if event.row == row]
-            text = _write_equal_heights(blocks, over, row, stop, here, text, said, float(heights[k]))
-            row = stop
-    blocks.progress(last - first)
-    return text
-
-
-def _write_equal_heights(
-    blocks: MotionBlockWriter,
-    over: Motion,
-    first: int,
-    last: int,
-    joining_events: Sequence[WordEvent],
-    text: int,
+    phase: int,
     cycle: Cycle,
-    top: float,
 ) -> int:
-    """Holes whose points are as far along their axes; ``over``: the motion with its tips over them."""
-    moves, control = over.operation.moves, blocks.control
-    if first == 0:
-        text = blocks.write_chunk(over, 0, 1, joining_events, text)
-    else:
-        for event in joining_events:
-            blocks.event_block(event)
-        text = _retract_along_tool(blocks, over, first, cycle, text)
-    turning = None if blocks.spindle is None else SpindleState(blocks.spindle.rpm, blocks.spindle.sense)
-    feed, per_rev = cycle_feed(cycle, turning, float(moves.feed[first]), bool(moves.per_rev[first]))
-    formats = control.number_formats(over.three_axis)
-    lines = blocks.family.cycle_call(cycle, top, turning, effective_settings(blocks.program), formats)
-    code = control.codes["feed_per_revolution" if per_rev else "feed_per_minute"]
-    blocks.write_block({"feed_mode": blocks.use_feed_mode(code), "feed": blocks.to_count("feed", feed)})
-    if EACH_HOLE in lines:
-        after = [line for line in lines if line != EACH_HOLE]
-        for row in range(first, last):
-            text = blocks.write_chunk(over, row, row + 1, (), text, repeat_point=True)
-            blocks.write_lines(after)
-        return text
-    blocks.write_lines(lines)
-    text = blocks.write_chunk(over, first, last, (), text, repeat_point=True)
-    blocks.write_lines(blocks.family.cycle_cancel())
-    return text
+    """Write rows ``first`` to ``last`` (excluded) as holes along the tool; as ``MotionBlockWriter.write_rows``."""
+    operation = motion.operation
+    tip, axis = operation.moves.tip[first:last], operation.moves.axis[first:last]
+    heights = np.einsum("ij,ij->i", tip, axis)
+    moves = replace(operation.moves, tip=_retracted_tips(operation))
+    holes = _Holes(blocks, replace(motion, operation=replace(operation, moves=moves)), cycle)
+    return write_hole_groups(
+        blocks,
+        holes.motion,
+        first,
+        heights,
+        joining_events,
+        phase,
+        lambda begin, *group: holes.write(float(heights[begin - first]), *group),
+    )
 
 
-def _retract_along_tool(blocks: MotionBlockWriter, over: Motion, first: int, cycle: Cycle, text: int) -> int:
-    """Draw the tool back at rapid, along its axis, where it is lower than the next hole with this axis wants it."""
-    moves = over.operation.moves
-    assert cycle.retract_height is not None
-    axis, before = moves.axis[first], moves.tip[first - 1]
-    lacks = float((moves.tip[first] - before) @ axis) - cycle.retract_height + cycle.rapid_height
-    if np.abs(moves.axis[first - 1] - axis).max() > _SAME or lacks < _NEAR:
-        return text
-    tip, kind = moves.tip.copy(), moves.kind.copy()
-    tip[first - 1], kind[first - 1] = before + lacks * axis, Kind.RAPID
-    raised = replace(over, operation=replace(over.operation, moves=replace(moves, tip=tip, kind=kind)))
-    return blocks.write_chunk(raised, first - 1, first, (), text)
+class _Holes:
+    """Writes the holes of one cycle; ``motion`` has the tips retracted over them."""
+
+    def __init__(self, blocks: MotionBlockWriter, motion: Motion, cycle: Cycle) -> None:
+        self.motion = motion
+        self._blocks, self._cycle = blocks, cycle
+
+    def write(self, top: float, first: int, last: int, joining_events: Sequence[WordEvent], phase: int) -> int:
+        """Write the holes of rows ``first`` to ``last``, whose points are at ``top`` along their axes, mm.
+
+        Returns the index of the phase comment that was written last.
+        """
+        blocks, motion, moves = self._blocks, self.motion, self.motion.operation.moves
+        if first == 0:
+            phase = blocks.write_chunk(motion, 0, 1, joining_events, phase)
+        else:
+            for event in joining_events:
+                blocks.write_event(event)
+            phase = self._raise(first, phase)
+        spindle = None if blocks.spindle is None else SpindleState(blocks.spindle.rpm, blocks.spindle.sense)
+        feed, per_rev = cycle_feed(self._cycle, spindle, float(moves.feed[first]), bool(moves.per_rev[first]))
+        formats = blocks.control.number_formats(motion.three_axis)
+        settings = blocks.program.effective_settings()
+        lines = blocks.family.cycle_call(self._cycle, top, spindle, settings, formats)
+        mode = blocks.control.codes["feed_per_revolution" if per_rev else "feed_per_minute"]
+        blocks.write_block({"feed_mode": blocks.feeds.use_mode(mode), "feed": blocks.writer.to_count("feed", feed)})
+        if EACH_HOLE in lines:
+            hole = [line for line in lines if line != EACH_HOLE]
+            for row in range(first, last):
+                phase = blocks.write_chunk(motion, row, row + 1, (), phase, repeat_point=True)
+                blocks.write_lines(hole)
+            return phase
+        blocks.write_lines(lines)
+        phase = blocks.write_chunk(motion, first, last, (), phase, repeat_point=True)
+        blocks.write_lines(blocks.family.cycle_cancel())
+        return phase
+
+    def _raise(self, first: int, phase: int) -> int:
+        """Raise the tool along its axis at rapid, if it is lower than the next hole with the same axis needs it."""
+        moves = self.motion.operation.moves
+        assert self._cycle.retract_height is not None
+        axis, before = moves.axis[first], moves.tip[first - 1]
+        missing = float((moves.tip[first] - before) @ axis) - self._cycle.retract_height + self._cycle.rapid_height
+        if np.abs(moves.axis[first - 1] - axis).max() > _SAME_AXIS or missing < _SAME_HEIGHT:
+            return phase
+        tip, kind = moves.tip.copy(), moves.kind.copy()
+        tip[first - 1], kind[first - 1] = before + missing * axis, Kind.RAPID
+        raised = replace(self.motion.operation, moves=replace(moves, tip=tip, kind=kind))
+        return self._blocks.write_chunk(replace(self.motion, operation=raised), first - 1, first, (), phase)
 
 
 def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
-    """Why holes cannot be made one after the other along a tool that turns between them."""
+    """Yield why holes cannot be drilled one after the other while the tool turns between them."""
     moves, left = operation.moves, _retracted_tips(operation)
     cycles = _cycle_by_row(operation)
     for row, cycle in cycles.items():
@@ -122,24 +116,23 @@ def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
         if row == 0:
             continue
         before = cycles.get(row - 1)
-        turned = bool(np.abs(moves.axis[row] - moves.axis[row - 1]).max() > _SAME)
-        way = left[row - 1], left[row]
-        spare = _clearance(way, moves.tip[row], moves.axis[row], cycle.rapid_height)
-        if turned and before is not None:
-            lowest = _lowest_clearance(
-                spare, _clearance(way, moves.tip[row - 1], moves.axis[row - 1], before.rapid_height)
-            )
-        elif turned or moves.kind[row - 1] != Kind.RAPID:
-            lowest = spare[0]
+        axis_changes = bool(np.abs(moves.axis[row] - moves.axis[row - 1]).max() > _SAME_AXIS)
+        path = left[row - 1], left[row]
+        clearance = _clearance(path, moves.tip[row], moves.axis[row], cycle.rapid_height)
+        if axis_changes and before is not None:
+            of_last_hole = _clearance(path, moves.tip[row - 1], moves.axis[row - 1], before.rapid_height)
+            lowest = _lowest_clearance(clearance, of_last_hole)
+        elif axis_changes or moves.kind[row - 1] != Kind.RAPID:
+            lowest = clearance[0]
         else:
             continue
-        if lowest < -_NEAR:
+        if lowest < -_SAME_HEIGHT:
             what = f"on the straight way to this hole the tool would be {-lowest:.3f} mm below the height of RAPTO"
             yield HoleCycleError(what, "put RAPID points between the holes, or raise RTRCTO", line)
 
 
 def _cycle_by_row(operation: Operation) -> dict[int, Cycle]:
-    """Rows that are holes, each with what its cycle asks for."""
+    """The cycle of every row that is a hole."""
     events = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
     ends = [event.row for event in events[1:]] + [len(operation.moves)]
     found: dict[int, Cycle] = {}
@@ -150,24 +143,24 @@ def _cycle_by_row(operation: Operation) -> dict[int, Cycle]:
 
 
 def _retracted_tips(operation: Operation) -> Floats:
-    """(n, 3): where the tip is left at each row: drawn back along the tool, where the row is a hole."""
-    back = np.zeros(len(operation.moves))
+    """(n, 3): where the tip is after each row: at holes, retracted along the tool."""
+    height = np.zeros(len(operation.moves))
     for row, cycle in _cycle_by_row(operation).items():
-        back[row] = cycle.retract_height or 0.0
-    return np.asarray(operation.moves.tip + back[:, None] * operation.moves.axis)
+        height[row] = cycle.retract_height or 0.0
+    return np.asarray(operation.moves.tip + height[:, None] * operation.moves.axis)
 
 
-def _clearance(way: tuple[Floats, Floats], point: Floats, axis: Floats, above: float) -> tuple[float, float]:
-    """How much higher than ``above`` over a hole the ends of a way are, mm."""
-    here, there = way
-    return float((here - point) @ axis) - above, float((there - point) @ axis) - above
+def _clearance(path: tuple[Floats, Floats], point: Floats, axis: Floats, rapid_height: float) -> tuple[float, float]:
+    """How far the ends of a path are above the rapid height over a hole, mm."""
+    start, end = path
+    return float((start - point) @ axis) - rapid_height, float((end - point) @ axis) - rapid_height
 
 
 def _lowest_clearance(one: tuple[float, float], other: tuple[float, float]) -> float:
-    """The least, on a straight way, of the greater of two heights, which are given at its ends."""
-    apart = one[0] - other[0], one[1] - other[1]
+    """The least, along a straight path, of the greater of two clearances, each given at both ends."""
+    difference = one[0] - other[0], one[1] - other[1]
     ends = min(max(one[0], other[0]), max(one[1], other[1]))
-    if apart[0] * apart[1] >= 0.0:
+    if difference[0] * difference[1] >= 0.0:
         return ends
-    part = apart[0] / (apart[0] - apart[1])
-    return min(ends, one[0] + part * (one[1] - one[0]))
+    crossing = difference[0] / (difference[0] - difference[1])
+    return min(ends, one[0] + crossing * (one[1] - one[0]))

@@ -1,0 +1,41 @@
+"""The words of successive motion blocks as columns."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trunnion.arrays import Flags, Ints
+from trunnion.controls.words import ABSENT
+
+
+@dataclass(slots=True, eq=False)
+class BlockTable:
+    """The words of ``rows`` motion blocks, filled in by one subject after the other.
+
+    columns  word -> (n,) int64 counts, ``ABSENT`` where the block lacks the word
+    forced   word -> (n,) int64, 1 where the word is written even if it is modal and unchanged
+    lines    row -> a line of its own before the block
+    """
+
+    rows: int
+    columns: dict[str, Ints] = field(default_factory=dict)
+    forced: dict[str, Ints] = field(default_factory=dict)
+    lines: dict[int, str] = field(default_factory=dict)
+
+    def column(self, word: str) -> Ints:
+        """Return the column of a word; a new one is empty."""
+        return self.columns.setdefault(word, np.full(self.rows, ABSENT, np.int64))
+
+    def force(self, word: str, flags: Flags | Ints) -> None:
+        """Write a word in the flagged rows even if it is modal and unchanged."""
+        self.forced[word] = np.asarray(flags, np.int64) | self.forced.get(word, 0)
+
+    def set_words(self, row: int, words: Mapping[str, int]) -> None:
+        """Put words, as counts, into a row."""
+        for word, count in words.items():
+            self.column(word)[row] = count
+
+    def words_of_row(self, row: int) -> dict[str, int]:
+        """Return the words of a row, as counts."""
+        return {word: int(column[row]) for word, column in self.columns.items()}

@@ -1,0 +1,193 @@
+"""Writes the rows of a motion and the events between them.
+
+Events that are words join the next motion block; others are blocks of their own, between which the rows are divided.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import takewhile
+from typing import Final
+
+from trunnion.controls.family_writer import FamilyWriter, WordEvent
+from trunnion.controls.vocabulary import SPINDLE_ON
+from trunnion.model.motion import Motion
+from trunnion.model.toolpath import (
+    BlockSkip,
+    Coolant,
+    CutterComp,
+    CycleOff,
+    CycleOn,
+    Dwell,
+    Event,
+    Insert,
+    Message,
+    SpindleOff,
+    SpindleOn,
+    Stop,
+)
+from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.output.holes.hole_blocks import write_holes
+from trunnion.output.program import Program
+from trunnion.output.template_values import spindle_values
+from trunnion.output.template_writer import TemplateWriter
+
+#: A line of a template that switches something and moves nothing.
+_SWITCHING_LINE: Final = re.compile(r"M\d+|\{\w+\}")
+
+
+class EventWriter:
+    """Writes motions with their events, one after the other."""
+
+    def __init__(self, program: Program, blocks: MotionBlockWriter, templates: TemplateWriter) -> None:
+        self._program, self._control = program, program.control
+        self._family: FamilyWriter = program.control.family
+        self._blocks, self._templates = blocks, templates
+        self._starts_spindle_by_template = SPINDLE_ON in program.control.templates
+        # Before the blocks that may be skipped: the tool height, None for home; the file's size, and the modal state.
+        self._height_before_skip: float | None = None
+        self._state_before_skip: tuple[int, dict[str, int]] = 0, {}
+        # In the present motion:
+        self._motion = program.motions[0]
+        self._next_row = 0
+        self._phase = -1
+        self._cycle: CycleOn | None = None
+        self._joining_events: list[WordEvent] = []
+
+    def write(self, motion: Motion, first: int, end_lines: Sequence[str], *, restart_spindle: bool) -> None:
+        """Write the rows of a motion from ``first`` on, with its events.
+
+        Parameters
+        ----------
+        motion
+            In the coordinates of its blocks.
+        end_lines
+            Lines of the template that comes next. What they switch at their beginning is not switched right before.
+        restart_spindle
+            The end of the last operation has stopped the spindle.
+        """
+        rows = len(motion.operation.moves)
+        self._motion, self._next_row, self._phase, self._cycle = motion, first, -1, None
+        self._joining_events = []
+        if restart_spindle:
+            self._restart_spindle()
+        for event in motion.operation.events:
+            self._write_event(event, end_lines if event.row == rows else ())
+        self._write_rows(rows)
+        for event in self._joining_events:
+            if event.row == rows:
+                self._blocks.write_event(event)
+
+    def set_block_skip(self, on: bool, row: int = 0) -> None:
+        """Start the blocks from a row on with the block-skip sign, or no longer.
+
+        After them nothing is known of what they have changed: the control may have skipped them.
+        """
+        blocks, writer = self._blocks, self._blocks.writer
+        state = writer.size, writer.modal_state()
+        if on and not writer.skips_blocks:
+            self._height_before_skip, self._state_before_skip = blocks.tool_height if row else None, state
+        elif writer.skips_blocks and not on and state != self._state_before_skip:
+            writer.forget()
+            before = self._height_before_skip
+            blocks.height_bound = None if before is None else max(before, blocks.tool_height)
+        writer.set_block_skip(on)
+
+    def _restart_spindle(self) -> None:
+        """Start the spindle as before, unless an event at the first row starts it."""
+        spindle = self._blocks.spindle
+        starts = any(isinstance(event, SpindleOn) and event.row == 0 for event in self._motion.operation.events)
+        if starts or spindle is None:
+            return
+        again = replace(spindle, row=0)
+        if self._joins_motion(again):
+            self._joining_events.append(again)
+        elif self._starts_spindle_by_template:
+            self._start_spindle(again)
+        else:
+            self._blocks.write_event(again)
+
+    # Events
+
+    def _joins_motion(self, event: Event) -> bool:
+        """Whether the words of an event join a motion block.
+
+        The words that switch something off do not: some controls would switch it off after the motion.
+        """
+        if not isinstance(event, SpindleOn | Coolant | CutterComp) or self._control.own_blocks:
+            return False
+        if isinstance(event, SpindleOn):
+            return not self._starts_spindle_by_template
+        return not (isinstance(event, Coolant) and event.kind == "OFF")
+
+    def _write_event(self, event: Event, end_lines: Sequence[str]) -> None:
+        if isinstance(event, CycleOn | CycleOff):
+            self._write_rows(event.row)
+            self._joining_events = [joining for joining in self._joining_events if joining.row >= event.row]
+            self._cycle = event if isinstance(event, CycleOn) else None
+        elif isinstance(event, SpindleOn | SpindleOff | Coolant | CutterComp):
+            self._write_word_event(event, end_lines)
+        elif isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
+            self._finish_rows(event.row)
+            self._write_line_event(event)
+
+    def _write_word_event(self, event: WordEvent, end_lines: Sequence[str]) -> None:
+        if self._joins_motion(event):
+            if any(type(joining) is type(event) and joining.row == event.row for joining in self._joining_events):
+                self._finish_rows(event.row)  # what is switched twice before a row is switched in order
+            self._joining_events.append(event)
+            return
+        self._finish_rows(event.row)
+        if isinstance(event, SpindleOn) and self._starts_spindle_by_template:
+            self._start_spindle(event)
+        elif not self._is_switched_in(end_lines, event):
+            self._blocks.write_event(event)
+
+    def _write_line_event(self, event: Dwell | Stop | Message | Insert | BlockSkip) -> None:
+        blocks = self._blocks
+        if isinstance(event, Dwell):
+            rpm = None if blocks.spindle is None else blocks.spindle.rpm
+            formats = self._control.number_formats(self._motion.three_axis)
+            blocks.write_lines(self._family.dwell(event, rpm, formats))
+        elif isinstance(event, Stop):
+            blocks.write_lines(self._family.stop(event, self._control.codes))
+        elif isinstance(event, Message):
+            blocks.write_lines(self._family.message(event))
+        elif isinstance(event, Insert):
+            blocks.write_lines([event.text])
+            blocks.writer.forget()  # the text may have changed anything
+        else:
+            self.set_block_skip(event.on, event.row)
+
+    def _start_spindle(self, event: SpindleOn) -> None:
+        self._blocks.spindle = event
+        self._templates.write(SPINDLE_ON, spindle_values(self._program, event), self._motion)
+
+    def _is_switched_in(self, lines: Sequence[str], event: WordEvent) -> bool:
+        """Whether lines begin with the words of an event, among other M words and settings."""
+        if not lines:
+            return False
+        words = self._blocks.event_words(event)
+        switches = list(takewhile(_SWITCHING_LINE.fullmatch, lines))
+        return bool(words) and all(f"M{code}" in switches for code in words.values())
+
+    # Rows
+
+    def _finish_rows(self, row: int) -> None:
+        """Write all rows before ``row``, and the events that were to join it."""
+        self._write_rows(row)
+        for event in self._joining_events:
+            if event.row == row:
+                self._blocks.write_event(event)
+        self._joining_events = [event for event in self._joining_events if event.row > row]
+
+    def _write_rows(self, last: int) -> None:
+        """Write the rows up to ``last`` (excluded): motion, or the holes of the present cycle."""
+        first = self._next_row
+        if self._cycle is None or first >= last:
+            self._phase = self._blocks.write_rows(self._motion, first, last, self._joining_events, self._phase)
+        else:
+            self._phase = write_holes(
+                self._blocks, self._motion, first, last, self._joining_events, self._phase, self._cycle
+            )
+        self._next_row = max(first, last)

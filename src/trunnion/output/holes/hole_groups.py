@@ -1,0 +1,56 @@
+"""Holes of one cycle in groups: those of one height follow each other, and each file gets as many as fit."""
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.controls.family_writer import WordEvent
+from trunnion.controls.words import round_to_counts
+from trunnion.model.motion import Motion
+from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+
+#: Writes holes of one height in one file: the first row of that height, the rows from and to, the events at the first
+#: of them, and the phase comment that was written last; returns the new one.
+WriteGroup = Callable[[int, int, int, Sequence[WordEvent], int], int]
+
+
+def write_hole_groups(
+    blocks: MotionBlockWriter,
+    motion: Motion,
+    first: int,
+    heights: Floats,
+    joining_events: Sequence[WordEvent],
+    phase: int,
+    write_group: WriteGroup,
+) -> int:
+    """Write the holes from row ``first`` on; a new group begins where the printed height changes and at every event.
+
+    Parameters
+    ----------
+    heights : (n,) float64
+        Of the n holes, mm.
+    joining_events
+        Events that join the blocks of the holes.
+    phase
+        Index of the phase comment that was written last.
+
+    Returns
+    -------
+    int
+        Index of the phase comment that was written last.
+    """
+    printed = round_to_counts(heights, blocks.writer.word("X").format.decimals)
+    changes = (first + 1 + np.flatnonzero(np.diff(printed))).tolist()
+    last = first + len(heights)
+    edges = {first, last, *changes, *(event.row for event in joining_events if first <= event.row <= last)}
+    for begin, end in pairwise(sorted(edges)):
+        row = begin
+        while row < end:
+            fitting, phase = blocks.fitting_holes(motion, row, phase)
+            stop = min(row + fitting, end)
+            phase = write_group(begin, row, stop, [event for event in joining_events if event.row == row], phase)
+            row = stop
+    blocks.progress(last - first)
+    return phase

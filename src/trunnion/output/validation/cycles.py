@@ -1,0 +1,109 @@
+"""Hole-making cycles that a control does not have, or not so."""
+
+from collections.abc import Callable, Mapping
+
+from trunnion.controls.definition import Control
+from trunnion.controls.vocabulary import HOLES_IN_PLANES, HOLES_SETTING
+from trunnion.errors import Problem
+from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.toolpath import CycleOn, Kind, Operation
+from trunnion.output.holes.holes_under_tcp import check_holes_under_tcp
+from trunnion.output.program import Program
+from trunnion.output.validation.feeds import rounding_problem
+from trunnion.planning.holes.cycles import (
+    Cycle,
+    HoleCycleError,
+    SpindleState,
+    UnsupportedCycleError,
+    cycle_feed,
+    cycle_from_event,
+    spindle_state_at,
+)
+
+
+def unsupported_cycle_reasons(
+    control: Control, settings: Mapping[str, str]
+) -> Callable[[Cycle, SpindleState | None], str]:
+    """Return a function that tells why a control does not have a cycle.
+
+    It returns an empty text if the control has the cycle, or if the CL file leaves something out that it needs.
+    """
+    known = {**control.settings, **{key: value for key, value in settings.items() if value}}
+    formats = control.number_formats(three_axis=True)
+
+    def reason(cycle: Cycle, spindle: SpindleState | None) -> str:
+        try:
+            control.family.cycle_call(cycle, 0.0, spindle, known, formats)
+        except UnsupportedCycleError as error:
+            return error.what
+        except HoleCycleError:
+            pass
+        return ""
+
+    return reason
+
+
+def cycle_problems(program: Program, motion: Motion, spindle: SpindleState) -> list[Problem]:
+    """Return what is wrong with the cycles of a motion; ``spindle``: before it."""
+    operation = motion.as_written() if any(isinstance(e, CycleOn) for e in motion.operation.events) else None
+    if operation is None:
+        return []
+    along_tool = motion.mode is MachiningMode.TCP and program.control.turns_between_holes(program.effective_settings())
+    problems, warnings = list[Problem](), list[Problem]()
+    for event in operation.events:
+        if not isinstance(event, CycleOn):
+            continue
+        try:
+            warning = _check_cycle(program, motion, operation, event, spindle, along_tool)
+            warnings += [warning] if warning else []
+        except HoleCycleError as error:
+            problems.append(Problem(program.file, event.line, error.what, error.cure))
+    if along_tool and not problems:
+        problems = [Problem(program.file, e.line, e.what, e.cure) for e in check_holes_under_tcp(operation)]
+    return [*problems, *warnings]
+
+
+def _check_cycle(
+    program: Program, motion: Motion, operation: Operation, event: CycleOn, spindle: SpindleState, along_tool: bool
+) -> Problem | None:
+    """Raise ``HoleCycleError`` if the control cannot make the holes of a cycle; returns what it does to the feed.
+
+    Parameters
+    ----------
+    operation
+        Of the motion, in the coordinates of its blocks.
+    spindle
+        Before the motion.
+    along_tool
+        The tool turns from hole to hole under TCP.
+    """
+    moves, row, cycle = operation.moves, event.row, cycle_from_event(event)
+    if motion.mode in (MachiningMode.TCP, MachiningMode.WITHOUT_TCP) and not along_tool:
+        raise _no_tilted_cycle(program, motion, cycle)
+    spindle_here = spindle_state_at(operation.events, row, spindle)
+    formats = program.control.number_formats(motion.three_axis)
+    settings = program.effective_settings() | ({} if along_tool else {HOLES_SETTING: HOLES_IN_PLANES})
+    program.control.family.cycle_call(cycle, 0.0, spindle_here, settings, formats)
+    feed, per_rev = cycle_feed(cycle, spindle_here, float(moves.feed[row]), False)
+    if not feed > 0.0:
+        raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
+    below = row > 0 and moves.tip[row - 1, 2] < moves.tip[row, 2] + cycle.rapid_height - 1e-6
+    if below and not along_tool and moves.kind[row - 1] != Kind.RAPID:
+        raise HoleCycleError("CYCLE while the tool is below the height of RAPTO", "retract the tool before the cycle")
+    if cycle.method.startswith("TAP"):
+        return None
+    return rounding_problem(program.file, event.line, formats["feed"], feed, per_rev)
+
+
+def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycleError:
+    """The error for a cycle along a tilted tool axis without a tilted plane."""
+    settings, under_tcp = program.effective_settings(), motion.mode is MachiningMode.TCP
+    mode = "with TCP" if under_tcp else "without TCP"
+    what = f"CYCLE/{cycle.method} {mode}: no cycle goes along a tilted axis there, and no motion can make it"
+    if MachiningMode.TILTED in program.control.modes(settings):
+        cure = "leave the setting mode out, or end the cut before the tool axis changes"
+    else:
+        cure = "clamp the part so that these holes stand along +Z, or post for a control with tilted planes"
+    if HOLES_SETTING in settings and under_tcp:
+        cure += f", or turn the tool from hole to hole (--set {HOLES_SETTING}=…)"
+    return HoleCycleError(what, cure)

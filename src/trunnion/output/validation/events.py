@@ -1,0 +1,63 @@
+"""Events that a control cannot carry out, or not where they are."""
+
+from trunnion.controls.family_writer import UnsupportedFeatureError
+from trunnion.errors import Problem, Severity
+from trunnion.model.motion import Motion
+from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, LoadTool, SelectTool, SetMode
+from trunnion.output.program import Program
+
+#: Statements about the form of a program that every program fulfils.
+_DEFAULT_MODES = {("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULTAX",), ("MULTAX", "ON")}
+
+
+def event_problems(program: Program, motion: Motion, event: Event, rpm: float | None) -> list[Problem]:
+    """Return what is wrong with an event; ``rpm`` is the spindle speed, None while it is stopped."""
+    control, location = program.control, (program.file, event.line)
+    if isinstance(event, Dwell):
+        try:
+            control.family.dwell(event, rpm, control.number_formats(motion.three_axis))
+        except UnsupportedFeatureError as why:
+            return [Problem(*location, why.what, why.cure)]
+    if isinstance(event, LoadTool) and (event.row > 0 or not motion.starts_operation):
+        return [Problem(*location, "tool change within an operation", "begin a new operation with the new tool")]
+    if isinstance(event, CutterComp) and event.side == "ON":
+        return [Problem(*location, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
+    if isinstance(event, GoHome) and event.row < len(motion.operation.moves):
+        return [Problem(*location, "GOHOME before the operation's end", "begin a new operation after it")]
+    if isinstance(event, SelectTool):
+        what = f"SELECT/TOOL,{event.number} is not written: programs name a tool only when they change it"
+        return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING)]
+    if isinstance(event, SetMode) and event.words not in _DEFAULT_MODES:
+        statement = f"{event.words[0]}/{','.join(event.words[1:])}"
+        what = f"{statement} is not followed: the control's definition sets the form of the program"
+        return [Problem(*location, what, "check that the program has the form it asks for", Severity.WARNING)]
+    if isinstance(event, Coolant) and event.kind not in control.coolant:
+        known = ", ".join(control.coolant)
+        return [Problem(*location, f"{control.name} has no coolant {event.kind}", f"use one of {known}")]
+    return []
+
+
+def block_skip_problems(program: Program) -> list[Problem]:
+    """Return operations that end, or turn to another plane, among blocks that may be skipped.
+
+    The way home is for every run of the program, so that it gets no skip sign. A turn to another plane can have none
+    either: without it, the blocks after it would be somewhere else.
+    """
+    motions = program.motions
+    problems: list[Problem] = []
+    skip: BlockSkip | None = None
+    for k, motion in enumerate(motions):
+        for event in motion.operation.events:
+            if isinstance(event, BlockSkip):
+                skip = event if event.on else None
+        if skip is None:
+            continue
+        if k + 1 == len(motions) or motions[k + 1].starts_operation:
+            what = f"OPSKIP/ON ends with operation {motion.operation.name}: the way home cannot be skipped"
+            problems.append(Problem(program.file, skip.line, what, "write OPSKIP/OFF", Severity.WARNING))
+            skip = None
+        else:
+            line = int(motions[k + 1].operation.moves.line[0])
+            what = "the tool axis turns to another plane between blocks that may be skipped"
+            problems.append(Problem(program.file, line, what, "write OPSKIP/OFF before it, and OPSKIP/ON after it"))
+    return problems

@@ -1,0 +1,74 @@
+"""What an operation needs at its start: a spindle speed, a tool, templates for its machining mode, a tolerance."""
+
+from trunnion.controls.family_writer import UnsupportedFeatureError
+from trunnion.errors import Problem, Severity
+from trunnion.model.motion import Motion
+from trunnion.model.toolpath import LoadTool, Operation
+from trunnion.output.program import Program
+
+
+def spindle_problems(program: Program, operation: Operation, spindle_known: bool) -> list[Problem]:
+    """Warn of an operation that starts before the first spindle speed."""
+    if spindle_known:
+        return []
+    what = f"operation {operation.name} has no spindle speed"
+    return [Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING)]
+
+
+def tool_problems(program: Program, operation: Operation, in_spindle: str) -> list[Problem]:
+    """Warn of a tool without LOAD/TOOL, and refuse a name by which the control cannot call it.
+
+    ``in_spindle`` is the name of the tool of the operation before.
+    """
+    problems, name = list[Problem](), operation.tool.name
+    loaded = any(isinstance(e, LoadTool) for e in operation.events) or program.effective_setting("tool")
+    stays = not loaded and name == in_spindle
+    if not loaded and name and not stays:
+        what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
+        cure = "--set tool=NUMBER calls it by number"
+        problems.append(Problem(program.file, operation.line, what, cure, Severity.WARNING))
+    if name and (not (loaded or stays) or program.effective_setting("tool_call") == "name"):
+        try:
+            program.control.family.tool_call(0, name, by_name=True)
+        except UnsupportedFeatureError as why:
+            problems.append(Problem(program.file, operation.line, why.what, why.cure))
+    return problems
+
+
+def machining_mode_problems(program: Program, motion: Motion) -> list[Problem]:
+    """Refuse a machining mode for which the control has no templates."""
+    if program.template_suffix(motion):
+        return []
+    operation = motion.operation
+    what = f"operation {operation.name}: {program.control.name} has no words for {motion.mode}"
+    return [Problem(program.file, operation.line, what, "--set mode=… sets another mode")]
+
+
+def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
+    """Warn of an operation without a tolerance, if its templates print one."""
+    operation = motion.operation
+    given = operation.intol is not None and operation.outtol is not None
+    if given or not _prints_tolerance(program, motion) or program.effective_setting("tolerance"):
+        return []
+    fallback = program.effective_setting("fallback_tolerance")
+    what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
+    return [Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING)]
+
+
+def _prints_tolerance(program: Program, motion: Motion) -> bool:
+    """Whether the templates at the start of an operation print its tolerance, and have none of their own."""
+    names = "operation_start", f"approach_{program.template_suffix(motion)}"
+    templates = [program.control.templates[name] for name in names if name in program.control.templates]
+    fields = {name for template in templates for name, _ in template.fields()}
+    return "tolerance" in fields and "three_axis_tolerance" not in fields
+
+
+def next_axis_problems(program: Program, motion: Motion) -> list[Problem]:
+    """Refuse an operation that continues from home with another tool axis, if there is no template for that."""
+    suffix = program.template_suffix(motion)
+    if motion.plane is not None or not suffix or f"next_axis_{suffix}" in program.control.templates:
+        return []
+    moves, name = motion.operation.moves, program.control.name
+    what = f"holes along another tool axis than those before, {motion.mode}: {name} has no template to go on from home"
+    cure = f"write the template next_axis_{suffix} into the control's definition, or split the operation"
+    return [Problem(program.file, int(moves.line[0]), what, cure)]

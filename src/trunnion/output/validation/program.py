@@ -1,0 +1,58 @@
+"""The validation of a whole program, motion by motion."""
+
+from trunnion.errors import Problem
+from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.toolpath import Sense, SpindleOff, SpindleOn
+from trunnion.output.program import Program
+from trunnion.output.validation.cycles import cycle_problems
+from trunnion.output.validation.events import block_skip_problems, event_problems
+from trunnion.output.validation.feeds import missing_feed_problems, rounded_feed_problems
+from trunnion.output.validation.operations import (
+    machining_mode_problems,
+    next_axis_problems,
+    spindle_problems,
+    tolerance_problems,
+    tool_problems,
+)
+from trunnion.output.validation.orientation import normal_problems, tool_vector_problems
+from trunnion.output.validation.without_tcp import problems_without_tcp
+from trunnion.planning.holes.cycles import SpindleState, spindle_state_at
+
+
+def check_program(program: Program) -> list[Problem]:
+    """Return what the program would lack, and what the control would reject; errors mean not to write it."""
+    problems: list[Problem] = []
+    spindle_known, tool_in_spindle = False, ""
+    rpm: float | None = None
+    spindle = SpindleState(1.0, Sense.CLW)  # until the first SPINDL
+    for motion in program.motions:
+        operation = motion.operation
+        problems += cycle_problems(program, motion, spindle)
+        spindle = spindle_state_at(operation.events, len(operation.moves), spindle) or spindle
+        for event in operation.events:
+            rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
+            problems += event_problems(program, motion, event, rpm)
+        problems += _motion_problems(program, motion)
+        rejected = program.control.family.validate_operation(operation, spindle_known)
+        problems += [Problem(program.file, line, why.what, why.cure) for line, why in rejected]
+        if not motion.starts_operation:
+            problems += next_axis_problems(program, motion)
+            continue
+        spindle_known = spindle_known or any(isinstance(event, SpindleOn) for event in operation.events)
+        problems += spindle_problems(program, operation, spindle_known)
+        problems += tool_problems(program, operation, tool_in_spindle)
+        tool_in_spindle = operation.tool.name
+        problems += machining_mode_problems(program, motion)
+        problems += tolerance_problems(program, motion)
+    return [*problems, *block_skip_problems(program)]
+
+
+def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
+    """What a motion lacks, whatever its events are."""
+    problems = []
+    if motion.mode is MachiningMode.TCP and program.control.vectors_exclude_angles:
+        problems += tool_vector_problems(program, motion)
+    problems += normal_problems(program, motion)
+    if motion.mode is MachiningMode.WITHOUT_TCP and program.template_suffix(motion):
+        problems += problems_without_tcp(program, motion)
+    return [*problems, *missing_feed_problems(program, motion), *rounded_feed_problems(program, motion)]

@@ -1,0 +1,67 @@
+"""What a control cannot do without TCP, where X Y Z are positions of the linear axes."""
+
+import numpy as np
+
+from trunnion.arrays import Ints
+from trunnion.errors import Problem, Severity
+from trunnion.machines import Mount
+from trunnion.model.motion import Motion
+from trunnion.model.toolpath import CutterComp, Kind
+from trunnion.output.coordinates.axis_coordinates import (
+    FEED_AT_TIP,
+    AxisCoordinates,
+    feed_format,
+    feed_rule,
+    feed_words,
+    to_axis_coordinates,
+)
+from trunnion.output.program import Program
+
+
+def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
+    """Return what is wrong with a motion without TCP."""
+    operation, problems = motion.operation, list[Problem]()
+    moves, control = operation.moves, program.control
+    if any(isinstance(event, CutterComp) and event.side != "OFF" for event in operation.events):
+        what = "cutter radius compensation without TCP would be that of the axes"
+        problems.append(Problem(program.file, operation.line, what, "output the path without CUTCOM"))
+    decimals = control.number_formats(motion.three_axis)["angle"].decimals
+    coordinates = to_axis_coordinates(program.machine, motion, decimals)
+    cuts = np.flatnonzero(coordinates.rotary_moves & (moves.kind != Kind.RAPID) & (moves.feed > 0))
+    problems += _feed_problems(program, motion, coordinates, cuts)
+    wraps = np.flatnonzero(coordinates.wraps.any(axis=1))
+    if len(wraps) and "primary_shortest" not in control.family.WORDS and not control.shorter_way:
+        what = "a rotary axis goes past the end of the turn that it displays, and would go the longer way"
+        cure = 'write output = "none" for the axis in the machine\'s definition'
+        problems.append(Problem(program.file, int(moves.line[wraps[0]]), what, cure))
+    return problems
+
+
+def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinates, cuts: Ints) -> list[Problem]:
+    """What is wrong with the feeds of cuts in which rotary axes turn: rows of the motion."""
+    operation, problems = motion.operation, list[Problem]()
+    moves, settings = operation.moves, program.effective_settings()
+    per_rev = cuts[moves.per_rev[cuts]]
+    if len(per_rev):
+        what = "a feed per revolution without TCP while rotary axes turn"
+        problems.append(Problem(program.file, int(moves.line[per_rev[0]]), what, "output it in mm/min (FEDRAT/MMPM)"))
+    rule = feed_rule(program.control, settings)
+    number_format = program.control.number_formats(motion.three_axis)[feed_format(rule)]
+    _, below, above = feed_words(coordinates.select(cuts), moves.feed[cuts], rule, number_format)
+    if below.any():
+        row = int(cuts[np.argmax(below)])
+        what, cure = f"F of a block would be below its least value, {number_format.least:g}", "program a higher feed"
+        if rule == "inverse_time":
+            minutes, most = coordinates.tip_length[row] / moves.feed[row], 1.0 / number_format.least
+            what = f"a block takes {minutes:.0f} minutes; with inverse time it can take {most:g} at most"
+            cure = "output the toolpath with points nearer to each other, or a higher feed"
+        problems.append(Problem(program.file, int(moves.line[row]), what, cure))
+    if above.any():
+        what = f"{int(above.sum())} blocks so short that F would be above {number_format.greatest:g}: they are slower"
+        location = program.file, int(moves.line[cuts[np.argmax(above)]])
+        problems.append(Problem(*location, what, "a wider tolerance inserts fewer points", Severity.WARNING))
+    heads = [axis.name for axis in program.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
+    if rule == FEED_AT_TIP and heads:
+        what = f"rotary_feed is tip, and {' and '.join(heads)} turns in the head, which the control leaves out"
+        problems.append(Problem(program.file, operation.line, what, "leave the setting rotary_feed out"))
+    return problems
