@@ -27,7 +27,11 @@ HOLE = PATH.replace("GOTO/0,0,5\nGOTO/5,0,5", "CYCLE/DRILL,RAPTO,3,FEDTO,-9,{cyc
     ("machine", "feed", "told"),
     [
         ("yl569", "MMPR,0.0143", "warning: a feed of 0.0143 prints as 0.01; write it in mm/min (MMPM)"),
-        ("yl569", "MMPR,0.004", "error: a feed of 0.004 is below the least that the control reads; write it in mm/min (MMPM)"),
+        (
+            "yl569",
+            "MMPR,0.004",
+            "error: a feed of 0.004 is below the least that the control reads; write it in mm/min (MMPM)",
+        ),
         ("yl569", "MMPR,0.25", ""),
         ("matsuura_mx330", "MMPR,0.0143", "warning: a feed of 0.0143 prints as 0.014; write it in mm/min (MMPM)"),
         ("hs664rt", "MMPM,0.2", "error: a feed of 0.2 is below the least that the control reads; raise it"),

@@ -72,7 +72,7 @@ def test_without_the_setting_contact_points_are_comments(post: Post) -> None:
 
 WITHOUT = ("--set", "tcp=off", "--set", "zero=0,0,0", "--set", "tool_length=50")
 REFUSED = {
-    (LEANING, NORMALS): "--set orientation=vector says the tool axis beside it",
+    (LEANING, NORMALS): "--set orientation=vector writes the tool axis as well",
     (
         LEANING,
         (*NORMALS, "--set", "tcp=off", "--set", "zero=0,0,0", "--set", "tool_length=50"),

@@ -1,4 +1,4 @@
-"""What the families of ISO 6983 (G and M words) have in common: motion codes, arcs by a relative centre, M words."""
+"""What families with G and M words (ISO 6983) share: motion codes, arcs with a relative centre, M words."""
 
 import numpy as np
 
@@ -18,15 +18,17 @@ CODES: tuple[str, ...] = (
     "spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop", "optional_stop",
 )  # fmt: skip
 
+# By the axis of an arc: its plane, the words of its centre, and those of its end in that plane.
 _PLANE_CODES = ("plane_yz", "plane_zx", "plane_xy")
 _CENTRE_WORDS = (("J", "K"), ("K", "I"), ("I", "J"))
 _END_WORDS = (("Y", "Z"), ("Z", "X"), ("X", "Y"))
+
 _COMP_CODES = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
 _COMP_PLANE_CODES = {"XYPLAN": "plane_xy", "ZXPLAN": "plane_zx", "YZPLAN": "plane_yz"}
 
 
 def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
-    """S and M for the spindle, M for coolant, G for cutter radius compensation and its plane."""
+    """Return S and M of the spindle, M of the coolant, or G of cutter radius compensation and its plane."""
     if isinstance(event, SpindleOn):
         turn = "spindle_clockwise" if event.sense is Sense.CLW else "spindle_counterclockwise"
         return {"speed": event.rpm, "spindle": codes[turn]}
@@ -41,7 +43,7 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
 
 
 def feed_per_rev_before_spindle(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
-    """A feed per revolution before the spindle has a speed; as ``FamilyWriter.refused``."""
+    """Return the first feed per revolution before a spindle speed, as ``FamilyWriter.validate_operation`` does."""
     rows = [event.row for event in operation.events if isinstance(event, SpindleOn)]
     moves = operation.moves
     first = 0 if spindle_known else min(rows, default=len(moves))
@@ -53,7 +55,7 @@ def feed_per_rev_before_spindle(operation: Operation, spindle_known: bool) -> li
 
 
 def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
-    """G0 or G1, and what F means wherever there is one."""
+    """Return G0 or G1, and the feed mode of rows that have a feed."""
     mode = np.where(per_rev, codes["feed_per_revolution"], codes["feed_per_minute"])
     return {
         "motion": np.where(rapid, codes["rapid"], codes["linear"]).astype(np.int64),
@@ -62,24 +64,24 @@ def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
 
 
 def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
-    """G2 or G3 in G17, G18 or G19 with the centre relative to the start; arguments as ``FamilyWriter`` has them.
+    """Return G2 or G3 in G17, G18 or G19 with the centre relative to the start; as ``FamilyWriter.arc_words``.
 
-    G2 is clockwise seen against the plane's normal. In the plane ZX the normal is +Y, in YZ +X: I K and J K are the
-    centre's words there. ``turns`` counts whole turns besides the arc.
+    G2 is clockwise as seen against the normal of the plane: +Y for ZX, whose centre has the words I and K, and +X for
+    YZ, whose centre has J and K. ``turns`` counts whole turns besides the arc.
     """
     normal = arcs.normal[rows]
-    along = np.argmax(np.abs(normal), axis=1)
-    positive = normal[np.arange(len(rows)), along] > 0
+    about = np.argmax(np.abs(normal), axis=1)
+    positive = normal[np.arange(len(rows)), about] > 0
     columns = {
         "motion": np.where(positive, codes["arc_counterclockwise"], codes["arc_clockwise"]).astype(np.int64),
-        "plane": np.array([codes[p] for p in _PLANE_CODES], np.int64)[along],
+        "plane": np.array([codes[plane] for plane in _PLANE_CODES], np.int64)[about],
         "turns": np.where(arcs.full_turns[rows] > 0, arcs.full_turns[rows], ABSENT),
     }
     offset = arcs.centre[rows] - tip[arcs.row[rows] - 1]
     decimals = formats["I"].decimals
     forced: dict[str, Ints] = {}
     for c, letter in enumerate("IJK"):
-        wanted = np.array([letter in _CENTRE_WORDS[a] for a in range(3)])[along]
-        columns[letter] = np.where(wanted, round_to_counts(np.ascontiguousarray(offset[:, c]), decimals), ABSENT)
-        forced["XYZ"[c]] = np.array(["XYZ"[c] in _END_WORDS[a] for a in range(3)], np.int64)[along]
+        used = np.array([letter in _CENTRE_WORDS[axis] for axis in range(3)])[about]
+        columns[letter] = np.where(used, round_to_counts(np.ascontiguousarray(offset[:, c]), decimals), ABSENT)
+        forced["XYZ"[c]] = np.array(["XYZ"[c] in _END_WORDS[axis] for axis in range(3)], np.int64)[about]
     return ArcWords(columns, forced)

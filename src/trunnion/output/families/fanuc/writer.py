@@ -1,6 +1,6 @@
-"""What a Fanuc 30i or 31i says that words and templates alone cannot: comments, dwells, planes, the tool's length.
+"""Writer of Fanuc 30i and 31i: what words and templates cannot express.
 
-Facts: FANUC's operator's manuals and public posts; docs/controls/fanuc.md has them one by one, and says which depend on
+Facts: FANUC's operator's manuals and public posts; docs/controls/fanuc.md lists them, with those that depend on
 parameters of the control.
 """
 
@@ -19,11 +19,12 @@ from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families import iso
+from trunnion.output.families.common import dwell_seconds, program_stop
 from trunnion.output.families.fanuc.cycles import cycle_lines, is_valid_shift
 from trunnion.output.families.iso import row_words as row_words
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
-#: Circles have no word for whole turns; the tool's length and radius are data of the control, called by number.
+#: Circles have no word for whole turns. Tool length and radius are data of the control, called by number.
 WORDS: tuple[str, ...] = (
     *(word for word in iso.WORDS if word != "turns"),
     *("length", "length_number", "radius_number", "axis_x", "axis_y", "axis_z"),
@@ -34,46 +35,44 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "contour": ("none", "G05.1", "G05"),
     "orientation": ("angles", "vector"),
 }
+_PLANE_FIELDS: Final = ("plane_first", "plane_second", "plane_third")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
-    {"plane_first", "plane_second", "plane_third", "contour_on", "contour_off", "call_word", "call_arguments"}
+    {*_PLANE_FIELDS, "contour_on", "contour_off", "call_word", "call_arguments"}
 )
 
 #: AI contour control on and off: in the control's own form, and in that of older controls.
 _CONTOUR_CONTROL: Final = {"none": (None, None), "G05.1": ("G05.1 Q1", "G05.1 Q0"), "G05": ("G05 P10000", "G05 P0")}
 
-#: The tool's length counts along Z, or along the tool axis while the control holds the tip, which is told rotary
-#: positions or vectors.
+#: G word of the tool length along Z, and along the tool axis with TCP, by the setting ``orientation``.
 _LENGTH_CODE: Final = 43.0
 _TCP_CODES: Final = {"angles": 43.4, "vector": 43.5}
 
-#: Characters of a comment besides letters and digits; all others become a question mark. ``%`` would end the program.
+#: Characters of a comment besides letters and digits; others become a question mark. ``%`` would end the program.
 _COMMENT_SIGNS: Final = frozenset(" .,=+-*/_#[]'!?&<>@")
 
-#: Letters that no accent makes.
+#: Letters that are not a plain letter with an accent, and signs that a comment cannot have.
 _TRANSLITERATION: Final = str.maketrans(
     {"Ø": "O", "Æ": "AE", "Œ": "OE", "Ł": "L", "Đ": "D", "Þ": "TH", "(": "[", ")": "]", ":": "-", ";": "-"}
 )
 
-#: Characters between the brackets of a comment: a line of 80 has room for them.
+#: Characters of a comment: a line of 80 has room for them, with brackets.
 _COMMENT_LENGTH: Final = 76
 
-#: Digits of a program number.
 _PROGRAM_NUMBER_DIGITS: Final = 8
 
-#: The call of a program: as a subprogram, or as a macro with arguments. These have a point, without which their numbers
-#: would count in increments.
+#: The call of a subprogram, or of a macro with arguments. These have a point: without it they would be increments.
 _CALL_PATTERN: Final = re.compile(r"(M98|G65)((?: [A-FHIJKMQ-Z][-+]?(?:\d+\.\d*|\.\d+))*)", re.ASCII)
 
 
 def comment(text: str) -> list[str]:
-    """Brackets around a text in the control's characters; a long one goes on in the next line."""
+    """Return the text in brackets; a long one continues in the next line."""
     return [f"({part})" for part in wrap(escape_comment(text), _COMMENT_LENGTH) or [""]]
 
 
 def escape_comment(text: str) -> str:
-    """A text in capitals, without accents; characters that the control does not have become ``?``.
+    """Return the text in capitals without accents; characters that the control lacks become ``?``.
 
-    Round brackets become square ones: a closing one would end the comment early.
+    Round brackets become square ones: a closing one would end the comment.
     """
     letters = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
     capitals = letters.upper().translate(_TRANSLITERATION)
@@ -81,30 +80,49 @@ def escape_comment(text: str) -> str:
 
 
 def tool_call(number: int, name: str, by_name: bool) -> str:
-    """What stands after ``T``: a number; tools have no names."""
+    """Return what follows ``T``: a number, for tools have no names."""
     if by_name:
         raise UnsupportedFeatureError(f"a Fanuc calls tools by number, and not as {name}", "write --set tool=NUMBER")
     return str(number)
 
 
 def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """The Euler angles of a plane about Z, the new X and the new Z; the words that switch contour control; those of a
-    call."""
+    """Return the Euler angles of a plane, the words of contour control, and those of a call."""
+    angles = (None, None, None) if plane is None else euler_zxz_angles(plane)
     on, off = _CONTOUR_CONTROL[str(settings["contour"])]
-    turned = (None, None, None) if plane is None else euler_zxz_angles(plane)
-    names = "plane_first", "plane_second", "plane_third"
     call, _, arguments = str(settings.get("call") or "M98").partition(" ")
     words = {"contour_on": on, "contour_off": off, "call_word": call, "call_arguments": arguments}
-    return {**dict(zip(names, turned, strict=True)), **words}
+    return {**dict(zip(_PLANE_FIELDS, angles, strict=True)), **words}
+
+
+def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
+    """Return ``G4 P`` with milliseconds."""
+    return [f"G4 P{formats['dwell'].text(1000.0 * dwell_seconds(event, rpm))}"]
+
+
+def stop(event: Stop, codes: Codes) -> list[str]:
+    """Return M0 or M1, after a comment for the operator."""
+    return program_stop(event, codes, comment)
+
+
+def message(event: Message) -> list[str]:
+    """Return a comment: the control would have to stop to display it."""
+    return comment(event.text)
+
+
+def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
+    """Return the words as ISO has them; radius compensation with D where CUTCOM names a register."""
+    words = iso.event_words(event, codes, coolant)
+    if isinstance(event, CutterComp) and event.register:
+        words["radius_number"] = event.register
+    return words
 
 
 def first_block_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
-    """G43, or G43.4 or G43.5, with H, and D where there is a radius compensation.
+    """Return G43, G43.4 or G43.5 with H; and D if there is radius compensation.
 
-    H is the register that LOAD/TOOL names, or else the tool's own number; D is that number.
-
-    They stand with the motion to the first point, and so mean the same whether or not the control moves by itself
-    where they stand alone (parameter TOS).
+    H is the register that LOAD/TOOL names, or else the tool number; D is the tool number. With the motion to the first
+    point they work whether or not the control moves where they are alone (parameter TOS).
     """
     length = _TCP_CODES[settings["orientation"]] if motion.mode is MachiningMode.TCP else _LENGTH_CODE
     words = {"length": length, "length_number": float(register or tool)}
@@ -112,62 +130,24 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
     return {**words, "radius_number": float(tool)} if compensated else words
 
 
-def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
-    """As ISO has them; radius compensation with D where CUTCOM names a register."""
-    words = iso.event_words(event, codes, coolant)
-    if isinstance(event, CutterComp) and event.register:
-        words["radius_number"] = event.register
-    return words
-
-
-def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
-    """``G4 P`` waits milliseconds; turns of the spindle become the time that they take."""
-    seconds = event.amount
-    if event.revolutions:
-        if rpm is None or not rpm > 0.0:
-            raise UnsupportedFeatureError(
-                "a dwell in spindle revolutions while the spindle stands", "put SPINDL before it"
-            )
-        seconds = 60.0 * event.amount / rpm
-    return [f"G4 P{formats['dwell'].text(1000.0 * seconds)}"]
-
-
-def stop(event: Stop, codes: Codes) -> list[str]:
-    """M0 or M1, after the text that the operator is to see."""
-    code = codes["optional_stop" if event.optional else "stop"]
-    return [*(comment(event.text) if event.text else ()), f"M{code}"]
-
-
-def message(event: Message) -> list[str]:
-    """A comment: to show it, the control would have to stop."""
-    return comment(event.text)
-
-
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
-    """G95 without a spindle speed; G41 and G42 while the tool axis changes, where they would need G41.2 and vectors."""
-    found = iso.feed_per_rev_before_spindle(operation, spindle_known)
-    changes = np.ptp(operation.moves.axis, axis=0).max(initial=0.0) > 0.0
-    why = UnsupportedFeatureError(
-        "cutter radius compensation while the tool axis changes", "output the path without CUTCOM"
-    )
-    return [
-        *found,
-        *(
-            (event.line, why)
-            for event in operation.events
-            if isinstance(event, CutterComp) and event.side != "OFF" and changes
-        ),
-    ]
+    """Return G95 without a spindle speed, and radius compensation while the tool axis changes: that is G41.2."""
+    problems = iso.feed_per_rev_before_spindle(operation, spindle_known)
+    if np.ptp(operation.moves.axis, axis=0).max(initial=0.0) > 0.0:
+        what = "cutter radius compensation while the tool axis changes"
+        why = UnsupportedFeatureError(what, "output the path without CUTCOM")
+        events = [event for event in operation.events if isinstance(event, CutterComp) and event.side != "OFF"]
+        problems += [(event.line, why) for event in events]
+    return problems
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Numbers that are none."""
+    """Return invalid numbers, calls and shifts."""
     program, tool = settings.get("program", "1"), settings.get("tool", "")
     wrong = []
     if not (program.isdecimal() and program.isascii() and 0 < int(program) < 10**_PROGRAM_NUMBER_DIGITS):
-        wrong.append(
-            ("program", f"write the program's number, at most {_PROGRAM_NUMBER_DIGITS} digits, such as program=1234")
-        )
+        digits = _PROGRAM_NUMBER_DIGITS
+        wrong.append(("program", f"write the program's number, at most {digits} digits, such as program=1234"))
     if tool and not (tool.isdecimal() and tool.isascii()):
         wrong.append(("tool", "write the tool's number, such as tool=5"))
     if not _is_call(settings.get("call", "M98")):
@@ -178,25 +158,25 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
 
 
 def _is_call(text: str) -> bool:
-    """Whether programs can be called so: M98 takes no arguments, and G65 each letter once."""
+    """Whether a text can call programs: M98 without arguments, or G65 with each letter once."""
     match = _CALL_PATTERN.fullmatch(text)
     letters = [word[0] for word in match[2].split()] if match else []
     return bool(match) and len(set(letters)) == len(letters) and not (letters and text.startswith("M98"))
 
 
 def cycle_call(
-    cycle: Cycle, top: float, turning: SpindleState | None, settings: Mapping[str, str], formats: Formats
+    cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    """The cycle with its first hole, and for a tap the word before it that holds the spindle to the feed."""
-    return cycle_lines(cycle, top, turning, settings, formats)
+    """Return the cycle with its first hole; a rigid tap after the word that couples the spindle to the feed."""
+    return cycle_lines(cycle, top, spindle, settings, formats)
 
 
 def cycle_cancel() -> list[str]:
-    """What ends a cycle."""
+    """Return G80."""
     return ["G80"]
 
 
 def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
-    """As ISO has them; circles of more than one turn do not come here."""
+    """Return the words as ISO has them, for circles of one turn at most."""
     words = iso.arc_words(arcs, tip, rows, codes, formats)
     return ArcWords({word: column for word, column in words.columns.items() if word != "turns"}, words.forced)

@@ -1,7 +1,7 @@
 """Circles and helices of iTNC 530 and TNC 640: about a centre, by a radius, by an angle.
 
-All arcs are about Z, which is the tool axis. DR+ is counter-clockwise as seen against Z. Facts: the manuals of both
-controls; docs/controls/heidenhain.md has them one by one.
+All arcs are about Z, the tool axis; DR+ is counter-clockwise as seen against Z. Facts: the manuals of both controls;
+docs/controls/heidenhain.md lists them.
 """
 
 from typing import Final
@@ -13,78 +13,79 @@ from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS, ArcWords, F
 from trunnion.controls.words import ABSENT, round_to_counts
 from trunnion.model.toolpath import Arcs
 
-#: How near to half a turn a radius says a circle no more, degrees: there both its signs mean about the same.
+#: Sweeps nearer to half a turn are not programmed by a radius: both its signs give almost the same circle; degrees.
 _HALF_TURN_MARGIN: Final = 2.0
 
 
 def arc_words(arcs: Arcs, tip: Floats, rows: Ints, formats: Formats, by_radius: bool) -> ArcWords:
-    """``CC X Y`` in a line before, and ``C X Y DR``; for a helix and for more than a turn ``CP IPA IZ DR``.
+    """Return ``CC X Y`` in a line before, and ``C X Y DR``; for helices and more than one turn, ``CP IPA IZ DR``.
 
-    IPA has the sign of DR. With ``by_radius`` it is ``CR X Y R DR`` wherever that is safe; R is negative over half a
-    turn.
+    IPA has the sign of DR. With ``by_radius``, circles are ``CR X Y R DR`` wherever that is safe; R is negative for
+    sweeps of more than half a turn. Arguments as ``FamilyWriter.arc_words``.
     """
     start, end, centre = tip[arcs.row[rows] - 1], tip[arcs.row[rows]], arcs.centre[rows]
     sense = np.sign(arcs.normal[rows, 2])
-    place, decimals = formats["Z"].decimals, formats["arc_angle"].decimals
-    rise = round_to_counts(np.ascontiguousarray(end[:, 2]), place) - round_to_counts(
-        np.ascontiguousarray(start[:, 2]), place
-    )
+    decimals, angle_decimals = formats["Z"].decimals, formats["arc_angle"].decimals
+    rise = round_to_counts(np.ascontiguousarray(end[:, 2]), decimals)
+    rise -= round_to_counts(np.ascontiguousarray(start[:, 2]), decimals)
     helix = (rise != 0) | (arcs.full_turns[rows] > 0)
     sweep = _sweep(start, end, centre, sense, arcs.full_turns[rows])
-    radius = _radius(start, end, centre, sweep, place)
-    # Behind a helix the control stands where its angle led it to, which is nothing that was printed.
-    behind = np.isin(arcs.row[rows] - 1, arcs.row[rows][helix])
-    short = _radius_finds_centre(start, end, centre, sweep, radius, place) & ~helix & ~behind & by_radius
+    radius = _radius(start, end, centre, sweep, decimals)
+    # After a helix the control is where the angle has led it, and not at a printed point.
+    after_helix = np.isin(arcs.row[rows] - 1, arcs.row[rows][helix])
+    use_radius = _radius_finds_centre(start, end, centre, sweep, radius, decimals) & ~helix & ~after_helix & by_radius
     columns = {
         "line": np.full(len(rows), ABSENT),
-        "arc": np.where(helix | short, ABSENT, 1),
-        "arc_by_radius": np.where(short, 1, ABSENT),
+        "arc": np.where(helix | use_radius, ABSENT, 1),
+        "arc_by_radius": np.where(use_radius, 1, ABSENT),
         "helix": np.where(helix, 1, ABSENT),
-        "arc_radius": np.where(short, radius, ABSENT),
-        "arc_angle": np.where(helix, round_to_counts(sweep, decimals), ABSENT),
+        "arc_radius": np.where(use_radius, radius, ABSENT),
+        "arc_angle": np.where(helix, round_to_counts(sweep, angle_decimals), ABSENT),
         "arc_rise": np.where(helix & (rise != 0), rise, ABSENT),
         "counterclockwise": np.where(sense > 0, 1, ABSENT),
         "clockwise": np.where(sense < 0, 1, ABSENT),
         "Z": np.full(len(rows), ABSENT),
     }
     for c, word in enumerate("XY"):
-        columns[word] = np.where(helix, ABSENT, round_to_counts(np.ascontiguousarray(end[:, c]), place))
-    said = np.ones(len(rows), np.int64)
-    number = formats["X"].text_of_count
-    lines = [f"CC X{number(x)} Y{number(y)}" for x, y in _centres(start, centre, place).tolist()]
-    return ArcWords(
-        columns,
-        {"X": said, "Y": said},
-        ["" if left_out else line for line, left_out in zip(lines, short.tolist(), strict=True)],
-    )
+        columns[word] = np.where(helix, ABSENT, round_to_counts(np.ascontiguousarray(end[:, c]), decimals))
+    always = np.ones(len(rows), np.int64)
+    centres = _centres(start, centre, decimals).tolist()
+    return ArcWords(columns, {"X": always, "Y": always}, _centre_lines(centres, use_radius, formats))
+
+
+def _centre_lines(centres: list[list[int]], use_radius: Flags, formats: Formats) -> list[str]:
+    """``CC`` before each arc that needs its centre, else an empty text."""
+    text = formats["X"].text_of_count
+    lines = [f"CC X{text(x)} Y{text(y)}" for x, y in centres]
+    return ["" if by_radius else line for line, by_radius in zip(lines, use_radius.tolist(), strict=True)]
 
 
 def _centres(start: Floats, centre: Floats, decimals: int) -> Ints:
-    """(a, 2) counts: the centres as seen from where the circles start in print, so that nothing is rounded twice."""
-    ways = [round_to_counts(np.ascontiguousarray((centre - start)[:, c]), decimals) for c in range(2)]
+    """(a, 2) counts: the centres relative to the printed start points, so that nothing is rounded twice."""
+    offsets = [round_to_counts(np.ascontiguousarray((centre - start)[:, c]), decimals) for c in range(2)]
     starts = [round_to_counts(np.ascontiguousarray(start[:, c]), decimals) for c in range(2)]
-    return np.column_stack([a + b for a, b in zip(ways, starts, strict=True)])
+    return np.column_stack([a + b for a, b in zip(offsets, starts, strict=True)])
 
 
 def _sweep(start: Floats, end: Floats, centre: Floats, sense: Floats, turns: Ints) -> Floats:
-    """(a,) degrees, with the sign of DR; an arc that ends where it starts is a full turn."""
+    """(a,) degrees with the sign of DR; an arc that ends where it starts is a full turn."""
     a, b = start[:, :2] - centre[:, :2], end[:, :2] - centre[:, :2]
     angle = np.degrees(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.einsum("ij,ij->i", a, b)))
-    part = np.mod(sense * angle, 360.0)
+    within_turn = np.mod(sense * angle, 360.0)
     closed = np.linalg.norm(a - b, axis=1) < 1e-4
-    return np.asarray(sense * (np.where(closed, 360.0, part) + 360.0 * turns))
+    return np.asarray(sense * (np.where(closed, 360.0, within_turn) + 360.0 * turns))
 
 
 def _radius(start: Floats, end: Floats, centre: Floats, sweep: Floats, decimals: int) -> Ints:
-    """(a,) counts, negative over half a turn."""
-    away = [np.linalg.norm((point - centre)[:, :2], axis=1) for point in (start, end)]
-    return round_to_counts(np.where(np.abs(sweep) > 180.0, -0.5, 0.5) * (away[0] + away[1]), decimals)
+    """(a,) counts, negative for sweeps of more than half a turn."""
+    radii = [np.linalg.norm((point - centre)[:, :2], axis=1) for point in (start, end)]
+    return round_to_counts(np.where(np.abs(sweep) > 180.0, -0.5, 0.5) * (radii[0] + radii[1]), decimals)
 
 
 def _radius_finds_centre(
     start: Floats, end: Floats, centre: Floats, sweep: Floats, radius: Ints, decimals: int
 ) -> Flags:
-    """(a,) whether a control finds the centre by what is printed, within ``MAX_CENTRE_ERROR_DIGITS`` of it."""
+    """(a,) whether the control finds the centre by the printed radius, within ``MAX_CENTRE_ERROR_DIGITS``."""
     digit = 10.0**-decimals
     first, last = (
         np.column_stack([round_to_counts(np.ascontiguousarray(point[:, c]), decimals) for c in range(2)]) * digit
@@ -93,7 +94,7 @@ def _radius_finds_centre(
     chord = last - first
     length = np.linalg.norm(chord, axis=1)
     square = (radius * digit) ** 2 - 0.25 * length**2
-    # A positive radius has the centre to the left of the chord where the circle turns to the left.
+    # With a positive radius the centre is to the left of the chord if the circle turns left.
     height = np.sqrt(np.maximum(square, 0.0)) * np.sign(sweep) * np.sign(radius)
     left = np.column_stack((-chord[:, 1], chord[:, 0])) / np.maximum(length, digit)[:, None]
     found = 0.5 * (first + last) + height[:, None] * left

@@ -1,6 +1,6 @@
-"""Hole-making cycles of iTNC 530 and TNC 640: the definition with its Q parameters; ``M99`` calls it hole by hole.
+"""Drilling cycles of iTNC 530 and TNC 640: CYCL DEF with its Q parameters; M99 calls the cycle hole by hole.
 
-Facts: the cycles manuals of both controls; docs/controls/heidenhain.md has the parameters one by one.
+Facts: the cycles manuals of both controls; docs/controls/heidenhain.md lists the parameters.
 """
 
 import math
@@ -9,20 +9,22 @@ from typing import Final
 
 from trunnion.controls.words import NumberFormat
 from trunnion.model.toolpath import Sense
+from trunnion.output.families.common import cycle_dwell_seconds, running_spindle
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
 
 Formats = Mapping[str, NumberFormat]
 
-#: Number of a parameter -> value, in the order in which the cycle has them; ``RAPID`` is a feed.
+#: Number of a Q parameter -> value, in the order of the cycle; ``RAPID`` is a feed.
 QParameters = dict[int, float]
 RAPID: Final = math.inf
 
-#: How far a chip-breaking stroke is drawn back, and how far above the last depth a rapid into the hole ends, mm.
+#: How far a chip-breaking stroke is retracted, mm.
 _CHIP_BREAK: Final = 0.2
 
-#: The same of a thread, in pitches.
+#: How far a chip-breaking stroke of a thread is retracted, pitches.
 _CHIP_BREAK_PITCHES: Final = 1.0
 
+#: How far above the last depth a rapid into the hole ends, mm.
 _ADVANCED_STOP: Final = 0.2
 
 #: Number and name of a cycle, and its parameters from the set-up clearance on.
@@ -55,165 +57,152 @@ _PARAMETER_NAMES: Final = {
 
 _PARAMETER_FORMATS: Final = {206: "feed", 208: "feed", 253: "feed", 210: "dwell", 211: "dwell", 336: "angle"}
 
-#: Most chip breaks that Q213 counts.
+#: Greatest value of Q213.
 _MOST_BREAKS: Final = 99999
 
 
 def cycle_definition(
-    cycle: Cycle, top: float, turning: SpindleState | None, formats: Formats, side: str = ""
+    cycle: Cycle, top: float, spindle: SpindleState | None, formats: Formats, side: str = ""
 ) -> list[str]:
-    """The lines of one ``CYCL DEF``, all but the last of which go on in the next.
+    """Return the lines of a CYCL DEF; each but the last ends with the continuation sign.
 
     Parameters
     ----------
     cycle
         With a retract height and a feed.
     top
-        Z of the points of the holes, mm.
-    turning
-        The spindle.
+        Z of the hole points, mm.
+    spindle
+        None while it is stopped.
     formats
         ``coordinate``, ``feed``, ``dwell`` and ``angle`` of the control.
     side
-        To which side a tool is moved off the wall of a bore, as Q214 counts them; empty: nobody said so.
+        The side to which the tool moves off the wall of a bore, as Q214 numbers them; empty if it is not set.
 
     Raises
     ------
     HoleCycleError
-        When the cycle cannot be said.
+        If the control cannot make the cycle.
     """
-    say = _DEFINITIONS.get(cycle.method)
-    if say is None:
+    define = _DEFINITIONS.get(cycle.method)
+    if define is None:
         what = f"CYCLE/{cycle.method}: no cycle of the control leaves the hole as it asks for"
         raise HoleCycleError(what, "output the holes as motion")
-    number, name, values = say(cycle, top, turning)
+    number, name, values = define(cycle, top, spindle)
     if cycle.method is HoleMethod.BORE_WITH_LIFT:
         if not side:
             what = "BORE,NODRAG does not say to which side the tool moves off the wall"
             raise HoleCycleError(what, "--set disengage=1 is -X, 2 -Y, 3 +X, 4 +Y, with the spindle at its angle")
         values = {**values, 214: float(side), 336: cycle.spindle_angle}
-    lines = [f"CYCL DEF {number} {name}"]
-    for q, value in values.items():
-        form = formats[_PARAMETER_FORMATS.get(q, "coordinate")]
-        if value == RAPID:
-            lines.append(f"  Q{q}=MAX ;{_PARAMETER_NAMES[q]}")
-            continue
-        if value and not form.least <= value <= form.greatest:
-            raise HoleCycleError(
-                f"CYCLE with Q{q}={value:g} ({_PARAMETER_NAMES[q].lower()})", f"up to {form.greatest:g} can be said"
-            )
-        text = form.text(value)
-        lines.append(f"  Q{q}={text if text[0] in '+-' else '+' + text} ;{_PARAMETER_NAMES[q]}")
+    lines = [f"CYCL DEF {number} {name}", *(_parameter_line(q, value, formats) for q, value in values.items())]
     return [f"{line} ~" for line in lines[:-1]] + lines[-1:]
 
 
-def _heights(cycle: Cycle, top: float) -> tuple[QParameters, QParameters]:
-    """Q200 and Q201, and Q203 and Q204, which all cycles have.
+def _parameter_line(q: int, value: float, formats: Formats) -> str:
+    number_format, name = formats[_PARAMETER_FORMATS.get(q, "coordinate")], _PARAMETER_NAMES[q]
+    if value == RAPID:
+        return f"  Q{q}=MAX ;{name}"
+    if value and not number_format.least <= value <= number_format.greatest:
+        what = f"CYCLE with Q{q}={value:g} ({name.lower()})"
+        raise HoleCycleError(what, f"stay within {number_format.least:g} to {number_format.greatest:g}")
+    text = number_format.text(value)
+    return f"  Q{q}={text if text[0] in '+-' else '+' + text} ;{name}"
 
-    Clearances count from the surface, depths are negative.
-    """
+
+def _heights(cycle: Cycle, top: float) -> tuple[QParameters, QParameters]:
+    """Q200 and Q201, then Q203 and Q204, which all cycles have; depths are negative."""
     assert cycle.retract_height is not None
     return {200: cycle.rapid_height, 201: -cycle.depth}, {203: top, 204: cycle.retract_height}
 
 
-def _spindle_speed(turning: SpindleState | None, what: str) -> float:
-    if turning is None or not turning.rpm > 0.0:
-        raise HoleCycleError(f"{what} while the spindle stands still", "put SPINDL before the cycle")
-    return turning.rpm
+def _dwell(cycle: Cycle, spindle: SpindleState | None) -> QParameters:
+    return {211: cycle_dwell_seconds(cycle, spindle)}
 
 
-def _dwell(cycle: Cycle, turning: SpindleState | None) -> QParameters:
-    """Seconds at the bottom; spindle turns become the time that they take."""
-    if not cycle.dwell or not cycle.dwell_in_revolutions:
-        return {211: cycle.dwell}
-    return {211: 60.0 * cycle.dwell / _spindle_speed(turning, "DWELL,REV")}
-
-
-def _feed(cycle: Cycle, turning: SpindleState | None) -> float:
-    """mm/min: the cycles have no other feeds."""
+def _feed(cycle: Cycle, spindle: SpindleState | None) -> float:
+    """mm/min, as all cycles have it."""
     if cycle.feed is None:
         return 0.0
-    return cycle.feed * _spindle_speed(turning, "a feed per revolution") if cycle.per_rev else cycle.feed
+    return cycle.feed * running_spindle(spindle, "a feed per revolution").rpm if cycle.per_rev else cycle.feed
 
 
-def _drill(cycle: Cycle, top: float, turning: SpindleState | None) -> CycleDefinition:
+def _drill(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
     low, high = _heights(cycle, top)
-    values = {206: _feed(cycle, turning), 202: cycle.depth, 210: 0.0}
-    return 200, "DRILLING", {**low, **values, **high, **_dwell(cycle, turning)}
+    values = {206: _feed(cycle, spindle), 202: cycle.depth, 210: 0.0}
+    return 200, "DRILLING", {**low, **values, **high, **_dwell(cycle, spindle)}
 
 
-def _peck(cycle: Cycle, top: float, turning: SpindleState | None) -> CycleDefinition:
-    """All the way out after each stroke; or one stroke in which chips are broken, always after the same depth."""
-    stroke, less, least = cycle.strokes
+def _peck(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
+    """Full retract after each stroke; or one stroke with chip breaks at equal distances."""
+    stroke, decrement, least = cycle.strokes
     full = cycle.method is HoleMethod.DEEP_DRILLING
-    if less and not least > 0.0:
+    if decrement and not least > 0.0:
         raise HoleCycleError("STEP without a shortest stroke", "write STEP,first,less,shortest")
-    if less and not full:
-        return _peck_with_shrinking_strokes(cycle, top, turning)
+    if decrement and not full:
+        return _peck_with_shrinking_strokes(cycle, top, spindle)
     low, high = _heights(cycle, top)
     stroke = min(stroke, cycle.depth)
-    values = {206: _feed(cycle, turning), 202: stroke if full else cycle.depth, **high}
-    values |= {212: less, 205: (min(least, stroke) if less else stroke) if full else 0.0}
+    values = {206: _feed(cycle, spindle), 202: stroke if full else cycle.depth, **high}
+    values |= {212: decrement, 205: (min(least, stroke) if decrement else stroke) if full else 0.0}
     values |= {
         258: _ADVANCED_STOP,
         259: _ADVANCED_STOP,
         257: 0.0 if full else stroke,
         256: 0.0 if full else _CHIP_BREAK,
     }
-    return 205, "UNIVERSAL PECKING", {**low, **values, **_dwell(cycle, turning), 379: 0.0, 253: _feed(cycle, turning)}
+    return 205, "UNIVERSAL PECKING", {**low, **values, **_dwell(cycle, spindle), 379: 0.0, 253: _feed(cycle, spindle)}
 
 
-def _peck_with_shrinking_strokes(cycle: Cycle, top: float, turning: SpindleState | None) -> CycleDefinition:
-    """Strokes that become shorter, with as many chip breaks as there can be before a full retract."""
-    stroke, less, least = cycle.strokes
+def _peck_with_shrinking_strokes(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
+    """Strokes that become shorter, with as many chip breaks as possible before a full retract."""
+    stroke, decrement, least = cycle.strokes
     low, high = _heights(cycle, top)
     stroke = min(stroke, cycle.depth)
-    values = {206: _feed(cycle, turning), 202: stroke, 210: 0.0, **high, 212: less, 213: _MOST_BREAKS}
-    values |= {205: min(least, stroke), **_dwell(cycle, turning), 208: RAPID, 256: _CHIP_BREAK}
+    values = {206: _feed(cycle, spindle), 202: stroke, 210: 0.0, **high, 212: decrement, 213: _MOST_BREAKS}
+    values |= {205: min(least, stroke), **_dwell(cycle, spindle), 208: RAPID, 256: _CHIP_BREAK}
     return 203, "UNIVERSAL DRILLING", {**low, **values}
 
 
-def _tap(cycle: Cycle, top: float, turning: SpindleState | None) -> CycleDefinition:
+def _tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
     """Without a floating holder: the pitch has the sign of the thread's hand."""
     if cycle.dwell:
         raise HoleCycleError("DWELL at the bottom of a thread: the control has none there", "leave DWELL out")
-    rpm = _spindle_speed(turning, "CYCLE/TAP")
-    assert turning is not None
+    running = running_spindle(spindle, "CYCLE/TAP")
     low, high = _heights(cycle, top)
-    pitch = _feed(cycle, turning) / rpm
-    return 207, "RIGID TAPPING NEW", {**low, 239: pitch if turning.sense is Sense.CLW else -pitch, **high}
+    pitch = _feed(cycle, running) / running.rpm
+    return 207, "RIGID TAPPING NEW", {**low, 239: pitch if running.sense is Sense.CLW else -pitch, **high}
 
 
-def _tap_chuck(cycle: Cycle, top: float, turning: SpindleState | None) -> CycleDefinition:
-    _spindle_speed(turning, "CYCLE/TAP")
+def _floating_tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
+    running_spindle(spindle, "CYCLE/TAP")
     low, high = _heights(cycle, top)
-    return 206, "TAPPING NEW", {**low, 206: _feed(cycle, turning), **_dwell(cycle, turning), **high}
+    return 206, "TAPPING NEW", {**low, 206: _feed(cycle, spindle), **_dwell(cycle, spindle), **high}
 
 
-def _tap_in_strokes(cycle: Cycle, top: float, turning: SpindleState | None) -> CycleDefinition:
-    """As a rigid tap, in strokes: all the way out between them, or back by so many pitches."""
+def _tap_in_strokes(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
+    """A rigid tap in strokes, with full retracts or chip breaks between them."""
     if any(cycle.strokes[1:]):
         raise HoleCycleError(
             "a thread in strokes that become shorter: the control has equal ones", "write STEP with one number"
         )
-    _, _, values = _tap(cycle, top, turning)
+    _, _, values = _tap(cycle, top, spindle)
     back = 0.0 if cycle.method is HoleMethod.DEEP_TAP else _CHIP_BREAK_PITCHES
     strokes = {257: min(cycle.strokes[0], cycle.depth), 256: back, 336: 0.0, 403: 1.0}
     return 209, "TAPPING W/ CHIP BRKG", {**values, **strokes}
 
 
-def _bore(cycle: Cycle, top: float, turning: SpindleState | None) -> CycleDefinition:
-    """The spindle stops at an angle at the bottom, and the tool comes out at rapid."""
+def _bore(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
+    """The spindle stops at an angle at the bottom, and the tool retracts at rapid."""
     low, high = _heights(cycle, top)
-    feeds = {206: _feed(cycle, turning), **_dwell(cycle, turning), 208: RAPID}
+    feeds = {206: _feed(cycle, spindle), **_dwell(cycle, spindle), 208: RAPID}
     return 202, "BORING", {**low, **feeds, **high, 214: 0.0, 336: 0.0}
 
 
-def _ream(cycle: Cycle, top: float, turning: SpindleState | None) -> CycleDefinition:
+def _ream(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
     """In and out at the feed of the cycle."""
     low, high = _heights(cycle, top)
-    feed = _feed(cycle, turning)
-    return 201, "REAMING", {**low, 206: feed, **_dwell(cycle, turning), 208: feed, **high}
+    feed = _feed(cycle, spindle)
+    return 201, "REAMING", {**low, 206: feed, **_dwell(cycle, spindle), 208: feed, **high}
 
 
 _DEFINITIONS: Final[dict[HoleMethod, Callable[[Cycle, float, SpindleState | None], CycleDefinition]]] = {
@@ -221,7 +210,7 @@ _DEFINITIONS: Final[dict[HoleMethod, Callable[[Cycle, float, SpindleState | None
     HoleMethod.DEEP_DRILLING: _peck,
     HoleMethod.CHIP_BREAKING: _peck,
     HoleMethod.TAP: _tap,
-    HoleMethod.FLOATING_TAP: _tap_chuck,
+    HoleMethod.FLOATING_TAP: _floating_tap,
     HoleMethod.DEEP_TAP: _tap_in_strokes,
     HoleMethod.CHIP_BREAKING_TAP: _tap_in_strokes,
     HoleMethod.BORE: _bore,

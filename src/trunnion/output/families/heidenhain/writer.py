@@ -1,7 +1,6 @@
-"""What the Klartext of iTNC 530 and TNC 640 says that words and templates alone cannot.
+"""Writer of Heidenhain iTNC 530 and TNC 640 (Klartext): what words and templates cannot express.
 
-Circles about a centre, helices, dwells, comments, the angles of a plane. Facts: the manuals of both controls;
-docs/controls/heidenhain.md has them one by one.
+Facts: the manuals of both controls; docs/controls/heidenhain.md lists them.
 """
 
 import re
@@ -18,6 +17,7 @@ from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
+from trunnion.output.families.common import dwell_seconds, program_stop, split_text
 from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
 from trunnion.output.families.heidenhain.cycles import cycle_definition
 from trunnion.planning.holes.cycles import Cycle, SpindleState
@@ -47,78 +47,71 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "normals": ("off", "contact"),
 }
 
+_SPATIAL_FIELDS: Final = ("spatial_c", "spatial_b", "spatial_a")
 _PLANE_VECTOR_FIELDS: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
 
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
-        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "spatial_a", "spatial_b",
-        "spatial_c", *_PLANE_VECTOR_FIELDS, "blank_low", "blank_high",
+        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "blank_low",
+        "blank_high", *_SPATIAL_FIELDS, *_PLANE_VECTOR_FIELDS,
     }
 )  # fmt: skip
 
 #: Bytes of a comment in one line.
-_COMMENT_LENGTH: Final = 100
+_COMMENT_BYTES: Final = 100
 
+#: TCP on and off, by the setting ``tcpm``.
 _TCP_SWITCHES: Final = {
     "m128": ("M128", "M129"),
     "function": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "FUNCTION RESET TCPM"),
 }
+
+#: How PLANE positions the rotary axes, by the setting ``plane_move``.
 _POSITIONING: Final = {"turn": "TURN FMAX", "move": "MOVE ABST0 FMAX", "stay": "STAY"}
+
 _COMP_WORDS: Final = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
 
 
 def comment(text: str) -> list[str]:
-    """A semicolon begins a comment; a long one goes on in the next line."""
-    pieces = [""]
-    for character in escape_comment(text):
-        if len((pieces[-1] + character).encode()) > _COMMENT_LENGTH:
-            pieces.append("")
-        pieces[-1] += character
-    return [f"; {piece}" for piece in pieces]
+    """Return lines that start with a semicolon."""
+    return [f"; {piece}" for piece in split_text(escape_comment(text), _COMMENT_BYTES)]
 
 
 def escape_comment(text: str) -> str:
-    """A tilde at the end of a line would take the next one into the block."""
+    """Return the text without tildes: at the end of a line one would continue the block."""
     return text.replace("~", "-")
 
 
 def tool_call(number: int, name: str, by_name: bool) -> str:
-    """What stands after ``TOOL CALL``: a number, or a name in quotation marks, in which none can stand."""
+    """Return what follows ``TOOL CALL``: a number, or a name in quotation marks."""
     if by_name and '"' in name:
         raise UnsupportedFeatureError(f"the tool name {name} has a quotation mark in it", "write --set tool=NUMBER")
     return f'"{name}"' if by_name else str(number)
 
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
-    """Cycle 9 waits seconds; turns of the spindle become the seconds that they take."""
-    amount = event.amount
-    if event.revolutions:
-        if rpm is None or not rpm > 0.0:
-            raise UnsupportedFeatureError(
-                "a dwell in spindle revolutions while the spindle stands", "put SPINDL before it"
-            )
-        amount = 60.0 * amount / rpm
-    form = formats["dwell"]
-    if not form.least <= amount <= form.greatest:
-        what = f"a dwell of {amount:g} s, and the control waits {form.least:g} to {form.greatest:g} s"
+    """Return cycle 9 with seconds."""
+    seconds, number_format = dwell_seconds(event, rpm), formats["dwell"]
+    least, greatest = number_format.least, number_format.greatest
+    if not least <= seconds <= greatest:
+        what = f"a dwell of {seconds:g} s, and the control waits {least:g} to {greatest:g} s"
         raise UnsupportedFeatureError(what, "write a dwell within that")
-    return ["CYCL DEF 9.0 DWELL TIME", f"CYCL DEF 9.1 DWELL {form.text(amount)}"]
+    return ["CYCL DEF 9.0 DWELL TIME", f"CYCL DEF 9.1 DWELL {number_format.text(seconds)}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:
-    """M0 or M1, after the text that the operator is to see."""
-    code = codes["optional_stop" if event.optional else "stop"]
-    return [*(comment(event.text) if event.text else ()), f"M{code}"]
+    """Return M0 or M1, after a comment for the operator."""
+    return program_stop(event, codes, comment)
 
 
 def message(event: Message) -> list[str]:
-    """A comment, which the operator sees as it runs by; one to be displayed as a structure line."""
+    """Return a comment, or a structure item for the operator."""
     lines = comment(event.text)
     return [f"* - {line[2:]}" for line in lines] if event.display else lines
 
 
 def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
-    """M for coolant, R0, RL or RR for the radius compensation; the spindle has blocks of its own."""
+    """Return M of the coolant, R0, RL or RR of the radius compensation, or M5; a template starts the spindle."""
     if isinstance(event, Coolant):
         return {"coolant": coolant[event.kind]}
     if isinstance(event, CutterComp):
@@ -127,24 +120,22 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
 
 
 def first_block_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
-    """None."""
+    """Return nothing."""
     return {}
 
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
-    """Radius compensation in another plane than that of the tool axis."""
+    """Return radius compensation in another plane than XY."""
+    cure = "write XYPLAN, or no CUTCOM"
     return [
-        (
-            event.line,
-            UnsupportedFeatureError(f"radius compensation in the plane {event.plane}", "write XYPLAN, or no CUTCOM"),
-        )
+        (event.line, UnsupportedFeatureError(f"radius compensation in the plane {event.plane}", cure))
         for event in operation.events
         if isinstance(event, CutterComp) and event.plane not in ("", "XYPLAN")
     ]
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
-    """A program name that no file of the control has, a block form that is none."""
+    """Return an invalid program name, preset, side, retract or block form."""
     wrong = []
     name, blank = settings.get("program", ""), settings.get("blank", "")
     if name and not re.fullmatch(r"[A-Za-z0-9_#$%&-]{1,24}", name):
@@ -155,30 +146,28 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
         wrong.append(("disengage", "write 1 for -X, 2 for -Y, 3 for +X or 4 for +Y"))
     distance = settings.get("retract_distance", "")
     if distance and not (re.fullmatch(r"[0-9]{1,5}(\.[0-9]{1,4})?", distance) and float(distance) > 0.0):
-        cure = "write how far the tool goes back along its axis, mm, such as 50; or nothing"
+        cure = "write how far the tool retracts along its axis, mm, such as 50; or nothing"
         wrong.append(("retract_distance", cure))
     if blank not in ("", "extents") and _blank_corners(blank) is None:
-        cure = (
-            "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first; or extents, for all that is cut"
-        )
+        cure = "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first; or extents, for all cuts"
         wrong.append(("blank", cure))
     return wrong
 
 
 def cycle_call(
-    cycle: Cycle, top: float, turning: SpindleState | None, settings: Mapping[str, str], formats: Formats
+    cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    """The definition of the cycle; ``M99`` calls it at each hole."""
-    return cycle_definition(cycle, top, turning, formats, settings.get("disengage", ""))
+    """Return the definition of the cycle, which M99 calls at each hole."""
+    return cycle_definition(cycle, top, spindle, formats, settings.get("disengage", ""))
 
 
 def cycle_cancel() -> list[str]:
-    """Nothing: a cycle is called hole by hole."""
+    """Return nothing: no cycle is modal."""
     return []
 
 
 def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
-    """``L``, ``FMAX`` in rapids, and what F means wherever there is one."""
+    """Return ``L``, ``FMAX`` of rapids, and the feed mode of rows that have a feed."""
     mode = np.where(per_rev, codes["feed_per_revolution"], codes["feed_per_minute"])
     return {
         "line": np.ones(len(rapid), np.int64),
@@ -188,49 +177,49 @@ def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:
 
 
 def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
-    """``CC`` and ``C``, ``CP`` for what rises, ``CR`` where a circle is said by its radius."""
+    """Return ``CC`` and ``C``, ``CP`` for helices, ``CR`` for circles by their radius."""
     return heidenhain_arcs.arc_words(arcs, tip, rows, formats, by_radius)
 
 
 def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """TCP on and off as ``tcpm`` says it, the words and angles of a plane, the corners of the block form.
+    """Return the words for TCP and retracts, the angles and vectors of a plane, the corners of the block form.
 
-    SPA, SPB and SPC turn about fixed axes X, then Y, then Z: the same as about Z, the new Y and the newest X.
+    SPA, SPB and SPC turn about the fixed axes X, then Y, then Z: as about Z, the new Y and the newest X.
     """
     on, off = _TCP_SWITCHES[str(settings["tcpm"])]
     if settings["orientation"] == "vector":
         on = on.replace("PATHCTRL AXIS", "PATHCTRL VECTOR")
     low, high = _blank_corners(str(settings.get("blank") or "")) or (None, None)
-    found: dict[str, Value] = {"tcp_on": on, "tcp_off": off, "blank_low": low, "blank_high": high}
     at_tip = settings["rotary_feed"] == "tip"
-    found |= {"feed_at_tip": "M116" if at_tip else None, "feed_in_degrees": "M117" if at_tip else None}
     distance = str(settings.get("retract_distance") or " MAX")
-    found["retract_along"] = f"L M140 MB{distance}" if settings["retract"] == "m140" else None
-    found["positioning"] = _POSITIONING[str(settings["plane_move"])]
-    spatial = "spatial_c", "spatial_b", "spatial_a"
-    if plane is None:
-        return {**found, **dict.fromkeys((*spatial, *_PLANE_VECTOR_FIELDS))}
-    turns = [180.0 if angle < -179.99999999 else angle for angle in tait_bryan_angles(plane, (2, 1, 0))]
-    angles = dict(zip(spatial, turns, strict=True))
-    return {
-        **found,
-        **angles,
-        **dict(zip(_PLANE_VECTOR_FIELDS, [*plane[:, 0].tolist(), *plane[:, 2].tolist()], strict=True)),
+    words: dict[str, Value] = {
+        "tcp_on": on,
+        "tcp_off": off,
+        "feed_at_tip": "M116" if at_tip else None,
+        "feed_in_degrees": "M117" if at_tip else None,
+        "retract_along": f"L M140 MB{distance}" if settings["retract"] == "m140" else None,
+        "positioning": _POSITIONING[str(settings["plane_move"])],
+        "blank_low": low,
+        "blank_high": high,
     }
+    if plane is None:
+        return words | dict.fromkeys((*_SPATIAL_FIELDS, *_PLANE_VECTOR_FIELDS))
+    angles = [180.0 if angle < -179.99999999 else angle for angle in tait_bryan_angles(plane, (2, 1, 0))]
+    vectors = [*plane[:, 0].tolist(), *plane[:, 2].tolist()]
+    return words | dict(zip((*_SPATIAL_FIELDS, *_PLANE_VECTOR_FIELDS), (*angles, *vectors), strict=True))
 
 
 def _blank_corners(blank: str) -> tuple[str, str] | None:
-    """The two corners of the block form as words, None where the text is none."""
+    """Both corners of the block form as words; None if the text is not six numbers, the lower corner first."""
     try:
         numbers = [float(part) for part in blank.split(",")]
     except ValueError:
         return None
-    if len(numbers) != 6 or any(
-        not a < b or not abs(a) + abs(b) < 1e5 for a, b in zip(numbers, numbers[3:], strict=False)
-    ):
+    sides = zip(numbers[:3], numbers[3:], strict=False)
+    if len(numbers) != 6 or any(not low < high or not abs(low) + abs(high) < 1e5 for low, high in sides):
         return None
     texts = [f"{number:+.4f}".rstrip("0").rstrip(".") for number in numbers]
     low, high = (
-        " ".join(f"{axis}{text}" for axis, text in zip("XYZ", part, strict=True)) for part in (texts[:3], texts[3:])
+        " ".join(f"{axis}{text}" for axis, text in zip("XYZ", corner, strict=True)) for corner in (texts[:3], texts[3:])
     )
     return low, high

@@ -1,6 +1,6 @@
-"""Hole-making cycles of LinuxCNC: G73, G74, G81 to G86 and G89 with G98 or G99, and G33.1 for rigid taps.
+"""Drilling cycles of LinuxCNC: G73, G74, G81 to G86 and G89 with G98 or G99, and G33.1 for rigid taps.
 
-Facts: LinuxCNC's G code reference; docs/controls/linuxcnc.md has them one by one.
+Facts: LinuxCNC's G code reference; docs/controls/linuxcnc.md lists them.
 """
 
 from collections.abc import Callable
@@ -8,75 +8,63 @@ from typing import Final
 
 from trunnion.controls.family_writer import EACH_HOLE, FIRST_HOLE, Formats
 from trunnion.model.toolpath import Sense
+from trunnion.output.families.common import cycle_dwell_seconds, running_spindle, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 
-#: What a cycle says besides its heights: the G word, then its own words.
+#: The G word of a cycle, and its words behind the heights.
 GCodeAndWords = tuple[int, list[str]]
 
 
-def cycle_lines(cycle: Cycle, top: float, turning: SpindleState | None, formats: Formats) -> list[str]:
-    """The lines that make holes at ``top``.
+def cycle_lines(cycle: Cycle, top: float, spindle: SpindleState | None, formats: Formats) -> list[str]:
+    """Return the lines that make holes at ``top``.
 
-    R is where the feed begins. G99 draws back to R; G98 to where the tool stood when the cycle began.
+    R is where the feed begins. G99 retracts to R; G98 to where the tool was when the cycle began.
 
     Parameters
     ----------
     cycle
         With a retract height.
     top
-        Z of the points of the holes, mm.
-    turning
-        The spindle.
+        Z of the hole points, mm.
+    spindle
+        None while it is stopped.
     formats
         ``coordinate``, ``dwell`` and ``pitch`` of the control.
 
     Raises
     ------
     HoleCycleError
-        When the cycle cannot be said.
+        If the control cannot make the cycle.
     """
     assert cycle.retract_height is not None
     number = formats["coordinate"].text
-    above, bottom, retract = (
+    rapid, bottom, retract = (
         number(top + height) for height in (cycle.rapid_height, -cycle.depth, cycle.retract_height)
     )
     if cycle.method is HoleMethod.TAP:
-        tap = f"G33.1 Z{bottom} K{formats['pitch'].text(_pitch(cycle, turning))}"
-        return [f"G0 {EACH_HOLE}", f"Z{above}", tap, *([f"G0 Z{retract}"] if retract != above else [])]
-    say = _CYCLES.get(cycle.method)
-    if say is None:
+        tap = f"G33.1 Z{bottom} K{formats['pitch'].text(_rigid_pitch(cycle, spindle))}"
+        return [f"G0 {EACH_HOLE}", f"Z{rapid}", tap, *([f"G0 Z{retract}"] if retract != rapid else [])]
+    make = _CYCLES.get(cycle.method)
+    if make is None:
         what = f"CYCLE/{cycle.method}: no cycle of LinuxCNC leaves the hole as it asks for"
         raise HoleCycleError(what, "output the holes as motion")
-    code, words = say(cycle, turning, formats)
-    plane = "G99" if retract == above else "G98"
-    return [" ".join((plane, f"G{code}", FIRST_HOLE, f"Z{bottom}", f"R{above}", *words))]
+    code, words = make(cycle, spindle, formats)
+    plane = "G99" if retract == rapid else "G98"
+    return [" ".join((plane, f"G{code}", FIRST_HOLE, f"Z{bottom}", f"R{rapid}", *words))]
 
 
-def _running_spindle(turning: SpindleState | None, what: str) -> SpindleState:
-    if turning is None or not turning.rpm > 0.0:
-        raise HoleCycleError(f"{what} while the spindle stands still", "put SPINDL before the cycle")
-    return turning
-
-
-def _dwell_seconds(cycle: Cycle, turning: SpindleState | None) -> float:
-    """The dwell; spindle turns become the time that they take."""
-    if not cycle.dwell or not cycle.dwell_in_revolutions:
-        return cycle.dwell
-    return 60.0 * cycle.dwell / _running_spindle(turning, "DWELL,REV").rpm
-
-
-def _dwell(cycle: Cycle, turning: SpindleState | None, formats: Formats) -> list[str]:
-    seconds = _dwell_seconds(cycle, turning)
+def _dwell(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> list[str]:
+    seconds = cycle_dwell_seconds(cycle, spindle)
     return [f"P{formats['dwell'].text(seconds)}"] if seconds else []
 
 
-def _drill(cycle: Cycle, turning: SpindleState | None, formats: Formats) -> GCodeAndWords:
-    wait = _dwell(cycle, turning, formats)
-    return (82, wait) if wait else (81, [])
+def _drill(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
+    dwell = _dwell(cycle, spindle, formats)
+    return (82, dwell) if dwell else (81, [])
 
 
-def _peck(cycle: Cycle, turning: SpindleState | None, formats: Formats) -> GCodeAndWords:
-    """Equal strokes of Q, which count from R."""
+def _peck(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
+    """Equal strokes of Q, the first measured from R."""
     if any(cycle.strokes[1:]):
         raise UnsupportedCycleError("strokes that become shorter, where Q is one stroke", "write STEP with one number")
     if cycle.dwell:
@@ -88,40 +76,40 @@ def _peck(cycle: Cycle, turning: SpindleState | None, formats: Formats) -> GCode
     ]
 
 
-def _pitch(cycle: Cycle, turning: SpindleState | None) -> float:
-    """Of a rigid tap, mm. The thread has the hand of the spindle."""
-    rpm = _running_spindle(turning, "CYCLE/TAP").rpm
-    if cycle.feed is None or not cycle.feed > 0.0:
-        raise HoleCycleError("CYCLE/TAP without a feed", "write MMPR,pitch")
+def _rigid_pitch(cycle: Cycle, spindle: SpindleState | None) -> float:
+    """K of G33.1, mm: the thread has the hand of the spindle."""
+    pitch, _ = thread(cycle, spindle)
     if cycle.dwell:
         raise HoleCycleError("DWELL at the bottom of a thread: the control has none there", "leave DWELL out")
-    return cycle.feed if cycle.per_rev else cycle.feed / rpm
+    return pitch
 
 
-def _tap_chuck(cycle: Cycle, turning: SpindleState | None, formats: Formats) -> GCodeAndWords:
-    """The spindle turns back by itself: G84 wants it clockwise, G74 the other way. Without P they wait as a cycle did
-    before."""
-    right = _running_spindle(turning, "CYCLE/TAP").sense is Sense.CLW
-    return (84 if right else 74), _dwell(cycle, turning, formats) or ["P0"]
+def _floating_tap(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
+    """The spindle reverses by itself: G84 expects it clockwise, G74 the other way.
+
+    Without P the cycle would dwell as long as the one before.
+    """
+    right = running_spindle(spindle, "CYCLE/TAP").sense is Sense.CLW
+    return (84 if right else 74), _dwell(cycle, spindle, formats) or ["P0"]
 
 
-def _ream(cycle: Cycle, turning: SpindleState | None, formats: Formats) -> GCodeAndWords:
-    """In and out at feed."""
-    wait = _dwell(cycle, turning, formats)
-    return (89, wait) if wait else (85, [])
+def _ream(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
+    """In and out at the feed."""
+    dwell = _dwell(cycle, spindle, formats)
+    return (89, dwell) if dwell else (85, [])
 
 
-def _drag(cycle: Cycle, turning: SpindleState | None, formats: Formats) -> GCodeAndWords:
-    """The spindle stops at the bottom; G86 wants a P."""
-    _running_spindle(turning, "CYCLE/BORE,DRAG")
-    return 86, _dwell(cycle, turning, formats) or ["P0"]
+def _bore(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
+    """The spindle stops at the bottom; G86 needs a P."""
+    running_spindle(spindle, "CYCLE/BORE,DRAG")
+    return 86, _dwell(cycle, spindle, formats) or ["P0"]
 
 
 _CYCLES: Final[dict[HoleMethod, Callable[[Cycle, SpindleState | None, Formats], GCodeAndWords]]] = {
     HoleMethod.DRILL: _drill,
     HoleMethod.DEEP_DRILLING: _peck,
     HoleMethod.CHIP_BREAKING: _peck,
-    HoleMethod.FLOATING_TAP: _tap_chuck,
+    HoleMethod.FLOATING_TAP: _floating_tap,
     HoleMethod.REAM: _ream,
-    HoleMethod.BORE: _drag,
+    HoleMethod.BORE: _bore,
 }

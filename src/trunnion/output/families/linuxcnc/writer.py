@@ -1,6 +1,6 @@
-"""What LinuxCNC says that words and templates alone cannot: comments, messages, dwells, turns of a circle.
+"""Writer of LinuxCNC: what words and templates cannot express.
 
-Facts: LinuxCNC's G code reference; docs/controls/linuxcnc.md has them one by one.
+Facts: LinuxCNC's G code reference; docs/controls/linuxcnc.md lists them.
 """
 
 from collections.abc import Mapping
@@ -15,6 +15,7 @@ from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.families import iso
+from trunnion.output.families.common import dwell_seconds, program_stop, split_text
 from trunnion.output.families.iso import event_words as event_words
 from trunnion.output.families.iso import row_words as row_words
 from trunnion.output.families.linuxcnc.cycles import cycle_lines
@@ -26,59 +27,62 @@ PLANE_COMMANDS: tuple[str, ...] = ()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
-#: Bytes of a text in one line: a line has room for 255, with its block number and what surrounds the text.
-_COMMENT_LENGTH: Final = 200
+#: Bytes of a text in one line: a line has room for 255, with the block number and what surrounds the text.
+_TEXT_BYTES: Final = 200
 
 
 def comment(text: str) -> list[str]:
-    """A semicolon begins a comment, a blank after it one that does nothing; a long one goes on in the next line."""
-    return [f"; {part}" for part in _split_text(text)]
+    """Return lines that start with a semicolon and a blank."""
+    return [f"; {part}" for part in split_text(text, _TEXT_BYTES)]
 
 
 def escape_comment(text: str) -> str:
-    """Nothing needs to be changed in what stands after a semicolon."""
+    """Return the text itself: after a semicolon every character is allowed."""
     return text
 
 
 def tool_call(number: int, name: str, by_name: bool) -> str:
-    """What stands after ``T``: a number; tools have no names."""
+    """Return what follows ``T``: a number, for tools have no names."""
     if by_name:
         raise UnsupportedFeatureError(f"LinuxCNC calls tools by number, and not as {name}", "write --set tool=NUMBER")
     return str(number)
 
 
 def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """Nothing: there are no tilted planes."""
+    """Return nothing: there are no tilted planes."""
     return {}
 
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
-    """``G4 P`` waits seconds; turns of the spindle become the seconds that they take."""
-    if not event.revolutions:
-        return [f"G4 P{formats['dwell'].text(event.amount)}"]
-    if rpm is None or not rpm > 0.0:
-        raise UnsupportedFeatureError("a dwell in spindle revolutions while the spindle stands", "put SPINDL before it")
-    return [f"G4 P{formats['dwell'].text(60.0 * event.amount / rpm)}"]
+    """Return ``G4 P`` with seconds."""
+    return [f"G4 P{formats['dwell'].text(dwell_seconds(event, rpm))}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:
-    """M0 or M1, after the text that the operator is to see."""
-    code = codes["optional_stop" if event.optional else "stop"]
-    return [*(_operator_message(event.text) if event.text else ()), f"M{code}"]
+    """Return M0 or M1, after a message to the operator."""
+    return program_stop(event, codes, _operator_message)
+
+
+def message(event: Message) -> list[str]:
+    """Return a comment, or ``(MSG, …)`` for the operator."""
+    return _operator_message(event.text) if event.display else comment(event.text)
+
+
+def _operator_message(text: str) -> list[str]:
+    """Return ``(MSG, …)`` with square brackets for round ones, which would end the text."""
+    return [f"(MSG, {part})" for part in split_text(text.translate({ord("("): "[", ord(")"): "]"}), _TEXT_BYTES)]
 
 
 def first_block_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
-    """None."""
+    """Return nothing."""
     return {}
 
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
-    """G95 without a spindle speed, and G41 or G42 in the plane YZ."""
+    """Return G95 without a spindle speed, and G41 or G42 in the plane YZ."""
+    why = UnsupportedFeatureError("cutter radius compensation in the plane YZ", "output the path without CUTCOM")
     compensated = [
-        (
-            event.line,
-            UnsupportedFeatureError("cutter radius compensation in the plane YZ", "output the path without CUTCOM"),
-        )
+        (event.line, why)
         for event in operation.events
         if isinstance(event, CutterComp) and event.plane == "YZPLAN" and event.side != "OFF"
     ]
@@ -86,44 +90,24 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
-    """None."""
+    """Return nothing."""
     return []
 
 
 def cycle_call(
-    cycle: Cycle, top: float, turning: SpindleState | None, settings: Mapping[str, str], formats: Formats
+    cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    """The cycle with its first hole, or the blocks of each hole of a rigid tap."""
-    return cycle_lines(cycle, top, turning, formats)
+    """Return the cycle with its first hole, or the blocks of each hole of a rigid tap."""
+    return cycle_lines(cycle, top, spindle, formats)
 
 
 def cycle_cancel() -> list[str]:
-    """What ends a cycle."""
+    """Return G80."""
     return ["G80"]
 
 
-def message(event: Message) -> list[str]:
-    """A comment, or for the operator ``(MSG, …)``."""
-    return _operator_message(event.text) if event.display else comment(event.text)
-
-
 def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Formats, by_radius: bool = False) -> ArcWords:
-    """As ISO has them; ``P`` counts the arc itself too: P2 is one whole turn besides."""
+    """Return the words as ISO has them; ``P`` counts the arc as well: P2 is one whole turn and the arc."""
     words = iso.arc_words(arcs, tip, rows, codes, formats)
     turns = words.columns["turns"]
     return ArcWords({**words.columns, "turns": np.where(turns == ABSENT, ABSENT, turns + 1)}, words.forced)
-
-
-def _operator_message(text: str) -> list[str]:
-    """``(MSG, …)``; brackets inside would end the text early."""
-    return [f"(MSG, {part})" for part in _split_text(text.translate({ord("("): "[", ord(")"): "]"}))]
-
-
-def _split_text(text: str) -> list[str]:
-    """A text in pieces of no more than ``_COMMENT_LENGTH`` bytes; never a piece less than one."""
-    pieces = [""]
-    for character in text:
-        if len((pieces[-1] + character).encode()) > _COMMENT_LENGTH:
-            pieces.append("")
-        pieces[-1] += character
-    return pieces

@@ -1,7 +1,6 @@
-"""What Sinumerik says that words and templates alone cannot: dwells, messages, the tool's call, planes.
+"""Writer of Sinumerik 840D sl: what words and templates cannot express.
 
-Facts: SINUMERIK 840D sl programming manuals, *Fundamentals* and *Job planning*; docs/controls/sinumerik.md has them
-one by one.
+Facts: SINUMERIK 840D sl programming manuals, *Fundamentals* and *Job planning*; docs/controls/sinumerik.md lists them.
 """
 
 from collections.abc import Mapping
@@ -14,6 +13,7 @@ from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
 from trunnion.output.families import iso
+from trunnion.output.families.common import program_stop
 from trunnion.output.families.iso import arc_words as arc_words
 from trunnion.output.families.iso import event_words as event_words
 from trunnion.output.families.iso import row_words as row_words
@@ -34,90 +34,90 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, "interpolation"})
 
+#: _MODE of CYCLE800 for the frame words ROT and AROT, which turn about X, Y and Z.
+_FRAME_MODE = "57"
+
 
 def comment(text: str) -> list[str]:
-    """A semicolon begins a comment."""
+    """Return one line that starts with a semicolon."""
     return [f";{text}"]
 
 
 def escape_comment(text: str) -> str:
-    """Nothing needs to be changed in what stands after a semicolon."""
+    """Return the text itself: after a semicolon every character is allowed."""
     return text
 
 
 def tool_call(number: int, name: str, by_name: bool) -> str:
-    """What stands after ``T=``: a number, or a name in quotation marks, in which none can stand."""
+    """Return what follows ``T=``: a number, or a name in quotation marks."""
     if by_name and '"' in name:
         raise UnsupportedFeatureError(f"the tool name {name} has a quotation mark in it", "write --set tool=NUMBER")
     return f'"{name}"' if by_name else str(number)
 
 
 def swivel_axes(mode: int) -> tuple[int, int, int]:
-    """Axes of the three turns of CYCLE800's _MODE, 0 for X: bits 1 and 0 name the first, 3 and 2 the second, 5 and 4
-    the third; 1 is X, 2 is Y, 3 is Z."""
+    """Return the axes of the three rotations of CYCLE800, 0 for X.
+
+    Bits 1 and 0 of ``_MODE`` name the first axis, 3 and 2 the second, 5 and 4 the third: 1 is X, 2 is Y, 3 is Z.
+    """
     return (mode & 3) - 1, (mode >> 2 & 3) - 1, (mode >> 4 & 3) - 1
 
 
 def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """How orientations are interpolated, and the three turns of a plane in the order of ``plane_mode``; the frame words
-    turn about X, Y, Z, which is 57."""
+    """Return how orientations are interpolated, and the three rotations of a plane in the order of ``plane_mode``."""
     interpolation: dict[str, Value] = {"interpolation": "VECT" if settings["orientation"] == "vector" else "AXES"}
     if plane is None:
         return interpolation | dict.fromkeys(_PLANE_FIELDS)
-    mode = str(settings["swivel_mode"]) if settings["plane"] == "cycle800" else "57"
-    first, second, third = tait_bryan_angles(plane, swivel_axes(int(mode)))
-    turns: dict[str, Value] = {"plane_first": first, "plane_second": second, "plane_third": third, "plane_mode": mode}
-    return interpolation | turns
+    mode = str(settings["swivel_mode"]) if settings["plane"] == "cycle800" else _FRAME_MODE
+    angles = tait_bryan_angles(plane, swivel_axes(int(mode)))
+    return interpolation | dict(zip(_PLANE_FIELDS, (*angles, mode), strict=True))
 
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
-    """``G4 F`` waits seconds, ``G4 S`` spindle revolutions; both stand in a block of their own."""
+    """Return ``G4 F`` for seconds or ``G4 S`` for spindle revolutions, in a block of its own."""
     return [f"G4 {'S' if event.revolutions else 'F'}{formats['dwell'].text(event.amount)}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:
-    """M0 or M1, after the text that the operator is to see."""
-    code = codes["optional_stop" if event.optional else "stop"]
-    return [*(comment(event.text) if event.text else ()), f"M{code}"]
+    """Return M0 or M1, after a comment for the operator."""
+    return program_stop(event, codes, comment)
+
+
+def message(event: Message) -> list[str]:
+    """Return a comment, or MSG for the operator; a quotation mark would end its text."""
+    return ['MSG("' + event.text.replace('"', "'") + '")'] if event.display else comment(event.text)
 
 
 def first_block_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
-    """The cutting edge, whose length counts from here on."""
+    """Return the cutting edge, which activates the tool length."""
     return {"edge": int(settings["edge"])} if "edge" in settings else {}
 
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
-    """Nothing."""
+    """Return nothing."""
     return []
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
-    """A lift that is none."""
-    return (
-        []
-        if is_valid_lift(settings.get("bore_lift", ""))
-        else [("bore_lift", "write millimetres, such as 0.5, or nothing")]
-    )
+    """Return an invalid lift-off."""
+    valid = is_valid_lift(settings.get("bore_lift", ""))
+    return [] if valid else [("bore_lift", "write millimetres, such as 0.5, or nothing")]
 
 
 def cycle_call(
-    cycle: Cycle, top: float, turning: SpindleState | None, settings: Mapping[str, str], formats: Formats
+    cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    """``MCALL`` with the call of the cycle; or for each hole a frame that is turned to the tool, and the call."""
+    """Return ``MCALL`` with the cycle; or for each hole a frame turned to the tool, and the cycle."""
     lift = float(settings["bore_lift"]) if settings.get("bore_lift") else None
     if settings[HOLES_SETTING] != HOLES_IN_PLANES and cycle.method is HoleMethod.BORE_WITH_LIFT:
-        raise HoleCycleError(
-            "BORE,NODRAG while the tool axis changes: X of the frame is not known", "--set holes=planes"
-        )
-    call = cycle_statement(cycle, top, turning, lift, formats)
-    return [EACH_HOLE, "TOROT", call, "TOROTOF", "TRANS"] if settings[HOLES_SETTING] == "torot" else [f"MCALL {call}"]
+        what = "BORE,NODRAG while the tool axis changes: X of the frame is not known"
+        raise HoleCycleError(what, "--set holes=planes")
+    call = cycle_statement(cycle, top, spindle, lift, formats)
+    if settings[HOLES_SETTING] == "torot":
+        return [EACH_HOLE, "TOROT", call, "TOROTOF", "TRANS"]
+    return [f"MCALL {call}"]
 
 
 def cycle_cancel() -> list[str]:
-    """``MCALL`` alone."""
+    """Return ``MCALL`` alone."""
     return ["MCALL"]
-
-
-def message(event: Message) -> list[str]:
-    """A comment, or for the operator MSG; a quotation mark inside would end the text early."""
-    return ['MSG("' + event.text.replace('"', "'") + '")'] if event.display else comment(event.text)

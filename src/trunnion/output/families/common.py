@@ -1,0 +1,79 @@
+"""What families of any language share: dwells, threads, program stops, texts in pieces."""
+
+import math
+from collections.abc import Callable
+
+from trunnion.controls.family_writer import Codes, UnsupportedFeatureError
+from trunnion.model.toolpath import Dwell, Stop
+from trunnion.planning.holes.cycles import Cycle, HoleCycleError, SpindleState
+
+
+def dwell_seconds(event: Dwell, rpm: float | None) -> float:
+    """Return the time of a dwell, seconds; spindle revolutions become the time that they take.
+
+    Raises
+    ------
+    UnsupportedFeatureError
+        If revolutions are asked for while the spindle is stopped.
+    """
+    if not event.revolutions:
+        return event.amount
+    if rpm is None or not rpm > 0.0:
+        raise UnsupportedFeatureError("a dwell in spindle revolutions while the spindle stands", "put SPINDL before it")
+    return 60.0 * event.amount / rpm
+
+
+def cycle_dwell_seconds(cycle: Cycle, spindle: SpindleState | None) -> float:
+    """Return the dwell at the bottom of a hole, seconds; spindle revolutions become the time that they take.
+
+    Raises
+    ------
+    HoleCycleError
+        If revolutions are asked for while the spindle is stopped.
+    """
+    if not cycle.dwell or not cycle.dwell_in_revolutions:
+        return cycle.dwell
+    return 60.0 * cycle.dwell / running_spindle(spindle, "DWELL,REV").rpm
+
+
+def running_spindle(spindle: SpindleState | None, what: str) -> SpindleState:
+    """Return the spindle if it turns.
+
+    Raises
+    ------
+    HoleCycleError
+        If it does not: ``what`` needs it.
+    """
+    if spindle is None or not (spindle.rpm > 0.0 and math.isfinite(spindle.rpm)):
+        raise HoleCycleError(f"{what} while the spindle stands still", "put SPINDL before the cycle")
+    return spindle
+
+
+def thread(cycle: Cycle, spindle: SpindleState | None) -> tuple[float, SpindleState]:
+    """Return the pitch of a thread, mm, and the spindle that cuts it, whose sense is the hand of the thread.
+
+    Raises
+    ------
+    HoleCycleError
+        If the spindle is stopped, or if the cycle has no feed.
+    """
+    running = running_spindle(spindle, "CYCLE/TAP")
+    if cycle.feed is None or not cycle.feed > 0.0:
+        raise HoleCycleError("CYCLE/TAP without a feed", "write MMPR,pitch")
+    return cycle.feed if cycle.per_rev else cycle.feed / running.rpm, running
+
+
+def program_stop(event: Stop, codes: Codes, text_lines: Callable[[str], list[str]]) -> list[str]:
+    """Return M0 or M1, after the text for the operator, as ``text_lines`` writes it."""
+    code = codes["optional_stop" if event.optional else "stop"]
+    return [*(text_lines(event.text) if event.text else ()), f"M{code}"]
+
+
+def split_text(text: str, most: int) -> list[str]:
+    """Return a text in pieces of at most ``most`` bytes; at least one piece."""
+    pieces = [""]
+    for character in text:
+        if len((pieces[-1] + character).encode()) > most:
+            pieces.append("")
+        pieces[-1] += character
+    return pieces
