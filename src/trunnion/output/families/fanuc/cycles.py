@@ -8,7 +8,7 @@ from typing import Final
 
 from trunnion.controls.family_writer import FIRST_HOLE, Formats
 from trunnion.model.toolpath import Sense
-from trunnion.output.families.common import running_spindle, thread
+from trunnion.output.shared.spindle import running_spindle, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 
 #: The G word of each cycle, without a dwell and with one; None: it has no word for a dwell.

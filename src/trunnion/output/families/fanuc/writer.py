@@ -18,10 +18,11 @@ from trunnion.controls.template import Value
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
-from trunnion.output.families import iso
-from trunnion.output.families.common import dwell_seconds, program_stop
 from trunnion.output.families.fanuc.cycles import cycle_lines, is_valid_shift
-from trunnion.output.families.iso import row_words as row_words
+from trunnion.output.shared import iso
+from trunnion.output.shared.iso import row_words as row_words
+from trunnion.output.shared.lines import program_stop
+from trunnion.output.shared.spindle import dwell_seconds
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 #: Circles have no word for whole turns. Tool length and radius are data of the control, called by number.

@@ -15,9 +15,10 @@ from trunnion.controls.template import Value
 from trunnion.controls.words import ABSENT, round_to_counts
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense, Stop
-from trunnion.output.families import iso
-from trunnion.output.families.common import cycle_dwell_seconds, dwell_seconds, program_stop, running_spindle
-from trunnion.output.families.iso import event_words as event_words
+from trunnion.output.shared import iso
+from trunnion.output.shared.iso import event_words as event_words
+from trunnion.output.shared.lines import program_stop
+from trunnion.output.shared.spindle import cycle_dwell_seconds, dwell_seconds, running_spindle
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 
 WORDS: tuple[str, ...] = (

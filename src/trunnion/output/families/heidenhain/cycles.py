@@ -9,7 +9,7 @@ from typing import Final
 
 from trunnion.controls.words import NumberFormat
 from trunnion.model.toolpath import Sense
-from trunnion.output.families.common import cycle_dwell_seconds, running_spindle
+from trunnion.output.shared.spindle import cycle_dwell_seconds, running_spindle
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
 
 Formats = Mapping[str, NumberFormat]

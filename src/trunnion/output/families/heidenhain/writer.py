@@ -17,9 +17,10 @@ from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
-from trunnion.output.families.common import dwell_seconds, program_stop, split_text
 from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
 from trunnion.output.families.heidenhain.cycles import cycle_definition
+from trunnion.output.shared.lines import program_stop, split_text
+from trunnion.output.shared.spindle import dwell_seconds
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 WORDS: tuple[str, ...] = (

@@ -8,7 +8,7 @@ from typing import Final
 
 from trunnion.controls.family_writer import EACH_HOLE, FIRST_HOLE, Formats
 from trunnion.model.toolpath import Sense
-from trunnion.output.families.common import cycle_dwell_seconds, running_spindle, thread
+from trunnion.output.shared.spindle import cycle_dwell_seconds, running_spindle, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 
 #: The G word of a cycle, and its words behind the heights.

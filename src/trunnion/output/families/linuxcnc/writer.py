@@ -14,11 +14,12 @@ from trunnion.controls.template import Value
 from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
-from trunnion.output.families import iso
-from trunnion.output.families.common import dwell_seconds, program_stop, split_text
-from trunnion.output.families.iso import event_words as event_words
-from trunnion.output.families.iso import row_words as row_words
 from trunnion.output.families.linuxcnc.cycles import cycle_lines
+from trunnion.output.shared import iso
+from trunnion.output.shared.iso import event_words as event_words
+from trunnion.output.shared.iso import row_words as row_words
+from trunnion.output.shared.lines import program_stop, split_text
+from trunnion.output.shared.spindle import dwell_seconds
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 WORDS: tuple[str, ...] = iso.WORDS

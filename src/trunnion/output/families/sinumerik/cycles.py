@@ -9,7 +9,7 @@ from typing import Final
 
 from trunnion.controls.words import NumberFormat
 from trunnion.model.toolpath import Sense
-from trunnion.output.families.common import cycle_dwell_seconds, thread
+from trunnion.output.shared.spindle import cycle_dwell_seconds, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
 
 #: Tool axis of CYCLE83 and CYCLE84: the third axis of the plane G17.

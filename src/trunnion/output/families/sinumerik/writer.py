@@ -12,12 +12,12 @@ from trunnion.controls.vocabulary import HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
-from trunnion.output.families import iso
-from trunnion.output.families.common import program_stop
-from trunnion.output.families.iso import arc_words as arc_words
-from trunnion.output.families.iso import event_words as event_words
-from trunnion.output.families.iso import row_words as row_words
 from trunnion.output.families.sinumerik.cycles import cycle_statement, is_valid_lift
+from trunnion.output.shared import iso
+from trunnion.output.shared.iso import arc_words as arc_words
+from trunnion.output.shared.iso import event_words as event_words
+from trunnion.output.shared.iso import row_words as row_words
+from trunnion.output.shared.lines import program_stop
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
 
 WORDS: tuple[str, ...] = (

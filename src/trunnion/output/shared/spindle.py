@@ -1,10 +1,9 @@
-"""What families of any language share: dwells, threads, program stops, texts in pieces."""
+"""What depends on the spindle: dwells in revolutions, and threads."""
 
 import math
-from collections.abc import Callable
 
-from trunnion.controls.family_writer import Codes, UnsupportedFeatureError
-from trunnion.model.toolpath import Dwell, Stop
+from trunnion.controls.family_writer import UnsupportedFeatureError
+from trunnion.model.toolpath import Dwell
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, SpindleState
 
 
@@ -61,19 +60,3 @@ def thread(cycle: Cycle, spindle: SpindleState | None) -> tuple[float, SpindleSt
     if cycle.feed is None or not cycle.feed > 0.0:
         raise HoleCycleError("CYCLE/TAP without a feed", "write MMPR,pitch")
     return cycle.feed if cycle.per_rev else cycle.feed / running.rpm, running
-
-
-def program_stop(event: Stop, codes: Codes, text_lines: Callable[[str], list[str]]) -> list[str]:
-    """Return M0 or M1, after the text for the operator, as ``text_lines`` writes it."""
-    code = codes["optional_stop" if event.optional else "stop"]
-    return [*(text_lines(event.text) if event.text else ()), f"M{code}"]
-
-
-def split_text(text: str, most: int) -> list[str]:
-    """Return a text in pieces of at most ``most`` bytes; at least one piece."""
-    pieces = [""]
-    for character in text:
-        if len((pieces[-1] + character).encode()) > most:
-            pieces.append("")
-        pieces[-1] += character
-    return pieces
