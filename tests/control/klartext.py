@@ -62,7 +62,7 @@ def between(blocks: list[str], first: str, last: str) -> list[str]:
 
 
 def motion(blocks: list[str]) -> list[str]:
-    """What stands between the spindle's start and its stop, without names of phases."""
+    """The blocks between spindle start and stop, without phase comments."""
     return [block for block in between(blocks, "M3", "M5") if not block.startswith(";")]
 
 
@@ -81,7 +81,7 @@ def toolpath_of(moves: Moves, arcs: Arcs | None = None) -> Toolpath:
 
 
 def proven(toolpath: Toolpath, machine: Machine, control: Control, folder: Path, **given: str) -> Verification:
-    """The proof of the program that a toolpath becomes; fails when the program does not do what was asked for.
+    """The proof of a toolpath's program; fails if the program does not make the toolpath.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Fanuc programs: the whole text of a few, and random operations of all manners written, read back and proven."""
+"""Fanuc programs: the whole text of a few, and random operations of all machining modes, written and proven."""
 
 import re
 from dataclasses import replace
@@ -51,7 +51,7 @@ POINTLESS = re.compile(r"(?<![A-Z])[XYZABCIJKRF]-?\d+(?![\d.])")
 
 
 def machine(name: str) -> Machine:
-    """A machine with a Fanuc and room for its slides."""
+    """A machine with a Fanuc and wide limits of its linear axes."""
     model = at_zero(name)
     axes = tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in model.axes)
     return replace(model, axes=axes, control=FANUC)

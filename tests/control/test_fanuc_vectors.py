@@ -127,7 +127,7 @@ def _ways(model: Machine, rotary: Floats) -> Floats:
 
 
 def chosen(model: Machine, vector: Floats, stands: Floats, inside: bool) -> Floats:
-    """What the manual says of the choice, candidate by candidate (A-79348E, B-63944EN: *angle of the rotary axis*)."""
+    """The choice as the manual describes it, one by one (A-79348E, B-63944EN, *angle of the rotary axis*)."""
     solved = inverse(model, np.zeros((1, 3)), vector[None])
     axes = [model.axes[column] for column in model.rotary]
     candidates = []

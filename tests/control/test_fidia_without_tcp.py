@@ -1,4 +1,4 @@
-"""Fidia without TCP while rotary axes turn: only for a machine whose definition says what F counts, and then proven."""
+"""Fidia without TCP while rotary axes turn: only for machines whose definition states what F counts."""
 
 from pathlib import Path
 

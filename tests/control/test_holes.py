@@ -24,7 +24,7 @@ HEIGHTS = "RAPTO,3.0,FEDTO,-20.0,"
 
 
 def cycles(lines: list[str]) -> list[str]:
-    """The blocks from the first MCALL, or what stands before it, to the last."""
+    """The blocks from the first MCALL, with those that lead to it, to the last."""
     at = [k for k, line in enumerate(lines) if line.startswith("MCALL")]
     return [line for line in lines[at[0] : at[-1] + 1] if not line.startswith(";")]
 

@@ -1,4 +1,4 @@
-"""Circles and helices in Klartext, and whether the independent reader finds them to be what was asked for."""
+"""Circles and helices in Klartext, as the independent reader finds them."""
 
 import re
 from dataclasses import replace
@@ -103,7 +103,7 @@ def by_radius(control: Control) -> Control:
 @settings(max_examples=120)
 @given(path=circles() | circles(flat=True))
 def test_circles_by_radius_are_those_that_were_planned(path: tuple[Moves, Arcs], folder: Path) -> None:
-    """The reader finds the centre by the radius; where that would be off, the writer has said the centre."""
+    """The reader finds the centre by the radius; where it would be off, the writer gives the centre."""
     machine = OWN["ucp800"]
     found = proven(toolpath_of(*path), machine, by_radius(CONTROLS["ucp800"]), folder)
     moves, arcs = path

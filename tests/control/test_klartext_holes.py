@@ -1,4 +1,4 @@
-"""Holes in Klartext, and whether the independent reader finds them to be what was asked for."""
+"""Holes in Klartext, as the independent reader finds them."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Klartext that says the surface's normal: LN blocks with NX NY NZ, read back and proven."""
+"""Klartext with surface normals: LN blocks with NX NY NZ, read back and proven."""
 
 import re
 from dataclasses import replace
@@ -57,7 +57,7 @@ def test_a_line_with_a_contact_point_says_place_and_normal_whole(post: Post) -> 
 
 
 def test_with_tcp_the_tool_axis_stands_beside_each_normal(post: Post) -> None:
-    """Without it the control would stand the tool on the normal."""
+    """Without it the control would align the tool with the normal."""
     assert cut(post, LEANING, *VECTOR)[2:] == [
         "LN X+20 Y+0 Z+5 NX+0 NY+0 NZ+1 TX+0 TY+0 TZ+1",
         "LN X+30 Y+0 Z+5 NX+0.6 NY+0 NZ+0.8 TX+0 TY+0 TZ+1",

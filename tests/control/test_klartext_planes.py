@@ -1,4 +1,4 @@
-"""Tilted planes and TCP in Klartext, and whether the independent reader finds them to be what was asked for."""
+"""Tilted planes and TCP in Klartext, as the independent reader finds them."""
 
 from dataclasses import replace
 from pathlib import Path

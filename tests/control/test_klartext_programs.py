@@ -1,4 +1,4 @@
-"""Whole Klartext programs: operations of every manner, with whatever settings, read back and proven."""
+"""Whole Klartext programs: operations in every machining mode, with random settings, read back and proven."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -86,7 +86,7 @@ def operation(n: int, kind: str, axis: np.ndarray, mode: str, tool: int, speed: 
 
 
 def placed(machine: Machine) -> Machine:
-    """With room about a workpiece and a tool in known places."""
+    """A machine with wide limits, a known workpiece zero and a known tool length."""
     axes = tuple(
         axis if axis.is_rotary else replace(axis, low=-1e4, high=1e4, home=axis.home or 0.0) for axis in machine.axes
     )

@@ -1,4 +1,4 @@
-"""Klartext without TCP: slides in place of the tip, and an F that gives the tip the feed that was asked for."""
+"""Klartext without TCP: axis positions, and an F that gives the tip its programmed feed."""
 
 import re
 from dataclasses import replace
@@ -37,7 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def placed(machine: Machine) -> Machine:
-    """With a workpiece and a tool in known places, and room enough for both."""
+    """A machine with wide limits, a known workpiece zero and a known tool length."""
     axes = tuple(axis if axis.is_rotary else replace(axis, low=-1e4, high=1e4) for axis in machine.axes)
     return replace(machine, axes=axes, workpiece_zero=(12.0, -7.0, 60.0), tool_length=110.0)
 

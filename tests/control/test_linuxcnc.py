@@ -1,4 +1,4 @@
-"""What a toolpath becomes in a LinuxCNC program, and what is said where LinuxCNC has no words."""
+"""LinuxCNC programs of toolpaths, and the messages where LinuxCNC has no words."""
 
 from pathlib import Path
 
@@ -29,7 +29,7 @@ class Post:
         return code, [line.split(" ", 1)[1] for line in out.splitlines()], err.replace(str(file), "part.cls")
 
     def __call__(self, text: str, *arguments: str) -> list[str]:
-        """The lines of a program that was proven and of which nothing had to be said."""
+        """The lines of a program that was proven without a message."""
         code, lines, err = self.all(text, *arguments)
         assert (code, unproven(err)) == (0, "")
         return lines
@@ -41,7 +41,7 @@ def post(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> Post:
 
 
 def motion(lines: list[str]) -> list[str]:
-    """What stands between the tool's length and the end of the path, without names of phases."""
+    """The blocks between the tool length and the end of the path, without phase comments."""
     part = lines[lines.index("G43 H1") + 1 : len(lines) - 1 - lines[::-1].index("G49")]
     return [line for line in part if not line.startswith("; ") and line != "M429"]
 

@@ -1,4 +1,4 @@
-"""Hole-making cycles for LinuxCNC: what is said, that it is proven, and that LinuxCNC makes of it what it should."""
+"""Drilling cycles for LinuxCNC: as written, as proven, and as LinuxCNC itself runs them."""
 
 from dataclasses import replace
 
@@ -28,7 +28,7 @@ CONTROL = load_control(MACHINE.control)
 
 
 def holes(lines: list[str]) -> list[str]:
-    """What stands between the approach and the end of the path."""
+    """The blocks between the approach and the end of the path."""
     part = lines[lines.index("G43 H1") + 2 : len(lines) - 1 - lines[::-1].index("G49")]
     return [line for line in part if not line.startswith("; ")]
 

@@ -1,4 +1,4 @@
-"""Tilted planes as Sinumerik says them: angles, both spellings on every machine, and the safe order of their blocks."""
+"""Tilted planes on a Sinumerik: angles, both commands on every machine, and the safe order of their blocks."""
 
 import itertools
 from pathlib import Path
@@ -170,7 +170,7 @@ PLANE_BLOCKS = ("SUPA", "CYCLE800", "TRANS", "AROT", "TRAORI", "TRAFOOF", "G0 B"
 
 
 def tilted(name: str, tool: int, b: float, c: float) -> str:
-    """An operation whose coordinate system stands at B and C, off the workpiece zero."""
+    """An operation whose coordinate system is tilted by B and C, off the workpiece zero."""
     matrix = turned(2, c) @ turned(1, b)
     frame = ",".join(f"{v:.9f}" for v in (12.5, -7.0, 3.0, *matrix[:, 0], *matrix[:, 1]))
     head = HEAD.replace("OP1", name).replace("LOAD/TOOL,1", f"LOAD/TOOL,{tool}")
@@ -213,7 +213,7 @@ def test_a_block_of_the_safe_order_that_is_dropped_is_missed(way: str, tmp_path:
 
 
 def _again(lines: list[str], k: int) -> bool:
-    """Whether the same is said once more nearby, at the start of the next operation or after the change of the tool."""
+    """Whether the same block is repeated nearby, at the start of the next operation or after a tool change."""
     block = lines[k].split(" ", 1)[1]
     return any(line.endswith(block) for line in lines[max(k - 30, 0) : k] + lines[k + 1 : k + 30])
 

@@ -27,14 +27,14 @@ NAMES = ("dmu65", "mikron_600u", "ucp800", "yl569")
 
 
 def machine(name: str) -> Machine:
-    """A shipped machine with room for its slides."""
+    """A shipped machine with wide limits of its linear axes."""
     model = load_machine(name)
     axes = tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in model.axes)
     return replace(model, axes=axes)
 
 
 def at_limit(model: Machine, high: bool, first: float, twist: float) -> Toolpath:
-    """A cut upright in a coordinate system on which the tool stands with the second rotary axis at its limit.
+    """A cut in a coordinate system square to the tool with the second rotary axis at its limit.
 
     ``twist`` turns X of that system about the tool, degrees.
     """

@@ -1,4 +1,4 @@
-"""Programs in several files: they do what the program in one file does, and each says all that it needs."""
+"""Programs in several files: they do what the program in one file does, and each can run alone."""
 
 import io
 import re

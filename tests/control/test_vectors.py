@@ -1,4 +1,4 @@
-"""Orientations said by the tool's vector: the machine goes where it would go by rotary words."""
+"""Tool vectors: the machine goes where it would go with rotary words."""
 
 import re
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""What each family of controls refuses, and why; all else is written and proven. The page in the docs says so."""
+"""What each family of controls refuses, and why; all else is written and proven. A page in the docs lists it."""
 
 from pathlib import Path
 from typing import Final
@@ -7,10 +7,10 @@ from tests.matrix.paths import CYCLES, Family, off_the_pole, simultaneous, three
 
 PAGE: Final = Path(__file__).parents[2] / "docs" / "controls" / "matrix.md"
 
-#: What a run without TCP has to know.
+#: Settings of a run without TCP.
 WITHOUT_TCP: Final = ("tcp=off", "zero=10,-20,30", "tool_length=83.5")
 
-#: Family of paths -> how it is drawn, and the settings of the run.
+#: Family of paths -> its strategy, and the settings of the run.
 FAMILIES: Final[dict[str, tuple[Family, tuple[str, ...]]]] = {
     "three-axis milling": (three_axis, ()),
     "three-axis milling without TCP": (three_axis, WITHOUT_TCP),
@@ -26,7 +26,7 @@ _NO_CYCLE: Final = "has no cycle on this control whose words are known"
 _LEAVES: Final = "leaves the hole as it asks for"
 _PECKS: Final = "whether G84 pecks, and how, is a parameter of the control"
 
-#: What people call families of controls, by the first of their names in definitions.
+#: Names of control families for the page, by their first key in definitions.
 NAMES: Final = {
     "fanuc_30i": "Fanuc",
     "fanuc_31i_basic": "Fanuc without options",
@@ -42,8 +42,8 @@ _FANUC: Final = {
     "BORE,NODRAG": "the angle at which the spindle stops is a parameter of the control",
 }
 
-#: Family of controls, or a control that refuses more than its family -> family of paths, or cycle -> words of the
-#: reason for which all of them are refused.
+#: Control family, or a control that refuses more than its family -> family of paths, or cycle -> part of the reason
+#: for which all of them are refused.
 REFUSED: Final[dict[str, dict[str, str]]] = {
     "fanuc_30i": _FANUC,
     "fanuc_31i_basic": {
@@ -75,7 +75,7 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
     },
 }
 
-#: Reasons for which some paths of a family are refused, on controls and machines that are as they say.
+#: Reasons for which some paths of a family are refused, on the controls and machines to which they apply.
 SOMETIMES: Final = {
     "simultaneous milling without TCP": "a rotary axis goes past the end of the turn that it displays",
 }

@@ -1,4 +1,4 @@
-"""Families of paths for any machine, as CL files: made from rotary positions, so that the machine reaches them."""
+"""Families of paths for any machine, as CL files; made from rotary positions, so that the machine reaches them."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -22,7 +22,7 @@ SPINDL/RPM,1000.0000,CLW
 #: A family draws the text of a CL file for a machine.
 Family = Callable[[st.DrawFn, Machine], str]
 
-#: All cycles: how a CL file says each of them.
+#: All cycles, as a CL file has them.
 CYCLES: Final = {
     "DRILL": "DRILL,RAPTO,3,FEDTO,-12,RTRCTO,20,MMPM,90",
     "DRILL with DWELL": "DRILL,RAPTO,3,FEDTO,-12,MMPM,90,DWELL,0.5",

@@ -1,7 +1,7 @@
-"""Every control on every shipped machine: families of paths, written, read back, run, and as they were asked for.
+"""Every control on every shipped machine: families of paths, written, read back and proven.
 
-A path is proven, or refused for the reason that ``expected`` says; a control that is not named there may refuse what it
-likes, as long as it says why and leaves no program.
+A path is proven, or refused for the reason in ``expected``. A control that is not named there may refuse any path, as
+long as it gives a reason and leaves no program.
 """
 
 import io
@@ -59,7 +59,7 @@ class Pair:
 
     @property
     def settings(self) -> tuple[str, ...]:
-        """What the control has to be told: without TCP where things are; a Fidia other words for the TCP of a head."""
+        """Settings that the pair needs: positions without TCP; other words for the TCP of a head on a Fidia."""
         if not self.control.tcp:
             return WITHOUT_TCP[1:]
         heads = [axis for axis in self.machine.axes if axis.is_rotary and axis.mount.value == "tool"]
@@ -74,7 +74,7 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Posted:
-    """What became of a CL file; no program: it was refused."""
+    """The result of posting a CL file; no program: it was refused."""
 
     code: int
     err: str
@@ -92,7 +92,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def pair_of(control: str, name: str, folder: Path) -> Pair:
-    """The definition of a pair, with room for the slides."""
+    """The definition of a pair, with wide limits of the linear axes."""
     file = folder / f"{name}_{control}.toml"
     if not file.exists():
         slides = [axis.name for axis in load_machine(name).axes if not axis.is_rotary]
@@ -103,7 +103,7 @@ def pair_of(control: str, name: str, folder: Path) -> Pair:
 
 
 def posted(text: str, pair: Pair, folder: Path, settings: Sequence[str]) -> Posted:
-    """Post a CL file; all that can come of it is a proven program, or none and a reason."""
+    """Post a CL file: the result is a proven program, or none and a reason."""
     cl, program, err = folder / "part.cls", folder / "part.nc", io.StringIO()
     cl.write_text(text, encoding="utf-8")
     program.unlink(missing_ok=True)
@@ -114,7 +114,7 @@ def posted(text: str, pair: Pair, folder: Path, settings: Sequence[str]) -> Post
 
 
 def check_proven(done: Posted, pair: Pair, settings: Sequence[str]) -> None:
-    """Every check has passed, and every point of the CL file that is no hole is met, by a search of the test's own."""
+    """Every check has passed, and every CL point that is not a hole is met, by a search of this test."""
     assert (done.code, done.failed) == (0, []), done.err
     assert sum(line.split()[1:2] == ["ok"] for line in done.err.splitlines()) >= 15
     machine = apply_setup(pair.machine, dict(setting.split("=") for setting in (*pair.settings, *settings)))
@@ -122,7 +122,7 @@ def check_proven(done: Posted, pair: Pair, settings: Sequence[str]) -> None:
 
 
 def half_digits(pair: Pair) -> tuple[float, float]:
-    """Half the last digit of places, with what half that of angles comes to where the paths are, mm; and that, rad."""
+    """Half the last digit of positions, with the effect of half the last digit of angles, mm; and the latter, rad."""
     formats = [pair.control.number_formats(three_axis) for three_axis in (False, True)]
     place = 0.5 * 10.0 ** -min(each["coordinate"].decimals for each in formats)
     angles = [each[name].decimals for each in formats for name in ("angle", "plane_angle") if name in each]
@@ -131,7 +131,7 @@ def half_digits(pair: Pair) -> tuple[float, float]:
 
 
 def check_met(run: Run, cl: Path, allowed: float, turned: float) -> None:
-    """Points are met in their order, each within what is allowed; without the planner's or the proof's help."""
+    """Points are met in order, each within what is allowed; without the planner and the proof."""
     at = 0
     for operation in read_cl(cl).operations:
         if any(isinstance(event, CycleOn) for event in operation.events):
@@ -147,7 +147,7 @@ def met(column: Floats, wanted: Floats, allowed: float) -> np.ndarray[tuple[int]
 
 
 def check_refused(done: Posted, reason: str) -> None:
-    """Nothing is left of it but a reason with a cure; it was not the proof that found it out."""
+    """There is a reason with a cure and no program; it was not the proof that refused it."""
     assert done.code in (1, 2), done.err
     assert not done.program.exists()
     errors = [line for line in done.err.splitlines() if ": error: " in line]
