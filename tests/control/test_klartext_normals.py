@@ -76,7 +76,7 @@ REFUSED = {
     (
         LEANING,
         (*NORMALS, "--set", "tcp=off", "--set", "zero=0,0,0", "--set", "tool_length=50"),
-    ): "X, Y and Z are slides",
+    ): "X, Y and Z are axis positions",
     (UPRIGHT + "CIRCLE/40,0,5,0,0,1,10,0.06,0.5,10,0\nGOTO/40,10,5\n", NORMALS): "output lines only",
     (
         UPRIGHT + "GOTO/40,0,5,0.5,0,0.8660254038 $$ 42.5,0,4.3\nGOTO/50,40,5,0,0.8,0.6 $$ 50,42.5,4.3\n",
