@@ -293,5 +293,5 @@ def test_a_feed_that_would_print_as_nothing_is_refused(folder: Path) -> None:
 
 def test_without_tcp_there_is_nothing_but_planes(folder: Path) -> None:
     text = START + "RAPID\nGOTO/10,5,50,0,0,1\nFEDRAT/MMPM,300\nGOTO/10,5,20,0.1,0,0.994987437107\n" + END
-    with pytest.raises((RefusedError, InputError), match="no words for"):
+    with pytest.raises((RefusedError, InputError), match="does not support the mode"):
         posted(read(text, folder), folder, tcp="off")

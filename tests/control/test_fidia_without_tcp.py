@@ -73,7 +73,7 @@ def test_another_rule_in_the_proof_finds_the_feeds_wrong(tmp_path: Path) -> None
 def test_where_nobody_says_it_the_refusal_names_the_cure(tmp_path: Path) -> None:
     pair = pair_of("fidia_nc15", "hs664rt", tmp_path)
     done = posted(cut(pair.machine), pair, tmp_path, WITHOUT_TCP)
-    check_refused(done, "the control has no words for without TCP; write feed_without_tcp =")
+    check_refused(done, "the control does not support the mode without TCP; write feed_without_tcp =")
 
 
 def test_no_cut_is_printed_at_the_feed_of_rapids(tmp_path: Path) -> None:

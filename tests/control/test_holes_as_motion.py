@@ -111,7 +111,7 @@ def test_what_is_made_as_motion_is_said_once_for_each_kind(post: Post) -> None:
     )
     assert code == 0
     assert "warning" not in err
-    assert "1 hole of CYCLE/DRILL made as motion: it is asked for" in err
+    assert "1 hole of CYCLE/DRILL made as motion: as requested" in err
 
 
 def test_cycles_that_can_be_said_stay_beside_those_that_cannot(post: Post) -> None:

@@ -86,13 +86,13 @@ def test_a_tilted_plane_is_made_with_tcp_and_that_is_said(post: Post) -> None:
     code, lines, err = post.all(TILTED + FOOT)
     assert code == 0
     assert "M428" in lines
-    assert "operation OP1 stands in a tilted plane, for which the control has no words; it is made with TCP" in err
+    assert "operation OP1 is in a tilted plane, which the control does not support; it is made with TCP" in err
 
 
 def test_a_tilted_plane_that_is_wished_for_is_refused(post: Post) -> None:
     code, lines, err = post.all(TILTED + FOOT, "--set", "mode=tilted")
     assert (code, lines) == (1, [])
-    assert "part.cls:1: error: operation OP1: the control has no words for tilted plane" in err
+    assert "part.cls:1: error: operation OP1: the control does not support the mode tilted plane" in err
 
 
 def test_without_tcp_feeds_are_times_and_the_slides_follow(post: Post) -> None:

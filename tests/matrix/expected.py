@@ -53,7 +53,7 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
     },
     "fidia_nc15": {
         "the same, the tool axis as a vector": _NO_VECTORS,
-        "simultaneous milling without TCP": "has no words for without TCP",
+        "simultaneous milling without TCP": "does not support the mode without TCP",
         "TAP,BRKCHP": _NO_CYCLE,
         "TAP,DEEP": _NO_CYCLE,
         "BORE,NODRAG": _NO_CYCLE,

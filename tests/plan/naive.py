@@ -53,7 +53,7 @@ class NearestPath:
     rows_beyond_limits: list[int]
 
 
-def nearest_neighbour(machine: Machine, moves: Moves, keep_slides: bool = False) -> NearestPath:
+def nearest_neighbour(machine: Machine, moves: Moves, keep_slide_limits: bool = False) -> NearestPath:
     """From row to row the branch and turn nearest to the last position that keeps the limits."""
     solutions = inverse(machine, moves.tip, moves.axis)
     columns, limits = list(machine.rotary), machine.limits
@@ -74,7 +74,7 @@ def nearest_neighbour(machine: Machine, moves: Moves, keep_slides: bool = False)
                     most = math.floor((high + 1e-5 - value[r]) / 360.0)
                     turns = min(max(turns, fewest), most) if fewest <= most else turns
                 value[r] += 360.0 * turns
-            beyond = _count_beyond(machine, moves.tip[row], value, keep_slides)
+            beyond = _count_beyond(machine, moves.tip[row], value, keep_slide_limits)
             travel = float(np.abs(value - last).sum())
             if beyond < best[0] or (beyond == best[0] and travel < best[1] - 1e-9):
                 best, branches[row], rotary[row] = (beyond, travel), branch, value
@@ -87,11 +87,11 @@ def nearest_neighbour(machine: Machine, moves: Moves, keep_slides: bool = False)
     return NearestPath(rotary, branches, changes, beyond_rows)
 
 
-def _count_beyond(machine: Machine, tip: Floats, rotary: Floats, keep_slides: bool) -> int:
+def _count_beyond(machine: Machine, tip: Floats, rotary: Floats, keep_slide_limits: bool) -> int:
     joints = slide_positions(machine, tip[None], rotary[None])[0]
     low, high = machine.limits.T
     outside = (joints < low - 1e-5) | (joints > high + 1e-5)
-    return int(outside.sum() if keep_slides else outside[list(machine.rotary)].sum())
+    return int(outside.sum() if keep_slide_limits else outside[list(machine.rotary)].sum())
 
 
 class AllPaths:

@@ -145,12 +145,14 @@ def test_most_shipped_machines_have_sides_that_travel_alike() -> None:
 
 @settings(deadline=None, max_examples=400)
 @given(st.sampled_from(sorted(ALIKE)), smooth_paths(100.0) | smooth_paths(4.0) | short_paths(30), st.booleans())
-def test_where_nothing_is_to_be_chosen_one_pass_finds_the_optimum(name: str, moves: Moves, keep_slides: bool) -> None:
+def test_where_nothing_is_to_be_chosen_one_pass_finds_the_optimum(
+    name: str, moves: Moves, keep_slide_limits: bool
+) -> None:
     machine = ALIKE[name]
-    found = choose_poses_in_one_pass(machine, moves, keep_slides)
+    found = choose_poses_in_one_pass(machine, moves, keep_slide_limits)
     assume(found is not None)
     assert found is not None
-    wanted = poses_of_states(machine, moves, choose_states(machine, moves, keep_slides), keep_slides)
+    wanted = poses_of_states(machine, moves, choose_states(machine, moves, keep_slide_limits), keep_slide_limits)
     assert np.array_equal(found.state, wanted.state)
     assert np.array_equal(found.rotary, wanted.rotary)
     assert np.array_equal(found.extremes, wanted.extremes)
@@ -168,7 +170,7 @@ def test_one_pass_does_not_depend_on_how_many_rows_go_by_at_a_time(name: str, mo
         found = choose_poses_in_one_pass(ALIKE[name], moves, False)
     assert (found is None) == (whole is None)
     if found is not None and whole is not None:
-        for column in ("state", "rotary", "outcome", "extremes", "where", "changes"):
+        for column in ("state", "rotary", "outcome", "extremes", "extreme_rows", "changes"):
             assert np.array_equal(getattr(found, column), getattr(whole, column))
 
 

@@ -90,7 +90,7 @@ def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warn
     machine = run.machine
     displays_turn = np.array([np.isfinite(machine.axes[column].display_low) for column in machine.rotary])
     for rows, moves in operations:
-        expected = choose_poses(machine, moves, keep_slides=machine.workpiece_zero is not None).rotary
+        expected = choose_poses(machine, moves, keep_slide_limits=machine.workpiece_zero is not None).rotary
         difference = run.joints[rows][:, list(machine.rotary)] - expected
         difference = np.where(displays_turn, (difference + 180.0) % 360.0 - 180.0, difference)
         differing, columns = np.nonzero(np.abs(difference) > _SAME_ANGLE)

@@ -1,4 +1,4 @@
-"""What the planner hands on."""
+"""The planner's result: motions on a machine, with problems and decisions."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -11,8 +11,10 @@ from trunnion.model.toolpath import Frame, Operation
 
 
 class PoleStrategy(StrEnum):
-    """What is done near the pole where a rotary axis would have to be too fast
-    (``trunnion.planning.pole.tool_axis_lean``)."""
+    """What is done near the pole where a rotary axis would have to be too fast.
+
+    ``trunnion.planning.pole.tool_axis_lean`` describes the strategies.
+    """
 
     OFF = "off"
     HOLD = "hold"
@@ -21,7 +23,7 @@ class PoleStrategy(StrEnum):
 
 
 class MachiningMode(StrEnum):
-    """How the machine makes an operation."""
+    """How the machine makes an operation; values are words for messages."""
 
     THREE_AXIS = "three-axis"
     TILTED = "tilted plane"
@@ -31,19 +33,16 @@ class MachiningMode(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """One operation on the machine.
+    """One operation, or a part of one, on the machine.
 
-    operation    the operation in the program's coordinate system (workpiece frame), with arcs that the control is not
-                 to be given as arcs turned into lines
-    rotary       (n, 2) float64   positions of the rotary axes, degrees, in the order of ``machine.rotary`` and in the
-                 range that each displays. The slides follow from them and the tip:
-                 ``trunnion.machines.slide_positions``
-    mode         three-axis: the tool axis is +Z of the program's coordinate system throughout
-    plane        the tilted plane as seen from the program's coordinate system, for that mode only. Its Z is the tool
-                 axis
-    deviations   where it is not made as its CL file has it
-    begins       False: it goes on with the operation of the motion before it, in another plane or from home
-    in_hole      its last row is that of a hole: the tool is drawn back no farther than its cycle says
+    operation         in the program's coordinate system (workpiece frame), with lines for arcs that the control cannot
+                      take
+    rotary            (n, 2) float64  displayed positions of the rotary axes, degrees, in the order of
+                      ``machine.rotary``. The slides follow from them and the tip: ``trunnion.machines.slide_positions``
+    plane             in the mode TILTED the plane, seen from the program's coordinate system; its Z is the tool axis
+    deviations        where it differs from its CL file
+    starts_operation  False: it continues the operation of the motion before, in another plane or from home
+    ends_in_hole      its last row is in a hole, so the tool retracts no farther than the cycle says
     """
 
     operation: Operation
@@ -59,7 +58,7 @@ class Motion:
 
     @property
     def three_axis(self) -> bool:
-        """Whether the rotary axes stand still at the program's own coordinate system."""
+        """Whether the tool axis is +Z of the program throughout."""
         return self.mode is MachiningMode.THREE_AXIS
 
     def as_written(self) -> Operation:
@@ -68,7 +67,7 @@ class Motion:
 
 
 class DecisionTopic(StrEnum):
-    """What a decision was about."""
+    """What a decision is about."""
 
     START = "start"
     POLE = "pole"
@@ -84,10 +83,10 @@ class DecisionTopic(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What was decided before a row, and the reason for it, in words.
+    """What the planner decided before a row, and why, as text.
 
-    row   row of the operation as the CL file has it, arcs that became lines counted; -1: about all of it
-    line  line of the CL file
+    line  of the CL file
+    row   of the operation, in which arcs that became lines count as several; -1: it is about the whole operation
     """
 
     file: str
@@ -104,9 +103,9 @@ class Decision:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """All operations of one program, what speaks against running them, and why they are planned as they are.
+    """The motions of one program, with problems and decisions.
 
-    ``problems`` with severity error mean that the program must not run as it is.
+    A problem of severity error means that the program must not run as it is.
     """
 
     motions: tuple[Motion, ...]

@@ -1,9 +1,9 @@
-"""The planner: how the machine makes the motion that a toolpath asks for.
+"""The planner: how a machine makes a toolpath.
 
-In:     operations in the CAM's coordinate systems, and a machine.
-Out:    ``Motion``: the same operations in the program's coordinate system, with five axis positions a row, and what
-        was found wrong on the way.
-Knows nothing of text, neither of CL files nor of NC programs.
+In:     operations in the CAM's coordinate systems, a machine, options of the user and capabilities of the control.
+Out:    ``Plan``: motions in the program's coordinate system with rotary positions for every row, problems, and
+        decisions.
+It knows nothing of text, neither of CL files nor of NC programs.
 """
 
 from trunnion.planning.options import ControlCapabilities, PlanOptions

@@ -7,13 +7,13 @@ from trunnion.machines import Machine
 from trunnion.planning.poses.states import LIMIT_TOLERANCE
 
 
-def limits_of(machine: Machine, keep_slides: bool) -> tuple[Floats, Floats]:
+def limits_of(machine: Machine, keep_slide_limits: bool) -> tuple[Floats, Floats]:
     """Lowest and highest values of all axes, (5,) float64 each, mm or degrees.
 
-    They are infinite where no limit is to be kept; without ``keep_slides`` that is so for slides.
+    They are infinite where no limit is to be kept; without ``keep_slide_limits`` that is so for slides.
     """
     low, high = machine.limits.T.copy()
-    if not keep_slides:
+    if not keep_slide_limits:
         slides = np.array(machine.linear)
         low[slides], high[slides] = -np.inf, np.inf
     return low, high

@@ -71,14 +71,14 @@ class PlannedOperation:
 def plan_operation(prepared: PreparedOperation) -> PlannedOperation:
     """Choose the axis positions of an operation."""
     request, file, moves = prepared.request, prepared.file, prepared.operation.moves
-    machine, options, keep_slides = request.machine, request.options, request.keeps_slide_limits
-    poses = choose_poses(machine, moves, keep_slides)
+    machine, options, keep_slide_limits = request.machine, request.options, request.keeps_slide_limits
+    poses = choose_poses(machine, moves, keep_slide_limits)
     if (poses.outcome == OUT_OF_REACH).any():
         problems = tuple(pose_problems(file, moves, poses, machine))
         return PlannedOperation(prepared, prepared.operation, poses, problems=problems, log=tuple(prepared.log))
     near_pole = handle_pole(prepared, poses)
     poses = near_pole.poses
-    chosen = ChosenPoses(machine, file, near_pole.operation, poses.rotary, poses.state, keep_slides)
+    chosen = ChosenPoses(machine, file, near_pole.operation, poses.rotary, poses.state, keep_slide_limits)
     rewinds = find_rewinds(chosen, poses, options.clearance)
     feeds = limit_feeds(prepared.with_operation(near_pole.operation), poses, rewinds, near_pole.deviations)
     problems = (

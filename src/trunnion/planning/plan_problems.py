@@ -27,7 +27,7 @@ def unknown_speed_problems(file: str, request: PlanRequest) -> Iterable[Problem]
     machine, options = request.machine, request.options
     names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
     if names and (options.pole_strategy is not PoleStrategy.OFF or options.lower_feed):
-        what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: it is never too fast"
+        what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: its speed is not limited"
         yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING)
 
 
@@ -49,7 +49,7 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
             what = "a rewind within cutter radius compensation"
             yield Problem(chosen.file, line, what, "output the path without CUTCOM, or split the operation")
         joints = retract_positions(machine, moves, rewind)
-        column = slide_beyond_limits(machine, joints) if chosen.keep_slides else None
+        column = slide_beyond_limits(machine, joints) if chosen.keep_slide_limits else None
         if column is not None:
             values = joints[:, column]
             value = values.max() if values.max() > machine.axes[column].high else values.min()

@@ -32,7 +32,7 @@ from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.planning.options import CycleObjection
 
 #: The reason for holes as motion although the control has their cycles.
-REQUESTED: Final = "it is asked for"
+REQUESTED: Final = "as requested"
 
 #: Methods that motion can replace.
 CONVERTIBLE: Final = frozenset(

@@ -1,1 +1,1 @@
-"""Points between CL points, and arcs as chords."""
+"""Points between CL points, and lines in place of arcs."""

@@ -1,10 +1,11 @@
-"""Arcs into lines, where the control is not to be given an arc.
+"""Which arcs a control takes, and lines for the others.
 
-A control turns the tool tip about X, Y or Z of its coordinate system. An arc about any other direction, or one on
-which the tool axis changes, becomes lines that leave the arc by no more than a chord error.
+A control moves the tip about X, Y or Z of its coordinate system. An arc about any other direction, or one on which the
+tool axis changes, becomes lines that leave the arc by no more than a chord tolerance.
 """
 
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -12,26 +13,26 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.toolpath import Arcs, Kind, Operation
 from trunnion.planning.linearization.row_insertion import insert_rows
 
-#: Directions are taken as along a coordinate axis within this sine; seven printed decimals give 1e-7.
-_PARALLEL_SINE = 1e-6
+#: A direction is that of a coordinate axis within this sine; seven printed decimals give 1e-7.
+_PARALLEL_SINE: Final = 1e-6
 
-#: Start and end of an arc that lie nearer to each other than this, mm, could print as the same point.
-_DISTINCT = 0.005
+#: A start and an end nearer to each other than this, mm, could print as the same point.
+_DISTINCT: Final = 0.005
 
-#: What four decimals of start, end and centre come to in the radius of an arc, mm.
-_PRINTED_RADIUS_ERROR = 3e-4
+#: Error of an arc's radius if start, end and centre have four decimals, mm.
+_PRINTED_RADIUS_ERROR: Final = 3e-4
 
-#: An arc that rises by less than this, mm, is flat: nobody prints so many digits.
-_FLAT = 1e-5
+#: An arc that rises by less than this, mm, is flat: no control takes so many digits.
+_FLAT: Final = 1e-5
 
 
 def arc_sweeps(operation: Operation) -> Floats:
-    """Angle that the tip turns through on each arc.
+    """Angle that the tip sweeps on each arc.
 
     Returns
     -------
     (m,) float64
-        Radians, always positive; a full circle is 2 pi, and whole turns count.
+        Radians, positive; 2 pi for a full circle, and whole turns count.
     """
     arcs, tip = operation.arcs, operation.moves.tip
     start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
@@ -39,13 +40,13 @@ def arc_sweeps(operation: Operation) -> Floats:
     start_in_plane = start - np.einsum("ij,ij->i", start, arcs.normal)[:, None] * arcs.normal
     along = np.einsum("ij,ij->i", start_in_plane, end)
     angle = np.mod(np.arctan2(across, along), 2.0 * np.pi)
-    # start = end in the plane is a full circle; rounding of the file may put the end a hair before or after it
+    # If start and end are the same in the plane it is a full circle; the file's rounding may part them a little.
     closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < 1e-4
     return np.asarray(np.where(closed, 2.0 * np.pi, angle) + 2.0 * np.pi * arcs.full_turns)
 
 
 def radius_change(operation: Operation) -> Floats:
-    """(m,) float64: how much farther from the axis of its arc an arc ends than it starts, mm."""
+    """(m,) float64: how much farther from its axis an arc ends than it starts, mm."""
     arcs, tip = operation.arcs, operation.moves.tip
     start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
     away = [np.linalg.norm(np.cross(arcs.normal, point), axis=1) for point in (start, end)]
@@ -53,29 +54,42 @@ def radius_change(operation: Operation) -> Floats:
 
 
 def arcs_a_control_takes(operation: Operation, only_about_z: bool = False, by_angle: bool = False) -> Flags:
-    """(m,) bool: the arc may be left to a control.
+    """Arcs that a control can take, as far as their geometry goes.
 
-    It turns about X, Y or Z, and the tool axis is the same at its start and its end. It also ends clear of its start,
-    or right at it: a control takes an arc whose end prints as its start for a full circle, be it a tiny one in truth.
-    Where a control is told a helix by its angle (``by_angle``), that leads to the end only if start and end are as far
-    from the centre. ``only_about_z``: it knows no others.
+    They turn about X, Y or Z, and the tool axis is the same at start and end. They also end clear of their start or
+    exactly at it, because an arc whose end prints as its start becomes a full circle on the control, however short it
+    really is.
+
+    Parameters
+    ----------
+    operation
+        In the coordinates of its blocks.
+    only_about_z
+        The control takes arcs about Z only.
+    by_angle
+        The control takes a helix by its angle. It then meets the end only if start and end are equally far from the
+        centre.
+
+    Returns
+    -------
+    (m,) bool
+        One entry for each arc.
     """
     arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
-    aside = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
-    about_axis = (aside if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _PARALLEL_SINE
-    steady = np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _PARALLEL_SINE
+    off_z = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
+    fits = (off_z if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _PARALLEL_SINE
+    fits &= np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _PARALLEL_SINE
     if by_angle:
         rises = (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.0) | (arcs.full_turns > 0)
-        steady &= ~rises | (np.abs(radius_change(operation)) < _PRINTED_RADIUS_ERROR)
-    apart = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
+        fits &= ~rises | (np.abs(radius_change(operation)) < _PRINTED_RADIUS_ERROR)
+    distance = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
     in_plane = np.linalg.norm(np.cross(tip[arcs.row] - tip[arcs.row - 1], arcs.normal), axis=1)
-    return np.asarray(
-        about_axis & steady & ((in_plane > _DISTINCT) | (apart == 0.0) | ((in_plane == 0.0) & (apart > _DISTINCT)))
-    )
+    fits &= (in_plane > _DISTINCT) | (distance == 0.0) | ((in_plane == 0.0) & (distance > _DISTINCT))
+    return np.asarray(fits)
 
 
 def flat_arcs(operation: Operation) -> Flags:
-    """(m,) bool: the arc ends at the height of its start along its normal, and makes no whole turns besides."""
+    """(m,) bool: the arc ends at the height of its start, along its normal, and makes no further whole turns."""
     arcs, tip = operation.arcs, operation.moves.tip
     rise = np.einsum("ij,ij->i", tip[arcs.row] - tip[arcs.row - 1], arcs.normal)
     return np.asarray((np.abs(rise) < _FLAT) & (arcs.full_turns == 0))
@@ -89,21 +103,21 @@ def arcs_about_tool(operation: Operation) -> Flags:
 
 
 def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:
-    """Replace the arcs that are not kept by lines.
+    """Replace arcs by lines.
 
     Parameters
     ----------
     operation
-        Its arcs' rows have a row before them, which is where the arc starts.
+        No arc may be its first row, as an arc starts at the row before.
     keep : (m,) bool
         Arcs that stay arcs.
     chord_tolerance
-        Largest distance between arc and line, mm.
+        The greatest distance between arc and line, mm.
 
     Returns
     -------
     Operation
-        The tool axis turns evenly along the arc's length; added rows carry the line of the arc's end point.
+        The tool axis turns evenly along an arc; new rows have the line number of the arc's end.
     """
     if bool(keep.all()):
         return operation
@@ -111,7 +125,7 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
     sweep = arc_sweeps(operation)
     copies = arc_piece_counts(operation, keep, chord_tolerance)
     source = np.repeat(np.arange(len(moves)), copies)
-    new_row = np.cumsum(copies) - 1  # where each old row ends up: the last of its copies
+    new_row = np.cumsum(copies) - 1  # the last copy of each row is the row itself
     tip, axis = moves.tip[source], moves.axis[source]
     kind = moves.kind[source]
     for m in np.flatnonzero(~keep):
@@ -124,7 +138,7 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
 
 
 def arc_piece_counts(operation: Operation, keep: Flags, chord_tolerance: float) -> Ints:
-    """(n,) int64: into how many lines the move to each row is cut; 1 for all but the arcs that are not kept."""
+    """(n,) int64: number of lines for the move to each row; 1 except for arcs that are not kept."""
     arcs = operation.arcs
     half = np.sqrt(np.minimum(chord_tolerance / (2.0 * np.maximum(arcs.radius, chord_tolerance)), 0.25))
     pieces = np.where(keep, 1, np.ceil(arc_sweeps(operation) / (4.0 * np.arcsin(half)))).astype(np.int64)
@@ -153,7 +167,7 @@ def source_rows(before: Operation, after: Operation) -> Ints:
 
 
 def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> tuple[Floats, Floats]:
-    """``pieces`` points on arc ``m``, the start left out and the end exact, and the tool axes there."""
+    """Points on arc ``m`` at the ends of ``pieces`` equal parts, and the tool axes there."""
     moves, arcs = operation.moves, operation.arcs
     row, centre, normal = int(arcs.row[m]), arcs.centre[m], arcs.normal[m]
     part = np.arange(1, pieces + 1) / pieces
@@ -163,14 +177,14 @@ def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> t
     angle = (part * sweep)[:, None]
     tip = centre + np.cos(angle) * radial + np.sin(angle) * np.cross(normal, radial)
     tip = tip + (rise_start + part * (rise_end - rise_start))[:, None] * normal
-    # the file rounds centre and end: spread what is missing at the end over the arc, so that the end is met
+    # The file rounds centre and end: the difference at the end is spread over the arc.
     tip += part[:, None] * (moves.tip[row] - tip[-1])
-    tip[-1] = moves.tip[row]  # to the last digit, too
+    tip[-1] = moves.tip[row]  # exactly
     return tip, great_circle_points(moves.axis[row - 1], moves.axis[row], part)
 
 
 def great_circle_points(first: Floats, last: Floats, part: Floats) -> Floats:
-    """Great-circle turn from ``first`` to ``last`` (unit vectors), at the fractions ``part``."""
+    """(k, 3) float64: unit vectors on the great circle from ``first`` to ``last``, at shares ``part`` (k,) of it."""
     angle = float(np.arctan2(np.linalg.norm(np.cross(first, last)), first @ last))
     if angle < 1e-12:
         return np.repeat(last[None, :], len(part), axis=0)

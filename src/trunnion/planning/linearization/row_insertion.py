@@ -1,4 +1,4 @@
-"""Rows put in before rows of an operation, with everything that is counted by rows."""
+"""New rows before the rows of an operation: columns, arcs and events move along."""
 
 from dataclasses import replace
 
@@ -9,11 +9,11 @@ from trunnion.model.toolpath import Moves, Operation
 
 
 def insert_rows(operation: Operation, copies: Ints, tip: Floats, axis: Floats, kind: Codes) -> Operation:
-    """An operation each of whose rows becomes ``copies`` (n,) rows, of which the last is the row itself.
+    """The operation with ``copies`` (n,) rows in place of each row, of which the last is the row itself.
 
-    ``tip``, ``axis`` and ``kind`` are those of the new rows; all else the new ones have of the row that they lead to,
-    but for the surface's normal, which nobody knows there.
-    What happens before a row happens before the first of its copies.
+    ``tip``, ``axis`` and ``kind`` are the columns of all rows of the result. New rows copy everything else from the row
+    that they lead to, except the surface normal, which is unknown there. Events stay before the first copy of their
+    row.
     """
     moves = operation.moves
     source = np.repeat(np.arange(len(moves)), copies)

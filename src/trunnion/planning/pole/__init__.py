@@ -1,1 +1,1 @@
-"""Near the pole: how far the tool axis may lean, and where the motion deviates from the CL file."""
+"""Near the pole: the tool axis leans so that the rotary axes need not be too fast."""

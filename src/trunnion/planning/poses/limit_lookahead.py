@@ -1,9 +1,10 @@
-"""Where a pose leads to if nothing is changed: the limit that it runs into.
+"""Lookahead: the limit that a pose runs into if nothing is changed.
 
-Decisions are explained by this, they are not made by it.
+It explains decisions; it does not make them.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -14,13 +15,13 @@ from trunnion.planning.axis_limits import limit_violation_text, limits_of, outsi
 from trunnion.planning.poses.optimizer import NO_CONTACT
 from trunnion.planning.poses.selection import contact_of
 
-#: Rows looked at together, at first; then twice as many each time.
-_CHUNK = 256
+#: Rows looked at together: at first so many, then twice as many each time.
+_CHUNK: Final = 256
 
 
 @dataclass(frozen=True, slots=True)
 class LimitHit:
-    """The first row at which an axis would leave its limits, the column of the axis, and where it would go."""
+    """The first row at which an axis would leave its limits: its column, and the value it would have, mm or degrees."""
 
     row: int
     column: int
@@ -34,51 +35,59 @@ class LimitHit:
 def degrees_out_of_reach(machine: Machine, axis: Floats) -> float:
     """Degrees by which a tool axis (3,) lies outside of what the rotary axes reach.
 
-    The tool axis, the first rotary axis and the second are corners of a spherical triangle whose other two sides are
-    those between the rotary axes and from the second one to the spindle.
+    The tool axis, the first and the second rotary axis are corners of a spherical triangle. Its other two sides are the
+    angles between the rotary axes, and between the second one and the spindle.
     """
     first, second = (np.array(machine.axes[column].direction) for column in machine.rotary)
     spindle = np.array(machine.spindle_direction)
-    side, one, two = (_between(first, axis), _between(first, second), _between(second, spindle))
-    return max(abs(one - two) - side, side - min(one + two, 360.0 - one - two))
+    needed, one, two = (_angle(first, axis), _angle(first, second), _angle(second, spindle))
+    return max(abs(one - two) - needed, needed - min(one + two, 360.0 - one - two))
 
 
-def _between(a: Floats, b: Floats) -> float:
+def _angle(a: Floats, b: Floats) -> float:
     """Angle between two vectors, degrees."""
     return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
 
 
 def first_limit_hit(
-    machine: Machine, moves: Moves, row: int, branch: int, pose: Floats, keep_slides: bool
+    machine: Machine, moves: Moves, row: int, branch: int, pose: Floats, keep_slide_limits: bool
 ) -> LimitHit | None:
     """Follow one branch from ``pose`` (2,), degrees, into ``row`` and on, until a limit is left or the cut ends."""
-    low, high = limits_of(machine, keep_slides)
+    low, high = limits_of(machine, keep_slide_limits)
     last, first, count = pose, row, _CHUNK
     while first < len(moves):
-        touches = contact_of(moves, slice(first, first + count)) != NO_CONTACT
-        touches[0] |= first == row
-        part = slice(first, first + (len(touches) if touches.all() else int(np.argmin(touches))))
-        if part.stop == first:
+        in_contact = contact_of(moves, slice(first, first + count)) != NO_CONTACT
+        in_contact[0] |= first == row
+        end = first + (len(in_contact) if in_contact.all() else int(np.argmin(in_contact)))
+        if end == first:
             return None
-        values = continue_in_branch(machine, moves, part, branch, last)
-        joints = slide_positions(machine, moves.tip[part], values)
-        joints[:, list(machine.rotary)] = values
+        rows = slice(first, end)
+        rotary = continue_in_branch(machine, moves, rows, branch, last)
+        joints = slide_positions(machine, moves.tip[rows], rotary)
+        joints[:, list(machine.rotary)] = rotary
         outside = outside_limits(joints, low, high)
         if outside.any():
             k = int(np.argmax(outside.any(axis=1)))
             column = int(np.argmax(outside[k]))
             return LimitHit(first + k, column, float(joints[k, column]))
-        if not touches.all():
+        if not in_contact.all():
             return None
-        last, first, count = values[-1], part.stop, 2 * count
+        last, first, count = rotary[-1], end, 2 * count
     return None
 
 
 def continue_in_branch(machine: Machine, moves: Moves, rows: slice | Ints, branch: int, last: Floats) -> Floats:
-    """Rotary values, degrees, (k, 2), of consecutive rows in one branch, each the nearer way from the one before.
+    """Rotary values of consecutive rows in one branch, each the shorter way from the one before.
 
+    Parameters
+    ----------
     last : (2,) float64
-        Where the axes stand before.
+        The positions before, degrees.
+
+    Returns
+    -------
+    (k, 2) float64
+        Degrees, as they wind.
     """
     solutions = inverse(machine, moves.tip[rows], moves.axis[rows])
     values = solutions.joints[branch][:, list(machine.rotary)]

@@ -69,10 +69,10 @@ def contact_of(moves: Moves, rows: slice = slice(None)) -> Codes:
 
 
 def search_space_of(
-    machine: Machine, kinematics: KinematicParameters, states: States, keep_slides: bool
+    machine: Machine, kinematics: KinematicParameters, states: States, keep_slide_limits: bool
 ) -> SearchSpace:
-    """What there is to choose from on a machine; limits of slides count only with ``keep_slides``."""
-    low, high = limits_of(machine, keep_slides)
+    """What there is to choose from on a machine; limits of slides count only with ``keep_slide_limits``."""
+    low, high = limits_of(machine, keep_slide_limits)
     slides = list(machine.linear)
     kept = bool(np.isfinite(low[slides]).any() or np.isfinite(high[slides]).any())
     first, second = (machine.axes[column] for column in machine.rotary)
@@ -83,13 +83,13 @@ def search_space_of(
     )
 
 
-def choose_states(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
+def choose_states(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Codes:
     """(n,) uint8: the state of each row that costs least, with the bits of ``trunnion.planning.poses.optimizer``.
 
     The preferred side is the definition's, or else the one on which most cutting stretches begin when none is
     preferred. Where all begin on one side, preferring it changes nothing.
     """
-    state = cheapest_states(machine, moves, keep_slides)
+    state = cheapest_states(machine, moves, keep_slide_limits)
     cuts = contact_of(moves)
     begins = np.flatnonzero((cuts != NO_CONTACT) & (np.append(NO_CONTACT, cuts[:-1]) == NO_CONTACT))
     sides = states_of(machine).table[state[begins] & STATE_BITS, 0]
@@ -97,13 +97,13 @@ def choose_states(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
         return state
     ones = int(sides.sum())
     often = int(sides[0]) if 2 * ones == len(sides) else int(2 * ones > len(sides))
-    return cheapest_states(machine, moves, keep_slides, often)
+    return cheapest_states(machine, moves, keep_slide_limits, often)
 
 
-def cheapest_states(machine: Machine, moves: Moves, keep_slides: bool, prefer: int = -1) -> Codes:
+def cheapest_states(machine: Machine, moves: Moves, keep_slide_limits: bool, prefer: int = -1) -> Codes:
     """(n,) uint8: the states that cost least when branch ``prefer`` is preferred; -1: none."""
     states, kinematics = states_of(machine), kinematic_parameters(machine)
-    space = search_space_of(machine, kinematics, states, keep_slides)
+    space = search_space_of(machine, kinematics, states, keep_slide_limits)
     backpointers = np.empty((len(moves), len(states)), np.uint8)
     state = np.empty(len(moves), np.uint8)
     work = workspace(len(states))
@@ -114,33 +114,33 @@ def cheapest_states(machine: Machine, moves: Moves, keep_slides: bool, prefer: i
     return state
 
 
-def choose_nearest_states(machine: Machine, moves: Moves, keep_slides: bool) -> Codes:
+def choose_nearest_states(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Codes:
     """As ``choose_states``, but from row to row the nearest state whatever comes after: something to compare with."""
     states, kinematics = states_of(machine), kinematic_parameters(machine)
     backpointers = np.empty((len(moves), len(states)), np.uint8)
     state = np.empty(len(moves), np.uint8)
-    space = search_space_of(machine, kinematics, states, keep_slides)
+    space = search_space_of(machine, kinematics, states, keep_slide_limits)
     end = find_nearest(kinematics, space, states.table, moves.tip, moves.axis, backpointers, *workspace(len(states)))
     trace_back(backpointers, end, state)
     return state
 
 
-def choose_poses(machine: Machine, moves: Moves, keep_slides: bool) -> PlannedPoses:
+def choose_poses(machine: Machine, moves: Moves, keep_slide_limits: bool) -> PlannedPoses:
     """Axis positions for every row in the states that cost least, from the home position of the rotary axes on.
 
     Parameters
     ----------
     machine
-        Its limits are judged; those of the slides only with ``keep_slides``.
+        Its limits are judged; those of the slides only with ``keep_slide_limits``.
     moves
         In the workpiece frame.
     """
-    return choose_poses_in_one_pass(machine, moves, keep_slides) or poses_of_states(
-        machine, moves, choose_states(machine, moves, keep_slides), keep_slides
+    return choose_poses_in_one_pass(machine, moves, keep_slide_limits) or poses_of_states(
+        machine, moves, choose_states(machine, moves, keep_slide_limits), keep_slide_limits
     )
 
 
-def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slides: bool) -> PlannedPoses | None:
+def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slide_limits: bool) -> PlannedPoses | None:
     """As ``follow``, in a single pass; None if there is anything to choose.
 
     Where both sides of a machine travel the same in a cut, the optimum is the nearest neighbour's choice if that needs
@@ -153,7 +153,10 @@ def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slides: bool) 
     if any(axis.preferred_sign for axis in machine.axes) or not branches_travel_alike(machine):
         return None
     kinematics, poses = kinematic_parameters(machine), _empty(np.empty(len(moves), np.uint8))
-    space, display_low = search_space_of(machine, kinematics, states_of(machine), keep_slides), _display_low(machine)
+    space, display_low = (
+        search_space_of(machine, kinematics, states_of(machine), keep_slide_limits),
+        _display_low(machine),
+    )
     progress = np.array([*space.start, math.remainder(space.start[0], 360.0), 0.0, 1.0, 0.0])
     room, joints = np.empty((2, min(_CHUNK, len(moves)), 7)), np.empty(5)
 
@@ -183,10 +186,10 @@ def branches_travel_alike(machine: Machine) -> bool:
     return bool(abs(float(first @ second)) < _PARALLEL_SINE and across < _PARALLEL_SINE)
 
 
-def poses_of_states(machine: Machine, moves: Moves, state: Codes, keep_slides: bool) -> PlannedPoses:
+def poses_of_states(machine: Machine, moves: Moves, state: Codes, keep_slide_limits: bool) -> PlannedPoses:
     """Axis positions as ``follow`` gives them, for states (n,) uint8 of ``choose_states``."""
     states, kinematics = states_of(machine), kinematic_parameters(machine)
-    space = search_space_of(machine, kinematics, states, keep_slides)
+    space = search_space_of(machine, kinematics, states, keep_slide_limits)
     poses = _empty(state)
     place_rows(
         kinematics, space, states.table, _display_low(machine), moves.tip, moves.axis, state,

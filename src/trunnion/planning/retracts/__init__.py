@@ -1,1 +1,1 @@
-"""Retracts: how far the tool draws back, and rewinds of rotary axes."""
+"""How far the tool retracts, and rewinds of rotary axes in the cut."""

@@ -1,1 +1,1 @@
-"""Speeds of rotary axes, and times."""
+"""Speeds of rotary axes at the programmed feed, and durations."""

@@ -1,4 +1,4 @@
-"""How long an operation takes on the machine, by ``trunnion.machines.motion_time``: an estimate for people."""
+"""How long an operation takes on the machine: an estimate for people, by ``trunnion.machines.motion_time``."""
 
 import numpy as np
 
@@ -13,9 +13,10 @@ from trunnion.planning.speed.rotary_speed import REST_LENGTH, tip_speeds
 
 
 def row_durations(machine: Machine, motion: Motion) -> Floats:
-    """(n,) float64: seconds of every row, the first one left out: nobody knows from where it comes.
+    """(n,) float64: duration of every row, s; that of the first one is not known and left out.
 
-    The axes stand still for dwells and stops, and where the tip begins or ceases to rest; dwells take no time here.
+    The axes stop for dwells and program stops, and where the tip begins or ceases to rest. Dwells themselves take no
+    time here.
     """
     moves, arcs = motion.operation.moves, motion.operation.arcs
     joints = slide_positions(machine, moves.tip, continuous_positions(machine, motion.rotary))
@@ -33,6 +34,6 @@ def row_durations(machine: Machine, motion: Motion) -> Floats:
 
 
 def operation_seconds(machine: Machine, motion: Motion) -> float:
-    """What an operation takes from its first point to its last, dwells included where they are in seconds."""
+    """Duration of an operation from its first point to its last, s, with the dwells that are given in seconds."""
     dwells = [e.amount for e in motion.operation.events if isinstance(e, Dwell) and not e.revolutions]
     return float(row_durations(machine, motion).sum()) + sum(dwells)

@@ -1,7 +1,8 @@
 """How fast the rotary axes would have to turn at the programmed feed, and the feed at which they can.
 
-The feed holds for the tip, so a row takes its tip's way over the feed, however far the rotary axes turn meanwhile.
-Where the tip rests, the feed is taken for degrees a minute of the axis that turns farthest. Rapids take what they need.
+The feed is that of the tip, so a row lasts the tip's path over the feed, however far the rotary axes turn meanwhile.
+Where the tip rests, the feed counts as degrees per minute of the axis that turns farther. Rapids take the time they
+need.
 """
 
 import math
@@ -16,10 +17,10 @@ from trunnion.machines import Machine
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 from trunnion.planning.rotary_positions import is_endless
 
-#: Share of an axis' rapid speed that is planned for: printed numbers are rounded, and steps may be small.
+#: Share of an axis' rapid speed that is used: printed numbers are rounded, which counts where steps are small.
 USABLE_SHARE: Final = 0.99
 
-#: No feed is lowered below this, mm/min: what is printed of it must not become 0.
+#: No feed is lowered below this, mm/min, so that it does not print as 0.
 _LEAST_FEED: Final = 0.1
 
 #: A tip that moves by less than this, mm, rests.
@@ -28,10 +29,11 @@ REST_LENGTH: Final = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class FastestRow:
-    """The row that asks most of a rotary axis' rapid speed, and how many rows ask for more than all of it.
+    """The row that needs the largest share of a rotary axis' rapid speed.
 
     share  1: all of it
     axis   0 or 1, the first or the second rotary axis
+    count  how many rows need more than all of it
     """
 
     share: float
@@ -42,7 +44,11 @@ class FastestRow:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OffPartTurns:
-    """Growing rows before which the axes turn off the part, row (k,) int64, and where they stand then, after (k, 2)."""
+    """Rows before which the rotary axes turn while the tool is off the part.
+
+    row    (k,) int64      ascending
+    after  (k, 2) float64  displayed positions after these turns, degrees
+    """
 
     row: Ints
     after: Floats
@@ -53,7 +59,7 @@ NO_TURNS: Final = OffPartTurns(np.zeros(0, np.int64), np.zeros((0, 2)))
 
 
 def tip_speeds(operation: Operation) -> Floats:
-    """(n,) float64: programmed speed of the tip, mm/min, whatever its unit is; NaN where nobody says it."""
+    """(n,) float64: programmed speed of the tip, mm/min, also where the feed is per revolution; NaN if unknown."""
     moves = operation.moves
     if not moves.per_rev.any():
         return moves.feed
@@ -65,53 +71,68 @@ def tip_speeds(operation: Operation) -> Floats:
 
 
 def find_fastest_row(machine: Machine, operation: Operation, rotary: Floats, off_part: OffPartTurns) -> FastestRow:
-    """Where the rotary axes would have to be fastest.
+    """Find where the rotary axes would have to be fastest.
 
     Parameters
     ----------
     operation
         In the program's coordinate system.
     rotary : (n, 2) float64
-        Degrees, as the axes display them.
-    loose
-        Rows before which the axes turn off the part.
+        Displayed positions, degrees.
+    off_part
+        Turns that take place outside of the rows.
     """
     share = np.empty((0, 2))
     return FastestRow(*_speed_shares(*_kernel_columns(machine, operation, rotary), off_part.row, off_part.after, share))
 
 
 def speed_shares(machine: Machine, operation: Operation, rotary: Floats, off_part: OffPartTurns = NO_TURNS) -> Floats:
-    """(n, 2) float64: share of each rotary axis' rapid speed that each row asks for; arguments as for
-    ``find_fastest_row``."""
+    """(n, 2) float64: share of each rotary axis' rapid speed that each row needs.
+
+    Parameters as for ``find_fastest_row``.
+    """
     share = np.zeros((len(rotary), 2))
     _speed_shares(*_kernel_columns(machine, operation, rotary), off_part.row, off_part.after, share)
     return share
 
 
 def max_rotary_steps(machine: Machine, operation: Operation) -> tuple[Floats, Flags]:
-    """How far each rotary axis gets in each row, degrees, (n, 2); and which rows no feed binds, (n,) bool.
+    """How far each rotary axis can turn in each row.
 
-    The latter are rapids, rows in which the tip rests, and the first one, to which the axes are brought beforehand.
+    Returns
+    -------
+    max_step : (n, 2) float64
+        Degrees.
+    unbound : (n,) bool
+        Rows whose duration no feed fixes: rapids, rows in which the tip rests, and the first one, as the axes are
+        brought there beforehand.
     """
     moves = operation.moves
-    way = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
+    length = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
     rate = tip_speeds(operation)
-    bound = (moves.kind != Kind.RAPID) & (way >= REST_LENGTH) & (rate > 0.0)
+    bound = (moves.kind != Kind.RAPID) & (length >= REST_LENGTH) & (rate > 0.0)
     bound[0] = False
-    far = np.full((len(moves), 2), np.inf)
+    max_step = np.full((len(moves), 2), np.inf)
     for r, column in enumerate(machine.rotary):
-        axis = machine.axes[column]
-        far[bound, r] = USABLE_SHARE * (math.inf if axis.rapid is None else axis.rapid) * way[bound] / rate[bound]
-    return far, ~bound
+        rapid = machine.axes[column].rapid
+        max_step[bound, r] = USABLE_SHARE * (math.inf if rapid is None else rapid) * length[bound] / rate[bound]
+    return max_step, ~bound
 
 
 def lower_feeds(
     machine: Machine, operation: Operation, rotary: Floats, off_part: OffPartTurns, together: Ints
 ) -> tuple[Moves, Ints]:
-    """The moves with feeds at which no rotary axis exceeds its rapid speed, and the rows whose feed is lower now.
+    """Lower feeds so that no rotary axis exceeds its rapid speed.
 
+    Parameters
+    ----------
     together : (n,) int64
-        Rows with the same growing number are pieces of one arc, and get one feed.
+        Ascending; rows with the same number are pieces of one arc and get one feed.
+
+    Returns
+    -------
+    moves, rows
+        The moves, and the rows (k,) whose feed is lower now.
     """
     moves = operation.moves
     share = speed_shares(machine, operation, rotary, off_part).max(axis=1)
