@@ -190,6 +190,7 @@ class Run:
     rotary         (n, 2) float64  positions of the rotary axes as they wind, deg, as in ``machine.rotary``
     start          (5,)   float64  axis values before row 0
     normals                        a ``SurfaceNormals``: where blocks say that of the surface (LN)
+    uses_length_numbers            programs of this control select a tool length by its number (H), the column ``edge``
 
     Worked out of these when asked for:
 
@@ -229,6 +230,7 @@ class Run:
     comments: list[Comment] = field(default_factory=list)
     events: list[RunEvent] = field(default_factory=list)
     diagnostics: tuple[Diagnostic, ...] = ()
+    uses_length_numbers: bool = False
 
     def __post_init__(self) -> None:
         for each in fields(self):

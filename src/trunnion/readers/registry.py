@@ -1,6 +1,7 @@
 """Which reader reads the programs of a machine."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem
@@ -55,10 +56,11 @@ def run_program(
         If a file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
         control. What is only not understood is in ``Run.findings``.
     """
-    interpreter = reader_of(machine, family).interpreter(
+    reader = reader_of(machine, family)
+    interpreter = reader.interpreter(
         Path(path), machine, subprograms=tuple(subprograms), step_limit=step_limit, skip=skip, shortest=shortest
     )
-    return interpreter.run(write_progress)
+    return replace(interpreter.run(write_progress), uses_length_numbers=reader.uses_length_numbers)
 
 
 def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
