@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from trunnion.model.run import Run as Run
     from trunnion.model.toolpath import Operation as Operation
     from trunnion.model.toolpath import Toolpath as Toolpath
-    from trunnion.verification.comparison import Comparison as Comparison
+    from trunnion.verification.comparison.result import Comparison as Comparison
     from trunnion.verification.results import Check as Check
     from trunnion.verification.results import Place as Place
     from trunnion.verification.results import Verification as Verification
@@ -66,7 +66,7 @@ __version__ = "0.1.0"
 _MODULES: Final = {
     "Axis": "machines.machine",
     "Check": "verification.results",
-    "Comparison": "verification.comparison",
+    "Comparison": "verification.comparison.result",
     "ConvertResult": "api.converting",
     "Decision": "model.motion",
     "InputError": "errors",

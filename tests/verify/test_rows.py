@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.verification.matching.row_ranges import RowRanges
+from trunnion.verification.row_ranges import RowRanges
 
 FLAGS = st.lists(st.booleans(), max_size=40)
 
@@ -15,12 +15,12 @@ def test_rows_are_the_numbers_of_the_rows_that_have_a_flag(
 ) -> None:
     numbers = [row for row, flag in enumerate(flags) if flag]
     column = np.array(flags, np.bool_)
-    rows = RowRanges.where((first, column[first : first + piece]) for first in range(0, len(flags), piece))
+    rows = RowRanges.from_flags((first, column[first : first + piece]) for first in range(0, len(flags), piece))
     assert [rows[k] for k in range(len(rows))] == numbers
     assert [rows[k - len(rows)] for k in range(len(rows))] == numbers
     begin, end = max(start, 0), max(start, 0) + length
-    assert rows.part(begin, end).tolist() == numbers[begin:end]
-    assert rows.before(start) == sum(number < start for number in numbers)
+    assert rows.rows(begin, end).tolist() == numbers[begin:end]
+    assert rows.count_before(start) == sum(number < start for number in numbers)
     assert (start in rows) == (start in numbers)
 
 
@@ -30,6 +30,6 @@ def test_rows_can_be_put_together_from_stretches(gaps: list[tuple[int, int]]) ->
     for gap, count in gaps:
         stretches.append((at + gap, count))
         at += gap + count
-    rows = RowRanges.of(stretches)
+    rows = RowRanges.from_ranges(stretches)
     wanted = [first + k for first, count in stretches for k in range(count)]
-    assert rows.part(0, len(rows)).tolist() == wanted
+    assert rows.rows(0, len(rows)).tolist() == wanted

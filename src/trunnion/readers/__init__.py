@@ -4,9 +4,9 @@ The readers are written from the language of the controls. They share nothing wi
 """
 
 from trunnion.model.axis_positions import resolve_turns, write_joints
-from trunnion.readers.registry import can_read, reader_of, run_program, uses_length_numbers
+from trunnion.readers.registry import can_read, reader_of, run_program
 
 #: Kernels that every program needs.
 KERNELS = (resolve_turns, write_joints)
 
-__all__ = ["KERNELS", "can_read", "reader_of", "run_program", "uses_length_numbers"]
+__all__ = ["KERNELS", "can_read", "reader_of", "run_program"]

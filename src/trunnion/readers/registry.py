@@ -81,11 +81,6 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     return reader
 
 
-def uses_length_numbers(machine: Machine) -> bool:
-    """Whether a machine's programs select the tool length by a number (H), which is then the column ``Run.edge``."""
-    return can_read(machine) and reader_of(machine).uses_length_numbers
-
-
 def can_read(machine: Machine) -> bool:
     """Whether there is a reader for the programs of a machine."""
     return _has_reader(family_of(machine))

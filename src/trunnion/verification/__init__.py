@@ -1,11 +1,12 @@
-"""Verification: a program, read back and run by itself, against what was wanted of it."""
+"""Verification: a program that was read back and run, against the CL files that it was made from."""
 
 from trunnion.machines.forward import tool_axis_rows
-from trunnion.verification.comparison import Comparison, Difference, compare
+from trunnion.verification.comparison.comparison import compare
+from trunnion.verification.comparison.result import Comparison, Difference
 from trunnion.verification.context import Settings
 from trunnion.verification.deviations.point_deviations import compare_rows
-from trunnion.verification.expected.path import Tolerances
-from trunnion.verification.kinematics.axis_motion import axis_motion_rows
+from trunnion.verification.expected.tolerances import Tolerances
+from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
 from trunnion.verification.results import Check, OperationRows, Place, Verification
 from trunnion.verification.text import check_lines, failures, place_line, place_lines, time_lines

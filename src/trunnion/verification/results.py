@@ -1,4 +1,4 @@
-"""What a verification found, as values; text, HTML and JSON are made of it elsewhere."""
+"""The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
 from dataclasses import dataclass
 
@@ -9,9 +9,13 @@ from trunnion.model.run import Run
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """One place of a program: line of the NC file (from 1), N number (-1: none), and line of a CL file (0: none).
+    """One place of a program.
 
-    ``value`` is what was found there, in the unit of the check, and ``text`` says it in words.
+    nc_line          line of the NC file, from 1
+    number           block number, -1 for none
+    value            what was found there, in the unit of the check
+    text             the same in words
+    cl_file, cl_line place in a CL file; line 0 for none
     """
 
     nc_line: int
@@ -21,17 +25,22 @@ class Place:
     cl_file: str = ""
     cl_line: int = 0
 
+    @property
+    def block_name(self) -> str:
+        """What a programmer calls the block: ``N120``, or its line where it has no number."""
+        return f"N{self.number}" if self.number >= 0 else f"line {self.nc_line}"
+
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One question that was put to a program, and its answer.
+    """One question about a program, and its answer.
 
     key       stable name, such as ``tip`` or ``travel``; each has a section in docs/checks.md
     title     the question in a few words
     passed    False: the program must not run as it is
     summary   the answer in one line: the worst value, where it is, and what is allowed
     worst     the worst value in ``unit``, None where the check does not measure
-    limit     what is allowed, None where nothing is
+    limit     what is allowed, None where there is no limit
     places    the worst places, worst first
     """
 
@@ -47,9 +56,9 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class OperationRows:
-    """The rows ``first`` to ``end`` (left out) of a run that belong to one operation of a CL file.
+    """The rows ``first`` to ``end`` (exclusive) of a run that belong to one operation of a CL file.
 
-    What leads to an operation (home, tool change, placing) belongs to it, the way home at last to the last one.
+    They include what leads to the operation: home, tool change, positioning. The last operation includes the way home.
     """
 
     name: str
@@ -61,15 +70,15 @@ class OperationRows:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verification:
-    """Everything that was found out about one program.
+    """The result of verifying one program.
 
-    Columns have one row a motion of ``run``, or none at all if nobody asked for them.
+    Columns have one row for each motion of ``run``, or no rows if they were not asked for.
 
     seconds   (n,)   float64   time that the row takes (``trunnion.verification.kinematics.run_time``)
-    tip_feed  (n,)   float64   speed of the tip over the part, mm/min
-    cl_line   (n,)   int32     line of the CL file that the row answers to, 0 where there is none
+    tip_feed  (n,)   float64   speed of the tip relative to the workpiece, mm/min
+    cl_line   (n,)   int32     line of the CL file that the row belongs to, 0 for none
 
-    ``operations`` share the rows among them; none without CL files.
+    ``operations`` divide the rows among them; there are none without CL files.
     """
 
     program: str
@@ -83,5 +92,5 @@ class Verification:
 
     @property
     def passed(self) -> bool:
-        """Whether every check was passed."""
+        """Whether all checks passed."""
         return all(check.passed for check in self.checks)

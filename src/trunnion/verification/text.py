@@ -1,4 +1,4 @@
-"""A verification as lines for a terminal."""
+"""A verification as lines of text for a terminal."""
 
 from collections.abc import Iterator
 
@@ -10,14 +10,14 @@ from trunnion.verification.results import Check, Place, Verification
 
 
 def check_lines(verification: Verification) -> Iterator[str]:
-    """One line a check."""
+    """One line for each check."""
     width = max(len(check.key) for check in verification.checks)
     for check in verification.checks:
         yield f"{check.key:<{width}}  {'ok  ' if check.passed else 'FAIL'}  {check.summary}"
 
 
 def place_lines(verification: Verification, *, failed_only: bool = False, most: int = 5) -> Iterator[str]:
-    """The worst places of each check, those of failed checks first: ``nc:line (N…), cl:line: text``."""
+    """The worst places of each check, failed checks first: ``nc:line (N…), cl:line: text [check]``."""
     for check in sorted(verification.checks, key=lambda check: check.passed):
         if check.passed and failed_only:
             continue
@@ -26,23 +26,24 @@ def place_lines(verification: Verification, *, failed_only: bool = False, most: 
 
 
 def place_line(program: str, place: Place) -> str:
-    """One place, in the form that editors know how to jump to."""
+    """One place, in the form that editors can jump to."""
     number = f" (N{place.number})" if place.number >= 0 else ""
     cl = f", {place.cl_file}:{place.cl_line}" if place.cl_line else ""
     return f"{program}:{place.nc_line}{number}{cl}: {place.text}"
 
 
 def time_lines(verification: Verification) -> Iterator[str]:
-    """What the program and each of its operations take, as far as times were asked for."""
+    """The time of the program and of each operation, if times were asked for."""
     seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
     if len(seconds):
-        cuts = verification.run.kind != Kind.RAPID
-        whole, cutting = (format_duration(float(part.sum())) for part in (seconds, seconds[cuts]))
+        at_feed = verification.run.kind != Kind.RAPID
+        whole, cutting = (format_duration(float(rows.sum())) for rows in (seconds, seconds[at_feed]))
         yield f"time: {whole}, {cutting} of it in cuts"
-        for share in verification.operations:
-            yield f"time: {format_duration(float(seconds[share.first : share.end].sum()))} for {share.name}"
+        for operation in verification.operations:
+            own = seconds[operation.first : operation.end]
+            yield f"time: {format_duration(float(own.sum()))} for {operation.name}"
 
 
 def failures(verification: Verification) -> list[Check]:
-    """The checks that were not passed."""
+    """The checks that failed."""
     return [check for check in verification.checks if not check.passed]

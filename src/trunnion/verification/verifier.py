@@ -3,37 +3,41 @@
 import math
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Lines
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.verification.checks import modal_checks as modal
-from trunnion.verification.checks import motion_checks as demands
-from trunnion.verification.checks import state_checks as in_force
-from trunnion.verification.checks.hole_checks import holes
-from trunnion.verification.checks.normal_checks import normals
-from trunnion.verification.checks.stop_checks import stops
-from trunnion.verification.checks.turn_checks import turns
-from trunnion.verification.context import MAX_PLACES, Context, Settings
-from trunnion.verification.deviations.declared_deviations import (
-    AcceptedDeviations,
-    accept_deviations,
-    misplaced_lean_positions,
-)
-from trunnion.verification.deviations.point_deviations import DeviationSummary, PointDeviations
-from trunnion.verification.expected.arcs import Arc, turned
-from trunnion.verification.expected.path import ExpectedPath, Tolerances
-from trunnion.verification.kinematics.axis_motion import AxisMotion, AxisMotionAnalyzer, WorstRows
+from trunnion.verification.checks.compensation_checks import check_compensation
+from trunnion.verification.checks.coolant_checks import check_coolant
+from trunnion.verification.checks.feed_checks import check_feed
+from trunnion.verification.checks.hole_checks import check_holes
+from trunnion.verification.checks.home_checks import check_home
+from trunnion.verification.checks.linearization_check import check_between_points
+from trunnion.verification.checks.machine_checks import check_acceleration, check_speed, check_travel
+from trunnion.verification.checks.modal_checks import check_modal_state
+from trunnion.verification.checks.motion_checks import check_kind, check_order
+from trunnion.verification.checks.normal_checks import check_normals
+from trunnion.verification.checks.position_checks import check_axis, check_tip
+from trunnion.verification.checks.spindle_checks import check_spindle
+from trunnion.verification.checks.stop_checks import check_stops
+from trunnion.verification.checks.tool_checks import check_tool
+from trunnion.verification.checks.turn_checks import check_turns
+from trunnion.verification.checks.word_checks import check_words
+from trunnion.verification.checks.work_offset_checks import check_work_offset
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, Settings
+from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, accept_deviations
+from trunnion.verification.deviations.linearization import LinearizationErrors
+from trunnion.verification.deviations.point_deviations import PointDeviations
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.expected.tolerances import Tolerances
+from trunnion.verification.kinematics.axis_motion import AxisMotionAnalyzer
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
-from trunnion.verification.matching.intermediate_points import LinearizationErrors
-from trunnion.verification.matching.path_matching import Matching, match_by_count, match_by_position
-from trunnion.verification.results import Check, OperationRows, Place, Verification
-
-#: Three coordinates off by one each are a point off by this.
-_DIAGONAL = math.sqrt(3.0) + 1e-6
+from trunnion.verification.matching.pairs import Matching
+from trunnion.verification.matching.path_matching import match_by_count, match_by_position
+from trunnion.verification.results import Check, OperationRows, Verification
 
 
 def verify(
@@ -44,21 +48,21 @@ def verify(
     settings: Settings | None = None,
     columns: bool = True,
 ) -> Verification:
-    """Put every question to a program.
+    """Make all checks of a program.
 
     Parameters
     ----------
     run
         The program as the machine's control ran it.
     toolpaths
-        What it was made from, in that order; without, the program is looked at by itself.
-    allowed
-        How far it may be from its CL points: one for all, or one for each operation that moves.
+        The CL files that it was made from, in that order; without them, the program is checked by itself.
+    tolerances
+        How far it may be from its CL points: for all operations, or one for each operation that moves.
     settings
-        What the CL files do not say.
+        What the CL files leave open.
     columns
-        Whether the columns of the result are wanted, as a report needs them. The checks do not: without, programs of
-        any length take the memory of the run and a few chunks.
+        Whether the result has its columns, as a report needs them. The checks do not: without columns, a program of
+        any length takes the memory of the run and a few chunks.
 
     Raises
     ------
@@ -67,324 +71,150 @@ def verify(
     """
     settings = settings or Settings()
     run = restore_rapids(run, settings.rapid_feed)
-    expected = ExpectedPath(toolpaths, tolerances or Tolerances(), settings.absolute) if toolpaths else None
-    walker = AxisMotionAnalyzer(run, MAX_PLACES, math.inf, times=columns)
-    if expected is not None:
-        context, spans, checks, last = _held_against(Context(run, expected, None, settings), walker)
+    analyzer = AxisMotionAnalyzer(run, MAX_PLACES, times=columns)
+    if toolpaths:
+        expected = ExpectedPath(toolpaths, tolerances or Tolerances(), settings.absolute)
+        checked = _check_against(expected, run, settings, analyzer)
     else:
-        alone = _spans(run, settings)
-        _go_by(run, walker, *alone)
-        spans = alone[0] if alone else None
-        context = Context(run, None, None, settings)
-        checks, last = [in_force.offset(context)], _of_itself(context)
-    way = walker.result()
-    checks += [
-        _span(context, way, spans),
-        _travel(context, way),
-        _speed(context, way),
-        _acceleration(context, way),
-        *last,
-    ]
+        checked = _check_alone(run, settings, analyzer)
+    context, motion = checked.context, analyzer.result()
+    checks = (
+        *checked.checks,
+        check_between_points(context, motion, checked.errors),
+        check_travel(context, motion),
+        check_speed(context, motion),
+        check_acceleration(context, motion),
+        *checked.general,
+    )
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
-    operations = tuple(_operations(context))
-    return Verification(run.files[0], run.machine, run, tuple(checks), way.seconds, way.tip_feed, cl_line, operations)
+    operations = tuple(_operation_rows(context))
+    return Verification(run.files[0], run.machine, run, checks, motion.seconds, motion.tip_feed, cl_line, operations)
 
 
-def _held_against(
-    context: Context, walker: AxisMotionAnalyzer
-) -> tuple[Context, LinearizationErrors | None, list[Check], list[Check]]:
-    """Checks against what was wanted: the case with its pairs, what was seen between points, checks, the last checks.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Checked:
+    """The checks of a program but those of its axis motion; ``general`` are those of any program."""
 
-    Partners are by counting if that fits, else by position. Where the tool is takes half of the time, and what is asked
-    besides is found out meanwhile.
+    context: Context
+    errors: LinearizationErrors | None
+    checks: list[Check]
+    general: list[Check]
+
+
+def _check_alone(run: Run, settings: Settings, analyzer: AxisMotionAnalyzer) -> _Checked:
+    """Checks of a program without CL files."""
+    context = Context(run, settings)
+    errors = _linearization_errors(context, [Tolerances()])
+    _add_rows(run, analyzer, errors)
+    return _Checked(context, errors, [check_work_offset(context)], _general_checks(context))
+
+
+def _check_against(expected: ExpectedPath, run: Run, settings: Settings, analyzer: AxisMotionAnalyzer) -> _Checked:
+    """Checks of a program against its expected path.
+
+    Motions and points are matched by count if that fits, else by position. The checks that do not need the positions
+    of all rows take as long as those that do, and are made in a second thread.
     """
-    run, expected = context.run, context.expected
-    assert expected is not None
-    believed = accept_deviations(expected, run.machine)
+    accepted = accept_deviations(expected, run.machine)
+    expected = accepted.expected
     counted = match_by_count(run, expected)
-    context = replace(context, matching=counted or _by_position(context))
-    with ThreadPoolExecutor(1) as aside:
-        asked = aside.submit(_asked_besides, context, believed)
-        spans = _spans(run, context.settings, expected, context.matching)
-        off = _deviations(context)
-        _go_by(run, walker, off, *spans)
-    if counted and any(one.count for one in off.result()):
-        context = replace(context, matching=_by_position(context))
-        spans = _spans(run, context.settings, expected, context.matching)
-        off = _deviations(context)
-        _go_by(run, off, *spans)
-        order, besides, last = _asked_besides(context, believed)
+    context = ComparedContext(run, settings, expected, counted or _match_by_position(expected, run, settings))
+    with ThreadPoolExecutor(1) as executor:
+        pending = executor.submit(_checks_without_positions, context, accepted)
+        errors, deviations = _measure(context, analyzer)
+    if counted and any(summary.count for summary in deviations.result()):
+        context = ComparedContext(run, settings, expected, _match_by_position(expected, run, settings))
+        errors, deviations = _measure(context)
+        order, others, general = _checks_without_positions(context, accepted)
     else:
-        order, besides, last = asked.result()
-    off_tip, off_axis = off.result()
-    checks = [order, _tip(context, off_tip), _axis(context, off_axis, believed), *besides]
-    return context, spans[0] if spans else None, checks, last
+        order, others, general = pending.result()
+    tip, axis = deviations.result()
+    checks = [order, check_tip(context, tip), check_axis(context, axis, accepted), *others]
+    return _Checked(context, errors, checks, general)
 
 
-def _by_position(context: Context) -> Matching:
-    """Partners by where they are."""
-    assert context.expected is not None
-    span = context.settings.span
-    bend = span if span is not None or context.settings.span_tip is None else 180.0
-    return match_by_position(context.run, context.expected, bend=bend)
+def _match_by_position(expected: ExpectedPath, run: Run, settings: Settings) -> Matching:
+    """With intermediate points if the settings give a limit for the tool between points."""
+    axis_deviation = 180.0 if settings.span is None and settings.span_tip is not None else settings.span
+    return match_by_position(run, expected, axis_deviation=axis_deviation)
 
 
-def _deviations(context: Context) -> PointDeviations:
-    assert context.expected is not None
-    assert context.matching is not None
-    return PointDeviations(context.run.machine, context.expected, context.matching, MAX_PLACES, context.run.programmed)
-
-
-def _asked_besides(context: Context, believed: AcceptedDeviations) -> tuple[Check, list[Check], list[Check]]:
-    """All that neither asks where the tool is nor how it gets there: the order, demands, and ``_of_itself``."""
-    besides = [
-        demands.kind(context),
-        demands.feed(context, believed),
-        in_force.spindle(context),
-        in_force.tool(context),
+def _checks_without_positions(
+    context: ComparedContext, accepted: AcceptedDeviations
+) -> tuple[Check, list[Check], list[Check]]:
+    """Checks that do not need the positions of all rows: that of the order, the others, and those of any program."""
+    others = [
+        check_kind(context),
+        check_feed(context, accepted),
+        check_spindle(context),
+        check_tool(context),
+        check_coolant(context),
+        check_compensation(context),
+        check_stops(context),
+        check_work_offset(context),
+        check_home(context),
+        check_holes(context),
+        *check_normals(context),
     ]
-    besides += [in_force.coolant(context), in_force.compensation(context), stops(context)]
-    besides += [in_force.offset(context), in_force.home(context), holes(context)]
-    besides += normals(context)
-    return demands.order(context), besides, _of_itself(context)
+    return check_order(context), others, _general_checks(context)
 
 
-def _of_itself(context: Context) -> list[Check]:
-    """What every program must do."""
-    return [turns(context), modal.modal(context), modal.words(context)]
+def _general_checks(context: Context) -> list[Check]:
+    """Checks of any program."""
+    return [check_turns(context), check_modal_state(context), check_words(context)]
 
 
-def _operations(context: Context) -> Iterator[OperationRows]:
-    """Which rows belong to which operation; an operation that no motion answers to has none."""
-    if context.expected is None or context.matching is None:
-        return
-    first, last = 0, len(context.expected.sections) - 1
-    for number, section in enumerate(context.expected.sections):
-        k = context.matching.cl.before(section.end)
-        end = max(first, context.matching.nc[k - 1] + 1) if k else first
-        end = len(context.run) if number == last else end
-        yield OperationRows(section.operation.name, section.operation.tool.name, section.file, first, end)
-        first = end
+def _measure(
+    context: ComparedContext, analyzer: AxisMotionAnalyzer | None = None
+) -> tuple[LinearizationErrors | None, PointDeviations]:
+    """Errors between points and deviations at points; the analyzer gets the same rows."""
+    run, sections = context.run, context.expected.sections
+    errors = _linearization_errors(context, [section.tolerances for section in sections])
+    deviations = PointDeviations(run.machine, context.expected, context.matching, MAX_PLACES, run.programmed)
+    _add_rows(run, analyzer, deviations, errors)
+    return errors, deviations
 
 
-def _spans(
-    run: Run, settings: Settings, expected: ExpectedPath | None = None, matching: Matching | None = None
-) -> tuple[LinearizationErrors, ...]:
-    """What goes along to judge the way between the points, if anything is to be."""
+def _linearization_errors(context: Context, tolerances: Sequence[Tolerances]) -> LinearizationErrors | None:
+    """The collector of errors between points; None if the settings give no limit."""
+    settings = context.settings
     if settings.span is None and settings.span_tip is None:
-        return ()
-    limits = [section.tolerances for section in expected.sections] if expected is not None else [Tolerances()]
-    rounded = max(limit.tip for limit in limits)
-    tip = math.inf if settings.span_tip is None else settings.span_tip + rounded
-    axis = math.inf if settings.span is None else settings.span + 2.0 * max(limit.angle for limit in limits)
-    return (LinearizationErrors(run, MAX_PLACES, tip, axis, rounded, expected, matching),)
+        return None
+    tolerance = max(each.tip for each in tolerances)
+    tip = math.inf if settings.span_tip is None else settings.span_tip + tolerance
+    axis = math.inf if settings.span is None else settings.span + 2.0 * max(each.angle for each in tolerances)
+    path = (context.expected, context.matching) if isinstance(context, ComparedContext) else (None, None)
+    return LinearizationErrors(context.run, MAX_PLACES, tip, axis, tolerance, *path)
+
+
+def _add_rows(run: Run, *collectors: AxisMotionAnalyzer | PointDeviations | LinearizationErrors | None) -> None:
+    """Give all rows of a run to each collector, chunk by chunk, while a chunk is in the processor's cache."""
+    for first, end, positions in run.chunks():
+        for collector in collectors:
+            if collector is not None:
+                collector.add(first, end, positions)
 
 
 def _cl_lines(context: Context) -> Lines:
-    """Line of the CL file that each row answers to, (n,), 0 where there is none."""
+    """Line of the CL file that each row belongs to, (n,), 0 for none."""
     lines = np.zeros(len(context.run), np.int32)
-    if context.expected is not None and context.matching is not None:
+    if isinstance(context, ComparedContext):
         for nc, cl in context.matching.all_pair_chunks():
             lines[nc] = context.expected.line(cl)
-        for pieces in context.matching.pieces:
-            lines[pieces.nc] = context.expected.point(pieces.cl).line
+        for segments in context.matching.arc_segments:
+            lines[segments.nc] = context.expected.point(segments.cl).line
     return lines
 
 
-def _go_by(run: Run, *each: AxisMotionAnalyzer | PointDeviations | LinearizationErrors) -> None:
-    """Show all rows of a run to whoever looks at them, a chunk at a time, while it is in the processor's cache."""
-    for first, end, poses in run.chunks():
-        for one in each:
-            one.take(first, end, poses)
-
-
-def _tip(context: Context, off: DeviationSummary) -> Check:
-    expected, matching = context.expected, context.matching
-    assert expected is not None
-    assert matching is not None
-    places = []
-    for k, value in off.bad:
-        row, cl = matching.nc[k], matching.cl[k]
-        is_, want = context.run.positions(np.array([row])).tip[0], expected.point(cl).tip
-        axes = [
-            f"{name}{now:.5f} for {then:.5f}"
-            for name, now, then in zip("XYZ", is_, want, strict=True)
-            if not abs(now - then) <= off.limit
-        ]
-        inches = " (the program counts in inches here)" if context.run.state.inches[row] else ""
-        places.append(context.place(row, value, f"the tip is {value:.6f} mm off: {', '.join(axes)}{inches}", cl))
-    count = off.count
-    if places:
-        first = min(matching.nc[k] for k, _ in off.bad)
-        by = None if context.run.state.tcp[first] else context.rotary_positioning_block(first)
-        places += [by] if by is not None else []
-    for pieces in matching.pieces:
-        section = expected.section_at(pieces.cl)
-        away = np.sqrt((pieces.arc.deviation(context.run.positions(pieces.nc).tip) ** 2).sum(axis=1))
-        # A point that is off along the way round is off in height too, for it is measured where it stands.
-        limit = _DIAGONAL * section.tolerances.tip * math.hypot(1.0, pieces.arc.slope)
-        for k in np.flatnonzero(away > limit + 1e-6 + _ragged(pieces.arc)).tolist():
-            count += 1
-            text = f"the tip is {away[k]:.6f} mm off the arc that the CL file asks for"
-            places.append(context.place(int(pieces.nc[k]), float(away[k]), text, pieces.cl))
-    return _measured("tip", "tool tip against the CL points", context, off, "mm", places, count)
-
-
-def _ragged(arc: Arc) -> float:
-    """By how much an arc's end is off its circle, or off its start where it is a full one, mm, if that is rounding."""
-    return min(arc.open, 1e-3)
-
-
-def _axis(context: Context, off: DeviationSummary, believed: AcceptedDeviations) -> Check:
-    matching = context.matching
-    assert matching is not None
-    assert context.expected is not None
-    places = []
-    for k, value in off.bad:
-        text = f"the tool axis is off, a rotary axis by {value:.6f} degrees"
-        places.append(context.place(matching.nc[k], value, text, matching.cl[k]))
-    count = off.count
-    if places:
-        by = context.rotary_positioning_block(min(matching.nc[k] for k, _ in off.bad))
-        places += [by] if by is not None else []
-    broken = [*believed.axis, *misplaced_lean_positions(context.run, context.expected, matching)]
-    places = [*(context.place_at_cl(one.cl, one.value, one.text) for one in broken[:MAX_PLACES]), *places]
-    count += len(broken)
-    for pieces in matching.pieces:
-        arc, section = pieces.arc, context.expected.section_at(pieces.cl)
-        begin, end = context.expected.point(pieces.cl - 1).axis, context.expected.point(pieces.cl).axis
-        is_ = context.run.positions(pieces.nc)
-        fraction = arc.fractions(is_.tip)
-        total = 2.0 * float(np.arcsin(min(0.5 * float(np.linalg.norm(end - begin)), 1.0)))
-        away = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(is_.axis - turned(begin, end, fraction), axis=1), 1.0))
-        # Where on the arc a rounded point is, is known no better than this.
-        unsure = total * _DIAGONAL * section.tolerances.tip / max(arc.radius * arc.sweep, 1e-9)
-        limit = _DIAGONAL * section.tolerances.angle + np.degrees(unsure) + 1e-6
-        for k in np.flatnonzero(np.degrees(away) > limit).tolist():
-            count += 1
-            value = float(np.degrees(away[k]))
-            text = f"the tool axis is off by {value:.6f} degrees on its way round an arc"
-            places.append(context.place(int(pieces.nc[k]), value, text, pieces.cl))
-    check = _measured("axis", "tool axis against the CL points", context, off, "deg", places, count)
-    lean, rows = believed.lean
-    return replace(check, summary=f"{check.summary}; leans by up to {lean:.6f} at {rows} rows") if rows else check
-
-
-def _measured(
-    key: str, title: str, context: Context, off: DeviationSummary, unit: str, places: list[Place], count: int
-) -> Check:
-    assert context.matching is not None
-    if not len(context.matching.nc) and context.expected is not None and len(context.expected):
-        return Check(key, title, False, "no block answers to any CL point", unit=unit)
-    each, whole = ("X, Y or Z", "distance") if unit == "mm" else ("a rotary axis", "angle")
-    summary = f"largest {off.largest:.6f} {unit} in {each}, rms {whole} {off.rms:.6f}, allowed {off.limit:.6f}"
-    if count:
-        summary += f", {count} points off, first in {_block(min(places, key=lambda p: p.nc_line))}"
-    passed = not count
-    return Check(key, title, passed, summary, off.largest, off.limit, unit, tuple(places))
-
-
-def _block(place: Place) -> str:
-    return f"N{place.number}" if place.number >= 0 else f"line {place.nc_line}"
-
-
-def _span(context: Context, way: AxisMotion, spans: LinearizationErrors | None) -> Check:
-    """How far the tool is off between the points."""
-    title = "tool between the points"
-    axis, tip = (way.axis_deviation, way.tip_deviation) if spans is None else (spans.axis, spans.tip)
-    where = "half-way" if spans is None else "on the way"
-    chord, row_of_chord = 0.0, -1
-    if context.matching is not None:
-        for pieces in context.matching.pieces:
-            tips = context.run.positions(pieces.nc).tip
-            fraction = np.diff(np.concatenate(([0.0], pieces.arc.fractions(tips), [1.0])))
-            sag = pieces.arc.radius * (1.0 - np.cos(0.5 * np.abs(fraction) * pieces.arc.sweep))
-            if len(sag) and sag.max() > chord:
-                chord, row_of_chord = float(sag.max()), int(pieces.nc[min(int(np.argmax(sag)), len(pieces.nc) - 1)])
-    off_tip, row = (tip.value, tip.row) if tip.value > chord else (chord, row_of_chord)
-    places = []
-    if axis.row >= 0:
-        rows = axis.rows or [(axis.row, axis.value)]
-        places += [
-            context.place(r, v, f"{where} the tool axis is {v:.5f} degrees off the great circle") for r, v in rows
-        ]
-    if row >= 0 and off_tip > 0.0:
-        rows = tip.rows or [(row, off_tip)]
-        places += [context.place(r, v, f"between its ends the tip is {v:.5f} mm off") for r, v in rows]
-    summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off {where}"
-    if axis.row >= 0:
-        summary += f", in {context.block(axis.row)}"
-    asked = [f"{limit:g} {unit}" for limit, unit in _span_limits(context) if limit is not None]
-    summary += f", allowed {' and '.join(asked)}" if asked else ""
-    return Check(
-        "span", title, not axis.count + tip.count, summary, axis.value, context.settings.span, "deg", tuple(places)
-    )
-
-
-def _span_limits(context: Context) -> tuple[tuple[float | None, str], ...]:
-    return (context.settings.span_tip, "mm"), (context.settings.span, "deg")
-
-
-def _travel(context: Context, way: AxisMotion) -> Check:
-    """Every axis inside its limits, and the least room that is left."""
-    machine = context.run.machine
-    title = "travel of the axes"
-    told: list[tuple[float, str, float, int, int]] = []
-    for k, axis in enumerate(machine.axes):
-        low, high = way.extremes[k].tolist()
-        if low > high or axis.endless or not (math.isfinite(axis.low) or math.isfinite(axis.high)):
-            continue
-        unit = "deg" if axis.is_rotary else "mm"
-        if not axis.is_rotary and machine.workpiece_zero is None:
-            room = (axis.high - axis.low) - (high - low)
-            text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm"
-            told.append((room, text, high - low, int(way.places[k, 1]), k))
-            continue
-        below, above = low - axis.low, axis.high - high
-        end = 0 if below < above else 1
-        value, limit = (low, axis.low) if end == 0 else (high, axis.high)
-        text = f"{axis.name} goes to {value:.3f}, its limit is {limit:g} {unit}"
-        told.append((min(below, above), text, value, int(way.places[k, end]), k))
-    if not told:
-        return Check("travel", title, True, "no limits are stated")
-    told.sort(key=lambda t: t[0] / max(machine.axes[t[4]].high - machine.axes[t[4]].low, 1e-9))
-    over = [t for t in told if t[0] < -1e-5]
-    places = tuple(
-        context.place(row, value, f"{text}, {-room:.3f} too far" if room < 0 else f"{text}, {room:.3f} left")
-        for room, text, value, row, _ in (over or told)
-    )
-    room, text, value, _, k = told[0]
-    unit = "deg" if machine.axes[k].is_rotary else "mm"
-    summary = f"{text}, {abs(room):.3f} {'too far' if over else 'left'}"
-    return Check("travel", title, not over, summary, room, 0.0, unit, places)
-
-
-def _speed(context: Context, way: AxisMotion) -> Check:
-    return _asked(context, way.speed, "speed", "speed of the axes at the programmed feed", "rapid speed")
-
-
-def _acceleration(context: Context, way: AxisMotion) -> Check:
-    return _asked(context, way.acceleration, "acceleration", "acceleration of the axes between blocks", "acceleration")
-
-
-def _asked(context: Context, worsts: Sequence[WorstRows], key: str, title: str, of: str) -> Check:
-    """Shares of what the axes can do; more than all of it is told, for the control slows down there."""
-    machine = context.run.machine
-    stated = [axis.rapid if key == "speed" else axis.acceleration for axis in machine.axes]
-    if not any(stated):
-        return Check(key, title, True, f"the machine's definition states no {of}")
-    places = [
-        context.place(row, share, f"{axis.name} would need {100.0 * share:.0f} % of its {of}: the control slows down")
-        for axis, worst in zip(machine.axes, worsts, strict=True)
-        for row, share in worst.rows
-    ]
-    places.sort(key=lambda place: -place.value)
-    top = max(range(5), key=lambda k: worsts[k].value)
-    worst = worsts[top]
-    if worst.row < 0:
-        return Check(key, title, True, "no axis moves at feed", 0.0, 1.0, "of all")
-    count = sum(w.count for w in worsts)
-    summary = f"{machine.axes[top].name} at most {100.0 * worst.value:.0f} % of its {of}, in {context.block(worst.row)}"
-    if count:
-        summary += f"; in {count} places the control slows down"
-    return Check(key, title, True, summary, worst.value, 1.0, "of all", tuple(places[:MAX_PLACES]))
+def _operation_rows(context: Context) -> Iterator[OperationRows]:
+    """Which rows belong to which operation; an operation without a motion has none."""
+    if not isinstance(context, ComparedContext):
+        return
+    matching, sections = context.matching, context.expected.sections
+    first = 0
+    for number, section in enumerate(sections):
+        k = matching.cl.count_before(section.end)
+        end = max(first, matching.nc[k - 1] + 1) if k else first
+        end = len(context.run) if number == len(sections) - 1 else end
+        yield OperationRows(section.operation.name, section.operation.tool.name, section.file, first, end)
+        first = end

@@ -1,25 +1,26 @@
-"""Where a program waits or stops, against the DELAY, STOP and OPSTOP of the CL files."""
+"""Dwells and stops of a program against DELAY, STOP and OPSTOP in the CL files."""
 
 from collections import defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Final
 
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Dwell, Stop
-from trunnion.verification.context import MAX_PLACES, Context, check_from_places
+from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
 
-_KINDS: Final = ("dwell", "stop", "optional_stop")
+_NAMES: Final = {"dwell": "dwells", "stop": "stops", "optional_stop": "optional stops"}
 
 #: Half of the last digit of dwells, seconds.
-_SECONDS: Final = 5.1e-4
+_TOLERANCE: Final = 5.1e-4
 
 
 @dataclass(frozen=True, slots=True)
-class _Asked:
-    """A DELAY, STOP or OPSTOP before CL row ``row``; ``amount`` in seconds, or spindle turns if negative."""
+class _ExpectedStop:
+    """A DELAY, STOP or OPSTOP before CL row ``row``; ``amount`` in seconds, or spindle revolutions if negative."""
 
     row: int
     kind: str
@@ -31,98 +32,97 @@ class _Asked:
         return _words(self.kind, self.amount)
 
 
-def stops(context: Context) -> Check:
-    """Each dwell and stop between the two points between which it stands, and no others within an operation.
+def check_stops(context: ComparedContext) -> Check:
+    """Each dwell and stop is between its two points, and there are no others within an operation.
 
-    Between operations, where tools are changed, a program may have stops of its own. Dwells at the bottom of holes are
-    the business of the holes.
+    Between operations, where tools are changed, a program may have stops of its own. Dwells in holes belong to the
+    check of holes.
     """
-    expected, matching, run = context.expected, context.matching, context.run
-    assert expected is not None
-    assert matching is not None
-    asked: defaultdict[int, list[_Asked]] = defaultdict(list)
-    for section in expected.sections:
-        for event in section.operation.events:
-            if isinstance(event, Dwell | Stop):
-                row = section.first + event.row
-                asked[matching.cl.before(row)].append(_asked(event, row, section.file))
-    said: defaultdict[int, list[RunEvent]] = defaultdict(list)
-    for happening in _outside_holes(context):
-        said[matching.nc.before(happening.before_row)].append(happening)
+    expected = _expected_stops(context)
+    found: defaultdict[int, list[RunEvent]] = defaultdict(list)
+    for event in _events_outside_holes(context):
+        found[context.matching.nc.count_before(event.before_row)].append(event)
     places: list[Place] = []
-    for k in sorted(asked.keys() | said.keys()):
-        here = said[k] if _within(context, k) else [event for event in said[k] if _is_asked(run, event, asked[k])]
-        for want, has in zip_longest(asked[k], here):
-            if want is None:
-                if not _inserted(context, k):
-                    text = f"{_words(has.kind, _amount(has))}, which the CL file does not ask for"
-                    places.append(context.at(has, 0.0, text))
-            elif has is None:
-                place = context.place_of_missing(
-                    min(want.row, len(expected) - 1), f"the CL file wants {want} before this"
-                )
-                places.append(replace(place, cl_file=want.file, cl_line=want.line))
-            elif not _same(run, has, want):
-                place = context.at(has, 0.0, f"{_words(has.kind, _amount(has))}; the CL file wants {want}")
-                places.append(replace(place, cl_file=want.file, cl_line=want.line))
-    count = {kind: sum(one.kind == kind for each in asked.values() for one in each) for kind in _KINDS}
-    names = {"dwell": "dwells", "stop": "stops", "optional_stop": "optional stops"}
-    good = ", ".join(f"{count[kind]} {names[kind]}" for kind in _KINDS if count[kind]) or "the CL file has none"
-    return check_from_places(
-        "stops", "stops and dwells as the CL file says", places[:MAX_PLACES], good, len(places) or None
-    )
+    for pair in sorted(expected.keys() | found.keys()):
+        places += _compare(context, pair, expected[pair], found[pair])
+    count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _NAMES}
+    good = ", ".join(f"{count[kind]} {name}" for kind, name in _NAMES.items() if count[kind])
+    title = "stops and dwells as the CL file says"
+    return check_from_places("stops", title, places[:MAX_PLACES], good or "the CL file has none", len(places) or None)
 
 
-def _asked(event: Dwell | Stop, row: int, file: str) -> _Asked:
-    if isinstance(event, Dwell):
-        return _Asked(row, "dwell", -event.amount if event.revolutions else event.amount, file, event.line)
-    return _Asked(row, "optional_stop" if event.optional else "stop", 0.0, file, event.line)
+def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_ExpectedStop]]:
+    """By the pair before which they stand."""
+    expected: defaultdict[int, list[_ExpectedStop]] = defaultdict(list)
+    for section in context.expected.sections:
+        for event in section.operation.events:
+            if not isinstance(event, Dwell | Stop):
+                continue
+            row, amount = section.first + event.row, 0.0
+            if isinstance(event, Dwell):
+                kind, amount = "dwell", -event.amount if event.revolutions else event.amount
+            else:
+                kind = "optional_stop" if event.optional else "stop"
+            stop = _ExpectedStop(row, kind, amount, section.file, event.line)
+            expected[context.matching.cl.count_before(row)].append(stop)
+    return expected
 
 
-def _outside_holes(context: Context) -> list[RunEvent]:
-    """What the program itself says of dwells and stops, without what is done in a hole."""
-    events = [event for event in context.run.events if event.kind in _KINDS]
+def _events_outside_holes(context: ComparedContext) -> list[RunEvent]:
+    """Dwells and stops of the program itself, without those that belong to a hole."""
+    events = [event for event in context.run.events if event.kind in _NAMES]
     if not events:
         return []
-    made = match_holes(context.run, context.expected)
-    return [event for event in events if not any(hole.first < event.before_row < hole.end for hole in made)]
+    holes = match_holes(context.run, context.expected)
+    return [event for event in events if not any(hole.first < event.before_row < hole.end for hole in holes)]
 
 
-def _within(context: Context, k: int) -> bool:
-    """Whether pair ``k`` and the one before it belong to one operation."""
-    assert context.expected is not None
-    assert context.matching is not None
-    if not 0 < k < len(context.matching.cl):
-        return False
-    return context.expected.section_at(context.matching.cl[k - 1]) is context.expected.section_at(
-        context.matching.cl[k]
-    )
+def _compare(
+    context: ComparedContext, pair: int, expected: list[_ExpectedStop], events: list[RunEvent]
+) -> Iterator[Place]:
+    """What is wrong before one pair."""
+    run = context.run
+    if not _is_within_operation(context, pair):
+        events = [event for event in events if any(_same(run, event, each) for each in expected)]
+    for should, event in zip_longest(expected, events):
+        if should is None:
+            if not _follows_insert(context, pair):
+                text = f"{_words(event.kind, _amount(event))}, which the CL file does not ask for"
+                yield context.place_of_event(event, 0.0, text)
+        elif event is None:
+            row = min(should.row, len(context.expected) - 1)
+            place = context.place_of_missing(row, f"the CL file wants {should} before this")
+            yield replace(place, cl_file=should.file, cl_line=should.line)
+        elif not _same(run, event, should):
+            text = f"{_words(event.kind, _amount(event))}; the CL file wants {should}"
+            yield replace(context.place_of_event(event, 0.0, text), cl_file=should.file, cl_line=should.line)
 
 
-def _inserted(context: Context, k: int) -> bool:
-    """Whether the CL file puts a text of its own (INSERT) before the point of pair ``k``."""
-    assert context.expected is not None
-    assert context.matching is not None
-    first = context.matching.cl[k - 1] + 1 if k else 0
-    return any(row in context.expected.inserts for row in range(first, context.matching.cl[k] + 1))
+def _is_within_operation(context: ComparedContext, pair: int) -> bool:
+    """Whether a pair and the one before it belong to one operation."""
+    cl, expected = context.matching.cl, context.expected
+    return 0 < pair < len(cl) and expected.section_at(cl[pair - 1]) is expected.section_at(cl[pair])
 
 
-def _is_asked(run: Run, event: RunEvent, asked: list[_Asked]) -> bool:
-    return any(_same(run, event, want) for want in asked)
+def _follows_insert(context: ComparedContext, pair: int) -> bool:
+    """Whether the CL file has an INSERT before the point of a pair."""
+    cl = context.matching.cl
+    first = cl[pair - 1] + 1 if pair else 0
+    return any(row in context.expected.insert_counts for row in range(first, cl[pair] + 1))
 
 
 def _amount(event: RunEvent) -> float:
     return event.value if isinstance(event.value, float) else 0.0
 
 
-def _same(run: Run, event: RunEvent, want: _Asked) -> bool:
-    if event.kind != want.kind:
+def _same(run: Run, event: RunEvent, should: _ExpectedStop) -> bool:
+    if event.kind != should.kind:
         return False
     rpm = float(run.state.rpm[min(event.before_row, len(run) - 1)]) if len(run) else 0.0
-    return abs(_second_angle_ranges(_amount(event), rpm) - _second_angle_ranges(want.amount, rpm)) <= _SECONDS
+    return abs(_seconds(_amount(event), rpm) - _seconds(should.amount, rpm)) <= _TOLERANCE
 
 
-def _second_angle_ranges(amount: float, rpm: float) -> float:
+def _seconds(amount: float, rpm: float) -> float:
     return amount if amount >= 0.0 else -60.0 * amount / max(rpm, 1e-9)
 
 

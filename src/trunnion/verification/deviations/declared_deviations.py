@@ -1,38 +1,40 @@
-"""What was agreed upon: rows at which a program is not to be as its CL file has it.
+"""Declared deviations: rows at which a program departs from its CL file on purpose, and says so.
 
-A planner may lean the tool axis near a pole, and lower a feed, so that a rotary axis need not be faster than it can. It
-says so row by row. What it says is believed only as far as it goes: the tool axis of the rotary positions that it names
-is held against the CL file's, and may be off by the angle that was asked for, no more; a feed may be lower than the CL
-file's, but only as low as the rotary axes need it. The program then has to be as was said, within half the last digit,
-and everywhere else as the CL file says.
+A planner may lean the tool axis near a pole, and lower a feed, so that no rotary axis has to exceed its speed. It
+declares this row by row. A declaration is accepted only within bounds: the tool axis at the declared rotary positions
+may be off the CL file's by the angle that was requested, no more; a feed may be lower than the CL file's, but only as
+low as the rotary axes need it. The program must then be as declared, within half the last digit, and everywhere else
+as the CL file has it.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, forward
 from trunnion.model.deviations import Deviations
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.expected.path import ExpectedPath, Section
-from trunnion.verification.matching.path_matching import Matching
+from trunnion.verification.kinematics.axis_difference import degrees_apart
+from trunnion.verification.matching.pairs import Matching
 
-#: What an angle between tool axes may be more than what was agreed, degrees: rounding here.
+#: By how much a lean may exceed the requested angle for rounding, degrees.
 _NOISE: Final = 1e-7
 
 #: Share of its rapid speed that a rotary axis must need for a feed to be lowered that far.
 _NEEDED: Final = 0.95
 
-#: Two points, each off by one in three coordinates, are farther apart by this at most.
+#: The distance of two points, each off in three coordinates, is off by so many times the tolerance of a coordinate.
 _BOTH_ENDS: Final = 2.0 * 3.0**0.5
 
 
 @dataclass(frozen=True, slots=True)
 class DeviationFault:
-    """A CL row at which what was said cannot be, or is not what the program does."""
+    """A CL row at which a declared deviation is out of bounds, or is not what the program does."""
 
     cl: int
     value: float
@@ -41,126 +43,131 @@ class DeviationFault:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AcceptedDeviations:
-    """What is wanted now, with what was said that cannot be believed, and how far the rest goes.
+    """The expected path with its declared deviations, those that are out of bounds, and how far they go.
 
-    lean    degrees by which the tool axis leans at most, and at how many rows
-    slowed  the lowest feed, and at how many rows it is lower
+    lean    largest angle by which the tool axis leans, degrees, and at how many rows it leans
+    slowed  lowest of the lowered feeds, and how many rows are lowered
     """
 
-    axis: tuple[DeviationFault, ...] = ()
-    feed: tuple[DeviationFault, ...] = ()
-    lean: tuple[float, int] = (0.0, 0)
-    slowed: tuple[float, int] = (np.inf, 0)
+    expected: ExpectedPath
+    axis: tuple[DeviationFault, ...]
+    feed: tuple[DeviationFault, ...]
+    lean: tuple[float, int]
+    slowed: tuple[float, int]
 
 
 def accept_deviations(expected: ExpectedPath, machine: Machine) -> AcceptedDeviations:
-    """Put what was agreed upon into what is wanted."""
-    sections, off_axis, off_feed = [], list[DeviationFault](), list[DeviationFault]()
+    """Put the declared deviations into the expected path."""
+    sections = list(expected.sections)
+    off_axis, off_feed = list[DeviationFault](), list[DeviationFault]()
     lean, leaned, slowest, slowed = 0.0, 0, np.inf, 0
-    for section in expected.sections:
-        deviations = section.tolerances.deviations
-        if deviations is None:
-            sections.append(section)
+    for number, section in enumerate(expected.sections):
+        declared = section.tolerances.deviations
+        if declared is None:
             continue
         moves = section.operation.moves
         axis, feed = moves.axis.copy(), moves.feed.copy()
-        joints = np.zeros((len(deviations.leaned_rows), 5))
-        joints[:, list(machine.rotary)] = deviations.leaned_rotary
-        axis[deviations.leaned_rows] = forward(machine, joints)[1]
-        away = np.linalg.norm(axis[deviations.leaned_rows] - moves.axis[deviations.leaned_rows], axis=1)
-        off = np.degrees(2.0 * np.arcsin(np.minimum(0.5 * away, 1.0)))
-        for k in np.flatnonzero(~(off <= deviations.max_lean + _NOISE)).tolist():
-            text = (
-                f"the tool axis is said to lean by {off[k]:.6f} degrees,"
-                f" more than the {deviations.max_lean:g} asked for"
-            )
-            off_axis.append(DeviationFault(section.first + int(deviations.leaned_rows[k]), float(off[k]), text))
-        feed[deviations.slowed_rows] = deviations.slowed_feed
-        for k in np.flatnonzero(
-            ~((deviations.slowed_feed > 0.0) & (deviations.slowed_feed <= moves.feed[deviations.slowed_rows]))
-        ).tolist():
-            text = f"a feed of {deviations.slowed_feed[k]:g} is said to be a lower one than the CL file's"
-            off_feed.append(
-                DeviationFault(section.first + int(deviations.slowed_rows[k]), float(deviations.slowed_feed[k]), text)
-            )
-        lean, leaned = max(lean, float(off.max(initial=0.0))), leaned + len(off)
-        slowest, slowed = (
-            min(slowest, float(deviations.slowed_feed.min(initial=np.inf))),
-            slowed + len(deviations.slowed_rows),
-        )
-        sections.append(
-            replace(section, operation=replace(section.operation, moves=replace(moves, axis=axis, feed=feed)))
-        )
-    expected.sections = tuple(sections)
-    return AcceptedDeviations(tuple(off_axis), tuple(off_feed), (lean, leaned), (slowest, slowed))
+        axis[declared.leaned_rows] = _declared_axes(declared, machine)
+        feed[declared.slowed_rows] = declared.slowed_feed
+        leans = degrees_apart(axis[declared.leaned_rows], moves.axis[declared.leaned_rows])
+        off_axis += _excessive_leans(section, declared, leans)
+        off_feed += _feeds_not_lowered(section, declared)
+        lean, leaned = max(lean, float(leans.max(initial=0.0))), leaned + len(leans)
+        slowest = min(slowest, float(declared.slowed_feed.min(initial=np.inf)))
+        slowed += len(declared.slowed_rows)
+        operation = replace(section.operation, moves=replace(moves, axis=axis, feed=feed))
+        sections[number] = replace(section, operation=operation)
+    return AcceptedDeviations(
+        expected.with_sections(sections), tuple(off_axis), tuple(off_feed), (lean, leaned), (slowest, slowed)
+    )
+
+
+def _declared_axes(declared: Deviations, machine: Machine) -> Floats:
+    """Tool axes at the declared rotary positions, (k, 3)."""
+    joints = np.zeros((len(declared.leaned_rows), 5))
+    joints[:, list(machine.rotary)] = declared.leaned_rotary
+    return forward(machine, joints)[1]
+
+
+def _excessive_leans(section: Section, declared: Deviations, leans: Floats) -> Iterator[DeviationFault]:
+    for k in np.flatnonzero(~(leans <= declared.max_lean + _NOISE)).tolist():
+        text = f"the tool axis is said to lean by {leans[k]:.6f} degrees, more than the {declared.max_lean:g} asked for"
+        yield DeviationFault(section.first + int(declared.leaned_rows[k]), float(leans[k]), text)
+
+
+def _feeds_not_lowered(section: Section, declared: Deviations) -> Iterator[DeviationFault]:
+    own = section.operation.moves.feed[declared.slowed_rows]
+    for k in np.flatnonzero(~((declared.slowed_feed > 0.0) & (declared.slowed_feed <= own))).tolist():
+        text = f"a feed of {declared.slowed_feed[k]:g} is said to be a lower one than the CL file's"
+        yield DeviationFault(section.first + int(declared.slowed_rows[k]), float(declared.slowed_feed[k]), text)
 
 
 def misplaced_lean_positions(run: Run, expected: ExpectedPath, matching: Matching) -> list[DeviationFault]:
-    """Rows whose rotary axes are not where they were said to be; whole turns of endless ones are left out."""
-    broken = []
+    """Rows whose rotary axes are not where they were declared to be; whole turns of endless ones do not count."""
+    faults = []
     columns = list(run.machine.rotary)
-    for section, deviations in _agreeing(expected):
-        for nc, cl in matching.pair_chunks(matching.cl.before(section.first), matching.cl.before(section.end)):
-            here, k = _among(cl - section.first, deviations.leaned_rows)
-            if not len(here):
-                continue
-            off = run.positions(nc[here]).joints[:, columns] - deviations.leaned_rotary[k]
-            for r, column in enumerate(columns):
-                if run.machine.axes[column].endless:
-                    off[:, r] -= 360.0 * np.rint(off[:, r] / 360.0)
-            by_vector = (run.programmed[nc[here]] & int(ProgrammedWord.VECTOR)) != 0
-            worst = np.where(by_vector, 0.0, np.abs(off).max(axis=1))
-            for bad in np.flatnonzero(~(worst <= section.tolerances.angle)).tolist():
-                text = f"a rotary axis is {worst[bad]:.6f} degrees from where it was said to be near the pole"
-                broken.append(DeviationFault(int(cl[here[bad]]), float(worst[bad]), text))
-    return broken
+    for section, declared, nc, cl in _declared_chunks(expected, matching):
+        here, k = _indices_among(cl - section.first, declared.leaned_rows)
+        if not len(here):
+            continue
+        off = run.positions(nc[here]).joints[:, columns] - declared.leaned_rotary[k]
+        for r, column in enumerate(columns):
+            if run.machine.axes[column].endless:
+                off[:, r] -= 360.0 * np.rint(off[:, r] / 360.0)
+        by_vector = (run.programmed[nc[here]] & int(ProgrammedWord.VECTOR)) != 0
+        worst = np.where(by_vector, 0.0, np.abs(off).max(axis=1))
+        for bad in np.flatnonzero(~(worst <= section.tolerances.angle)).tolist():
+            text = f"a rotary axis is {worst[bad]:.6f} degrees from where it was said to be near the pole"
+            faults.append(DeviationFault(int(cl[here[bad]]), float(worst[bad]), text))
+    return faults
 
 
 def needlessly_lowered_feeds(run: Run, expected: ExpectedPath, matching: Matching) -> list[DeviationFault]:
-    """Rows whose feed was lowered farther than the rotary axes need it.
+    """Rows whose feed was lowered farther than the rotary axes need.
 
-    Lines for arcs share a feed, and ways that rounding may have made are no measure: both are left out.
+    Not judged are lines that replace an arc, which share a feed, and distances within rounding.
     """
-    broken = []
-    rapid = np.array([run.machine.axes[column].rapid or np.inf for column in run.machine.rotary])
-    for section, deviations in _agreeing(expected):
-        for nc, cl in matching.pair_chunks(matching.cl.before(section.first), matching.cl.before(section.end)):
-            here, k = _among(cl - section.first, deviations.slowed_rows)
-            here, k = here[expected.kind(cl[here]) != Kind.ARC], k[expected.kind(cl[here]) != Kind.ARC]
-            # Points between lead there as well: the way is that from the CL point before.
-            first = nc[here] - 1 - matching.leading(cl[here])
-            here, k, first = here[first >= 0], k[first >= 0], first[first >= 0]
-            if not len(here):
-                continue
-            now, before = run.positions(nc[here]), run.positions(first)
-            # What is printed is rounded at both ends: this is the most that the axes may need.
-            turned = np.abs(now.joints - before.joints)[:, list(run.machine.rotary)] + 2.0 * section.tolerances.angle
-            length = np.linalg.norm(now.tip - before.tip, axis=1) - _BOTH_ENDS * section.tolerances.tip
-            per_rev = expected.per_rev(cl[here])
-            rate = deviations.slowed_feed[k] * np.where(per_rev, run.state.rpm.at(nc[here]), 1.0)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                share = (turned / rapid).max(axis=1) * rate / length
-            for bad in np.flatnonzero(~(share >= _NEEDED) & (length > 0.0)).tolist():
-                text = (
-                    f"the feed is lowered to {deviations.slowed_feed[k[bad]]:g}, and the rotary axes need no more than"
-                    f" {100.0 * share[bad]:.0f} % of their rapid speed there"
-                )
-                broken.append(DeviationFault(int(cl[here[bad]]), float(deviations.slowed_feed[k[bad]]), text))
-    return broken
+    faults = []
+    rotary = list(run.machine.rotary)
+    rapid = np.array([run.machine.axes[column].rapid or np.inf for column in rotary])
+    for section, declared, nc, cl in _declared_chunks(expected, matching):
+        here, k = _indices_among(cl - section.first, declared.slowed_rows)
+        no_arc = expected.kind(cl[here]) != Kind.ARC
+        here, k = here[no_arc], k[no_arc]
+        # Intermediate points lead there as well: the distance counts from the CL point before.
+        first = nc[here] - 1 - matching.intermediate_counts(cl[here])
+        here, k, first = here[first >= 0], k[first >= 0], first[first >= 0]
+        if not len(here):
+            continue
+        now, before = run.positions(nc[here]), run.positions(first)
+        # Both ends are rounded when they are printed: this is the most that the axes may need.
+        turned = np.abs(now.joints - before.joints)[:, rotary] + 2.0 * section.tolerances.angle
+        length = np.linalg.norm(now.tip - before.tip, axis=1) - _BOTH_ENDS * section.tolerances.tip
+        feed = declared.slowed_feed[k] * np.where(expected.per_rev(cl[here]), run.state.rpm.at(nc[here]), 1.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = (turned / rapid).max(axis=1) * feed / length
+        for bad in np.flatnonzero(~(share >= _NEEDED) & (length > 0.0)).tolist():
+            text = (
+                f"the feed is lowered to {declared.slowed_feed[k[bad]]:g}, and the rotary axes need no more than"
+                f" {100.0 * share[bad]:.0f} % of their rapid speed there"
+            )
+            faults.append(DeviationFault(int(cl[here[bad]]), float(declared.slowed_feed[k[bad]]), text))
+    return faults
 
 
-def _agreeing(expected: ExpectedPath) -> list[tuple[Section, Deviations]]:
-    return [
-        (section, section.tolerances.deviations)
-        for section in expected.sections
-        if section.tolerances.deviations is not None
-    ]
+def _declared_chunks(expected: ExpectedPath, matching: Matching) -> Iterator[tuple[Section, Deviations, Ints, Ints]]:
+    """Sections with declared deviations, and the rows of run and CL files of their pairs, chunk by chunk."""
+    for section in expected.sections:
+        declared = section.tolerances.deviations
+        if declared is not None:
+            for nc, cl in matching.pair_chunks(*matching.pair_range(section.first, section.end)):
+                yield section, declared, nc, cl
 
 
-def _among(rows: Ints, growing: Ints) -> tuple[Ints, Ints]:
-    """Which of ``rows`` are among growing ones, as indices into both."""
-    if not len(growing):
+def _indices_among(rows: Ints, increasing: Ints) -> tuple[Ints, Ints]:
+    """Which of ``rows`` are among increasing ones, as indices into both."""
+    if not len(increasing):
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
-    k = np.minimum(np.searchsorted(growing, rows), len(growing) - 1)
-    here = np.flatnonzero(growing[k] == rows)
+    k = np.minimum(np.searchsorted(increasing, rows), len(increasing) - 1)
+    here = np.flatnonzero(increasing[k] == rows)
     return here, k[here]

@@ -1,4 +1,4 @@
-"""Circles of a CL file: where a point on them should be.
+"""Circles and helices of a CL file: where the tool should be on its way along them.
 
 Units: mm and radians.
 """
@@ -10,10 +10,13 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.verification.expected.path import ExpectedPath
 
+#: An arc whose end comes within this of its start, mm along the circle, is a full circle.
+_FULL_CIRCLE = 1e-4
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arc:
-    """One circle or helix from ``start`` to ``end``; what the file rounds off is spread evenly along it."""
+    """One circle or helix from ``start`` to ``end``; rounding in the file is spread evenly along it."""
 
     start: Floats
     end: Floats
@@ -34,18 +37,18 @@ class Arc:
 
     @property
     def slope(self) -> float:
-        """How much it rises on a millimetre of its way round."""
+        """Rise along the axis per millimetre of arc length."""
         return abs(float((self.end - self.start) @ self.normal)) / max(self.radius * self.sweep, 1e-9)
 
     @property
-    def open(self) -> float:
-        """How far the end is from where the circle ends, seen along its axis, mm: what the file rounds off."""
+    def closure_error(self) -> float:
+        """Distance of the end from the end of the exact circle, seen along the axis, mm: rounding in the file."""
         radial, across = self.radial, np.cross(self.normal, self.radial)
         off = self.end - self.centre - np.cos(self.sweep) * radial - np.sin(self.sweep) * across
         return float(np.linalg.norm(off - (off @ self.normal) * self.normal))
 
     def fractions(self, points: Floats) -> Floats:
-        """How much of the arc is done at points near it, in order, (k,)."""
+        """Fractions of the arc at which points near it lie; the points are in order, (k,)."""
         arm = points - self.centre
         across = np.cross(self.normal, self.radial)
         angle = np.unwrap(np.concatenate(([0.0], np.arctan2(arm @ across, arm @ self.radial))))[1:]
@@ -54,7 +57,7 @@ class Arc:
         return np.asarray(angle / self.sweep)
 
     def at(self, fraction: Floats) -> Floats:
-        """Points at these fractions, (k, 3)."""
+        """Points at fractions of the arc, (k, 3)."""
         angle = (fraction * self.sweep)[:, None]
         radial, across = self.radial, np.cross(self.normal, self.radial)
         height = self.start - self.centre - radial
@@ -63,25 +66,25 @@ class Arc:
         return np.asarray(circle + fraction[:, None] * (self.end - last))
 
     def deviation(self, points: Floats) -> Floats:
-        """From where they should be to where points are, (k, 3)."""
+        """From where points should be to where they are, (k, 3)."""
         return np.asarray(points - self.at(self.fractions(points)))
 
 
 def arc_of(expected: ExpectedPath, row: int) -> Arc:
-    """The circle that ends at a row."""
+    """The arc that ends at a row."""
     arcs = expected.arcs
     k = int(np.searchsorted(arcs.row, row))
     start, end = expected.point(row - 1).tip, expected.point(row).tip
     centre, normal = arcs.centre[k], arcs.normal[k]
     a, b = start - centre, end - centre
     angle = float(np.arctan2(np.cross(a, b) @ normal, a @ b - (a @ normal) * (b @ normal))) % (2.0 * np.pi)
-    if min(angle, 2.0 * np.pi - angle) * float(arcs.radius[k]) < 1e-4:
+    if min(angle, 2.0 * np.pi - angle) * float(arcs.radius[k]) < _FULL_CIRCLE:
         angle = 2.0 * np.pi
     return Arc(start, end, centre, normal, angle + 2.0 * np.pi * float(arcs.full_turns[k]))
 
 
-def turned(begin: Floats, end: Floats, fraction: Floats) -> Floats:
-    """Vectors on the great circle from ``begin`` to ``end``, (k, 3)."""
+def great_circle_points(begin: Floats, end: Floats, fraction: Floats) -> Floats:
+    """Unit vectors at fractions of the great circle from ``begin`` to ``end``, (k, 3)."""
     angle = float(np.arctan2(np.linalg.norm(np.cross(begin, end)), begin @ end))
     if angle < 1e-9:
         return np.asarray(begin + fraction[:, None] * (end - begin))

@@ -1,9 +1,9 @@
-"""Retreats in the cut: the tool draws back along its axis, turns, and comes back to where it was.
+"""Rewind retracts: within a cut the tool retracts along its axis, the rotary axes turn, and the tool comes back.
 
-A planner puts them in where a rotary axis must rewind, and no CL point answers to them. They are known by what they do,
-whoever wrote them: motions between two CL points that leave the first one along the tool axis away from the part, turn
-rotary axes only out there, and end where they began, under the same tool axis, at a feed. While they turn the tip is
-held, by TCP or by slides that follow. Anything else that answers to no CL point stays a fault.
+A planner inserts them where a rotary axis must rewind, and no CL point belongs to them. They are recognized by what
+they do, whoever wrote them: motions between two CL points that leave the first one along the tool axis away from the
+part, turn rotary axes only out there, and end where they began, under the same tool axis, at a feed. While the rotary
+axes turn the tip is held, by TCP or by slides that follow. Any other motion without a CL point stays a fault.
 """
 
 from collections.abc import Sequence
@@ -17,26 +17,29 @@ from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import PositionChunk, Run
 from trunnion.model.toolpath import Kind
 
-#: The tool has to be this far from the part before it turns, mm, and has to turn by this much, degrees.
-_OFF, _TURNS = 1.0, 1.0
+#: How far from the part the rotary axes may turn at the earliest, mm, and how much they must turn, degrees.
+_MIN_RETRACT, _MIN_TURN = 1.0, 1.0
 
-#: Rotary motion below this is none, degrees; rounding of printed values is less.
+#: Smaller rotary motion is none, degrees; rounding of printed values is less.
 _STILL = 1e-3
 
-#: How far the tip may stray while slides hold it, mm, and the parts of a motion at which it is looked at. Nearer to its
-#: tolerance it is held by the check of the way between points; here it must not come back to the part.
-_STRAY, _SHARES = 0.5 * _OFF, np.linspace(0.0, 1.0, 9)[1:-1]
+#: How far the tip may stray while slides hold it, mm, and the fractions of a motion at which it is sampled. Its
+#: tolerance is left to the check of the tool between points; here it only must not come back to the part.
+_MAX_STRAY, _FRACTIONS = 0.5 * _MIN_RETRACT, np.linspace(0.0, 1.0, 9)[1:-1]
 
-#: How far ahead the end of a retreat is searched: most have three motions, those without TCP many more.
-_AHEAD = (8, 1024, 65536)
+#: How far ahead the end of a rewind retract is searched: most have three motions, those without TCP many more.
+_WINDOWS = (8, 1024, 65536)
 
-#: A tip that moves by less than this, mm, rests. And what a feed said by time may be off.
-_RESTS, _SAME_FEED = 1e-3, 1e-2
+#: A tip that moves by less than this, mm, rests.
+_TIP_RESTS = 1e-3
+
+#: Share by which a feed that follows from a time may be off.
+_FEED_SHARE = 1e-2
 
 
 @dataclass(frozen=True, slots=True)
 class RewindRetract:
-    """Rows ``first`` to ``end`` (left out) of a run, and how far the tool draws back, mm."""
+    """Rows ``first`` to ``end`` (exclusive) of a run, and how far the tool retracts, mm."""
 
     first: int
     end: int
@@ -44,46 +47,46 @@ class RewindRetract:
 
 
 def find_rewind_retracts(run: Run, extra: Sequence[int], tip_tolerance: float) -> list[RewindRetract]:
-    """Which of the motions that answer to no CL point are retreats.
+    """Which of the motions without a CL point are rewind retracts.
 
     Parameters
     ----------
     extra
-        Rows of the run, growing.
-    allowed
+        Rows of the run, increasing.
+    tip_tolerance
         How far a coordinate may be off, mm.
     """
     found = []
     rows = np.array(extra, np.int64)
-    for part in np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1):
-        if len(part) >= 2 and part[0] > 0 and part[-1] + 1 < len(run):
-            distance = _distance(run, int(part[0]), int(part[-1]) + 1, tip_tolerance)
+    for unbroken in np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1):
+        if len(unbroken) >= 2 and unbroken[0] > 0 and unbroken[-1] + 1 < len(run):
+            first, end = int(unbroken[0]), int(unbroken[-1]) + 1
+            distance = _retract_distance(run, first, end, tip_tolerance)
             if distance is not None:
-                found.append(RewindRetract(int(part[0]), int(part[-1]) + 1, distance))
+                found.append(RewindRetract(first, end, distance))
     return found
 
 
 def rewind_retract_length(run: Run, first: int, tip_tolerance: float) -> int:
-    """How many motions from row ``first`` on leave the place before them along the tool axis, turn, and come back.
+    """How many motions from row ``first`` on leave along the tool axis, turn, and come back to the position before.
 
-    0 if they do not. What they are worth is not judged here; ``tip_tolerance`` as for ``find_rewind_retracts``.
+    0 if they do not. Whether this is safe is left to ``find_rewind_retracts``, whose ``tip_tolerance`` this is.
     """
     if first == 0 or first >= len(run):
         return 0
     near = _near(tip_tolerance)
-    before = run.positions(np.array([first - 1, first]))
-    away = before.tip[1] - before.tip[0]
-    out = float(away @ before.axis[0])
-    if out < _OFF or np.linalg.norm(away - out * before.axis[0]) > near:
+    start = run.positions(np.array([first - 1, first]))
+    step = start.tip[1] - start.tip[0]
+    out = float(step @ start.axis[0])
+    if out < _MIN_RETRACT or np.linalg.norm(step - out * start.axis[0]) > near:
         return 0
-    for ahead in _AHEAD:
-        rows = np.arange(first, min(first + ahead, len(run)))
-        poses = run.positions(rows)
-        there = (np.abs(poses.tip - before.tip[0]).max(axis=1) <= near) & _upright(poses.axis, before.axis[0])
-        if there.any():
-            count = int(np.argmax(there)) + 1
-            turned = np.ptp(poses.joints[:count, list(run.machine.rotary)], axis=0).max()
-            return count if turned > _TURNS else 0
+    for window in _WINDOWS:
+        positions = run.positions(np.arange(first, min(first + window, len(run))))
+        back = (np.abs(positions.tip - start.tip[0]).max(axis=1) <= near) & _same_axis(positions.axis, start.axis[0])
+        if back.any():
+            count = int(np.argmax(back)) + 1
+            turned = np.ptp(positions.joints[:count, list(run.machine.rotary)], axis=0).max()
+            return count if turned > _MIN_TURN else 0
     return 0
 
 
@@ -91,65 +94,70 @@ def _near(tip_tolerance: float) -> float:
     return 4.0 * tip_tolerance + 1e-6  # both ends are rounded, in three coordinates
 
 
-def _upright(axis: Floats, expected: Floats) -> Flags:
-    """Which of some tool axes (n, 3) are the one that is wanted."""
+def _same_axis(axis: Floats, expected: Floats) -> Flags:
+    """Which tool axes (n, 3) are the expected one, (n,) bool."""
     return np.asarray(np.abs(axis - expected).max(axis=1) <= 1e-6 + np.radians(_STILL))
 
 
-def _distance(run: Run, first: int, end: int, tip_tolerance: float) -> float | None:
-    """How far rows ``first`` to ``end`` draw back, mm; None if they are no retreat from the row before them."""
-    poses, near = run.chunk(first, end), _near(tip_tolerance)
-    tip, axis = poses.tip, poses.axis
+def _rotary_steps(run: Run, positions: PositionChunk) -> Floats:
+    """How far the rotary axes turn in each row, degrees: that of the one that turns farthest, (k,)."""
+    return np.asarray(np.abs(np.diff(positions.joints[:, list(run.machine.rotary)], axis=0)).max(axis=1))
+
+
+def _retract_distance(run: Run, first: int, end: int, tip_tolerance: float) -> float | None:
+    """How far rows ``first`` to ``end`` retract, mm; None if they are no rewind retract."""
+    positions, near = run.chunk(first, end), _near(tip_tolerance)
+    tip, axis = positions.tip, positions.axis
     out = (tip - tip[0]) @ axis[0]
     aside = np.linalg.norm(tip - tip[0] - out[:, None] * axis[0], axis=1)
     on_line = bool((aside <= near).all() and (out >= -near).all() and abs(out[-1]) <= near)
     moves = np.abs(np.diff(out)) > near
-    upright = _upright(axis, axis[0])
-    straight = bool(upright[-1] and upright[1:][moves].all() and upright[:-1][moves].all())
-    turns = np.abs(np.diff(poses.joints[:, list(run.machine.rotary)], axis=0)).max(axis=1)
-    held = on_line and straight and _is_held(run, first, end, poses)
-    if not (held and _is_gentle(run, first, end, out, turns, near)):
+    same_axis = _same_axis(axis, axis[0])
+    straight = bool(same_axis[-1] and same_axis[1:][moves].all() and same_axis[:-1][moves].all())
+    if not (on_line and straight and _holds_tip(run, first, end, positions)):
+        return None
+    if not _turns_outside_at_feed(run, first, end, out, _rotary_steps(run, positions), near):
         return None
     return float(out.max())
 
 
-def _is_held(run: Run, first: int, end: int, poses: PositionChunk) -> bool:
-    """Whether the tip stays where it is while the rotary axes turn: by TCP, or led by the slides on all the way."""
+def _holds_tip(run: Run, first: int, end: int, positions: PositionChunk) -> bool:
+    """Whether the tip stays where it is while the rotary axes turn: by TCP, or because the slides follow."""
     tcp, frame = run.state.tcp.part(first - 1, end), run.state.machine_frame.part(first - 1, end)
     if frame.any() or (tcp.any() and not tcp.all()):
         return False
     if tcp.all():
         return True
-    if run.machine.workpiece_zero is None:  # nobody knows where the tip is
+    if run.machine.workpiece_zero is None:  # where the tip is, is not known
         return False
-    turning = np.flatnonzero(np.abs(np.diff(poses.joints[:, list(run.machine.rotary)], axis=0)).max(axis=1) > _STILL)
-    begin, step = poses.joints[turning], poses.joints[turning + 1] - poses.joints[turning]
-    off = [forward(run.machine, begin + share * step)[0] - poses.tip[turning] for share in _SHARES]
-    return bool(np.linalg.norm(off, axis=2).max(initial=0.0) <= _STRAY)
+    turning = np.flatnonzero(_rotary_steps(run, positions) > _STILL)
+    begin, step = positions.joints[turning], positions.joints[turning + 1] - positions.joints[turning]
+    off = [forward(run.machine, begin + fraction * step)[0] - positions.tip[turning] for fraction in _FRACTIONS]
+    return bool(np.linalg.norm(off, axis=2).max(initial=0.0) <= _MAX_STRAY)
 
 
-def _is_gentle(run: Run, first: int, end: int, out: Floats, turns: Floats, near: float) -> bool:
-    """Whether the axes turn out there only, and the tool goes there and back at a feed, back no faster than on.
+def _turns_outside_at_feed(run: Run, first: int, end: int, out: Floats, turns: Floats, near: float) -> bool:
+    """Whether the rotary axes turn away from the part only, and the tool goes out and back at a feed.
 
-    out    (end - first + 1,)  distance from the part at the row before and at all rows, mm
-    turns  (end - first,)      how far the rotary axes turn in each row, degrees
+    It must not come back faster than the cut goes on.
+
+    out    (end - first + 1,)  distance from the part in the row before and in all rows, mm
+    turns  (end - first,)      rotary motion in each row, degrees
     """
-    away = (out[1:] >= _OFF) & (np.abs(np.diff(out)) <= near)
+    outside = (out[1:] >= _MIN_RETRACT) & (np.abs(np.diff(out)) <= near)
     lines, rapids = run.kind[first:end] == Kind.LINEAR, run.kind[first:end] == Kind.RAPID
     feed = run.state.feed.part(first, end)
-    turned = bool((np.abs(np.cumsum(turns)) > _TURNS).any()) and bool((away | (turns <= _STILL)).all())
-    fed = bool((lines | (rapids & away)).all()) and bool((feed[lines] > 0.0).all())
-    return turned and fed and _feed(run, end - 1) <= _feed(run, end) * (1.0 + _SAME_FEED)
+    turns_outside = bool((np.abs(np.cumsum(turns)) > _MIN_TURN).any()) and bool((outside | (turns <= _STILL)).all())
+    at_feed = bool((lines | (rapids & outside)).all()) and bool((feed[lines] > 0.0).all())
+    return turns_outside and at_feed and _tip_feed(run, end - 1) <= _tip_feed(run, end) * (1.0 + _FEED_SHARE)
 
 
-def _feed(run: Run, row: int) -> float:
-    """Feed of the tip in a row, mm/min; as it is said where the tip rests."""
+def _tip_feed(run: Run, row: int) -> float:
+    """Feed of the tip in a row, mm/min; as programmed where the tip rests."""
     rows = np.array([row])
-    feed, way = (
-        float(run.state.feed.at(rows)[0]),
-        float(np.linalg.norm(np.diff(run.positions(np.array([row - 1, row])).tip, axis=0))),
-    )
-    said = float(row_feed_path_lengths(run, rows)[0])
+    feed = float(run.state.feed.at(rows)[0])
+    travel = float(np.linalg.norm(np.diff(run.positions(np.array([row - 1, row])).tip, axis=0)))
+    counted = float(row_feed_path_lengths(run, rows)[0])
     if run.state.feed_mode.at(rows)[0] == 93:
-        return feed * way if way > _RESTS else np.inf
-    return feed if np.isnan(said) or way <= _RESTS else feed * way / said
+        return feed * travel if travel > _TIP_RESTS else np.inf
+    return feed if np.isnan(counted) or travel <= _TIP_RESTS else feed * travel / counted

@@ -1,0 +1,148 @@
+"""The feeds of a program against those of the CL files."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.model.feed_path import FeedPath, row_feed_path_lengths
+from trunnion.model.toolpath import Kind
+from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
+from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, needlessly_lowered_feeds
+from trunnion.verification.results import Check, Place
+
+#: A tip that moves by less than this, mm, or by less than rounding, may be taken to rest.
+_TIP_RESTS = 1e-3
+
+#: No control executes a block in less than this, minutes.
+_SHORTEST_BLOCK = 1e-6
+
+#: Share by which the time of a block may be off.
+_TIME_SHARE = 1e-3
+
+#: A number is the largest one possible if it is less by no more than this.
+_LARGEST = 1e-6
+
+
+def check_feed(context: ComparedContext, accepted: AcceptedDeviations) -> Check:
+    """Feeds of all rows that are not rapids, as far as they were not declared to be lowered."""
+    compared = _compare_points(context)
+    count, places = compared.count, compared.places
+    for segments in context.matching.arc_segments:
+        should, tolerances = (
+            context.expected.point(segments.cl).feed,
+            context.expected.section_at(segments.cl).tolerances,
+        )
+        asked = np.full(len(segments.nc), should)
+        near, feed = _compare_feeds(context, segments.nc, asked, tolerances.tip, tolerances.feed)
+        for k in np.flatnonzero(~near).tolist():
+            count += 1
+            text = f"moves with {feed[k]:g} mm/min; the CL file wants {should:g}"
+            places.append(context.place_with_cl(int(segments.nc[k]), float(feed[k]), text, segments.cl))
+    faults = [*accepted.feed, *needlessly_lowered_feeds(context.run, context.expected, context.matching)]
+    named = [context.place_of_cl_row(fault.cl, fault.value, fault.text) for fault in faults[:MAX_PLACES]]
+    low, high = compared.range
+    good = "nothing is cut" if low > high else f"{low:g} to {high:g}, as the CL file says"
+    lowest, rows = accepted.slowed
+    good += f"; lowered at {rows} rows, down to {lowest:.2f}, for the rotary axes" if rows else ""
+    return check_from_places("feed", "feeds as the CL file says", [*named, *places], good, count + len(faults))
+
+
+@dataclass(slots=True)
+class _ComparedFeeds:
+    """Places of wrong feeds and how many there are, and the lowest and highest feed of the CL files."""
+
+    places: list[Place]
+    count: int
+    range: tuple[float, float]
+
+
+def _compare_points(context: ComparedContext) -> _ComparedFeeds:
+    """Feeds of all motions that go or lead to a CL point."""
+    run, expected = context.run, context.expected
+    found = _ComparedFeeds([], 0, (np.inf, -np.inf))
+    feed_tolerance = max(section.tolerances.feed for section in expected.sections)
+    for nc, cl in context.matching.all_pair_chunks():
+        at_feed = (run.kind[nc] != Kind.RAPID) & (expected.kind(cl) != Kind.RAPID)
+        per_rev, asked, mode = expected.per_rev(cl), expected.feed(cl), run.state.feed_mode.at(nc)
+        near, feed = _compare_feeds(context, nc, asked, expected.max_tip_tolerance, feed_tolerance)
+        stated = at_feed & ~np.isnan(asked)
+        wrong = at_feed & ((mode == 95) != per_rev)
+        wrong |= stated & ~near
+        known = asked if stated.all() else asked[stated]
+        if len(known):
+            found.range = min(found.range[0], float(known.min())), max(found.range[1], float(known.max()))
+        if not wrong.any():
+            continue
+        bad = np.flatnonzero(wrong)
+        found.count += len(bad)
+        for k in bad[: max(MAX_PLACES - len(found.places), 0)].tolist():
+            unit = {93: "mm/min (inverse time)", 95: "mm/rev"}.get(int(mode[k]), "mm/min")
+            has = "no feed" if np.isnan(feed[k]) else f"{feed[k]:g} {unit}"
+            text = f"moves with {has}; the CL file wants {asked[k]:g} {'mm/rev' if per_rev[k] else 'mm/min'}"
+            found.places.append(context.place_with_cl(int(nc[k]), float(feed[k]), text, int(cl[k])))
+    return found
+
+
+def _compare_feeds(
+    context: ComparedContext, nc: Ints, asked: Floats, tip_tolerance: float, feed_tolerance: float
+) -> tuple[Flags, Floats]:
+    """Whether rows move at the feeds asked for, (k,) bool, and their feeds, (k,).
+
+    Blocks whose F is not the feed of the tip are compared by their time: those with inverse time, and those that turn
+    rotary axes without TCP. Where F is the feed of the tip at the start of each block (``FeedPath.TIP``), it is
+    compared as programmed.
+    """
+    run, settings = context.run, context.settings
+    feed = run.state.feed.at(nc)
+    near = np.abs(feed - asked) <= feed_tolerance + 1e-9
+    slack = 2.0 * math.sqrt(3.0) * tip_tolerance
+    timed = np.flatnonzero(run.state.feed_mode.at(nc) == 93)
+    if len(timed):
+        with np.errstate(divide="ignore"):
+            minutes = 1.0 / feed[timed]
+        limit = np.inf if settings.max_inverse_time_feed is None else settings.max_inverse_time_feed - _LARGEST
+        always = np.where(feed[timed] >= limit, minutes, _SHORTEST_BLOCK)
+        blocks = _TimedBlocks(nc[timed], minutes, asked[timed], always)
+        near[timed], feed[timed] = _compare_times(context, blocks, slack)
+    length = row_feed_path_lengths(run, nc)
+    free = np.flatnonzero(~np.isnan(length) & (run.state.feed_path.at(nc) != FeedPath.TIP))
+    if len(free):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            minutes = length[free] / feed[free]
+            rounding = feed_tolerance / feed[free]
+        limit = np.inf if settings.max_feed is None else settings.max_feed - feed_tolerance
+        always = np.where(feed[free] >= limit, minutes, _SHORTEST_BLOCK)
+        blocks = _TimedBlocks(nc[free], minutes, asked[free], always)
+        near[free], feed[free] = _compare_times(context, blocks, slack, rounding)
+    return near, feed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _TimedBlocks:
+    """Rows, (k,); their times, minutes; the feeds asked for, mm/min; and the times that they may take at any feed."""
+
+    rows: Ints
+    minutes: Floats
+    asked: Floats
+    always: Floats
+
+
+def _compare_times(
+    context: ComparedContext, blocks: _TimedBlocks, slack: float, rounding: Floats | float = 0.0
+) -> tuple[Flags, Floats]:
+    """Whether blocks take as long as their distance does at the feed asked for, and their feeds, mm/min.
+
+    They may be off by a thousandth, by the share ``rounding`` by which a printed number is off, and by ``slack`` mm of
+    the distance. Where the tip rests, a degree may count as a millimetre.
+    """
+    run, minutes, asked = context.run, blocks.minutes, blocks.asked
+    before, after = run.positions(blocks.rows - 1), run.positions(blocks.rows)
+    travel = np.sqrt(((after.tip - before.tip) ** 2).sum(axis=1))
+    turned = np.abs(after.joints - before.joints)[:, list(run.machine.rotary)].max(axis=1)
+    longest = np.where(travel < max(_TIP_RESTS, slack), np.maximum(travel, turned), travel) + slack
+    too_soon = minutes < (1.0 - _TIME_SHARE - rounding) * np.maximum(travel - slack, 0.0) / asked
+    too_late = minutes > (1.0 + _TIME_SHARE + rounding) * longest / asked + blocks.always
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return ~(too_soon | too_late | np.isnan(minutes)), travel / minutes

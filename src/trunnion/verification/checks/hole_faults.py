@@ -1,0 +1,152 @@
+"""What is wrong with the motions that drill one hole: approach, heights, exit, feed, dwell and spindle.
+
+Heights are as in ``trunnion.verification.expected.holes``.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Ints
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.drill_motions import DrillMotions, HoleFault
+from trunnion.verification.checks.peck_faults import peck_faults
+from trunnion.verification.checks.spindle_checks import RPM_TOLERANCE
+from trunnion.verification.expected.holes import Hole
+from trunnion.verification.matching.hole_matching import MatchedHole
+
+#: Half of the last digit of the feeds of threads, mm/min or mm/rev, and of pitches, mm; and the noise of computing.
+_FEED, _PITCH, _NOISE = 0.005, 5e-6, 1e-6
+
+#: Half of the last digit of dwells, seconds.
+_DWELL: Final = 5.1e-4
+
+#: Cycles that leave the hole at feed.
+_FEED_OUT: Final = ("TAP", "REAM")
+
+
+def hole_faults(
+    run: Run, hole: Hole, match: MatchedHole, dwells: Mapping[int, list[float]], clearance: float | None = None
+) -> Iterator[HoleFault]:
+    """What is wrong with one hole.
+
+    Parameters
+    ----------
+    dwells
+        The dwells of the run by row, in seconds, or spindle revolutions if negative.
+    clearance
+        As ``clearance_between_holes`` gives it, from the hole before.
+    """
+    rows = np.arange(max(match.first - 1, 0), match.end)
+    positions = run.positions(rows)
+    height, aside = hole.heights_and_offsets(positions.tip)
+    kind = run.kind[rows[1:]].copy()
+    if match.shares_first_row:
+        kind[0] = Kind.RAPID
+    motions = DrillMotions(rows[1:], kind, height[1:], match.by_motion)
+    if float(np.abs(positions.axis[1:] - hole.axis).max()) > 1e-6 + np.radians(4.0 * hole.tip_tolerance):
+        yield motions.fault(0, 0.0, "the tool does not stand along the axis of the hole")
+        return
+    off_axis = (aside[1:] > hole.tolerance) & ~(("NODRAG" in hole.cycle.mode) & (kind == Kind.RAPID))
+    if off_axis.any():
+        k = int(np.argmax(off_axis))
+        off = float(aside[1:][k])
+        yield motions.fault(k, off, f"{off:.5f} mm beside the hole that the CL file asks for")
+        return
+    yield from _approach_faults(hole, motions, float(height[0]), bool(aside[0] > hole.tolerance), clearance)
+    if len(motions.row) < 3 or (kind == Kind.RAPID).all():
+        yield motions.fault(0, 0.0, "the hole is not drilled")
+        return
+    rpm = float(run.state.rpm[match.end - 1])
+    bottom = int(motions.row[motions.bottom])
+    yield from _height_faults(hole, motions)
+    yield from peck_faults(hole, motions)
+    yield from _exit_faults(hole, motions)
+    yield from _feed_faults(run, hole, motions.row[kind == Kind.LINEAR], rpm)
+    yield from _dwell_faults(hole, match, bottom, dwells, rpm)
+    yield from _spindle_faults(run, hole, match, bottom)
+
+
+def _approach_faults(
+    hole: Hole, motions: DrillMotions, start_height: float, from_aside: bool, clearance: float | None
+) -> Iterator[HoleFault]:
+    """The tool comes too low, or at feed; ``from_aside``: the approach does not start on the axis of the hole."""
+    if clearance is not None and clearance < -hole.tolerance:
+        text = f"goes to the hole {-clearance:.4f} mm too low over both it and the one before"
+        yield motions.fault(0, clearance, text)
+    lowest = hole.cycle.clearance - hole.tolerance
+    slanted = clearance is None and from_aside and start_height < lowest
+    if motions.kind[0] != Kind.RAPID or motions.height[0] < lowest or slanted:
+        low = min(float(motions.height[0]), start_height)
+        text = f"goes to the hole {low:.4f} mm above it; the CL file wants at least {hole.cycle.clearance:g}"
+        yield motions.fault(0, low, text)
+
+
+def _height_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
+    """The heights at which the feed begins and the tool leaves, and the depth."""
+    h = motions.height
+    start = int(np.argmax(motions.kind != Kind.RAPID)) - 1  # a control may come down to it in two steps
+    if abs(h[start] - hole.cycle.clearance) > hole.tolerance:
+        text = f"begins to feed {h[start]:.4f} mm above the hole, not {hole.cycle.clearance:g}"
+        yield motions.fault(start, float(h[start]), text)
+    if abs(h[-1] - hole.cycle.retract) > hole.tolerance:
+        yield motions.fault(-1, float(h[-1]), f"is drawn back to {h[-1]:.4f} mm, not to {hole.cycle.retract:g}")
+    depth = -h.min()
+    if abs(depth - hole.cycle.depth) > hole.tolerance:
+        yield motions.fault(motions.bottom, float(depth), f"drills {depth:.4f} mm deep, not {hole.cycle.depth:g}")
+
+
+def _exit_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
+    """The way out of the hole: at rapid or at feed, and in motions of the program up to the clearance height."""
+    after = motions.bottom + 1
+    if after >= len(motions.row) or hole.cycle.depth <= 0.0:
+        return
+    at_feed = hole.cycle.mode[0] in _FEED_OUT or hole.cycle.mode == ("BORE",)
+    height = float(motions.height[after])
+    if (motions.kind[after] == Kind.LINEAR) != at_feed:
+        how = "at rapid" if at_feed else "at a feed"
+        yield motions.fault(after, 0.0, f"leaves the hole {how}, which is not what the CL file says")
+    elif motions.by_motion and at_feed and abs(height - hole.cycle.clearance) > hole.tolerance:
+        yield motions.fault(after, height, f"leaves the hole at a feed to another height than {hole.cycle.clearance:g}")
+
+
+def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float) -> Iterator[HoleFault]:
+    """The feed of the cycle, in all lines."""
+    mode, programmed = run.state.feed_mode.at(lines), run.state.feed.at(lines)
+    feed = np.where(mode == 95, programmed * rpm, programmed)
+    should = hole.cycle.feed * rpm if hole.cycle.per_rev else hole.cycle.feed
+    digit = (min(hole.feed_tolerance, _FEED) if hole.cycle.mode[0] == "TAP" else hole.feed_tolerance) + _NOISE
+    last_digit = np.where(mode == 95, digit * rpm, digit + _PITCH * rpm)
+    off = ~(np.abs(feed - should) <= last_digit + 1e-9 * should)
+    if off.any():
+        k = int(np.argmax(off))
+        unit = f" ({hole.cycle.feed:g} mm/rev)" if hole.cycle.per_rev else ""
+        text = f"moves with {feed[k]:g} mm/min; the CL file wants {should:g}{unit}"
+        yield HoleFault(int(lines[k]), float(feed[k]), text)
+
+
+def _dwell_faults(
+    hole: Hole, match: MatchedHole, bottom: int, dwells: Mapping[int, list[float]], rpm: float
+) -> Iterator[HoleFault]:
+    """The dwell at the bottom, and dwells elsewhere in the hole; ``bottom`` is the deepest row."""
+    should = 60.0 * hole.cycle.dwell / rpm if hole.cycle.dwell_turns and rpm else hole.cycle.dwell
+    has = sum(dwell if dwell >= 0.0 else -60.0 * dwell / max(rpm, 1e-9) for dwell in dwells.get(bottom + 1, ()))
+    if abs(has - should) > _DWELL:
+        yield HoleFault(bottom, has, f"waits {has:g} s at the bottom; the CL file wants {should:g}")
+    elsewhere = [row for row in range(match.first + 1, match.end) if row != bottom + 1 and row in dwells]
+    if match.by_motion and elsewhere:
+        yield HoleFault(elsewhere[0], 0.0, "waits in the hole where the CL file does not want it")
+
+
+def _spindle_faults(run: Run, hole: Hole, match: MatchedHole, bottom: int) -> Iterator[HoleFault]:
+    """Speed and sense of the spindle; where motions drill a hole that it leaves without turning, it is off then."""
+    leaves_off = match.by_motion and "DRAG" in hole.cycle.mode
+    row = bottom if leaves_off else match.end - 1
+    sense, rpm, should = int(run.state.spindle[row]), float(run.state.rpm[row]), hole.spindle
+    if should is not None and (sense != should.sense or (sense and abs(rpm - should.rpm) > RPM_TOLERANCE)):
+        text = f"the spindle turns with {sense * rpm:g}, not with {should.sense * should.rpm:g}"
+        yield HoleFault(row, rpm, text)
+    if leaves_off and int(run.state.spindle[row + 1]):
+        yield HoleFault(row + 1, rpm, "leaves the hole with the spindle turning; the CL file wants it to stand")

@@ -1,0 +1,117 @@
+"""Motions to the machine's home positions."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.machines import Machine
+from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.toolpath import Kind
+from trunnion.verification.context import Context, check_from_places
+from trunnion.verification.results import Check, Place
+
+_TITLE: Final = "retreats to the machine's home"
+
+#: An axis is at home within this, mm or degrees.
+HOME_TOLERANCE: Final = 1e-6
+
+_SLIDE_WORDS: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _HomeMotions:
+    """Rows in the machine frame, other than retracts along the tool axis.
+
+    rows            (k,) int64
+    joints, before  (k, 5) positions at their ends and starts
+    named           (k, 5) bool  the axes that their blocks name
+    at_home         (k, 5) bool  the axes that are at home at their ends, endless ones whatever their turn
+    """
+
+    rows: Ints
+    joints: Floats
+    before: Floats
+    named: Flags
+    at_home: Flags
+
+    @staticmethod
+    def of(run: Run) -> "_HomeMotions":
+        rows = run.state.machine_frame.rows_with(True)
+        rows = rows[~np.isin(rows, [event.before_row for event in run.events if event.kind == "retract"])]
+        joints, before = run.positions(rows).joints, run.positions(rows - 1).joints
+        off = joints - run.machine.home
+        for k, axis in enumerate(run.machine.axes):
+            if axis.endless:
+                off[:, k] -= 360.0 * np.rint(off[:, k] / 360.0)
+        words = np.array(_axis_words(run.machine))
+        named = (run.programmed[rows][:, None] & words) != 0
+        return _HomeMotions(rows, joints, before, named, np.abs(off) <= HOME_TOLERANCE)
+
+
+def _axis_words(machine: Machine) -> list[int]:
+    """The bit of ``Run.programmed`` of each axis."""
+    slides = {"X": ProgrammedWord.X, "Y": ProgrammedWord.Y, "Z": ProgrammedWord.Z}
+    words = [int(slides.get(axis.name, 0)) for axis in machine.axes]
+    first, second = machine.rotary
+    words[first], words[second] = int(ProgrammedWord.FIRST), int(ProgrammedWord.SECOND)
+    return words
+
+
+def check_home(context: Context) -> Check:
+    """Motions in the machine frame: at rapid, back along one slide first, and to the machine's home positions.
+
+    A program that never goes to the home of the machine's definition has positions of its own, which are not checked.
+    """
+    motions = _HomeMotions.of(context.run)
+    if not len(motions.rows):
+        return Check("home", _TITLE, True, "the program does not go home")
+    if not motions.at_home.any():
+        return Check("home", _TITLE, True, "goes to machine positions of its own, not to the home of the definition")
+    places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
+    good = "slides and rotary axes at home before, after and at every tool change"
+    return check_from_places("home", _TITLE, places, good)
+
+
+def _wrong_motions(context: Context, motions: _HomeMotions) -> Iterator[Place]:
+    """Motions to other positions, at feed, or along several axes before the tool was retracted along one."""
+    run, machine = context.run, context.run.machine
+    for k, row in enumerate(motions.rows.tolist()):
+        axes = [machine.axes[c].name for c in np.flatnonzero(motions.named[k])]
+        away = [machine.axes[c].name for c in np.flatnonzero(motions.named[k] & ~motions.at_home[k])]
+        if away:
+            text = f"moves {' and '.join(away)} to a machine position that is not its home"
+            yield context.place(row, 0.0, text)
+        if run.kind[row] != Kind.RAPID:
+            yield context.place(row, 0.0, "moves home at feed, not at rapid")
+        not_retracted = k == 0 or row != motions.rows[k - 1] + 1
+        moves = bool((np.abs(motions.joints[k] - motions.before[k]) > HOME_TOLERANCE).any())
+        if not_retracted and len(axes) > 1 and (moves or row == 0):
+            text = f"moves {' and '.join(axes)} home before the tool has been drawn back along one slide"
+            yield context.place(row, 0.0, text)
+
+
+def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator[Place]:
+    """The last motion before each tool change and end of program for which the slides are not at home."""
+    run, slides = context.run, list(context.run.machine.linear)
+    for event in run.events:
+        if event.kind not in ("tool_change", "end") or not 0 < event.before_row <= len(run):
+            continue
+        row = event.before_row - 1
+        k = int(np.searchsorted(motions.rows, row, "right")) - 1
+        was_home = k >= 0 and motions.at_home[k, slides].all()
+        if not (was_home and _slides_stay_home(run, int(motions.rows[k]) + 1, row + 1)):
+            what = "changes the tool" if event.kind == "tool_change" else "ends"
+            text = f"{what} in line {event.line} while the slides are not at home; this is the last motion before"
+            yield context.place(row, 0.0, text)
+
+
+def _slides_stay_home(run: Run, first: int, end: int) -> bool:
+    """Whether rows ``first`` to ``end`` only turn rotary axes, and the slides stay at home."""
+    if (run.programmed[first:end] & int(_SLIDE_WORDS)).any():
+        return False
+    slides = list(run.machine.linear)
+    off = run.positions(np.arange(first, end)).joints[:, slides] - run.machine.home[slides]
+    return bool((np.abs(off) <= HOME_TOLERANCE).all())

@@ -1,0 +1,68 @@
+"""Rapids that go sideways below the height to which the tool was last retracted."""
+
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags
+from trunnion.model.toolpath import Kind
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Context
+from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, approach_rows
+from trunnion.verification.matching.hole_approaches import hole_approach_rows
+from trunnion.verification.matching.hole_matching import hole_rows, match_holes
+from trunnion.verification.results import Place
+
+#: Smaller motion, mm, is none.
+_STILL: Final = 1e-3
+
+
+def low_rapids(context: Context) -> list[Place]:
+    """Places of low rapids that no CL file asks for."""
+    run = context.run
+    suspects = _suspects(context)
+    if not suspects.any():
+        return []
+    rapids = np.flatnonzero((run.kind == Kind.RAPID) & ((run.programmed & int(POSITION_WORDS)) != 0))
+    rapids = rapids[~run.state.machine_frame.at(rapids)]
+    before, after, tools = run.positions(np.maximum(rapids - 1, 0)), run.positions(rapids), run.state.tool.at(rapids)
+    retracts = np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64)
+    places: list[Place] = []
+    height: float | None = None
+    axis, tool = np.zeros(3), -1
+    for k, row in enumerate(rapids.tolist()):
+        last = rapids[k - 1] if k else -1
+        retracted = bool(((retracts > last) & (retracts <= row)).any())
+        if np.abs(after.axis[k] - axis).max() > 1e-6 or tools[k] != tool or retracted:
+            height, axis, tool = None, after.axis[k], int(tools[k])
+        start, end = before.tip[k], after.tip[k]
+        step = end - start
+        up = float(step @ axis)
+        aside = float(np.linalg.norm(step - up * axis))
+        highest = max(float(start @ axis), float(end @ axis))
+        if suspects[row] and height is not None and aside > _STILL and highest < height - _STILL:
+            text = f"rapid goes sideways {height - highest:.3f} mm below the retract height"
+            places.append(context.place(row, height - highest, text))
+            if len(places) >= MAX_PLACES:
+                break
+        elif height is None or (aside <= _STILL and up > _STILL):
+            height = float(end @ axis)
+    return places
+
+
+def _suspects(context: Context) -> Flags:
+    """Which rows may be low rapids, (n,) bool: not those of holes, and not those that the CL file asks for."""
+    run = context.run
+    suspects = np.zeros(len(run), np.bool_)
+    rapids = np.flatnonzero(run.kind == Kind.RAPID)
+    suspects[rapids[~run.state.machine_frame.at(rapids)]] = True
+    if isinstance(context, ComparedContext):
+        expected, matching = context.expected, context.matching
+        for nc, cl in matching.all_pair_chunks():
+            suspects[nc[expected.kind(cl) == Kind.RAPID]] = False
+        holes = match_holes(run, expected)
+        suspects[list(hole_approach_rows(run, matching.extra, holes, expected.max_tip_tolerance))] = False
+    else:
+        holes = match_holes(run)
+    suspects[hole_rows(holes)] = False
+    suspects[approach_rows(run)] = False  # as high as home, which nothing in the program determines
+    return suspects

@@ -1,0 +1,109 @@
+"""What the program asks of the machine: travel, speed and acceleration of its axes."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from trunnion.machines import Axis
+from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.kinematics.axis_motion import AxisMotion
+from trunnion.verification.kinematics.worst_rows import WorstRows
+from trunnion.verification.results import Check
+
+#: Travel beyond a limit by less than this is rounding, mm or degrees.
+_ROUNDING = 1e-5
+
+
+@dataclass(frozen=True, slots=True)
+class _Margin:
+    """Travel that an axis has left, mm or degrees, negative where it goes too far; and how and where it uses it."""
+
+    axis: Axis
+    left: float
+    text: str
+    value: float
+    row: int
+
+    @property
+    def share(self) -> float:
+        """Of the travel of the axis."""
+        return self.left / max(self.axis.high - self.axis.low, 1e-9)
+
+
+def check_travel(context: Context, motion: AxisMotion) -> Check:
+    """Every axis is inside its limits; the summary has the smallest margin."""
+    title = "travel of the axes"
+    margins = sorted(_margins(context, motion), key=lambda margin: margin.share)
+    if not margins:
+        return Check("travel", title, True, "no limits are stated")
+    over = [margin for margin in margins if margin.left < -_ROUNDING]
+    places = tuple(
+        context.place(margin.row, margin.value, f"{margin.text}, {_words(margin.left, margin.left < 0)}")
+        for margin in (over or margins)
+    )
+    least = margins[0]
+    unit = "deg" if least.axis.is_rotary else "mm"
+    summary = f"{least.text}, {_words(least.left, bool(over))}"
+    return Check("travel", title, not over, summary, least.left, 0.0, unit, places)
+
+
+def _words(left: float, too_far: bool) -> str:
+    return f"{abs(left):.3f} {'too far' if too_far else 'left'}"
+
+
+def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
+    """The margin of each axis with limits; without a workpiece zero, slides are compared with their whole travel."""
+    machine = context.run.machine
+    for k, axis in enumerate(machine.axes):
+        low, high = motion.extremes[k].tolist()
+        if low > high or axis.endless or not (math.isfinite(axis.low) or math.isfinite(axis.high)):
+            continue
+        rows = motion.extreme_rows[k].tolist()
+        if not axis.is_rotary and machine.workpiece_zero is None:
+            text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm"
+            yield _Margin(axis, (axis.high - axis.low) - (high - low), text, high - low, rows[1])
+            continue
+        below, above = low - axis.low, axis.high - high
+        value, limit, row = (low, axis.low, rows[0]) if below < above else (high, axis.high, rows[1])
+        text = f"{axis.name} goes to {value:.3f}, its limit is {limit:g} {'deg' if axis.is_rotary else 'mm'}"
+        yield _Margin(axis, min(below, above), text, value, row)
+
+
+def check_speed(context: Context, motion: AxisMotion) -> Check:
+    """Shares of rapid speed; the control slows down where more than all of it is needed, so this never fails."""
+    title = "speed of the axes at the programmed feed"
+    stated = any(axis.rapid for axis in context.run.machine.axes)
+    return _check_shares(context, motion.speed, "speed", title, "rapid speed", stated)
+
+
+def check_acceleration(context: Context, motion: AxisMotion) -> Check:
+    """Shares of acceleration; the control slows down where more than all of it is needed, so this never fails."""
+    title = "acceleration of the axes between blocks"
+    stated = any(axis.acceleration for axis in context.run.machine.axes)
+    return _check_shares(context, motion.acceleration, "acceleration", title, "acceleration", stated)
+
+
+def _check_shares(
+    context: Context, shares: Sequence[WorstRows], key: str, title: str, quantity: str, stated: bool
+) -> Check:
+    axes = context.run.machine.axes
+    if not stated:
+        return Check(key, title, True, f"the machine's definition states no {quantity}")
+    text = "{} would need {:.0f} % of its {}: the control slows down"
+    places = [
+        context.place(row, share, text.format(axis.name, 100.0 * share, quantity))
+        for axis, worst in zip(axes, shares, strict=True)
+        for row, share in worst.rows
+    ]
+    places.sort(key=lambda place: -place.value)
+    top = max(range(len(axes)), key=lambda k: shares[k].value)
+    worst = shares[top]
+    if worst.row < 0:
+        return Check(key, title, True, "no axis moves at feed", 0.0, 1.0, "of all")
+    count = sum(each.count for each in shares)
+    summary = (
+        f"{axes[top].name} at most {100.0 * worst.value:.0f} % of its {quantity}, in {context.block_name(worst.row)}"
+    )
+    if count:
+        summary += f"; in {count} places the control slows down"
+    return Check(key, title, True, summary, worst.value, 1.0, "of all", tuple(places[:MAX_PLACES]))

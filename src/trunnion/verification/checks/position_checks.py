@@ -1,0 +1,110 @@
+"""Tip and tool axis at every CL point, and along arcs that the program replaces by lines."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion.verification.context import MAX_PLACES, ComparedContext
+from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, misplaced_lean_positions
+from trunnion.verification.deviations.point_deviations import DeviationSummary
+from trunnion.verification.expected.arcs import great_circle_points
+from trunnion.verification.kinematics.axis_difference import degrees_apart
+from trunnion.verification.matching.pairs import ArcSegments
+from trunnion.verification.results import Check, Place
+
+#: A point whose three coordinates are off by one each is off by this much.
+_DIAGONAL = math.sqrt(3.0) + 1e-6
+
+#: An arc may miss the end of its circle by this much for rounding, mm.
+_MAX_CLOSURE_ERROR = 1e-3
+
+
+def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
+    """The tip at every CL point."""
+    run, expected, matching = context.run, context.expected, context.matching
+    places = []
+    for k, value in deviations.bad:
+        row, cl = matching.nc[k], matching.cl[k]
+        is_, should = run.positions(np.array([row])).tip[0], expected.point(cl).tip
+        axes = [
+            f"{name}{now:.5f} for {then:.5f}"
+            for name, now, then in zip("XYZ", is_, should, strict=True)
+            if not abs(now - then) <= deviations.limit
+        ]
+        inches = " (the program counts in inches here)" if run.state.inches[row] else ""
+        text = f"the tip is {value:.6f} mm off: {', '.join(axes)}{inches}"
+        places.append(context.place_with_cl(row, value, text, cl))
+    if places:
+        first = min(matching.nc[k] for k, _ in deviations.bad)
+        positioned = None if run.state.tcp[first] else context.rotary_positioning_place(first)
+        places += [positioned] if positioned is not None else []
+    on_arcs = [place for segments in matching.arc_segments for place in _tips_off_arc(context, segments)]
+    count = deviations.count + len(on_arcs)
+    return _measured("tip", "tool tip against the CL points", context, deviations, "mm", places + on_arcs, count)
+
+
+def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
+    """Ends of lines that are off the arc that they replace."""
+    arc, tolerances = segments.arc, context.expected.section_at(segments.cl).tolerances
+    away = np.sqrt((arc.deviation(context.run.positions(segments.nc).tip) ** 2).sum(axis=1))
+    # A point that is off along the arc is off in height too, because the height is that at its own angle.
+    limit = _DIAGONAL * tolerances.tip * math.hypot(1.0, arc.slope)
+    for k in np.flatnonzero(away > limit + 1e-6 + min(arc.closure_error, _MAX_CLOSURE_ERROR)).tolist():
+        text = f"the tip is {away[k]:.6f} mm off the arc that the CL file asks for"
+        yield context.place_with_cl(int(segments.nc[k]), float(away[k]), text, segments.cl)
+
+
+def check_axis(context: ComparedContext, deviations: DeviationSummary, accepted: AcceptedDeviations) -> Check:
+    """The tool axis at every CL point, as far as it was not declared to lean."""
+    matching = context.matching
+    places = []
+    for k, value in deviations.bad:
+        text = f"the tool axis is off, a rotary axis by {value:.6f} degrees"
+        places.append(context.place_with_cl(matching.nc[k], value, text, matching.cl[k]))
+    if places:
+        positioned = context.rotary_positioning_place(min(matching.nc[k] for k, _ in deviations.bad))
+        places += [positioned] if positioned is not None else []
+    faults = [*accepted.axis, *misplaced_lean_positions(context.run, context.expected, matching)]
+    named = [context.place_of_cl_row(fault.cl, fault.value, fault.text) for fault in faults[:MAX_PLACES]]
+    on_arcs = [place for segments in matching.arc_segments for place in _axes_off_arc(context, segments)]
+    count = deviations.count + len(faults) + len(on_arcs)
+    title = "tool axis against the CL points"
+    check = _measured("axis", title, context, deviations, "deg", [*named, *places, *on_arcs], count)
+    lean, rows = accepted.lean
+    return replace(check, summary=f"{check.summary}; leans by up to {lean:.6f} at {rows} rows") if rows else check
+
+
+def _axes_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
+    """Ends of lines that replace an arc under a wrong tool axis."""
+    arc, tolerances = segments.arc, context.expected.section_at(segments.cl).tolerances
+    begin, end = context.expected.point(segments.cl - 1).axis, context.expected.point(segments.cl).axis
+    is_ = context.run.positions(segments.nc)
+    away = degrees_apart(is_.axis, great_circle_points(begin, end, arc.fractions(is_.tip)))
+    total = 2.0 * float(np.arcsin(min(0.5 * float(np.linalg.norm(end - begin)), 1.0)))
+    # It is not known better than this where on the arc a rounded point is.
+    uncertainty = total * _DIAGONAL * tolerances.tip / max(arc.radius * arc.sweep, 1e-9)
+    limit = _DIAGONAL * tolerances.angle + np.degrees(uncertainty) + 1e-6
+    for k in np.flatnonzero(away > limit).tolist():
+        text = f"the tool axis is off by {away[k]:.6f} degrees on its way round an arc"
+        yield context.place_with_cl(int(segments.nc[k]), float(away[k]), text, segments.cl)
+
+
+def _measured(
+    key: str,
+    title: str,
+    context: ComparedContext,
+    deviations: DeviationSummary,
+    unit: str,
+    places: list[Place],
+    count: int,
+) -> Check:
+    if not len(context.matching.nc) and len(context.expected):
+        return Check(key, title, False, "no block answers to any CL point", unit=unit)
+    each, whole = ("X, Y or Z", "distance") if unit == "mm" else ("a rotary axis", "angle")
+    largest, limit = deviations.largest, deviations.limit
+    summary = f"largest {largest:.6f} {unit} in {each}, rms {whole} {deviations.rms:.6f}, allowed {limit:.6f}"
+    if count:
+        summary += f", {count} points off, first in {min(places, key=lambda p: p.nc_line).block_name}"
+    return Check(key, title, not count, summary, largest, limit, unit, tuple(places))

@@ -1,0 +1,80 @@
+"""The spindle of a program against SPINDL in the CL files."""
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Ints
+from trunnion.model.run import Run
+from trunnion.verification.checks.matched_rows import first_wrong_pair
+from trunnion.verification.context import ComparedContext, check_from_places
+from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle
+from trunnion.verification.expected.states import spindle_states
+from trunnion.verification.results import Check, Place
+
+#: Spindle speeds are printed without decimals: this much is rounding, rev/min.
+RPM_TOLERANCE: Final = 0.5 + 1e-6
+
+_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1}
+
+
+def check_spindle(context: ComparedContext) -> Check:
+    """Speed and sense at every CL point, and no others anywhere."""
+    run, matching = context.run, context.matching
+    places: list[Place] = []
+    asked: set[ExpectedSpindle] = set()
+    for state in spindle_states(context.expected):
+        should = state.value
+        first, end = matching.pair_range(state.first, state.end)
+        if should is None or first == end:
+            continue
+        asked.add(should)
+        if should.sense == 0 and _stops_after(context, matching.nc[first]):
+            first += 1
+        bad = first_wrong_pair(matching, first, end, partial(_differs, run, should))
+        if bad is not None:
+            row, cl = bad
+            is_ = ExpectedSpindle(run.state.rpm[row], run.state.spindle[row])
+            text = f"{_words(is_)}; the CL file wants {_words(should)}"
+            places.append(context.place_with_cl(row, is_.rpm, text, cl))
+    places += _foreign_events(context, asked) if asked else ()
+    places.sort(key=lambda place: place.nc_line)
+    good = ", ".join(_words(each) for each in sorted(asked, key=lambda each: (each.rpm, each.sense)))
+    return check_from_places(
+        "spindle", "spindle as the CL file says", places, good or "the CL file says nothing of a spindle"
+    )
+
+
+def _foreign_events(context: ComparedContext, asked: set[ExpectedSpindle]) -> Iterator[Place]:
+    """Words for a sense or a speed that the CL file never asks for."""
+    for event in context.run.events:
+        if event.kind == "spindle":
+            sense = _SENSES.get(str(event.value), event.value)
+            if isinstance(sense, int | float) and sense and not any(each.sense == sense for each in asked):
+                text = "starts the spindle in a sense that the CL file never asks for"
+                yield context.place_of_event(event, 0.0, text)
+        elif event.kind == "speed" and isinstance(event.value, float):
+            rpm = event.value
+            if not any(abs(each.rpm - rpm) <= RPM_TOLERANCE for each in asked):
+                yield context.place_of_event(event, rpm, f"S{rpm:g} is no speed that the CL file asks for")
+
+
+def _stops_after(context: ComparedContext, row: int) -> bool:
+    """Whether the spindle is off after a row: M5 acts after the motion of its block."""
+    after = context.next_row(row)
+    return after != row and context.run.state.spindle[after] == 0
+
+
+def _differs(run: Run, should: ExpectedSpindle, nc: Ints) -> Flags:
+    wrong = run.state.spindle.at(nc) != should.sense
+    if should.sense:
+        wrong |= np.abs(run.state.rpm.at(nc) - should.rpm) > RPM_TOLERANCE
+    return np.asarray(wrong)
+
+
+def _words(spindle: ExpectedSpindle) -> str:
+    if spindle.sense == 0:
+        return "spindle off"
+    return f"{spindle.rpm:g} rev/min {'clockwise' if spindle.sense > 0 else 'counterclockwise'}"

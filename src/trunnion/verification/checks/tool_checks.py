@@ -1,0 +1,107 @@
+"""The tools of a program against LOAD/TOOL in the CL files: which one, which cutting edge, which length."""
+
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+
+from trunnion.arrays import Flags, Ints
+from trunnion.model.run import Run
+from trunnion.verification.checks.matched_rows import first_wrong_pair
+from trunnion.verification.context import ComparedContext, check_from_places
+from trunnion.verification.expected.spindle_and_tool import names_tool
+from trunnion.verification.expected.states import tool_states
+from trunnion.verification.results import Check, Place
+
+
+def check_tool(context: ComparedContext) -> Check:
+    """The tool at every CL point with its edge and length, and no change to another tool."""
+    run, matching, settings = context.run, context.matching, context.settings
+    places: list[Place] = []
+    asked: list[tuple[str, ...]] = []
+    for state in tool_states(context.expected):
+        names = (settings.tool,) if settings.tool else state.value.names
+        first, end = matching.pair_range(state.first, state.end)
+        if (state.value.number is None and not settings.tool) or first == end:
+            continue
+        asked.append(names)
+        bad = first_wrong_pair(matching, first, end, partial(_holds_other_tool, run, names))
+        if bad is not None:
+            places += _wrong_tool(context, *bad, names)
+    if settings.edge is not None:
+        places += _wrong_edges(context, settings.edge)
+    if run.uses_length_numbers:
+        places += _wrong_lengths(context)
+    places += _foreign_changes(context, asked) if asked else ()
+    good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in asked)) or "the CL file names no tool"
+    return check_from_places("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
+
+
+def _holds_other_tool(run: Run, names: tuple[str, ...], nc: Ints) -> Flags:
+    wrong: Flags = np.array([not names_tool(text, names) for text in run.tools], np.bool_)
+    return np.asarray(wrong[run.state.tool.at(nc)])
+
+
+def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, ...]) -> Iterator[Place]:
+    """The row with a wrong tool, and the last word that called it."""
+    run = context.run
+    has = run.tools[run.state.tool[row]] or "no tool"
+    text = f"tool {has} is in the spindle; the CL file wants {names[0]}"
+    yield context.place_with_cl(row, 0.0, text, cl)
+    calls = [event for event in run.events if event.kind in ("tool", "tool_change") and event.before_row <= row]
+    if calls:
+        yield context.place_of_event(calls[-1], 0.0, f"{text}: this is the last word on it")
+
+
+def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]]) -> Iterator[Place]:
+    """Changes to a tool that the CL file never asks for."""
+    for event in context.run.events:
+        if event.kind == "tool_change":
+            tool = str(event.value or "")
+            if tool and tool != "0" and not any(names_tool(tool, names) for names in asked):
+                text = f"changes to tool {tool}, which the CL file never asks for"
+                yield context.place_of_event(event, 0.0, text)
+
+
+def _wrong_edges(context: ComparedContext, edge: int) -> Iterator[Place]:
+    """The first motion under another cutting edge, and the first one home with an edge that is neither none nor it."""
+    used, matching = context.run.state.edge, context.matching
+    bad = first_wrong_pair(matching, 0, len(matching.nc), lambda nc: used.at(nc) != edge)
+    if bad is not None:
+        row, cl = bad
+        yield context.place_with_cl(row, 0.0, f"works with D{used[row]}, not with D{edge}", cl)
+    rows = context.run.state.machine_frame.rows_with(True)
+    edges = used.at(rows)
+    others = rows[(edges > 0) & (edges != edge)]
+    if len(others):
+        row = int(others[0])
+        yield context.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{edge}")
+
+
+def _wrong_lengths(context: ComparedContext) -> Iterator[Place]:
+    """The first motion of each tool without its length: its own number, or the register of LOAD/TOOL."""
+    run, matching = context.run, context.matching
+    for state in tool_states(context.expected):
+        numbers = allowed_length_numbers(context.settings.tool, state.value.lengths)
+        first, end = matching.pair_range(state.first, state.end)
+        if not numbers or first == end:
+            continue
+        bad = first_wrong_pair(matching, first, end, partial(_has_other_length, run, numbers))
+        if bad is not None:
+            row, cl = bad
+            yield context.place_with_cl(row, 0.0, length_fault(run.state.edge[row], numbers), cl)
+
+
+def _has_other_length(run: Run, numbers: tuple[int, ...], nc: Ints) -> Flags:
+    return ~np.isin(run.state.edge.at(nc), numbers)
+
+
+def allowed_length_numbers(tool: str, numbers: tuple[int, ...]) -> tuple[int, ...]:
+    """Numbers that a tool length may have; ``tool`` is that of the settings, or empty."""
+    return (int(tool),) if tool.isdigit() else numbers
+
+
+def length_fault(number: int, allowed: tuple[int, ...]) -> str:
+    """What is wrong with a length number, -1 for none, that is not allowed."""
+    has = "without a tool length" if number < 0 else f"with the length of H{number}"
+    return f"works {has}; the CL file wants H{allowed[0]}"

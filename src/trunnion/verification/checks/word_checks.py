@@ -1,0 +1,57 @@
+"""Words of a program that the reader does not know or cannot act upon."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from trunnion.errors import InputError, Problem, Severity
+from trunnion.model.run import Diagnostic
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.results import Check, Place
+
+_TITLE: Final = "every word known"
+
+
+def check_words(context: Context) -> Check:
+    """Every word is known; texts that the CL file inserts (INSERT) may have any."""
+    diagnostics = context.run.diagnostics
+    errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR]
+    if isinstance(context, ComparedContext):
+        errors = _compared_errors(context.expected, diagnostics, errors)
+    remarks = len(diagnostics) - len(errors)
+    good = "every word is known" + (f", {remarks} remarks" if remarks else "")
+    if not errors and remarks:
+        return Check("words", _TITLE, True, good, places=tuple(map(_place, diagnostics[:MAX_PLACES])))
+    return check_from_places("words", _TITLE, [_place(error) for error in errors], good)
+
+
+def _place(diagnostic: Diagnostic) -> Place:
+    return Place(diagnostic.line, -1, 0.0, diagnostic.text)
+
+
+def _compared_errors(
+    expected: ExpectedPath, diagnostics: Sequence[Diagnostic], errors: list[Diagnostic]
+) -> list[Diagnostic]:
+    """Errors that the CL file does not explain, and words that it never asks for.
+
+    No CL file asks for constant surface speed: SPINDL is already in rev/min.
+    """
+    inserted = expected.insert_texts
+    if errors and inserted:
+        errors = [error for error in errors if not _is_inserted(error, inserted)]
+    foreign = ("G96",) if expected.uses_compensation else ("G96", "G41", "G42")
+    return errors + [each for each in diagnostics if each not in errors and each.text.startswith(foreign)]
+
+
+def _is_inserted(diagnostic: Diagnostic, texts: set[str]) -> bool:
+    """Whether the block is a text that the CL file inserts; its block number may precede it."""
+    try:
+        lines = Path(diagnostic.file).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError as error:
+        what = f"cannot be read again: {error.strerror}"
+        raise InputError(Problem(diagnostic.file, 0, what, "keep the program until it has been verified")) from error
+    if not 0 < diagnostic.line <= len(lines):
+        return False
+    line = lines[diagnostic.line - 1].lstrip("/").strip()
+    return line in texts or line.partition(" ")[2].strip() in texts

@@ -1,0 +1,197 @@
+"""Follows two programs together and notes where they differ."""
+
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Ints
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.verification.comparison.moving_rows import MovingRows
+from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
+from trunnion.verification.comparison.result import Comparison, Difference
+from trunnion.verification.matching.resync import find_resync
+from trunnion.verification.row_ranges import CHUNK
+
+#: Motions that are compared at first, and after each difference.
+_FEW: Final = 64
+
+#: How far ahead both programs are searched for a place at which they are the same again.
+_WINDOWS: Final = (8, 64, 512)
+
+#: Differences that are looked into; after them the programs simply count as different.
+_MAX_DIFFERENCES: Final = 1000
+
+#: Feeds and speeds are the same within this, mm/min and rev/min: programs print no more digits.
+_FEED: Final = 0.005
+_RPM: Final = 0.5
+
+_KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "line", Kind.ARC: "circle"}
+
+
+class Comparer:
+    """Follows both programs together; ``i`` and ``j`` count their motions."""
+
+    def __init__(self, one: Run, two: Run, tolerance: float, path: bool) -> None:
+        coolants: dict[str, int] = {}
+        tools: dict[str, int] = {}
+        same_machine = one.machine is two.machine or one.machine.key == two.machine.key
+        self._one = MovingRows(one, same_machine, coolants, tools)
+        self._two = MovingRows(two, same_machine, coolants, tools)
+        self._path_only = path
+        self._tolerances = PointTolerances(tolerance, float(np.radians(tolerance)))
+        self._largest_tip = self._largest_axis = 0.0
+        self._points = 0
+        self._found: list[Difference] = []
+        self._worst: Difference | None = None
+
+    def compare(self) -> Comparison:
+        """Compare both programs to their ends."""
+        one, two = self._one, self._two
+        i = j = 0
+        size = _FEW
+        while i < len(one) and j < len(two) and len(self._found) < _MAX_DIFFERENCES:
+            count = min(size, len(one) - i, len(two) - j)
+            same = self._same(i, j, count)
+            length = count if same.all() else int(np.argmin(same))
+            self._points += length
+            i, j = i + length, j + length
+            if length == count:
+                size = min(2 * size, CHUNK)
+                continue
+            size = _FEW
+            if self._is_on_path(one, i, two, j):
+                i += 1
+            elif self._is_on_path(two, j, one, i):
+                j += 1
+            else:
+                i, j = self._differ(i, j)
+        if (i < len(one) or j < len(two)) and len(self._found) < _MAX_DIFFERENCES:
+            which = "first" if i < len(one) else "second"
+            self._note(i, j, float("inf"), f"only the {which} program goes on")
+        return Comparison(
+            programs=(one.run.files[0], two.run.files[0]),
+            points=self._points,
+            tip=self._largest_tip,
+            axis=float(np.degrees(self._largest_axis)),
+            count=len(self._found),
+            first=self._found[0] if self._found else None,
+            worst=self._worst,
+            unknown_words=_unknown_words(one.run, two.run),
+        )
+
+    def _same(self, i: int, j: int, count: int) -> Flags:
+        """Which of ``count`` motions are the same, (count,) bool."""
+        one, two = self._one, self._two
+        a, b = one.rows[i : i + count], two.rows[j : j + count]
+        tip = np.abs(one.run.tip[a] - two.run.tip[b]).max(axis=1, initial=0.0)
+        axis = np.sqrt(((one.run.axis[a] - two.run.axis[b]) ** 2).sum(axis=1))
+        same = (tip <= self._tolerances.tip) & (axis <= self._tolerances.axis) & (one.run.kind[a] == two.run.kind[b])
+        same &= self._same_state(a, b)
+        arcs = np.flatnonzero(same & (one.run.kind[a] == Kind.ARC))
+        for k in arcs.tolist():
+            same[k] = self._same_circle(i + k, j + k)
+        if same.any():
+            self._largest_tip = max(self._largest_tip, float(tip[same].max()))
+            self._largest_axis = max(self._largest_axis, float(axis[same].max()))
+        return np.asarray(same)
+
+    def _same_state(self, a: Ints, b: Ints) -> Flags:
+        """In which rows ``a`` and ``b`` feed, spindle, tool and coolant are the same, (k,) bool."""
+        if self._path_only:
+            return np.ones(len(a), np.bool_)
+        one, two = self._one, self._two
+        feeds = one.feeds(a)
+        same = np.abs(feeds - two.feeds(b)) <= np.maximum(_FEED, 1e-4 * feeds)
+        same &= one.run.spindle[a] == two.run.spindle[b]
+        same &= (np.abs(one.run.rpm[a] - two.run.rpm[b]) <= _RPM) | (one.run.spindle[a] == 0)
+        same &= one.tool[a] == two.tool[b]
+        same &= one.coolant[a] == two.coolant[b]
+        return np.asarray(same)
+
+    def _same_circle(self, i: int, j: int) -> bool:
+        one, two = self._one.circle(i), self._two.circle(j)
+        if one is None or two is None or self._one.full_turns(i) != self._two.full_turns(j):
+            return False
+        apart = one[0] - two[0]
+        apart = apart - (apart @ one[1]) * one[1]
+        return bool(np.abs(apart).max() <= 2.0 * self._tolerances.tip and one[1] @ two[1] > 1.0 - 1e-6)
+
+    def _is_on_path(self, more: MovingRows, i: int, less: MovingRows, j: int) -> bool:
+        """Whether motion ``i`` is an additional point on the path of the other's motion ``j``, in the same state."""
+        a, b = more.rows[i], less.rows[j]
+        if more.run.kind[a] != less.run.kind[b]:
+            return False
+        rows = (np.array([a]), np.array([b])) if more is self._one else (np.array([b]), np.array([a]))
+        return bool(self._same_state(*rows)[0]) and ends_on_path(more, i, less, j, self._tolerances)
+
+    def _differ(self, i: int, j: int) -> tuple[int, int]:
+        """Note a difference, and find where the programs are the same again: the next motions of both."""
+        one, two = self._one, self._two
+        for window in _WINDOWS:
+            a, b = one.rows[i : i + window], two.rows[j : j + window]
+            fits = np.ones((len(a), len(b)), np.bool_)
+            for c in range(3):
+                fits &= np.abs(one.run.tip[a, c][:, None] - two.run.tip[b, c]) <= self._tolerances.tip
+                fits &= np.abs(one.run.axis[a, c][:, None] - two.run.axis[b, c]) <= self._tolerances.axis
+            if fits[0, 0]:
+                self._note(i, j, 0.0, self._difference_in_state(int(a[0]), int(b[0])))
+                return i + 1, j + 1
+            found = find_resync(fits, (len(a) < window, len(b) < window))
+            if found is not None:
+                break
+        else:
+            found = (len(one) - i, len(two) - j)
+        self._note_unequal(i, j, *found)
+        return i + found[0], j + found[1]
+
+    def _note_unequal(self, i: int, j: int, a: int, b: int) -> None:
+        """Note the differences of ``a`` and ``b`` motions before the programs are the same again."""
+        one, two = self._one, self._two
+        for k in range(min(max(min(a, b), 1), _MAX_DIFFERENCES)):
+            if i + k >= len(one) or j + k >= len(two):
+                break
+            if a == b and self._same(i + k, j + k, 1)[0]:
+                self._points += 1
+                continue
+            p, q = int(one.rows[i + k]), int(two.rows[j + k])
+            apart = float(np.linalg.norm(one.run.tip[p] - two.run.tip[q]))
+            angle = float(np.degrees(np.linalg.norm(one.run.axis[p] - two.run.axis[q])))
+            text = f"tips are {apart:.6f} mm apart, tool axes {angle:.6f} degrees"
+            if a != b:
+                text += f"; the {'first' if a > b else 'second'} program has {abs(a - b)} points more"
+            self._note(i + k, j + k, apart + angle, text)
+            if a != b:
+                break
+
+    def _difference_in_state(self, a: int, b: int) -> str:
+        """What differs between row ``a`` and row ``b``, which go to the same point."""
+        one, two = self._one, self._two
+        x, y = one.run, two.run
+        if x.kind[a] != y.kind[b]:
+            return f"{_KINDS[Kind(int(x.kind[a]))]} against {_KINDS[Kind(int(y.kind[b]))]}"
+        feeds = float(one.feeds(np.array([a]))[0]), float(two.feeds(np.array([b]))[0])
+        if abs(feeds[0] - feeds[1]) > max(_FEED, 1e-4 * feeds[0]):
+            return f"feed {feeds[0]:g} against {feeds[1]:g} mm/min"
+        if x.spindle[a] != y.spindle[b] or abs(x.rpm[a] - y.rpm[b]) > _RPM:
+            return f"spindle {one.spindle_words(a)} against {two.spindle_words(b)}"
+        if one.tool[a] != two.tool[b]:
+            return f"tool {one.tool_name(a)} against {two.tool_name(b)}"
+        if one.coolant[a] != two.coolant[b]:
+            return "coolant differs"
+        return "circles about other centres, or the other way round"
+
+    def _note(self, i: int, j: int, value: float, text: str) -> None:
+        found = Difference(self._one.block_name(i), self._two.block_name(j), value, text)
+        self._found.append(found)
+        if self._worst is None or value > self._worst.value:
+            self._worst = found
+
+
+def _unknown_words(one: Run, two: Run) -> tuple[str, ...]:
+    """Words that are not understood, unless both programs have the same ones."""
+    if sorted(error.text for error in one.errors) == sorted(error.text for error in two.errors):
+        return ()
+    return tuple(
+        f"{error.file}:{error.line}: not understood: {error.text}" for run in (one, two) for error in run.errors
+    )

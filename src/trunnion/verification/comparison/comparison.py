@@ -1,0 +1,26 @@
+"""Whether two programs make the tool do the same.
+
+In:     two runs, possibly of different machines.
+Out:    whether tip, tool axis, kind of motion, feed, spindle, tool and coolant are the same throughout; the first
+        difference and the worst.
+
+Only what the words do matters: block numbers, modal habits and number formats may differ, and either program may have
+additional points on the path of the other. Motions in the machine frame count if both run on the same machine.
+"""
+
+from trunnion.model.run import Run
+from trunnion.verification.comparison.comparer import Comparer
+from trunnion.verification.comparison.result import Comparison
+
+
+def compare(one: Run, two: Run, tolerance: float = 0.001, *, path: bool = False) -> Comparison:
+    """Compare two runs.
+
+    Parameters
+    ----------
+    tolerance
+        How far tips, mm, and tool axes, degrees, may be apart.
+    path
+        Compare only where the tool goes, and whether at rapid; not feed, spindle, tool and coolant.
+    """
+    return Comparer(one, two, tolerance, path).compare()

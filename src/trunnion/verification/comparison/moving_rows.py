@@ -1,0 +1,109 @@
+"""One program of a comparison: the rows in which its tool moves, and what holds there."""
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.machines import forward
+from trunnion.model.feed_path import row_feed_path_lengths
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.verification.matching.rows_to_match import workpiece_rows
+from trunnion.verification.row_ranges import CHUNK
+
+_SENSES = {1: "clockwise", -1: "counterclockwise", 0: "off"}
+
+
+class MovingRows:
+    """A program without blocks that move and change nothing; motions are counted from 0.
+
+    ``coolants`` and ``tools`` give each coolant word and tool the same number in both programs; they are filled in.
+    """
+
+    def __init__(self, run: Run, with_machine_frame: bool, coolants: dict[str, int], tools: dict[str, int]) -> None:
+        self.run = run
+        in_workpiece = workpiece_rows(run)
+        rows = in_workpiece.rows(0, len(in_workpiece))
+        if with_machine_frame:
+            rows = np.union1d(rows, run.state.machine_frame.rows_with(True))
+        self.coolant = _coolant_numbers(run, coolants)
+        numbers = [tools.setdefault(_tool_name(name), len(tools)) for name in run.tools]
+        self.tool = np.array(numbers, np.int64)[run.tool]
+        self.start_tip, self.start_axis = (column[0] for column in forward(run.machine, run.start[None]))
+        self.rows = rows[self._moving(rows)]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def _moving(self, rows: Ints) -> Flags:
+        """Which rows move the tool."""
+        run = self.run
+        moving = np.ones(len(rows), np.bool_)
+        for start in range(1, len(rows), CHUNK):
+            part, before = rows[start : start + CHUNK], rows[start - 1 : start - 1 + CHUNK][: len(rows) - start]
+            moved = np.abs(run.tip[part] - run.tip[before]).max(axis=1, initial=0.0) > 1e-9
+            moved |= np.abs(run.axis[part] - run.axis[before]).max(axis=1, initial=0.0) > 1e-12
+            moving[start : start + CHUNK] = moved | (run.kind[part] == Kind.ARC)
+        return moving
+
+    def start(self, k: int) -> tuple[Floats, Floats]:
+        """Tip and tool axis before motion ``k``."""
+        if k == 0:
+            return self.start_tip, self.start_axis
+        row = self.rows[k - 1]
+        return self.run.tip[row], self.run.axis[row]
+
+    def feeds(self, rows: Ints) -> Floats:
+        """Feeds of the tip in rows, mm/min, 0 for rapids."""
+        run = self.run
+        feed = np.where(run.feed_mode[rows] == 95, run.feed[rows] * run.rpm[rows], run.feed[rows])
+        inverse_time, counted = run.feed_mode[rows] == 93, row_feed_path_lengths(run, rows)
+        free = ~np.isnan(counted)
+        if inverse_time.any() or free.any():
+            before = np.maximum(rows - 1, 0)
+            length = np.sqrt(((run.tip[rows] - run.tip[before]) ** 2).sum(axis=1))
+            feed = np.where(inverse_time, feed * length, feed)
+            feed[free] *= length[free] / counted[free]
+        return np.asarray(np.where(run.kind[rows] == Kind.RAPID, 0.0, np.nan_to_num(feed)))
+
+    def circle(self, k: int) -> tuple[Floats, Floats] | None:
+        """Centre and normal of the circle that motion ``k`` is, if it is one."""
+        row = self.rows[k]
+        if self.run.kind[row] != Kind.ARC:
+            return None
+        m = int(np.searchsorted(self.run.arcs.row, row))
+        return self.run.arcs.centre[m], self.run.arcs.normal[m]
+
+    def full_turns(self, k: int) -> int:
+        """Full turns of the circle that motion ``k`` is."""
+        m = int(np.searchsorted(self.run.arcs.row, self.rows[k]))
+        return int(self.run.arcs.full_turns[m])
+
+    def spindle_words(self, row: int) -> str:
+        """Speed and sense of the spindle in a row."""
+        return f"S{self.run.rpm[row]:g} {_SENSES[int(self.run.spindle[row])]}"
+
+    def tool_name(self, row: int) -> str:
+        """The tool in the spindle in a row."""
+        return self.run.tools[self.run.tool[row]] or "none"
+
+    def block_name(self, k: int) -> str:
+        """Line and block number of motion ``k``; of the last one if the program has ended."""
+        if not len(self.run):
+            return "0"
+        row = int(self.rows[k]) if k < len(self.rows) else len(self.run) - 1
+        number = int(self.run.block_number[row])
+        end = "" if k < len(self.rows) else ", after its last motion"
+        return f"{int(self.run.line[row])}" + (f" (N{number}{end})" if number >= 0 else f"{end}")
+
+
+def _tool_name(name: str) -> str:
+    return str(int(name)) if name.isdigit() else name
+
+
+def _coolant_numbers(run: Run, numbers: dict[str, int]) -> Ints:
+    """A number for the coolant in each row, (n,)."""
+    state = np.full(len(run), numbers.setdefault("off", len(numbers)), np.int64)
+    for event in run.events:
+        if event.kind == "coolant":
+            state[event.before_row :] = numbers.setdefault(str(event.value), len(numbers))
+    return state

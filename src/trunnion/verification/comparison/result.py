@@ -1,0 +1,51 @@
+"""The result of a comparison."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One difference: the blocks of both programs, its size (mm, or 0), and a description."""
+
+    one: str
+    two: str
+    value: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """How two programs compare.
+
+    points         how many points are the same
+    tip, axis      the largest distances at these points, mm and degrees
+    count          how many differences there are, up to a limit
+    unknown_words  words that are not understood, if the programs do not have the same ones: then they cannot be called
+                   the same
+    """
+
+    programs: tuple[str, str]
+    points: int
+    tip: float
+    axis: float
+    count: int
+    first: Difference | None
+    worst: Difference | None
+    unknown_words: tuple[str, ...] = ()
+
+    @property
+    def same(self) -> bool:
+        """Whether both programs make the tool do the same."""
+        return self.count == 0 and not self.unknown_words
+
+    def lines(self) -> Iterator[str]:
+        """The result for a terminal."""
+        if self.same:
+            yield f"same: {self.points} points, tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
+            return
+        yield from self.unknown_words[:5]
+        yield f"different: {self.count} places, {self.points} points are the same"
+        for name, what in (("first", self.first), ("worst", self.worst)):
+            if what is not None and (name == "first" or what != self.first):
+                yield f"{name}: {self.programs[0]}:{what.one} against {self.programs[1]}:{what.two}: {what.text}"

@@ -1,0 +1,194 @@
+"""Linearization errors: how far the tool leaves its path between points, because the control moves the axes linearly.
+
+In:     a run; and, if there is one, the expected path with its matching.
+Out:    the largest errors of tip and tool axis, and the rows beyond a limit.
+Units:  mm, degrees outside kernels, radians inside.
+
+Each motion is sampled at several positions on its way.
+"""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.jit import njit
+from trunnion.machines.forward import KinematicChain, forward_row, kinematic_chain
+from trunnion.model.run import Orientation, RowPositions, Run
+from trunnion.model.toolpath import Kind
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
+from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
+from trunnion.verification.kinematics.worst_rows import WorstRows
+from trunnion.verification.matching.pairs import Matching
+
+#: Between points nearer to each other than this, mm, the tool axis tells how far the tool has come.
+_SHORT: Final = 1e-3
+
+#: Smaller rotary motion, degrees, makes no error.
+_STILL: Final = 1e-9
+
+#: Positions within a motion at which it is sampled.
+_SAMPLES: Final = 7
+
+
+class LinearizationErrors:
+    """Collects linearization errors of a run, chunk by chunk; up to ``max_rows`` rows beyond each limit are kept.
+
+    A motion that goes or leads to a CL point is measured against the CL file's path: the straight line and the great
+    circle from the CL point before. Without a CL file, and for the tool axis in rapids, it is measured against the path
+    between its own ends.
+
+    tip   mm from the straight line, without TCP
+    axis  degrees from the great circle, wherever the control interpolates rotary angles
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        max_rows: int,
+        tip_limit: float,
+        axis_limit: float,
+        tip_tolerance: float = 0.0,
+        expected: ExpectedPath | None = None,
+        matching: Matching | None = None,
+    ) -> None:
+        self._run = run
+        self._tip_uncertainty = 2.0 * math.sqrt(3.0) * tip_tolerance
+        self._chain = kinematic_chain(run.machine)
+        self._rotary = np.array(run.machine.rotary, np.int64)
+        self._expected = expected
+        self._cl_row = np.full(len(run), -1, np.int64)
+        if expected is not None and matching is not None:
+            for nc, cl in matching.all_pair_chunks():
+                no_line = np.isin(cl, expected.first_rows) | (expected.kind(cl) == Kind.ARC)
+                self._cl_row[nc] = np.where(no_line, -1, cl)
+        self.tip = WorstRows(tip_limit, max_rows)
+        self.axis = WorstRows(axis_limit, max_rows)
+
+    def add(self, first: int, end: int, positions: RowPositions) -> None:
+        """Add rows, in order; ``positions`` is the ``Run.chunk`` of them."""
+        kind = self._run.kind[first:end]
+        tcp = self._run.state.tcp.part(first, end)
+        rows = self._rows_to_sample(first, end, positions, tcp)
+        tips, axes = self._path_ends(first, rows, positions)
+        off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
+        _linearization_errors(
+            self._chain, positions.joints, positions.tip, positions.axis, rows, tips, axes, kind[rows] == Kind.RAPID,
+            tcp, self._tip_uncertainty, off_tip, off_axis,
+        )  # fmt: skip
+        self.tip.add(first, off_tip)
+        self.axis.add(first, off_axis)
+
+    def _rows_to_sample(self, first: int, end: int, positions: RowPositions, tcp: Flags) -> Ints:
+        """Rows, counted from ``first``, in which rotary motion may lead the tool off its path.
+
+        Rapids count only where the tip has a limit, and those that only position rotary axes never do.
+        """
+        run = self._run
+        kind, frame = run.kind[first:end], run.state.machine_frame.part(first, end)
+        moves_tip = (run.programmed[first:end] & int(POSITION_WORDS)) != 0
+        turned = np.abs(np.diff(positions.joints[:, self._rotary], axis=0)).max(axis=1) > _STILL
+        sampled = turned & ~frame & (kind != Kind.ARC)
+        sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & math.isfinite(self.tip.limit))
+        sampled &= ~tcp | (run.orientation_between(first, end) == Orientation.ANGLES)
+        return np.flatnonzero(sampled)
+
+    def _path_ends(self, first: int, rows: Ints, positions: RowPositions) -> tuple[Floats, Floats]:
+        """Tips and tool axes at both ends of the path that each row is on, (k, 2, 3) each."""
+        tips = np.stack((positions.tip[rows], positions.tip[rows + 1]), axis=1)
+        axes = np.stack((positions.axis[rows], positions.axis[rows + 1]), axis=1)
+        matched = np.flatnonzero(self._cl_row[first + rows] >= 0)
+        if self._expected is not None and len(matched):
+            cl = self._cl_row[first + rows[matched]]
+            order = np.argsort(cl, kind="stable")
+            matched, cl = matched[order], cl[order]
+            tips[matched] = np.stack((self._expected.tip(cl - 1), self._expected.tip(cl)), axis=1)
+            at_feed = self._run.kind[first + rows[matched]] != Kind.RAPID
+            cl = cl[at_feed]
+            axes[matched[at_feed]] = np.stack((self._expected.axis(cl - 1), self._expected.axis(cl)), axis=1)
+        return tips, axes
+
+
+@njit(cache=True)
+def _linearization_errors(
+    chain: KinematicChain,
+    joints: Floats,
+    tip_at: Floats,
+    axis_at: Floats,
+    rows: Ints,
+    tips: Floats,
+    axes: Floats,
+    free_axis: Flags,
+    tcp: Flags,
+    tip_uncertainty: float,
+    off_tip: Floats,
+    off_axis: Floats,
+) -> None:
+    """Write how far the tool is off within ``rows``, mm and degrees.
+
+    joints, tip_at, axis_at  the position before the first row comes first
+    tips, axes  (k, 2, 3)    ends of the paths that the k rows are on
+    free_axis   (k,)         the tool axis has the ends of the motion itself
+    tip_uncertainty          how far a tip may be off along its path, mm
+    """
+    here, tip, axis = np.empty(5), np.empty(3), np.empty(3)
+    for k in range(rows.shape[0]):
+        row = rows[k]
+        worst_tip, worst_axis = 0.0, 0.0
+        angle = angle_between(axes[k], 0, axes[k], 1)
+        length_squared = 0.0
+        for c in range(3):
+            length_squared += (tips[k, 1, c] - tips[k, 0, c]) ** 2
+        begin, end = 0.0, 1.0
+        if not free_axis[k]:
+            begin = _fraction_done(tip_at, axis_at, row, tips[k], axes[k], angle)
+            end = _fraction_done(tip_at, axis_at, row + 1, tips[k], axes[k], angle)
+        for sample in range(1, _SAMPLES + 1):
+            share = sample / (_SAMPLES + 1.0)
+            for c in range(5):
+                here[c] = joints[row, c] + share * (joints[row + 1, c] - joints[row, c])
+            forward_row(chain, here, tip, axis)
+            fraction = begin + share * (end - begin)
+            if not tcp[row]:
+                worst_tip = max(worst_tip, _distance_to_line(tip, tips[k], length_squared, fraction))
+            worst_axis = max(worst_axis, _angle_to_great_circle(axis, axes[k], angle, fraction))
+        if not free_axis[k] and length_squared > _SHORT * _SHORT:
+            worst_axis = max(worst_axis - tip_uncertainty / math.sqrt(length_squared) * angle, 0.0)
+        off_tip[row], off_axis[row] = worst_tip, math.degrees(worst_axis)
+
+
+@njit(cache=True)
+def _distance_to_line(tip: Floats, ends: Floats, length_squared: float, fraction: float) -> float:
+    """Distance of a tip from the line between ``ends`` (2, 3), mm; at ``fraction`` of it where it is short."""
+    along, off = 0.0, 0.0
+    if length_squared > _SHORT * _SHORT:
+        for c in range(3):
+            along += (tip[c] - ends[0, c]) * (ends[1, c] - ends[0, c])
+        fraction = min(max(along / length_squared, 0.0), 1.0)
+    for c in range(3):
+        off += (tip[c] - ends[0, c] - fraction * (ends[1, c] - ends[0, c])) ** 2
+    return math.sqrt(off)
+
+
+@njit(cache=True)
+def _angle_to_great_circle(axis: Floats, ends: Floats, angle: float, fraction: float) -> float:
+    """Angle of a tool axis from the vector at ``fraction`` of the great circle between ``ends`` (2, 3), rad."""
+    before, after = slerp_weights(angle, fraction)
+    off = 0.0
+    for c in range(3):
+        off += (axis[c] - before * ends[0, c] - after * ends[1, c]) ** 2
+    return 2.0 * math.asin(min(0.5 * math.sqrt(off), 1.0))
+
+
+@njit(cache=True)
+def _fraction_done(tip_at: Floats, axis_at: Floats, row: int, tips: Floats, axes: Floats, angle: float) -> float:
+    """Fraction of a path at which a position lies: by the tip, or by the tool axis where the path is short."""
+    length_squared, along = 0.0, 0.0
+    for c in range(3):
+        length_squared += (tips[1, c] - tips[0, c]) ** 2
+        along += (tip_at[row, c] - tips[0, c]) * (tips[1, c] - tips[0, c])
+    if length_squared > _SHORT * _SHORT:
+        return min(max(along / length_squared, 0.0), 1.0)
+    return min(angle_between(axis_at, row, axes, 0) / angle, 1.0) if angle > 1e-9 else 1.0

@@ -1,0 +1,58 @@
+"""Spindle and tool as a CL file asks for them."""
+
+from dataclasses import dataclass
+
+from trunnion.model.toolpath import Operation, Sense, SpindleOff, SpindleOn
+
+
+@dataclass(frozen=True, slots=True)
+class ExpectedSpindle:
+    """Spindle speed, rev/min, and sense: +1 clockwise, -1 counterclockwise, 0 off."""
+
+    rpm: float
+    sense: int
+
+
+@dataclass(frozen=True, slots=True)
+class ExpectedTool:
+    """The tool that should be in the spindle.
+
+    number  None before the first LOAD/TOOL
+    adjust  the length register of LOAD/TOOL, 0 if it names none
+    """
+
+    number: int | None
+    adjust: int = 0
+    name: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What a program may call the tool."""
+        return tuple(str(text) for text in (self.number, self.name) if text not in (None, ""))
+
+    @property
+    def lengths(self) -> tuple[int, ...]:
+        """Numbers that its tool length may have: the tool's own, or the register of LOAD/TOOL."""
+        return tuple(number for number in (self.number, self.adjust) if number)
+
+
+def names_tool(text: str, names: tuple[str, ...]) -> bool:
+    """Whether a program's word for a tool is one of its names; numbers may have leading zeros."""
+    return text in names or (text.isdigit() and str(int(text)) in names)
+
+
+def spindle_on(event: SpindleOn) -> ExpectedSpindle:
+    """The spindle after a SPINDL that starts it."""
+    return ExpectedSpindle(event.rpm, 1 if event.sense is Sense.CLW else -1)
+
+
+def spindle_at(operation: Operation, row: int, before: ExpectedSpindle | None) -> ExpectedSpindle | None:
+    """The spindle at a row; ``before`` is its state when the operation begins, None if no SPINDL came yet."""
+    for event in operation.events:
+        if event.row > row:
+            break
+        if isinstance(event, SpindleOn):
+            before = spindle_on(event)
+        elif isinstance(event, SpindleOff):
+            before = ExpectedSpindle(before.rpm if before else 0.0, 0)
+    return before

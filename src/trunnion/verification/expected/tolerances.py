@@ -1,0 +1,30 @@
+"""How far a program may be from its CL files, operation by operation."""
+
+from dataclasses import dataclass
+
+from trunnion.model.deviations import Deviations
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """How far a program may be from its CL points.
+
+    tip         of the tip, in each coordinate, mm
+    angle       of each rotary axis, degrees
+    chord       of lines from the arc that they replace, mm
+    feed        of a feed, in its own unit
+    deviations  rows at which the program may depart from the CL file on purpose
+    centre      added for the centre of a circle that the control finds from a radius, mm
+    normal      of each component of a surface normal
+    plane       the tool stands on a tilted plane: its axis may be off by ``angle`` as a whole, however far a rotary
+                axis is off. Near a pole one of them hardly matters
+    """
+
+    tip: float = 0.001
+    angle: float = 0.001
+    chord: float = 0.001
+    feed: float = 0.005
+    deviations: Deviations | None = None
+    centre: float = 0.0
+    normal: float = 1e-6
+    plane: bool = False
