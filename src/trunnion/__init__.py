@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from trunnion.api.converting import convert as convert
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.planning import plan as plan
-    from trunnion.api.posting import PostResult as PostResult
+    from trunnion.api.post_result import PostResult as PostResult
+    from trunnion.api.post_result import ProofFailedError as ProofFailedError
     from trunnion.api.posting import post as post
-    from trunnion.api.proving import ProofFailedError as ProofFailedError
     from trunnion.api.reading import load_machine as load_machine
     from trunnion.api.reading import read_cl as read_cl
     from trunnion.api.reading import read_program as read_program
@@ -76,9 +76,9 @@ _MODULES: Final = {
     "Operation": "model.toolpath",
     "Place": "verification.results",
     "Plan": "model.motion",
-    "PostResult": "api.posting",
+    "PostResult": "api.post_result",
     "Problem": "errors",
-    "ProofFailedError": "api.proving",
+    "ProofFailedError": "api.post_result",
     "RefusedError": "errors",
     "Run": "model.run",
     "Severity": "errors",

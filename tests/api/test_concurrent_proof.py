@@ -12,8 +12,8 @@ from tests.reader.test_growing import facts
 from trunnion.api.job import PostJob
 from trunnion.api.observer import SILENT
 from trunnion.api.planning import plan_program
+from trunnion.api.post_result import ProofFailedError
 from trunnion.api.posting import post_toolpaths
-from trunnion.api.proving import ProofFailedError
 from trunnion.api.targets import Target
 from trunnion.api.writing import read_back_while_writing, write
 from trunnion.cl import read_cl
@@ -89,7 +89,7 @@ def test_what_is_proven_is_what_is_on_disk(tmp_path: Path) -> None:
     with pytest.raises(ProofFailedError, match="does not do what this file asks for: tip") as failed:
         post_toolpaths([toolpath], job, Target(files), SILENT)
     files.close()
-    assert [check.key for check in failed.value.verification.checks if not check.passed] == ["tip"]
+    assert [check.key for check in failed.value.result.checks if not check.passed] == ["tip"]
 
 
 def test_a_program_that_cannot_be_written_to_its_end_does_not_block_its_reader(tmp_path: Path) -> None:

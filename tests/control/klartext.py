@@ -13,9 +13,9 @@ from tests.paths import GOLDEN
 from tests.plan.naive import operation_of
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.verify.proven import unproven
+from trunnion.api.expectation import expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.cli import main
 from trunnion.controls import Control, load_control
 from trunnion.machines import Machine, load_machine, shipped_machines

@@ -17,9 +17,9 @@ from tests.jobs import post_job
 from tests.machines import at_zero
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.plan.test_read_back import toolpath_of
+from trunnion.api.expectation import expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
 from trunnion.controls.words import BlockNumbers

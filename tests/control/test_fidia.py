@@ -16,9 +16,9 @@ from tests.paths import FIDIA, FIDIA_HEAD
 from tests.plan.test_optimum import short_paths, smooth_paths
 from tests.plan.test_read_back import toolpath_of
 from tests.verify.proven import unproven
+from trunnion.api.expectation import expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main

@@ -12,9 +12,9 @@ from tests.control.test_linuxcnc import post as post
 from tests.jobs import post_job
 from tests.linuxcnc.interpreter import canonical, needs_linuxcnc
 from tests.reader.test_linuxcnc_judge import agree
+from trunnion.api.expectation import expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from tests.jobs import post_job
 from tests.plan.naive import moves_of, operation_of
+from trunnion.api.expectation import expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.controls import load_control
 from trunnion.machines import Machine, forward, load_machine
 from trunnion.model.toolpath import Frame, LoadTool, SpindleOn, Toolpath

@@ -14,8 +14,8 @@ from tests.jobs import post_job
 from tests.paths import YL569
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
 from tests.plan.test_read_back import CONTROL, MACHINES, toolpath_of
+from trunnion.api.expectation import expectation
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.errors import InputError, RefusedError

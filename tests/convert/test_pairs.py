@@ -10,9 +10,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.jobs import post_job
+from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import Expectation, expectation
 from trunnion.arrays import Floats
 from trunnion.controls import Control, load_control
 from trunnion.conversion import convert, transfer_settings

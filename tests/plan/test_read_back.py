@@ -12,8 +12,8 @@ from tests.jobs import post_job
 from tests.machines import at_zero
 from tests.plan.naive import operation_of
 from tests.plan.test_optimum import short_paths, smooth_paths, winding
+from trunnion.api.expectation import expectation
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError, Severity
 from trunnion.machines import Machine, load_machine, shipped_machines

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tests.machines import at_zero
 from tests.plan.naive import moves_of, operation_of
-from trunnion.api.proving import expectation
+from trunnion.api.expectation import expectation
 from trunnion.arrays import Codes, Floats
 from trunnion.controls import load_control
 from trunnion.errors import Severity

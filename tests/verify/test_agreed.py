@@ -9,8 +9,8 @@ import pytest
 from tests.jobs import post_job
 from tests.plan.test_pole import around_pole
 from tests.verify.conftest import CL_FOOT, CL_HEAD, check
+from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import Expectation, expectation
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
 from trunnion.machines import Machine, load_machine

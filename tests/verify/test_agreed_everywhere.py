@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from tests.jobs import post_job
 from tests.plan.naive import moves_of, operation_of
 from tests.plan.test_pole import MACHINES, around_pole, passes
+from trunnion.api.expectation import expectation
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.controls import load_control
 from trunnion.errors import RefusedError
 from trunnion.machines import Machine

@@ -13,9 +13,9 @@ from tests.control.test_program import FOOT, HEAD
 from tests.jobs import post_job
 from tests.plan.naive import moves_of, operation_of
 from tests.plan.test_without_tcp import machine, post, toolpath
+from trunnion.api.expectation import expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
-from trunnion.api.proving import expectation
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
 from trunnion.machines import load_machine

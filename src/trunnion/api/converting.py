@@ -9,7 +9,8 @@ from pathlib import Path
 from trunnion import conversion
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
-from trunnion.api.posting import PostResult, post_toolpaths
+from trunnion.api.post_result import PostResult
+from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
 from trunnion.api.settings import Settings, set_up_machine
 from trunnion.api.targets import OutputLike, open_target, written_text

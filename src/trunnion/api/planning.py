@@ -64,7 +64,7 @@ def plan(
     >>> import trunnion
     >>> planned = trunnion.plan("tests/golden/yl569/2_hub_rough.cls", machine="yl569")
     >>> planned.motions[0].rotary.shape
-    (115, 2)
+    (23, 2)
     """
     job = prepare(as_machine(machine), settings, explain=explain)
     toolpaths = load_toolpaths(cl, job, strict, observer)

@@ -5,95 +5,24 @@ Out:    the program: planned, written, read back, run and compared with its tool
         written unless it is forced.
 """
 
-import io
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.planning import load_toolpaths, plan_program
-from trunnion.api.proving import expectation, failure_notices, prove, refusal
+from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
-from trunnion.api.reports import check_report_name, write_report
+from trunnion.api.reports import check_report_name
 from trunnion.api.settings import Settings
-from trunnion.api.targets import OutputLike, Target, open_target, written_text
+from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
-from trunnion.errors import InputError, Problem, Severity
-from trunnion.model.motion import Decision, Motion, Plan
+from trunnion.errors import Problem, Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.verification import Check, Verification, failures
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class PostResult:
-    """A program that was posted.
-
-    toolpaths     what it was made from
-    plan          motions on the machine, decisions, problems
-    verification  what the proof found; None: no reader knows the control, and nothing is proven (only with ``force``)
-    problems      warnings about CL files, plan and program, and what ``force`` overruled
-    output        file of the program; None: it was not written to a file
-    subprograms   files of its subprograms
-    """
-
-    toolpaths: tuple[Toolpath, ...]
-    plan: Plan
-    verification: Verification | None
-    problems: tuple[Problem, ...]
-    output: Path | None
-    subprograms: tuple[Path, ...]
-    _memory: io.BytesIO | None
-
-    def __repr__(self) -> str:
-        """Return what matters in a notebook: the columns would fill pages."""
-        rows = "not run" if self.run is None else f"{len(self.run)} motions"
-        place = "" if self.output is None else f", output={str(self.output)!r}"
-        return f"PostResult(passed={self.passed}, {rows}{place})"
-
-    @property
-    def passed(self) -> bool:
-        """Whether the program is proven and may run."""
-        overruled = any(problem.severity is Severity.ERROR for problem in self.problems)
-        return self.verification is not None and self.verification.passed and not overruled
-
-    @property
-    def checks(self) -> tuple[Check, ...]:
-        """The questions that were put to the program, and their answers; none where nothing is proven."""
-        return () if self.verification is None else self.verification.checks
-
-    @property
-    def run(self) -> Run | None:
-        """The program as it was read back and run: one row a motion, in columns."""
-        return None if self.verification is None else self.verification.run
-
-    @property
-    def motions(self) -> tuple[Motion, ...]:
-        """The operations on the machine, as they were planned."""
-        return self.plan.motions
-
-    @property
-    def decisions(self) -> tuple[Decision, ...]:
-        """Why the axes were planned as they are."""
-        return self.plan.decisions
-
-    @property
-    def text(self) -> str | None:
-        """The program, from its file where it has one; None where it went to a stream."""
-        return written_text(self.output, self._memory)
-
-    def write_report(self, file: FilePath) -> None:
-        """Write a report of the proof: a page that works offline (``.html``), or data (``.json``).
-
-        Raises
-        ------
-        InputError
-            When the name ends otherwise, the file cannot be written, or nothing was proven.
-        """
-        if self.verification is None:
-            raise InputError(Problem(str(file), 0, "nothing was proven", "post for a control that has a reader"))
-        write_report(self.verification, file, decisions=self.decisions)
+from trunnion.verification import Verification, verify
 
 
 def post(
@@ -152,7 +81,7 @@ def post(
     RefusedError
         When the program must not run, as when an axis leaves its travel; nothing is written.
     ProofFailedError
-        A ``RefusedError``: when a check fails. Its ``verification`` has the checks.
+        A ``RefusedError``: when a check fails. Its ``result`` has the verification.
 
     Notes
     -----
@@ -162,8 +91,8 @@ def post(
     --------
     >>> import trunnion
     >>> result = trunnion.post("tests/golden/yl569/2_hub_rough.cls", machine="yl569", settings={"title": "HUB"})
-    >>> result.passed, len(result.run)
-    (True, 119)
+    >>> result
+    PostResult(passed=True, 30 motions)
     """
     if report is not None:
         check_report_name(report)
@@ -182,32 +111,46 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         program, planned, problems = plan_program(toolpaths, job, observer)
         write(program, target.files.main, progress, subprograms, observer)
         expected = expectation(program, job.options)
-    verification = None
-    if (complete := run.result()) is None:
+    verification = _prove(run.result(), toolpaths, expected, job, target)
+    if verification is None:
         problems.append(_nothing_checked(job, target))
         observer.problems(problems[-1:])
     else:
-        verification = prove(complete, toolpaths, expected, columns=job.columns)
-        verification = replace(verification, program=target.name)
         observer.verified(verification)
-        if job.report is not None:
-            write_report(verification, job.report, decisions=planned.decisions)
-        failed = failures(verification)
-        if failed and not job.force:
-            raise refusal(verification, toolpaths[0].file)
-        if failed:
-            target.files.restart()
-            notices = [*program.notices, *failure_notices(failed)]
-            write(replace(program, notices=notices), target.files.main, subprograms=subprograms)
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
-    return PostResult(
-        tuple(toolpaths), planned, verification, (*remarks, *problems), target.path, target.subprograms, target.memory
-    )
+    result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems))
+    if job.report is not None and verification is not None:
+        result.write_report(job.report)
+    failed = [check for check in result.checks if not check.passed]
+    if failed and not job.force:
+        raise _proof_failed(result)
+    if failed:
+        notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
+        target.files.restart()
+        write(replace(program, notices=[*program.notices, *notices]), target.files.main, subprograms=subprograms)
+    return replace(result, output=target.path, subprograms=target.subprograms, _memory=target.memory)
+
+
+def _prove(
+    run: Run | None, toolpaths: Sequence[Toolpath], expected: Expectation, job: PostJob, target: Target
+) -> Verification | None:
+    """What the proof of a program finds; None without its run."""
+    if run is None:
+        return None
+    found = verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=job.columns)
+    return replace(found, program=target.name)
 
 
 def _nothing_checked(job: PostJob, target: Target) -> Problem:
     """The warning of a forced program that no reader can read."""
+    what = "it is written by --force, and nothing has been checked"
     lost = "" if job.report is None else ": there is no report"
-    return Problem(
-        target.name, 0, f"it is written by --force, and nothing has been checked{lost}", severity=Severity.WARNING
-    )
+    return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING)
+
+
+def _proof_failed(result: PostResult) -> ProofFailedError:
+    """The error for a program that fails its proof."""
+    failed = ", ".join(check.key for check in result.checks if not check.passed)
+    what = f"the program does not do what this file asks for: {failed}"
+    problem = Problem(result.toolpaths[0].file, 0, what, "no program is written; --force writes it")
+    return ProofFailedError(problem, result)

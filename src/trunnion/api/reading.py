@@ -51,7 +51,7 @@ def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, o
     >>> import trunnion
     >>> toolpath = trunnion.read_cl("tests/golden/yl569/2_hub_rough.cls")
     >>> toolpath.operations[0].moves.tip.shape
-    (115, 3)
+    (23, 3)
     """
     path = Path(path)
     size = path.stat().st_size if path.is_file() else 0

@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 
 from trunnion import output, planning
-from trunnion.api.posting import PostResult
+from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post as post_program
 from trunnion.api.reading import load_machine
 from trunnion.cli.terminal import Terminal, output_place

@@ -1,29 +1,19 @@
-"""The proof of a program: what it does, read back and run, against the toolpaths that it was made from."""
+"""What the proof of a program holds against it, besides its toolpaths.
+
+In:     a program as it was planned, and the options of the planner.
+Out:    tolerances and settings for ``trunnion.verification.verify``.
+"""
 
 import math
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from trunnion.api.tolerances import program_tolerances
-from trunnion.errors import Problem, RefusedError
 from trunnion.model.motion import MachiningMode
-from trunnion.model.run import EXTENDED_OFFSET_BASE, Run
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.run import EXTENDED_OFFSET_BASE
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
-from trunnion.verification import Check, Settings, Tolerances, Verification, failures, verify
-
-
-class ProofFailedError(RefusedError):
-    """The program was written and read back, and does not do what its CL files ask for.
-
-    ``verification`` has the checks that failed, with their places.
-    """
-
-    def __init__(self, problem: Problem, verification: Verification) -> None:
-        super().__init__(problem)
-        self.verification = verification
+from trunnion.verification import Settings, Tolerances
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,23 +31,6 @@ class Expectation:
 def expectation(program: Program, options: PlanOptions | None = None) -> Expectation:
     """What the proof holds against a program that was planned with these options."""
     return Expectation(program_tolerances(program), _expected_settings(program, options or PlanOptions()))
-
-
-def prove(run: Run, toolpaths: Sequence[Toolpath], expected: Expectation, *, columns: bool) -> Verification:
-    """Verify a program that was read back; ``columns`` as ``trunnion.verification.verify`` has it."""
-    return verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=columns)
-
-
-def refusal(verification: Verification, file: str) -> ProofFailedError:
-    """The error for a program that fails; ``file`` is its first CL file."""
-    failed = ", ".join(check.key for check in failures(verification))
-    what = f"the program does not do what this file asks for: {failed}"
-    return ProofFailedError(Problem(file, 0, what, "no program is written; --force writes it"), verification)
-
-
-def failure_notices(failed: Sequence[Check]) -> list[str]:
-    """Lines for the head of a program that is written though checks have failed."""
-    return [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
 
 
 def _expected_settings(program: Program, options: PlanOptions) -> Settings:

@@ -1,0 +1,101 @@
+"""``import trunnion``: quick, complete, and without a trace in the process."""
+
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.paths import YL569
+
+FUNCTIONS = [name for name in trunnion.__all__ if inspect.isfunction(getattr(trunnion, name))]
+
+
+def python(script: str, *arguments: str, folder: Path | None = None) -> str:
+    """What a script prints in a process of its own."""
+    command = [sys.executable, "-c", script, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+def test_every_public_name_is_there_and_documented() -> None:
+    assert dir(trunnion) == sorted(trunnion.__all__)
+    for name in trunnion.__all__:
+        assert inspect.getdoc(getattr(trunnion, name)) or name == "__version__", name
+    assert FUNCTIONS == [
+        "convert", "diff", "load_machine", "plan", "post", "read_cl", "read_program", "verify", "write_report",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_argument_is_typed_and_documented(name: str) -> None:
+    function = getattr(trunnion, name)
+    doc, signature = inspect.getdoc(function) or "", inspect.signature(function)
+    assert signature.return_annotation is not inspect.Signature.empty
+    sections = doc.partition("Parameters\n----------\n")[2].partition("\n\n")[0]
+    described = {
+        word.strip()
+        for line in sections.splitlines()
+        if not line.startswith(" ")
+        for word in line.partition(" : ")[0].split(",")
+    }
+    for parameter in signature.parameters.values():
+        assert parameter.annotation is not inspect.Parameter.empty, parameter.name
+        assert parameter.name in described, f"{name}: {parameter.name}"
+    assert "Raises\n------\nInputError" in doc
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="module 'trunnion' has no attribute 'psot'"):
+        getattr(trunnion, "psot")  # noqa: B009 - the type checker knows that there is none
+
+
+def test_the_import_loads_nothing_heavy() -> None:
+    script = "import sys, trunnion; print(*({'numpy', 'numba', 'argparse', 'tqdm'} & sys.modules.keys()))"
+    assert python(script).strip() == ""
+
+
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_the_help_of_the_command_loads_nothing_heavy(option: str) -> None:
+    script = (
+        "import sys\nfrom trunnion.cli import main\n"
+        "try:\n    main(sys.argv[1:])\nexcept SystemExit:\n    pass\n"
+        "print(*({'numpy', 'numba', 'tqdm'} & sys.modules.keys()), 'end')"
+    )
+    assert python(script, option).splitlines()[-1].strip() == "end"
+
+
+#: Posts, verifies, converts and compares, and prints what has changed in the process.
+_TRACELESS = """
+import gc, os, signal, sys, threading
+import numpy
+def state():
+    return {
+        "environ": dict(os.environ), "gc": (gc.isenabled(), gc.get_threshold()), "switch": sys.getswitchinterval(),
+        "folder": os.getcwd(), "signal": signal.getsignal(signal.SIGINT), "threads": threading.active_count(),
+        "numpy": numpy.geterr(), "path": list(sys.path), "hook": sys.excepthook, "recursion": sys.getrecursionlimit(),
+        "locale": numpy.get_printoptions()["precision"], "files": sorted(os.listdir(".")),
+    }
+before = state()
+import trunnion
+cl, machine = sys.argv[1], "yl569"
+posted = trunnion.post(cl, machine=machine, output="p.mpf", settings={"title": "x"})
+trunnion.verify("p.mpf", machine=machine, cl=cl)
+trunnion.convert("p.mpf", machine=machine, to_cl=True)
+trunnion.diff("p.mpf", "p.mpf", machine=machine)
+try:
+    trunnion.post(cl, machine=machine, settings={"titel": "x"})
+except trunnion.InputError:
+    pass
+os.remove("p.mpf")
+after = state()
+changed = [key for key in before if before[key] != after[key]]
+sys.stdout.write(" ".join(changed))
+"""
+
+
+def test_a_call_prints_nothing_and_leaves_the_process_as_it_was(tmp_path: Path) -> None:
+    assert python(_TRACELESS, str(YL569 / "3_blade_finish.cls"), folder=tmp_path) == ""
