@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from trunnion.cl.assemble import COLOUR_PHASES, RADIUS_TOLERANCE
-from trunnion.cl.nx import HANDLERS
+from trunnion.cl.statements import HANDLERS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "cl.md").read_text(encoding="utf-8")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.cl.conftest import Body, Fail, Read
-from trunnion.cl.nx import HANDLERS
+from trunnion.cl.statements import HANDLERS
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,

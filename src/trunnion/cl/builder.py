@@ -1,4 +1,8 @@
-"""What the interpreter of a CL dialect writes down, in units of the file, until the end of the file settles them."""
+"""Operations while they are read: what their statements say, in units of the file.
+
+Statements may refer to later ones, and the length unit may be known only at the end of the file. So they are collected
+here, and ``trunnion.cl.assemble`` makes operations of them when the file has been read.
+"""
 
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -11,10 +15,10 @@ from trunnion.model.toolpath import Event, Frame, Sense, Tool
 
 @dataclass(slots=True)
 class MoveColumns:
-    """The columns of the whole file, with room for ``n`` rows; operations are slices of them.
+    """The columns of ``trunnion.model.toolpath.Moves`` for the whole file; operations are slices of them.
 
-    Tip and axis are written while the file is scanned, the others when an operation is assembled.
-    Untouched rows cost nothing: the system gives memory only to what was written.
+    Tip and axis are written while the file is scanned, the others when an operation is assembled. Spare rows cost no
+    memory: the operating system provides pages only when they are written.
     """
 
     tip: Floats
@@ -26,7 +30,7 @@ class MoveColumns:
     line: Lines
 
     def grow(self) -> None:
-        """Make room for half as many rows again."""
+        """Add half as many rows again."""
         for name in ("tip", "axis", "kind", "phase", "feed", "per_rev", "line"):
             old = getattr(self, name)
             new = np.empty((len(old) * 3 // 2 + 1, *old.shape[1:]), old.dtype)
@@ -35,7 +39,7 @@ class MoveColumns:
 
     @staticmethod
     def allocate(n: int) -> "MoveColumns":
-        """Return columns of ``n`` rows, not yet written."""
+        """Return columns of ``n`` uninitialized rows."""
         return MoveColumns(
             tip=np.empty((n, 3)),
             axis=np.empty((n, 3)),
@@ -49,7 +53,7 @@ class MoveColumns:
 
 @dataclass(frozen=True, slots=True)
 class SurfaceSpeed(Event):
-    """A spindle speed at the cutting edge, mm/min; the tool's diameter turns it into rev/min."""
+    """A spindle speed as the speed of the cutting edge, mm/min; the tool's diameter turns it into rev/min."""
 
     speed: float
     sense: Sense
@@ -57,7 +61,7 @@ class SurfaceSpeed(Event):
 
 
 class FeedChange(NamedTuple):
-    """A FEDRAT: ``value`` in mm/min or mm/rev, or in units of the file if it named none."""
+    """A FEDRAT: ``value`` in mm/min or mm/rev, or in units of the file if it names no unit."""
 
     row: int
     value: float
@@ -66,7 +70,7 @@ class FeedChange(NamedTuple):
 
 
 class CircleStatement(NamedTuple):
-    """A CIRCLE: xc, yc, zc, i, j, k, r in units of the file, and the turns that it begins."""
+    """A CIRCLE: xc, yc, zc, i, j, k, r in units of the file, and the number of turns that it begins (TIMES)."""
 
     row: int
     line: int
@@ -75,7 +79,7 @@ class CircleStatement(NamedTuple):
 
 
 class FromStatement(NamedTuple):
-    """A FROM: the tip, and the axis if one was given."""
+    """A FROM: the tip, and the tool axis if it gives one."""
 
     row: int
     line: int
@@ -85,7 +89,11 @@ class FromStatement(NamedTuple):
 
 @dataclass(slots=True)
 class OperationBuilder:
-    """An operation while it is read. Rows count from ``first``, the operation's first row in the columns."""
+    """An operation while it is read. Rows count from ``first``, the row of the columns at which it begins.
+
+    colours  (row, colour) of each PAINT/COLOR
+    rapids   rows before which a RAPID stands
+    """
 
     name: str
     line: int

@@ -1,4 +1,4 @@
-"""One CL statement taken apart: ``MAJOR/minor,minor`` into words and numbers, or text left as it stands."""
+"""One CL statement taken apart: ``MAJOR/minor,minor`` into words and numbers, or into its text."""
 
 import re
 from math import isfinite
@@ -11,17 +11,23 @@ _TEXT_STATEMENT = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 _TEXT_FIRST_BYTES = frozenset(b"TPIDSOtpidso")
-_CONTINUED = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n")
-_CONTROL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
+_CONTINUATION = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n")
+_CONTROL_CHARACTER = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _NUMBER_FIRST = frozenset("+-.0123456789")
 _NUMBER_LAST = frozenset(".0123456789")
 
-#: No length, feed or angle of a machine tool is larger; what is, is a slip of the file.
+#: No length, feed or angle of a machine tool is larger; a larger number is a mistake in the file.
 _MAX_NUMBER = 1e12
 
 
 class Statement(NamedTuple):
-    """A statement: upper-case major; words upper-case and numbers as floats, or for text majors the text."""
+    """A statement of a CL file.
+
+    major   the word before the slash, in capitals without blanks
+    values  words in capitals, and numbers; none if the statement carries text
+    text    the text of a statement that carries one (PPRINT, INSERT, ...)
+    source  the statement as it stands in the file
+    """
 
     major: str
     values: tuple[str | float, ...]
@@ -29,8 +35,12 @@ class Statement(NamedTuple):
     source: str
 
     def numbers(self, *counts: int) -> tuple[float, ...]:
-        """Return the values if they are numbers, and as many as one of ``counts``."""
+        """Return the values; refuse words, and any number of values that is not in ``counts``."""
         return numbers(self.major, self.values, *counts)
+
+    def plain_numbers(self) -> tuple[float, ...]:
+        """Return the numbers among the values."""
+        return tuple(value for value in self.values if not isinstance(value, str))
 
     def words(self) -> list[str]:
         """Return the words among the values."""
@@ -38,26 +48,56 @@ class Statement(NamedTuple):
 
 
 def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[float, ...]:
-    """Return ``values`` if they are finite numbers, and as many as one of ``counts`` (if any is given)."""
+    """Return ``values`` if all are finite numbers and, with ``counts``, as many as one of these.
+
+    Raises
+    ------
+    StatementError
+        If they are not.
+    """
     for value in values:
         if isinstance(value, str):
-            raise StatementError(f"{major} has {value or 'nothing'!r} where a number belongs", "write a decimal number")
+            what = f"{major} has {value or 'nothing'!r} where a number belongs"
+            raise StatementError(what, "write a decimal number")
         if value > _MAX_NUMBER or value < -_MAX_NUMBER:
-            raise StatementError(
-                f"{major} has the number {value}", "write finite numbers of a size that a machine can have"
-            )
+            cure = "write finite numbers of a size that a machine can have"
+            raise StatementError(f"{major} has the number {value}", cure)
     if counts and len(values) not in counts:
-        wanted = " or ".join(map(str, counts))
-        raise StatementError(
-            f"{major} has {len(values)} numbers, expected {wanted}", "look for a missing or an extra comma"
-        )
+        expected = " or ".join(map(str, counts))
+        what = f"{major} has {len(values)} numbers, expected {expected}"
+        raise StatementError(what, "look for a missing or an extra comma")
     return values  # type: ignore[return-value]
 
 
+def whole_number(major: str, values: tuple[str | float, ...]) -> int:
+    """Return the only one of ``values``, which must be 0, 1, 2, ...
+
+    Raises
+    ------
+    StatementError
+        If it is not.
+    """
+    (number,) = numbers(major, values, 1)
+    if not is_whole(number, 0):
+        raise StatementError(f"{major} has {number:g} where a whole number belongs", "write 0, 1, 2 ...")
+    return int(number)
+
+
+def is_whole(value: float, least: int) -> bool:
+    """Whether a number is whole and at least ``least``."""
+    return isfinite(value) and value == int(value) and value >= least
+
+
 def parse(raw: bytes, encoding: str) -> Statement:
-    """Take the bytes of a statement apart; continuation lines are still in it."""
+    """Take the bytes of a statement apart, continuation lines included.
+
+    Raises
+    ------
+    StatementError
+        If it is not text, or a sign stands where it means nothing.
+    """
     raw = raw.rstrip(b" \t\r\n\x1a")
-    if control := _CONTROL.search(raw):
+    if control := _CONTROL_CHARACTER.search(raw):
         raise StatementError(
             f"unknown encoding: byte 0x{control.group()[0]:02x} in a statement",
             "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)",
@@ -66,15 +106,14 @@ def parse(raw: bytes, encoding: str) -> Statement:
         return _text_statement(text, raw, encoding)
     source = plain = raw.decode(encoding, "replace")
     if "$" in plain:
-        plain = _CONTINUED.sub("", plain).partition("$$")[0]
+        plain = _CONTINUATION.sub("", plain).partition("$$")[0]
     if "\r" in plain:
         raise StatementError("a carriage return without a line feed", "save the file with LF or CRLF line ends")
     major, slash, rest = plain.partition("/")
     name = "".join(major.split()).upper()
     if "$" in name or "$" in rest:
-        raise StatementError(
-            f"{name} has a dollar sign within the line", "a dollar sign continues a line only at its end"
-        )
+        cure = "a dollar sign continues a line only at its end"
+        raise StatementError(f"{name} has a dollar sign within the line", cure)
     return Statement(name, _values(rest) if slash else (), "", source)
 
 
@@ -88,7 +127,7 @@ def _text_statement(match: re.Match[bytes], raw: bytes, encoding: str) -> Statem
 
 
 def _values(rest: str) -> tuple[str | float, ...]:
-    """Return what stands between the commas."""
+    """The values between the commas."""
     fields = rest.split(",")
     if "_" not in rest and rest.isascii():
         try:
@@ -96,14 +135,14 @@ def _values(rest: str) -> tuple[str | float, ...]:
         except ValueError:
             pass
         else:
-            # The words INF and NAN are numbers to Python, but not in a CL file.
+            # Python reads the words INF and NAN as numbers; in a CL file they are words.
             if isfinite(sum(plain)):
                 return plain
     return tuple(map(_value, fields)) if rest.strip() else ()
 
 
 def _value(field: str) -> str | float:
-    """Return a number if the field is one, else the word in capitals without blanks."""
+    """A number if the field is one, else the word in capitals without blanks."""
     field = field.strip()
     if field[:1] in _NUMBER_FIRST and field[-1] in _NUMBER_LAST and "_" not in field and field.isascii():
         try:
@@ -111,8 +150,3 @@ def _value(field: str) -> str | float:
         except ValueError:
             return field.upper()
     return "".join(field.split()).upper()
-
-
-def is_whole(value: float, least: int) -> bool:
-    """Whether a number is whole and at least ``least``."""
-    return isfinite(value) and value == int(value) and value >= least

@@ -1,0 +1,65 @@
+"""What each statement of an NX CLSF means: one small function for each, and the table of all.
+
+In:     a statement, and the state of the reader with its line and row.
+Out:    the state with what the statement says, in units of the file.
+"""
+
+from collections.abc import Callable
+
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement
+from trunnion.cl.statements import cycles, events, motion, operations
+
+__all__ = ["HANDLERS", "Handler"]
+
+#: Raises ``StatementError`` if the statement cannot be used.
+Handler = Callable[[ReaderState, Statement], None]
+
+#: Every known statement, by its major word.
+HANDLERS: dict[str, Handler] = {
+    "TOOLPATH": operations.tool_path,
+    "END-OF-PATH": operations.end_of_path,
+    "TLDATA": operations.tldata,
+    "MSYS": operations.msys,
+    "PARTNO": operations.partno,
+    "UNITS": operations.units,
+    "INTOL": operations.intol,
+    "OUTTOL": operations.outtol,
+    "PAINT": operations.paint,
+    "MACHIN": operations.ignore,
+    "END": operations.ignore,
+    "FINI": operations.ignore,
+    "RAPID": motion.rapid,
+    "GOTO": motion.goto,
+    "GODLTA": motion.godlta,
+    "GOHOME": motion.gohome,
+    "FROM": motion.from_,
+    "CIRCLE": motion.circle,
+    "NURBS": motion.unsupported,
+    "KNOT": motion.unsupported,
+    "CNTRL": motion.unsupported,
+    "TLON": motion.unsupported,
+    "INDIRV": motion.unsupported,
+    "COPY": motion.unsupported,
+    "TRACUT": motion.unsupported,
+    "TRANS": motion.unsupported,
+    "FEDRAT": events.fedrat,
+    "SPINDL": events.spindl,
+    "LOAD": events.load,
+    "SELECT": events.load,
+    "COOLNT": events.coolnt,
+    "CUTCOM": events.cutcom,
+    "CYCLE": cycles.cycle,
+    "DELAY": events.delay,
+    "STOP": events.stop,
+    "OPSTOP": events.stop,
+    "PPRINT": events.message,
+    "TPRINT": events.message,
+    "DISPLY": events.message,
+    "DISPLAY": events.message,
+    "INSERT": events.insert,
+    "OPSKIP": events.opskip,
+    "SET": events.set_mode,
+    "MODE": events.set_mode,
+    "MULTAX": events.set_mode,
+}

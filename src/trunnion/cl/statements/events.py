@@ -1,0 +1,189 @@
+"""Statements that become feeds and events: spindle, tool, coolant, stops, texts.
+
+Words are told apart by their meaning, not by their place: some systems write ``SPINDL/RPM,n``, others ``SPINDL/n,RPM``.
+"""
+
+from dataclasses import replace
+
+from trunnion.cl.builder import FeedChange, SurfaceSpeed
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.state import FEED_UNITS, ReaderState
+from trunnion.cl.statement import Statement, numbers, whole_number
+from trunnion.model.toolpath import (
+    BlockSkip,
+    Coolant,
+    CutterComp,
+    Dwell,
+    Insert,
+    LoadTool,
+    Message,
+    SelectTool,
+    Sense,
+    SetMode,
+    SpindleOff,
+    SpindleOn,
+    Stop,
+)
+
+_MM_PER_FOOT = 304.8
+
+#: Words of surface speeds: mm/min in one unit.
+_SURFACE_SPEEDS = {"SFM": _MM_PER_FOOT, "SMM": 1000.0}
+_GEAR_RANGES = frozenset({"LOW", "MEDIUM", "HIGH", "RANGE"})
+_SPINDLE_WORDS = frozenset({"RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "DIAMTR"}) | _GEAR_RANGES
+_COOLANTS = frozenset({"ON", "OFF", "FLOOD", "MIST", "TAP", "THRU", "AIR"})
+_SIDES = frozenset({"LEFT", "RIGHT", "ON", "OFF"})
+_PLANES = frozenset({"XYPLAN", "ZXPLAN", "YZPLAN"})
+
+
+def fedrat(state: ReaderState, statement: Statement) -> None:
+    """Set the modal feed and its unit."""
+    for word in statement.words():
+        if word not in FEED_UNITS:
+            raise StatementError(f"FEDRAT/{word} is not a known feed", "write the feed in MMPM, MMPR, IPM or IPR")
+        state.feed_factor, state.feed_per_rev = FEED_UNITS[word]
+        state.bare_feeds = False
+        state.note_feed_unit(word)
+    (value,) = numbers("FEDRAT", statement.plain_numbers(), 1)
+    if value < 0:
+        raise StatementError(f"FEDRAT is negative: {value:g}", "write a feed above 0")
+    if value == 0:
+        state.diagnostics.remark(state.line, "FEDRAT is 0", "write a feed above 0, or RAPID")
+    feed = FeedChange(state.operation_row, value * state.feed_factor, state.feed_per_rev, state.bare_feeds)
+    state.builder.feeds.append(feed)
+
+
+def spindl(state: ReaderState, statement: Statement) -> None:
+    """Turn the spindle on or off."""
+    words = set(statement.words())
+    if "OFF" in words:
+        state.add(SpindleOff(state.operation_row, state.line))
+        return
+    if words - _SPINDLE_WORDS:
+        state.keep_unknown(statement, f"SPINDL/{','.join(statement.words())} is not known")
+        return
+    if words & _GEAR_RANGES:
+        what = "the gear range of SPINDL is not written"
+        state.diagnostics.remark(state.line, what, "write it with INSERT/ if the machine needs it")
+    speed, diameter = _speed_and_diameter(statement)
+    sense = _sense(state, words)
+    surface = words & _SURFACE_SPEEDS.keys()
+    row, line = state.operation_row, state.line
+    if speed is None:
+        if state.spindle is None:
+            raise StatementError("SPINDL turns the spindle on before any speed was given", "write SPINDL/RPM,n,CLW")
+        state.spindle = replace(state.spindle, row=row, line=line, sense=sense)
+    elif speed < 0:
+        raise StatementError(f"SPINDL has a negative speed: {speed:g}", "write CLW or CCLW for the sense")
+    elif surface:
+        state.spindle = SurfaceSpeed(row, line, speed * _SURFACE_SPEEDS[surface.pop()], sense, diameter)
+    else:
+        state.spindle = SpindleOn(row, line, speed, sense)
+    state.add(state.spindle)
+
+
+def _speed_and_diameter(statement: Statement) -> tuple[float | None, float | None]:
+    """Speed, and the number behind DIAMTR; None where there is none. A number behind RANGE is neither."""
+    speed: float | None = None
+    diameter: float | None = None
+    last: str | float = ""
+    for value in statement.values:
+        if not isinstance(value, str):
+            (value,) = numbers("SPINDL", (value,))
+            if last == "DIAMTR":
+                diameter = value
+            elif last != "RANGE":
+                speed = value
+        last = value
+    return speed, diameter
+
+
+def _sense(state: ReaderState, words: set[str]) -> Sense:
+    """The sense named, else the last one."""
+    for sense in Sense:
+        if sense.value in words:
+            return sense
+    return state.spindle.sense if state.spindle else Sense.CLW
+
+
+def load(state: ReaderState, statement: Statement) -> None:
+    """Load or select a tool."""
+    values = statement.values
+    if values[:1] != ("TOOL",):
+        state.keep_unknown(statement, f"{statement.major} without TOOL is not known")
+        return
+    number = whole_number(statement.major, values[1:2])
+    if statement.major == "SELECT":
+        state.add(SelectTool(state.operation_row, state.line, number))
+        return
+    adjust = 0
+    if "ADJUST" in values:
+        index = values.index("ADJUST")
+        adjust = whole_number("LOAD ADJUST", values[index + 1 : index + 2])
+        values = values[:index] + values[index + 2 :]
+    if len(values) > 2:
+        state.keep_unknown(statement, f"LOAD/TOOL with {','.join(map(str, values[2:]))} is known for its number only")
+    state.add(LoadTool(state.operation_row, state.line, number, adjust))
+
+
+def coolnt(state: ReaderState, statement: Statement) -> None:
+    """Switch the coolant."""
+    values = statement.values or ("ON",)
+    if len(values) != 1 or not isinstance(values[0], str) or values[0] not in _COOLANTS:
+        state.keep_unknown(statement, f"{statement.source.strip()} is not a known coolant")
+        return
+    state.add(Coolant(state.operation_row, state.line, values[0]))
+
+
+def cutcom(state: ReaderState, statement: Statement) -> None:
+    """Switch cutter radius compensation."""
+    words = statement.words()
+    side = [word for word in words if word in _SIDES]
+    plane = [word for word in words if word in _PLANES]
+    register = statement.plain_numbers()
+    if len(side) != 1 or len(plane) > 1 or len(words) != len(side) + len(plane) or len(register) > 1:
+        state.keep_unknown(statement, f"{statement.source.strip()} is not known")
+        return
+    number = whole_number("CUTCOM", register) if register else 0
+    state.add(CutterComp(state.operation_row, state.line, side[0], plane[0] if plane else "", number))
+
+
+def delay(state: ReaderState, statement: Statement) -> None:
+    """Dwell for a time or a number of revolutions."""
+    words = statement.words()
+    if words not in ([], ["REV"]):
+        state.keep_unknown(statement, f"DELAY/{','.join(words)} is not known")
+        return
+    (amount,) = numbers("DELAY", statement.plain_numbers(), 1)
+    if amount < 0:
+        raise StatementError("DELAY is negative", "write the time in seconds, or the revolutions and REV")
+    state.add(Dwell(state.operation_row, state.line, amount, bool(words)))
+
+
+def stop(state: ReaderState, statement: Statement) -> None:
+    """Stop the program, or stop it if the operator wants it (OPSTOP)."""
+    state.add(Stop(state.operation_row, state.line, statement.major == "OPSTOP", statement.text))
+
+
+def message(state: ReaderState, statement: Statement) -> None:
+    """Write a text into the program, or show it to the operator (DISPLY)."""
+    state.add(Message(state.operation_row, state.line, statement.text, statement.major in ("DISPLY", "DISPLAY")))
+
+
+def insert(state: ReaderState, statement: Statement) -> None:
+    """Put a text into the program as it stands."""
+    state.add(Insert(state.operation_row, state.line, statement.text))
+
+
+def opskip(state: ReaderState, statement: Statement) -> None:
+    """Switch block skip."""
+    if statement.values not in (("ON",), ("OFF",)):
+        state.keep_unknown(statement, f"{statement.source.strip()} is not known")
+        return
+    state.add(BlockSkip(state.operation_row, state.line, statement.values == ("ON",)))
+
+
+def set_mode(state: ReaderState, statement: Statement) -> None:
+    """Keep SET, MODE or MULTAX with its words."""
+    values = [value if isinstance(value, str) else f"{value:g}" for value in statement.values]
+    state.add(SetMode(state.operation_row, state.line, (statement.major, *values)))

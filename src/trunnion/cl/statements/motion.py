@@ -1,0 +1,113 @@
+"""Statements of motion: points, circles, and motion that cannot be read."""
+
+from trunnion.cl.builder import CircleStatement, FromStatement
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement, is_whole, numbers
+from trunnion.model.toolpath import GoHome
+
+#: No helix has more turns; a larger TIMES is a mistake in the file.
+_MAX_TURNS = 10000
+
+
+def rapid(state: ReaderState, statement: Statement) -> None:
+    """Make the next row a rapid."""
+    if statement.values:
+        state.keep_unknown(statement, f"RAPID/{statement.words()} is not known")
+    state.builder.rapids.append(state.operation_row)
+
+
+def goto(state: ReaderState, statement: Statement) -> None:
+    """Write a row. The scan reads plain GOTO lines by itself; this is for all others."""
+    _write_row(state, statement.numbers(3, 6))
+
+
+def godlta(state: ReaderState, statement: Statement) -> None:
+    """Write a row relative to the last point."""
+    x, y, z = statement.numbers(3)
+    start = _current_tip(state)
+    if start is None:
+        raise StatementError("GODLTA without a point to go from", "write FROM/ or GOTO/ before it")
+    _refuse_in_circle(state, "GODLTA")
+    _write_row(state, (start[0] + x, start[1] + y, start[2] + z))
+
+
+def gohome(state: ReaderState, statement: Statement) -> None:
+    """Write a rapid row; without a point, go to the home of the machine."""
+    _refuse_in_circle(state, "GOHOME")
+    if not statement.values:
+        state.add(GoHome(state.operation_row, state.line))
+        return
+    if not state.has_row:
+        state.keep_unknown(statement, "GOHOME with words is not known")
+        return
+    state.builder.rapids.append(state.operation_row)
+    _write_row(state, statement.numbers(3, 6))
+
+
+def from_(state: ReaderState, statement: Statement) -> None:
+    """Note where the path begins."""
+    x, y, z, *axis = statement.numbers(3, 6)
+    vector = (axis[0], axis[1], axis[2]) if axis else None
+    state.builder.starts.append(FromStatement(state.operation_row, state.line, (x, y, z), vector))
+
+
+def circle(state: ReaderState, statement: Statement) -> None:
+    """Make the next row an arc."""
+    if not state.in_operation:
+        raise StatementError("CIRCLE outside any operation", "write TOOL PATH/name,TOOL,tool before it")
+    _refuse_in_circle(state, "another CIRCLE")
+    values = statement.values
+    turns = 1.0
+    if "TIMES" in values:
+        index = values.index("TIMES")
+        (turns,) = numbers("CIRCLE TIMES", values[index + 1 :], 1)
+        values = values[:index]
+    given = numbers("CIRCLE", values, 7, 8, 11, 12)
+    if len(given) in (8, 12):
+        turns = given[-1]
+    if not is_whole(turns, 1) or turns > _MAX_TURNS:
+        raise StatementError(f"CIRCLE has {turns:g} turns", "write TIMES,n with n = 1, 2, 3 ...")
+    state.builder.circles.append(CircleStatement(state.operation_row, state.line, given[:7], int(turns)))
+
+
+def unsupported(state: ReaderState, statement: Statement) -> None:
+    """Refuse motion that is neither lines nor circles in the coordinates of the operation."""
+    if statement.major in ("KNOT", "CNTRL") and state.spline_reported:
+        return  # part of a NURBS that was refused already
+    state.spline_reported = True
+    raise StatementError(
+        f"{statement.major} is motion that cannot be read",
+        "turn off spline output in the CAM system, and write lines and circles in the machining coordinates",
+    )
+
+
+def _write_row(state: ReaderState, values: tuple[float, ...]) -> None:
+    """Write the row that the scan has reserved; the scan has set its axis to NaN, that is "not given"."""
+    if not state.has_row:
+        raise StatementError("a motion without coordinates", "write GOTO/x,y,z or GOTO/x,y,z,i,j,k")
+    state.columns.tip[state.row] = values[:3]
+    if len(values) == 6:
+        state.columns.axis[state.row] = values[3:]
+
+
+def _current_tip(state: ReaderState) -> tuple[float, float, float] | None:
+    """The last point of the operation; None before the first."""
+    starts = state.builder.starts
+    if starts and starts[-1].row == state.operation_row:
+        return starts[-1].tip
+    if state.operation_row == 0:
+        return None
+    x, y, z = state.columns.tip[state.row - 1].tolist()
+    return x, y, z
+
+
+def _refuse_in_circle(state: ReaderState, what: str) -> None:
+    """Refuse ``what`` in place of the end point of an arc."""
+    circles = state.builder.circles
+    if circles and circles[-1].row == state.operation_row:
+        begun = circles.pop()
+        raise StatementError(
+            f"{what} where the GOTO of the CIRCLE in line {begun.line} must stand",
+            "write GOTO/ with the end point of the arc after each CIRCLE",
+        )

@@ -1,0 +1,147 @@
+"""Statements about operations: where they begin and end, their tool, frame, tolerances and colours; units and part."""
+
+import math
+import re
+from dataclasses import replace
+
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.state import MM_PER_INCH, ReaderState
+from trunnion.cl.statement import Statement, numbers, whole_number
+from trunnion.model.toolpath import Frame, Tool
+
+#: Names of length units, in mm.
+LENGTH_UNITS = {"MM": 1.0, "INCHES": MM_PER_INCH, "INCH": MM_PER_INCH, "IN": MM_PER_INCH}
+
+#: How far the vectors of MSYS may be off unit length and off square: they are printed with seven decimals.
+_FRAME_TOLERANCE = 1e-3
+
+#: Stands between the names of operation and tool.
+_TOOL_WORD = re.compile(r",\s*TOOL\s*,")
+
+_MILL = ("diameter", "corner_radius", "length", "taper_angle", "tip_angle")
+_DRILL = ("diameter", "corner_radius", "length", "tip_angle", "flute_length")
+_TCUTTER = ("diameter", "corner_radius", "upper_radius", "length", "flute_length")
+
+#: Forms of TLDATA: for each possible count of numbers, the fields of ``Tool`` that they are; empty where there is none.
+_TLDATA_FIELDS: dict[str, dict[int, tuple[str, ...]]] = {
+    "MILL": {5: _MILL, 7: (*_MILL, "", ""), 10: (*_MILL, "", "", "upper_radius", "", "")},
+    "DRILL": {5: _DRILL},
+    "TCUTTER": {5: _TCUTTER},
+    "BARREL": {5: _MILL, 7: (*_MILL, "", ""), 10: (*_MILL, "", "", "upper_radius", "", "")},
+}
+
+
+def tool_path(state: ReaderState, statement: Statement) -> None:
+    """Begin an operation."""
+    if state.in_operation:
+        state.diagnostics.error(
+            state.builder.line,
+            f"operation {state.builder.name} has no END-OF-PATH before the next TOOL PATH in line {state.line}",
+            "end each operation with END-OF-PATH",
+        )
+        state.close_operation()
+    elif state.operation_row:
+        state.report_motion_outside()
+        state.builder.starts.clear()
+    # The name of the tool may have commas in it.
+    name, tool = (*_TOOL_WORD.split(statement.text, maxsplit=1), "")[:2]
+    outside = state.builder
+    state.builder = replace(
+        outside, name=name.strip(), line=state.line, first=state.row, colours=[], rapids=[], circles=[]
+    )
+    state.builder.tool = replace(outside.tool, name=tool.strip() or outside.tool.name)
+    state.in_operation = True
+    state.spindle = None
+    state.cycle = None
+
+
+def end_of_path(state: ReaderState, statement: Statement) -> None:
+    """End an operation."""
+    if not state.in_operation:
+        raise StatementError("END-OF-PATH without TOOL PATH", "begin each operation with TOOL PATH/name,TOOL,tool")
+    state.close_operation()
+
+
+def tldata(state: ReaderState, statement: Statement) -> None:
+    """Set the tool of the operation."""
+    words = statement.words()
+    given = numbers("TLDATA", statement.values[len(words) :])
+    if any(number < 0 for number in given[:1]):
+        raise StatementError("TLDATA has a negative diameter", "write the diameter of the tool")
+    form = words[0] if words else ""
+    layouts = _TLDATA_FIELDS.get(form, {})
+    if form in _TLDATA_FIELDS and len(given) not in layouts:
+        *others, last = map(str, layouts)
+        expected = f"{', '.join(others)} or {last}" if others else last
+        what = f"TLDATA/{form} has {len(given)} numbers, expected {expected}"
+        raise StatementError(what, "write TLDATA as NX does")
+    fields = {field: number for field, number in zip(layouts.get(len(given), ()), given, strict=False) if field}
+    kind = form if form in _TLDATA_FIELDS else "UNKNOWN"
+    state.builder.tool = Tool(kind=kind, name=state.builder.tool.name, **fields)
+    if form not in _TLDATA_FIELDS:
+        state.keep_unknown(statement, f"TLDATA/{form} is not a known form of tool")
+
+
+def msys(state: ReaderState, statement: Statement) -> None:
+    """Set the coordinate system of the operation: origin, X and Y, made exactly unit and square."""
+    if state.operation_row:
+        raise StatementError("MSYS after motion", "one operation has one frame: write MSYS before its first GOTO")
+    ox, oy, oz, *vectors = statement.numbers(9)
+    x, y = vectors[:3], vectors[3:]
+    for name, vector in (("X", x), ("Y", y)):
+        if abs(math.hypot(*vector) - 1) > _FRAME_TOLERANCE:
+            raise StatementError(
+                f"the {name} vector of MSYS has the length {math.hypot(*vector):.6g}, not 1",
+                "write origin, X and Y of the coordinate system",
+            )
+    x = _unit(x)
+    along = _dot(x, y)
+    if abs(along) > _FRAME_TOLERANCE:
+        raise StatementError("X and Y of MSYS are not square to each other", "write origin, X and Y of the frame")
+    y = _unit([b - along * a for a, b in zip(x, y, strict=True)])
+    state.builder.frame = Frame((ox, oy, oz), (x[0], x[1], x[2]), (y[0], y[1], y[2]))
+
+
+def _dot(a: list[float], b: list[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _unit(vector: list[float]) -> list[float]:
+    length = math.hypot(*vector)
+    return [number / length for number in vector]
+
+
+def partno(state: ReaderState, statement: Statement) -> None:
+    """Set the name of the part; the first one counts."""
+    state.part = state.part or statement.text
+
+
+def units(state: ReaderState, statement: Statement) -> None:
+    """Set the length unit of the file."""
+    word = statement.values[0] if statement.values else ""
+    if not isinstance(word, str) or word not in LENGTH_UNITS:
+        raise StatementError(f"UNITS/{word} is not a known unit", "write UNITS/MM or UNITS/INCHES")
+    if state.length_unit is not None and state.length_unit[0] != LENGTH_UNITS[word]:
+        what = f"UNITS/{word} after another unit in line {state.length_unit[1]}"
+        raise StatementError(what, "keep to one unit in a file")
+    state.length_unit = state.length_unit or (LENGTH_UNITS[word], state.line)
+
+
+def intol(state: ReaderState, statement: Statement) -> None:
+    """Set the inner tolerance."""
+    state.builder.intol = statement.numbers(1)[0]
+
+
+def outtol(state: ReaderState, statement: Statement) -> None:
+    """Set the outer tolerance."""
+    state.builder.outtol = statement.numbers(1)[0]
+
+
+def paint(state: ReaderState, statement: Statement) -> None:
+    """Note the colour of the path, which tells the phase; other PAINT statements only say how it is drawn."""
+    if statement.values[:1] == ("COLOR",):
+        state.builder.colours.append((state.operation_row, whole_number("PAINT/COLOR", statement.values[1:])))
+
+
+def ignore(state: ReaderState, statement: Statement) -> None:
+    """Do nothing: ends of the file, which the file itself shows, and names of machines."""
