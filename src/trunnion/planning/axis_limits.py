@@ -24,6 +24,17 @@ def outside_limits(values: Floats, low: Floats, high: Floats) -> Flags:
     return np.asarray((values < low - LIMIT_TOLERANCE) | (values > high + LIMIT_TOLERANCE))
 
 
+def exceeds_travel(machine: Machine, extremes: Floats) -> Flags:
+    """(5,) bool: slides that need more than their whole travel, wherever the workpiece sits.
+
+    ``extremes`` (5, 2): least and greatest values of all axes, mm and degrees.
+    """
+    is_slide = np.zeros(5, bool)
+    is_slide[list(machine.linear)] = True
+    low, high = machine.limits.T
+    return np.asarray(is_slide & (extremes[:, 1] - extremes[:, 0] > high - low + LIMIT_TOLERANCE))
+
+
 def limit_violation_text(machine: Machine, column: int, value: float) -> str:
     """Such as ``axis B would go to 110.00000, above its limit 100 degrees``."""
     axis = machine.axes[column]

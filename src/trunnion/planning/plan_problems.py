@@ -10,11 +10,11 @@ from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine, inverse
 from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Moves
-from trunnion.planning.axis_limits import limit_remedy, limit_violation_text, limits_of, outside_limits
+from trunnion.planning.axis_limits import exceeds_travel, limit_remedy, limit_violation_text, limits_of, outside_limits
 from trunnion.planning.poses.decision_log import ChosenPoses, describe_pose
 from trunnion.planning.poses.limit_lookahead import degrees_out_of_reach
 from trunnion.planning.poses.placement import BLOCKED, OUT_OF_REACH, REWIND
-from trunnion.planning.poses.selection import PlannedPoses, exceeds_travel
+from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.request import PlanRequest
 from trunnion.planning.retracts.rewind import Rewind, is_radius_compensated, retract_positions, slide_beyond_limits
 

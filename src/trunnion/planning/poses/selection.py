@@ -1,15 +1,16 @@
-"""Which of the possible axis positions the machine takes, for a whole operation at once.
+"""The choice of axis positions for a whole operation at once.
 
-The choice is the optimum of ``trunnion.planning.poses.optimizer`` over the states and costs of
+It is the optimum of ``trunnion.planning.poses.optimizer`` over the states and costs of
 ``trunnion.planning.poses.states``.
 """
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.arrays import Codes, Floats, Ints
 from trunnion.concurrency import prefetch
 from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
 from trunnion.model.toolpath import Kind, Moves, Phase
@@ -24,21 +25,21 @@ from trunnion.planning.poses.optimizer import (
     workspace,
 )
 from trunnion.planning.poses.placement import BRANCH, follow_nearest, place_rows, solve_rotary
-from trunnion.planning.poses.states import LIMIT_TOLERANCE, STATE_BITS, SearchSpace, States, states_of
+from trunnion.planning.poses.states import STATE_BITS, SearchSpace, States, states_of
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedPoses:
-    """What ``follow`` found.
+    """The poses of an operation, row by row.
 
-    rotary    (n, 2) float64  positions of the rotary axes as they display them, degrees
-    state     (n,) uint8      the state of each row, with the bit REWOUND where the step into it is a rewind
-    outcome   (n,) uint8      as listed in ``trunnion.planning.poses.placement``
-    beyond_value    (n,) float64    where an axis is beyond its limit: its value, mm or degrees; not written elsewhere
-    extremes  (5, 2) float64  least and greatest value of every axis, mm or degrees
-    extreme_rows     (5, 2) int64    the rows where they are
-    changes   (k,) int64      how many rows change the branch or turn an axis by more than ``POLE_JUMP``; the last of
-                              them; the first k - 2 of them
+    rotary        (n, 2) float64  displayed positions of the rotary axes, degrees
+    state         (n,) uint8      state of each row, with the bit REWIND_STEP if the step into it is a rewind
+    outcome       (n,) uint8      as listed in ``trunnion.planning.poses.placement``
+    beyond_value  (n,) float64    value of an axis that is beyond its limit, mm or degrees; undefined elsewhere
+    extremes      (5, 2) float64  least and greatest value of every axis, mm or degrees
+    extreme_rows  (5, 2) int64    rows that have them
+    changes       (k,) int64      rows that change the branch or turn an axis by more than ``POLE_JUMP``: how many there
+                                  are, the last one, and the first k - 2 of them
     """
 
     rotary: Floats
@@ -51,17 +52,17 @@ class PlannedPoses:
 
 
 #: Changes that are kept one by one.
-_NAMED = 50
+_NAMED: Final = 50
 
-#: Rows that are planned at a time: half a megabyte, and milliseconds enough that two threads seldom meet.
-_CHUNK = 16384
+#: Rows per chunk: half a megabyte, and long enough in milliseconds that two threads seldom wait for each other.
+_CHUNK: Final = 16384
 
-#: Axes at right angles, or parallel, within this sine.
-_PARALLEL_SINE = 1e-12
+#: Axes are parallel, or at right angles, within this sine.
+_PARALLEL_SINE: Final = 1e-12
 
 
 def contact_of(moves: Moves, rows: slice = slice(None)) -> Codes:
-    """(n,) uint8: IDLE where the move into a row does not touch the part, TOUCHES where it may, CUTS where it cuts."""
+    """(n,) uint8: whether the move into a row touches the part: NO_CONTACT, MAY_TOUCH or CUTS."""
     code = np.full(len(Phase), MAY_TOUCH, np.uint8)
     code[[Phase.RAPID, Phase.APPROACH, Phase.DEPARTURE, Phase.TRAVERSE]] = NO_CONTACT
     code[Phase.CUT] = CUTS
@@ -71,37 +72,39 @@ def contact_of(moves: Moves, rows: slice = slice(None)) -> Codes:
 def search_space_of(
     machine: Machine, kinematics: KinematicParameters, states: States, keep_slide_limits: bool
 ) -> SearchSpace:
-    """What there is to choose from on a machine; limits of slides count only with ``keep_slide_limits``."""
+    """The search space of a machine; limits of slides count only with ``keep_slide_limits``."""
     low, high = limits_of(machine, keep_slide_limits)
     slides = list(machine.linear)
-    kept = bool(np.isfinite(low[slides]).any() or np.isfinite(high[slides]).any())
+    has_slide_limits = bool(np.isfinite(low[slides]).any() or np.isfinite(high[slides]).any())
     first, second = (machine.axes[column] for column in machine.rotary)
-    start, side = (first.home, second.home), (first.preferred_sign, second.preferred_sign)
+    start, sign = (first.home, second.home), (first.preferred_sign, second.preferred_sign)
     second_angle_sum = -2.0 * math.degrees(math.atan2(kinematics.phase[1], kinematics.phase[0]))
     return SearchSpace(
-        tuple(low.tolist()), tuple(high.tolist()), kept, states.turn_ranges, start, side, second_angle_sum
+        tuple(low.tolist()), tuple(high.tolist()), has_slide_limits, states.turn_ranges, start, sign, second_angle_sum
     )
 
 
 def choose_states(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Codes:
-    """(n,) uint8: the state of each row that costs least, with the bits of ``trunnion.planning.poses.optimizer``.
+    """(n,) uint8: the cheapest state of each row, with the bits of ``trunnion.planning.poses.optimizer``.
 
-    The preferred side is the definition's, or else the one on which most cutting stretches begin when none is
-    preferred. Where all begin on one side, preferring it changes nothing.
+    The definition says which branch is preferred, or else it is the one in which most cuts begin when none is. If all
+    begin in one branch, preferring it changes nothing.
     """
     state = cheapest_states(machine, moves, keep_slide_limits)
-    cuts = contact_of(moves)
-    begins = np.flatnonzero((cuts != NO_CONTACT) & (np.append(NO_CONTACT, cuts[:-1]) == NO_CONTACT))
-    sides = states_of(machine).table[state[begins] & STATE_BITS, 0]
-    if any(a.preferred_sign for a in machine.axes) or not len(begins) or sides.min() == sides.max():
+    contact = contact_of(moves)
+    starts = np.flatnonzero((contact != NO_CONTACT) & (np.append(NO_CONTACT, contact[:-1]) == NO_CONTACT))
+    branches = states_of(machine).table[state[starts] & STATE_BITS, 0]
+    if any(a.preferred_sign for a in machine.axes) or not len(starts) or branches.min() == branches.max():
         return state
-    ones = int(sides.sum())
-    often = int(sides[0]) if 2 * ones == len(sides) else int(2 * ones > len(sides))
-    return cheapest_states(machine, moves, keep_slide_limits, often)
+    ones = int(branches.sum())
+    is_tie = 2 * ones == len(branches)
+    return cheapest_states(
+        machine, moves, keep_slide_limits, prefer=int(branches[0] if is_tie else 2 * ones > len(branches))
+    )
 
 
 def cheapest_states(machine: Machine, moves: Moves, keep_slide_limits: bool, prefer: int = -1) -> Codes:
-    """(n,) uint8: the states that cost least when branch ``prefer`` is preferred; -1: none."""
+    """(n,) uint8: the cheapest states if branch ``prefer`` is preferred; -1: none."""
     states, kinematics = states_of(machine), kinematic_parameters(machine)
     space = search_space_of(machine, kinematics, states, keep_slide_limits)
     backpointers = np.empty((len(moves), len(states)), np.uint8)
@@ -115,7 +118,7 @@ def cheapest_states(machine: Machine, moves: Moves, keep_slide_limits: bool, pre
 
 
 def choose_nearest_states(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Codes:
-    """As ``choose_states``, but from row to row the nearest state whatever comes after: something to compare with."""
+    """As ``choose_states``, but from row to row the nearest state, without regard to what follows: for comparison."""
     states, kinematics = states_of(machine), kinematic_parameters(machine)
     backpointers = np.empty((len(moves), len(states)), np.uint8)
     state = np.empty(len(moves), np.uint8)
@@ -126,12 +129,12 @@ def choose_nearest_states(machine: Machine, moves: Moves, keep_slide_limits: boo
 
 
 def choose_poses(machine: Machine, moves: Moves, keep_slide_limits: bool) -> PlannedPoses:
-    """Axis positions for every row in the states that cost least, from the home position of the rotary axes on.
+    """Choose the cheapest poses, from the home position of the rotary axes on.
 
     Parameters
     ----------
     machine
-        Its limits are judged; those of the slides only with ``keep_slide_limits``.
+        Its limits are checked; those of the slides only with ``keep_slide_limits``.
     moves
         In the workpiece frame.
     """
@@ -141,14 +144,14 @@ def choose_poses(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Pla
 
 
 def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slide_limits: bool) -> PlannedPoses | None:
-    """As ``follow``, in a single pass; None if there is anything to choose.
+    """As ``choose_poses``, in a single pass; None if there is anything to choose.
 
-    Where both sides of a machine travel the same in a cut, the optimum is the nearest neighbour's choice if that needs
-    no rewind, keeps its side and no side is preferred by the definition. Any other way has no less travel to its start,
-    and as much on its side. For each row where it leaves that side the nearest neighbour found the travel no shorter; a
-    return saves at most 180 degrees, and nothing if the side that it leaves is open, and costs ``BRANCH_CHANGE_COST``
-    unless that side is open and the pole near. In the cut all other changes are rewinds. So every change makes it
-    dearer.
+    Suppose that both branches always travel the same, and the definition prefers none. Then the nearest neighbour's
+    choice is the optimum if it needs no rewind and keeps its branch. Any other choice has no less travel to its start,
+    and as much within a branch. In each row where it leaves the branch, the nearest neighbour found the travel no
+    shorter. To return saves at most 180 degrees, and nothing if the branch left is open; it costs
+    ``BRANCH_CHANGE_COST`` unless that branch is open and the pole near. In the cut all other changes are rewinds. So
+    every change makes the choice more expensive.
     """
     if any(axis.preferred_sign for axis in machine.axes) or not branches_travel_alike(machine):
         return None
@@ -158,17 +161,17 @@ def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slide_limits: 
         _display_low(machine),
     )
     progress = np.array([*space.start, math.remainder(space.start[0], 360.0), 0.0, 1.0, 0.0])
-    room, joints = np.empty((2, min(_CHUNK, len(moves)), 7)), np.empty(5)
+    buffers, joints = np.empty((2, min(_CHUNK, len(moves)), 7)), np.empty(5)
 
-    def leaning(first: int) -> tuple[int, int, Floats]:
-        axis, side = moves.axis[first : first + _CHUNK], int(progress[BRANCH])
-        solutions = room[first // _CHUNK % 2, : len(axis)]
-        solve_rotary(kinematics, axis, side, solutions)
-        return first, side, solutions
+    def solve(first: int) -> tuple[int, int, Floats]:
+        axis, branch = moves.axis[first : first + _CHUNK], int(progress[BRANCH])
+        solutions = buffers[first // _CHUNK % 2, : len(axis)]
+        solve_rotary(kinematics, axis, branch, solutions)
+        return first, branch, solutions
 
-    for first, side, solutions in prefetch(leaning, range(0, len(moves), _CHUNK)):
+    for first, branch, solutions in prefetch(solve, range(0, len(moves), _CHUNK)):
         if not follow_nearest(
-            kinematics, space, display_low, first, moves.tip, moves.axis, solutions, side, progress,
+            kinematics, space, display_low, first, moves.tip, moves.axis, solutions, branch, progress,
             poses.state, poses.rotary, poses.outcome, poses.beyond_value, poses.extremes, poses.extreme_rows,
             poses.changes, joints,
         ):  # fmt: skip
@@ -177,9 +180,9 @@ def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slide_limits: 
 
 
 def branches_travel_alike(machine: Machine) -> bool:
-    """Whether both branches always travel the same: the rotary axes at right angles, the spindle along the first one.
+    """Whether both branches always travel the same: rotary axes at right angles, and the spindle along the first one.
 
-    Then the first angle of one branch is half a turn on from that of the other one, and the second one its negative.
+    Then the first angles of both branches are half a turn apart, and the second angles opposite.
     """
     first, second = (np.array(machine.axes[column].direction) for column in machine.rotary)
     across = np.linalg.norm(np.cross(first, machine.spindle_direction))
@@ -187,7 +190,7 @@ def branches_travel_alike(machine: Machine) -> bool:
 
 
 def poses_of_states(machine: Machine, moves: Moves, state: Codes, keep_slide_limits: bool) -> PlannedPoses:
-    """Axis positions as ``follow`` gives them, for states (n,) uint8 of ``choose_states``."""
+    """The poses for states (n,) uint8 of ``choose_states``."""
     states, kinematics = states_of(machine), kinematic_parameters(machine)
     space = search_space_of(machine, kinematics, states, keep_slide_limits)
     poses = _empty(state)
@@ -199,7 +202,7 @@ def poses_of_states(machine: Machine, moves: Moves, state: Codes, keep_slide_lim
 
 
 def _empty(state: Codes) -> PlannedPoses:
-    """Columns to be filled, for these states."""
+    """Columns for kernels to fill."""
     return PlannedPoses(
         rotary=np.empty((len(state), 2)),
         state=state,
@@ -212,14 +215,5 @@ def _empty(state: Codes) -> PlannedPoses:
 
 
 def _display_low(machine: Machine) -> Floats:
-    """(5,) lower end of the 360 degrees that each axis displays, NaN: as it is."""
+    """(5,) float64: lower end of the 360 degrees that each axis displays; NaN if it displays its turns."""
     return np.array([axis.display_low for axis in machine.axes])
-
-
-def exceeds_travel(machine: Machine, extremes: Floats) -> Flags:
-    """(5,) bool: the slide needs more room than its whole travel has, wherever the workpiece may sit."""
-    span = extremes[:, 1] - extremes[:, 0]
-    travel = np.array([a.high - a.low for a in machine.axes])
-    slides = np.zeros(5, bool)
-    slides[list(machine.linear)] = True
-    return np.asarray(slides & (span > travel + LIMIT_TOLERANCE))
