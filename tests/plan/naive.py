@@ -1,4 +1,4 @@
-"""What the planner is held against: the nearest neighbour, and every possible way, both slowly."""
+"""Slow twins of the planner: the nearest neighbour, and every possible path through the states."""
 
 import math
 from dataclasses import dataclass, replace
@@ -27,14 +27,14 @@ def moves_of(tip: Floats, axis: Floats, kind: Kind = Kind.LINEAR, phase: Phase =
 
 
 def rapids_at(moves: Moves, rows: list[int]) -> Moves:
-    """The same moves with rapids into some rows."""
+    """The moves with rapids into some rows."""
     kind, phase = moves.kind.copy(), moves.phase.copy()
     kind[rows], phase[rows] = Kind.RAPID, Phase.RAPID
     return replace(moves, kind=kind, phase=phase)
 
 
 def operation_of(moves: Moves, name: str = "OP") -> Operation:
-    """An operation of these moves and nothing else."""
+    """An operation with these moves only."""
     return Operation(name, Tool(), Frame(), moves, Arcs.empty(), (), 1)
 
 
@@ -45,7 +45,7 @@ def wrapped(angle: float) -> float:
 
 @dataclass(frozen=True)
 class NearestPath:
-    """What a nearest neighbour does: values as they wind, the branch of each row, and what became of it."""
+    """The path of a nearest neighbour: rotary values as they wind, and the branch of each row."""
 
     rotary: Floats
     branch: list[int]
@@ -54,7 +54,7 @@ class NearestPath:
 
 
 def nearest_neighbour(machine: Machine, moves: Moves, keep_slide_limits: bool = False) -> NearestPath:
-    """From row to row the branch and turn nearest to the last position that keeps the limits."""
+    """From row to row, of the branches and turns within limits, those nearest to the last position."""
     solutions = inverse(machine, moves.tip, moves.axis)
     columns, limits = list(machine.rotary), machine.limits
     last = machine.home[columns]
@@ -95,7 +95,7 @@ def _count_beyond(machine: Machine, tip: Floats, rotary: Floats, keep_slide_limi
 
 
 class AllPaths:
-    """Costs of every way through the states of a short path, as docs/planning.md words them."""
+    """Costs of every path through the states of a short toolpath, as docs/planning.md defines them."""
 
     def __init__(self, machine: Machine, moves: Moves, prefer: int = -1) -> None:
         self.machine, self.moves, self.prefer = machine, moves, prefer
@@ -119,7 +119,7 @@ class AllPaths:
         return [(b, one, two) for b in (0, 1) for one in turns[0] for two in turns[1]]
 
     def value(self, row: int, state: State) -> Floats:
-        """Rotary values of a state, degrees; those of endless axes without turns."""
+        """Rotary values of a state, degrees; for endless axes without turns."""
         return np.asarray(self.angles[state[0], row] + 360.0 * np.array(state[1:]))
 
     def _open(self, row: int) -> list[bool]:
@@ -131,7 +131,7 @@ class AllPaths:
         return [count == min(counts) for count in counts]
 
     def _move(self, row: int, before: State, state: State) -> tuple[Floats, bool]:
-        """How the axes go, degrees, and whether both take the nearer way."""
+        """Turn of both axes, degrees, and whether both take the shorter way."""
         plain = self.angles[state[0], row] - self.angles[before[0], row - 1]
         nearer = np.array([wrapped(angle) for angle in plain])
         move = self.value(row, state) - self.value(row - 1, before)
@@ -149,7 +149,7 @@ class AllPaths:
         return any(is_open and s[0] == branch for s, is_open in zip(self.states, self.open[row], strict=True))
 
     def _heading(self, row: int, branch: int, r: int) -> float:
-        """The last step of a branch before a row that moved an axis, since it was last closed."""
+        """The last step of a branch before a row that moved an axis, since the branch was last closed."""
         for k in range(row - 1, 0, -1):
             if not (self._alive(k, branch) and self._alive(k - 1, branch)):
                 return 0.0
@@ -186,7 +186,7 @@ class AllPaths:
         return False
 
     def at(self, row: int, state: State) -> float:
-        """What being in a state costs besides."""
+        """Cost of being in a state."""
         cost = 0.0
         for value, (low, high), endless in zip(self.value(row, state), self.limits, self.endless, strict=True):
             if not endless:
@@ -201,7 +201,7 @@ class AllPaths:
         return float(sum(abs(wrapped(m) if e else m) for m, e in zip(move, self.endless, strict=True)))
 
     def cost_of(self, way: list[int]) -> tuple[int, float]:
-        """Rewinds and cost of a way, given as indices of states; closed ones cost without end."""
+        """Rewinds and cost of a path, given as indices of states; infinite if one is closed."""
         if not all(self.open[row][s] for row, s in enumerate(way)):
             return 1 << 40, math.inf
         rewinds, cost = 0, self.start(self.states[way[0]]) + self.at(0, self.states[way[0]])
@@ -211,7 +211,7 @@ class AllPaths:
         return rewinds, cost
 
     def least(self) -> tuple[int, float]:
-        """Fewest rewinds, and the least cost with as many, of all ways there are: every one is added up."""
+        """Fewest rewinds of all paths, and the least cost with as many."""
         n, s = len(self.moves), len(self.states)
         rewinds, cost = np.zeros((s,) * n, np.int64), np.zeros((s,) * n)
         for row in range(n):

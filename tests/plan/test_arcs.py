@@ -1,4 +1,4 @@
-"""Arcs become lines only where they must, and stay on the arc."""
+"""Arcs become lines only where they must, and the lines stay on the arc."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from trunnion.planning.linearization.arc_chords import arc_sweeps, arcs_a_contro
 def arc_operation(
     start: Floats, end: Floats, centre: Floats, normal: Floats, turns: int = 0, axes: Floats | None = None
 ) -> Operation:
-    """A line to the start of an arc, the arc, and a line away from it; a dwell stands before the arc."""
+    """A line to the start of an arc, a dwell, the arc, and a line away from it."""
     tip = np.array([start, end, end + np.array([0.0, 0.0, 10.0])])
     axis = np.tile([0.0, 0.0, 1.0], (3, 1)) if axes is None else axes
     kind = np.array([Kind.LINEAR, Kind.ARC, Kind.LINEAR], np.uint8)
@@ -31,7 +31,7 @@ def vectors(low: float, high: float) -> st.SearchStrategy[Floats]:
 
 @st.composite
 def any_arc(draw: st.DrawFn) -> tuple[Operation, float, float]:
-    """An arc anywhere in space, with a rise; its operation, radius and sweep."""
+    """A rising arc anywhere in space: its operation, radius and sweep."""
     normal = draw(vectors(-1, 1).filter(lambda v: np.linalg.norm(v) > 0.1))
     normal = normal / np.linalg.norm(normal)
     across = np.cross(normal, [1.0, 0, 0] if abs(normal[0]) < 0.7 else [0, 1.0, 0])
@@ -45,9 +45,7 @@ def any_arc(draw: st.DrawFn) -> tuple[Operation, float, float]:
 
 @settings(deadline=None, max_examples=60)
 @given(any_arc(), st.sampled_from([0.001, 0.01, 0.1]))
-def test_lines_for_an_arc_leave_it_by_no_more_than_the_chord_error(
-    case: tuple[Operation, float, float], tolerance: float
-) -> None:
+def test_lines_for_an_arc_keep_the_chord_tolerance(case: tuple[Operation, float, float], tolerance: float) -> None:
     operation, radius, sweep = case
     assert arc_sweeps(operation)[0] == pytest.approx(sweep, abs=1e-9)
     lines = lines_for_arcs(operation, np.array([False]), tolerance)
@@ -82,7 +80,7 @@ def test_a_full_circle_goes_all_the_way_round() -> None:
 
 
 @pytest.mark.parametrize(("end", "kept"), [(0.0, True), (1e-6, False), (0.0004, False), (0.01, True)])
-def test_an_arc_that_ends_a_hair_from_its_start_is_never_left_to_the_control(end: float, kept: bool) -> None:
+def test_a_control_gets_no_arc_that_ends_a_hair_from_its_start(end: float, kept: bool) -> None:
     start = np.array([10.0, 0, 0])
     hair = np.array([10 * np.cos(end / 10), 10 * np.sin(end / 10), 0])
     operation = arc_operation(start, hair, np.zeros(3), np.array([0, 0, 1.0]))
@@ -93,7 +91,7 @@ def test_an_arc_that_ends_a_hair_from_its_start_is_never_left_to_the_control(end
         assert longest == pytest.approx(20.0, abs=0.01) if end < 1e-4 else longest < 0.001
 
 
-def test_an_arc_is_kept_in_the_three_planes_and_with_a_steady_tool_axis_only() -> None:
+def test_an_arc_is_kept_in_the_three_planes_and_with_a_constant_tool_axis_only() -> None:
     start, end = np.array([10.0, 0, 0]), np.array([-10.0, 0, 0])
     upright = arc_operation(start, end, np.zeros(3), np.array([0, 0, 1.0]))
     oblique = arc_operation(start, end, np.zeros(3), np.array([0, 0.6, 0.8]))

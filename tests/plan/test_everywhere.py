@@ -1,7 +1,7 @@
 """Random paths on every shipped machine, with TCP and without: proven by read-back, within limits, no needless rewind.
 
-The families are those in which posts go wrong: poles, limits crossed, more than two turns, both branches alive and one
-dead, smooth and rough. How many rewinds a path needs is found by going through all states of all its rows.
+The families are those in which posts go wrong: poles, crossed limits, more than two turns, one branch open or both,
+smooth and rough. The number of rewinds that a path needs is found by a search through all states of all its rows.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from trunnion.machines import AngleOutput, Machine, inverse
 from trunnion.model.toolpath import Moves
 from trunnion.planning import PlanOptions
 
-#: How far rotary axes may be beyond a limit: half of what is printed, and what the planner takes for noise.
+#: How far rotary axes may be beyond a limit: half the last printed digit, and what the planner counts as noise.
 HALF_DIGIT = 0.5e-5 + 1e-6
 
 
@@ -29,14 +29,14 @@ def as_it_is(model: Machine) -> Machine:
 
 
 def first_limited(model: Machine) -> Machine:
-    """The first rotary axis has 400 degrees."""
+    """The first rotary axis has a travel of 400 degrees."""
     column = model.rotary[0]
     narrow = replace(model.axes[column], low=-200.0, high=200.0, endless=False, output=AngleOutput.NONE)
     return replace(model, axes=tuple(narrow if k == column else axis for k, axis in enumerate(model.axes)))
 
 
-def one_dead(model: Machine) -> Machine:
-    """The second rotary axis has but one degree on one side of zero, so that one branch is dead nearly everywhere."""
+def one_branch_closed(model: Machine) -> Machine:
+    """The second rotary axis has only one degree on one side of zero, so one branch is closed nearly everywhere."""
     column = model.rotary[1]
     axis = model.axes[column]
     low, high = (axis.low, min(axis.high, 1.0)) if -axis.low > axis.high else (max(axis.low, -1.0), axis.high)
@@ -45,15 +45,20 @@ def one_dead(model: Machine) -> Machine:
     )
 
 
-def both_alive(model: Machine) -> Machine:
-    """The second rotary axis goes as far to either side."""
+def both_branches_open(model: Machine) -> Machine:
+    """The second rotary axis has the same travel to either side."""
     column = model.rotary[1]
     most = max(-model.axes[column].low, model.axes[column].high)
     wide = replace(model.axes[column], low=-most, high=most)
     return replace(model, axes=tuple(wide if k == column else axis for k, axis in enumerate(model.axes)))
 
 
-MACHINES = {"as it is": as_it_is, "first limited": first_limited, "one dead": one_dead, "both alive": both_alive}
+MACHINES = {
+    "as it is": as_it_is,
+    "first limited": first_limited,
+    "one dead": one_branch_closed,
+    "both alive": both_branches_open,
+}
 
 FAMILIES = ("by the pole", "through the pole", "over a limit", "round and round", "rough")
 
@@ -62,7 +67,7 @@ azimuths = st.floats(-180.0, 180.0)
 
 @st.composite
 def paths(draw: st.DrawFn, name: str) -> Moves:
-    """A path of a family."""
+    """A path of a family of paths."""
     n = draw(st.integers(20, 60))
     at, first = np.linspace(0.0, 1.0, n), draw(azimuths)
     if name == "by the pole":
@@ -91,14 +96,14 @@ def paths(draw: st.DrawFn, name: str) -> Moves:
 
 @dataclass(frozen=True)
 class Fewest:
-    """What going through all states finds: rewinds, and whether every row has one within the limits."""
+    """What a search through all states finds: the fewest rewinds, and whether every row has a state within limits."""
 
     rewinds: int
     keeps_limits: bool
 
 
 def fewest(model: Machine, moves: Moves) -> Fewest:
-    """By dynamic programming over the states of ``AllPaths``, step after step: rewinds depend on no more than that."""
+    """Dynamic programming over the states of ``AllPaths``: rewinds depend on single steps only."""
     every = AllPaths(model, moves)
     low, high = every.limits.T
     inside = [
@@ -115,7 +120,7 @@ def fewest(model: Machine, moves: Moves) -> Fewest:
     return Fewest(int(count.min()), all(inside))
 
 
-def judged(name: str, variant: str, path: Moves, options: PlanOptions) -> None:
+def check_plan(name: str, variant: str, path: Moves, options: PlanOptions) -> None:
     model = MACHINES[variant](machine(name))
     needed = fewest(model, path)
     try:
@@ -144,11 +149,11 @@ def judged(name: str, variant: str, path: Moves, options: PlanOptions) -> None:
 @settings(deadline=None, max_examples=14, phases=[Phase.generate])
 @given(st.sampled_from(NAMES), st.sampled_from(sorted(MACHINES)), st.data())
 def test_with_tcp(family: str, name: str, variant: str, data: st.DataObject) -> None:
-    judged(name, variant, data.draw(paths(family)), PlanOptions())
+    check_plan(name, variant, data.draw(paths(family)), PlanOptions())
 
 
 @pytest.mark.parametrize("family", FAMILIES)
 @settings(deadline=None, max_examples=8, phases=[Phase.generate])
 @given(st.sampled_from(NAMES), st.sampled_from(sorted(MACHINES)), st.sampled_from([0.001, 0.01, 0.1]), st.data())
 def test_without_tcp(family: str, name: str, variant: str, tolerance: float, data: st.DataObject) -> None:
-    judged(name, variant, data.draw(paths(family)), PlanOptions(tcp=False, tip_tolerance=tolerance))
+    check_plan(name, variant, data.draw(paths(family)), PlanOptions(tcp=False, tip_tolerance=tolerance))

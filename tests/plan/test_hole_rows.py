@@ -1,4 +1,4 @@
-"""Holes as motion: which rows become of a hole, against a twin that goes hole by hole."""
+"""Holes as motion: the rows of each hole, against a twin that makes them hole by hole."""
 
 from dataclasses import replace
 
@@ -31,7 +31,7 @@ SPINDLE = SpindleState(1200.0, Sense.CLW)
 LENGTH = st.integers(1, 900).map(lambda n: n / 100.0)
 MODES = st.sampled_from([("DRILL",), ("DRILL", "DEEP"), ("DRILL", "BRKCHP"), ("REAM",), ("BORE", "DRAG")])
 
-#: Height above the hole, how the tool goes there, and what happens before.
+#: Where the tool goes, how, and the events before.
 Row = tuple[tuple[float, float, float], Kind, tuple[str, ...]]
 
 
@@ -48,7 +48,7 @@ def operation(
 
 @st.composite
 def drilled(draw: st.DrawFn) -> tuple[Operation, CycleOn]:
-    """Points, holes of one cycle, and a point behind them."""
+    """Points, holes of one cycle, and a point after them."""
     above = draw(LENGTH)
     values: dict[str, tuple[float, ...]] = {"RAPTO": (above,), "FEDTO": (-draw(LENGTH),), "MMPM": (90.0,)}
     if draw(st.booleans()):
@@ -69,7 +69,7 @@ def drilled(draw: st.DrawFn) -> tuple[Operation, CycleOn]:
 
 
 def twin(path: Operation, cycle: CycleOn) -> list[Row]:
-    """The rows of docs/cl.md, upright, one hole after the other."""
+    """The rows that docs/cl.md defines, under an upright tool, one hole after the other."""
     asked = cycle_from_event(cycle)
     assert asked.retract_height is not None
     holes = path.moves.tip[cycle.row : -1].tolist()
@@ -108,7 +108,7 @@ def twin(path: Operation, cycle: CycleOn) -> list[Row]:
 
 
 def depths(method: HoleMethod, depth: float, steps: tuple[float, float, float]) -> list[float]:
-    """By adding up strokes, the first, then shorter ones; no stroke is shorter than the least, but for the last."""
+    """Depths by adding up strokes, each shorter than the one before; only the last may be below the shortest."""
     if method not in (HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING):
         return [depth]
     every, reached, stroke = [], 0.0, steps[0]
@@ -132,7 +132,7 @@ def rows_of(path: Operation) -> list[Row]:
 
 
 def conditions(home: Flags) -> HoleConditions:
-    """Those under which every hole becomes motion that can."""
+    """Conditions under which every hole becomes motion, if motion can make it."""
     return HoleConditions(SPINDLE, home, "", lambda cycle, spindle: "", prefers_motion=True)
 
 
@@ -143,7 +143,7 @@ def expanded(path: Operation) -> Operation:
 
 
 @given(drawn=drilled())
-def test_holes_become_the_motions_that_the_page_says(drawn: tuple[Operation, CycleOn]) -> None:
+def test_holes_become_the_motions_of_the_documentation(drawn: tuple[Operation, CycleOn]) -> None:
     path, cycle = drawn
     made = expanded(path)
     found, wanted = rows_of(made), twin(path, cycle)
@@ -171,7 +171,7 @@ def test_along_a_tilted_axis_the_motions_are_the_same(
 
 
 def square(axis: Floats) -> Floats:
-    """A right-handed frame whose Z is the direction of ``axis``, or Z itself where that has none."""
+    """A right-handed frame whose Z is the direction of ``axis``, or Z itself if that is zero."""
     axis = axis if np.linalg.norm(axis) > 0.1 else np.array([0.0, 0.0, 1.0])
     z = axis / np.linalg.norm(axis)
     x = np.cross(np.eye(3)[int(np.argmin(np.abs(z)))], z)
@@ -193,14 +193,14 @@ def cycle(*step: float) -> CycleOn:
         ((20.0, 1.0, 1.0), [12.0]),
     ],
 )
-def test_strokes_become_shorter_but_not_too_short(step: tuple[float, ...], depths: list[float]) -> None:
+def test_strokes_become_shorter_down_to_the_shortest(step: tuple[float, ...], depths: list[float]) -> None:
     assert stroke_depths(cycle_from_event(cycle(*step))) == depths
 
 
 @pytest.mark.parametrize(
     ("step", "why"), [((4.0, 3.0), "shortest"), ((4.0, -1.0, 1.0), "below 0"), ((1e-5,), "more than 10000 strokes")]
 )
-def test_strokes_that_never_get_there_are_refused(step: tuple[float, ...], why: str) -> None:
+def test_strokes_that_never_reach_the_depth_are_refused(step: tuple[float, ...], why: str) -> None:
     path = operation([(0.0, 0.0, 9.0), (0.0, 0.0, 0.0)], [True, False], (cycle(*step),))
     with pytest.raises(HoleCycleError, match=why) as error:
         expanded(path)
@@ -214,7 +214,7 @@ def test_threads_stay_cycles() -> None:
     assert convert_holes_to_motion(path, conditions(home)).operation is path
 
 
-def test_the_spindle_is_the_one_that_turns_at_each_hole() -> None:
+def test_each_hole_has_the_spindle_speed_of_its_row() -> None:
     drag = CycleOn(0, 7, ("BORE", "DRAG"), (("RAPTO", (2.0,)), ("FEDTO", (-9.0,)), ("MMPM", (50.0,))))
     tips = [(10.0 * k, 0.0, 0.0) for k in range(3)]
     path = operation(tips, [False] * 3, (drag,))

@@ -1,4 +1,4 @@
-"""Three-axis, tilted plane or simultaneous: the rule, the user's word, and the plane itself."""
+"""Machining modes: the rule, the user's setting, and the tilted plane."""
 
 import numpy as np
 import pytest
@@ -34,14 +34,14 @@ def frames(draw: st.DrawFn) -> Frame:
     return Frame(draw(points), tuple(x.tolist()), tuple((y / np.linalg.norm(y)).tolist()))
 
 
-def motion_of(axis: Floats, *, frame: Frame | None = None, wish: MachiningMode | None = None) -> Motion:
-    """The second of two operations, planned; the first one is upright in the absolute system."""
+def motion_of(axis: Floats, *, frame: Frame | None = None, requested: MachiningMode | None = None) -> Motion:
+    """The motion of the second of two operations; the first is upright in the absolute system."""
     axis = np.atleast_2d(axis)
     tip = np.arange(3.0 * len(axis)).reshape(-1, 3)
     first = operation_of(moves_of(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]])), "TOP")
     second = operation_of(moves_of(tip, axis), "SIDE")
     second = Operation("SIDE", second.tool, frame or Frame(), second.moves, Arcs.empty(), (), 1)
-    return plan([Toolpath("a.cls", (first, second))], YL569, 0.001, PlanOptions(mode=wish)).motions[1]
+    return plan([Toolpath("a.cls", (first, second))], YL569, 0.001, PlanOptions(mode=requested)).motions[1]
 
 
 TILTED = np.array([0.6, 0.0, 0.8])
@@ -59,7 +59,7 @@ UPRIGHT = np.array([0.0, 0.0, 1.0])
         ([UPRIGHT, TILTED, UPRIGHT], MachiningMode.TCP),
     ],
 )
-def test_by_rule_it_is_what_the_tool_axis_does(axes: list[Floats], mode: MachiningMode) -> None:
+def test_by_rule_the_tool_axis_decides(axes: list[Floats], mode: MachiningMode) -> None:
     assert motion_of(np.array(axes)).mode is mode
 
 
@@ -73,14 +73,14 @@ def test_an_axis_that_is_z_of_a_tilted_coordinate_system_is_a_tilted_plane_there
     np.testing.assert_allclose(motion.as_written().moves.tip, [[0.0, 1.0, 2.0]], atol=1e-12)
 
 
-def test_the_users_word_is_stronger() -> None:
-    assert motion_of(TILTED, wish=MachiningMode.TCP).mode is MachiningMode.TCP
-    assert motion_of(UPRIGHT, wish=MachiningMode.TCP).mode is MachiningMode.TCP
-    upright = motion_of(np.array([TILTED, TILTED]), wish=MachiningMode.TILTED)
+def test_the_setting_takes_precedence() -> None:
+    assert motion_of(TILTED, requested=MachiningMode.TCP).mode is MachiningMode.TCP
+    assert motion_of(UPRIGHT, requested=MachiningMode.TCP).mode is MachiningMode.TCP
+    upright = motion_of(np.array([TILTED, TILTED]), requested=MachiningMode.TILTED)
     assert upright.plane is not None
 
 
-def test_the_word_about_one_operation_is_stronger_than_that_about_all() -> None:
+def test_the_setting_for_one_operation_takes_precedence_over_that_for_all() -> None:
     def modes(options: PlanOptions) -> list[MachiningMode]:
         operations = tuple(operation_of(moves_of(np.zeros((2, 3)), np.array([TILTED] * 2)), name) for name in "ABC")
         return [motion.mode for motion in plan([Toolpath("a.cls", operations)], YL569, 0.001, options).motions]
@@ -97,20 +97,20 @@ def test_the_word_about_one_operation_is_stronger_than_that_about_all() -> None:
 
 
 @pytest.mark.parametrize(
-    ("axes", "wish", "line"),
+    ("axes", "requested", "line"),
     [
         ([TILTED, UPRIGHT], MachiningMode.TILTED, 10),
         ([UPRIGHT, TILTED], MachiningMode.THREE_AXIS, 11),
     ],
 )
-def test_a_word_that_cannot_be_kept_is_refused_with_the_line(
-    axes: list[Floats], wish: MachiningMode, line: int
+def test_a_mode_that_the_tool_axis_does_not_fit_is_refused_with_the_line(
+    axes: list[Floats], requested: MachiningMode, line: int
 ) -> None:
     operation = operation_of(moves_of(np.zeros((2, 3)), np.array(axes)))
-    if wish is MachiningMode.TILTED:
+    if requested is MachiningMode.TILTED:
         line = 11
     with pytest.raises(RefusedError) as refused:
-        plan([Toolpath("a.cls", (operation,))], YL569, 0.001, PlanOptions(mode=wish))
+        plan([Toolpath("a.cls", (operation,))], YL569, 0.001, PlanOptions(mode=requested))
     assert [problem.line for problem in refused.value.problems] == [line]
 
 
@@ -124,7 +124,7 @@ def test_a_planes_z_is_the_tool_axis_and_its_matrix_is_square(axis: Floats, own:
 
 
 @given(frames(), st.floats(-1e-7, 1e-7))
-def test_a_coordinate_system_that_stands_on_the_axis_gives_origin_and_x(own: Frame, off: float) -> None:
+def test_a_coordinate_system_along_the_axis_gives_origin_and_x(own: Frame, off: float) -> None:
     axis = own.matrix()[:, 2] + off * np.array(own.x)
     plane = tilted_plane(axis / np.linalg.norm(axis), own)
     np.testing.assert_allclose(plane.origin, own.origin, atol=0.5e-4 + 1e-12)
@@ -139,7 +139,7 @@ def test_a_frame_seen_from_another_holds_the_same_points(one: Frame, other: Fram
     np.testing.assert_allclose(absolute, one.matrix() @ np.array(point) + one.origin, atol=1e-9)
 
 
-def test_arcs_are_judged_in_the_plane() -> None:
+def test_arcs_are_checked_in_the_plane() -> None:
     c, s = 0.8, 0.6
     across = np.array([c, 0.0, -s])
     tip = np.array([[0.0, 0.0, 0.0], 20.0 * across])

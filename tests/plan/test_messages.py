@@ -1,4 +1,4 @@
-"""What cannot be done is said with its place, its axis and the nearest remedy."""
+"""Refusals name the place, the axis and the nearest remedy."""
 
 import re
 from dataclasses import replace
@@ -25,7 +25,7 @@ OFF = PlanOptions(tcp=False)
 
 
 def against(machine: Machine, operation: Operation, options: PlanOptions | None = None) -> list[Problem]:
-    """What speaks against a plan, worst first; nothing is the matter with the other lines."""
+    """The problems of a plan, worst first."""
     try:
         problems = plan([Toolpath("part.cls", (operation,))], machine, 0.001, options).problems
     except (RefusedError, InputError) as error:
@@ -38,7 +38,7 @@ def cut(tilt: float, azimuth: float = 0.0) -> Moves:
 
 
 def slides(machine: Machine, **limits: tuple[float, float]) -> Machine:
-    """With limits of some slides, the others without."""
+    """The machine with limits for some slides and none for the others."""
     axes = (
         axis
         if axis.is_rotary
@@ -53,7 +53,7 @@ def two_points(first: tuple[float, float], last: tuple[float, float]) -> Moves:
     return moves_of(np.array([[0.0, 0.0, 0.0], [30.0, 0.0, 0.0]]), axis)
 
 
-#: What is asked for -> the line (10 + row), the beginning of what is wrong, and of its remedy.
+#: Request -> machine, operation, options, beginning of the message, beginning of its remedy.
 IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] = {
     "out of reach": (
         NUTATED, operation_of(cut(110.0)), None,
@@ -134,7 +134,7 @@ def test_an_impossible_request_names_place_axis_and_remedy(request_: str) -> Non
 
 
 @given(st.sampled_from(NAMES), st.floats(0.0, 180.0), st.floats(-180.0, 180.0))
-def test_a_tool_axis_that_is_tilted_by_what_is_lacking_is_within_reach(name: str, tilt: float, azimuth: float) -> None:
+def test_a_tool_axis_tilted_by_the_missing_angle_is_within_reach(name: str, tilt: float, azimuth: float) -> None:
     machine = load_machine(name)
     (axis,) = directions(np.array([tilt]), np.array([azimuth]))
     lacking = degrees_out_of_reach(machine, axis)

@@ -1,4 +1,4 @@
-"""The optimum is the optimum, and the nearest neighbour where that one will do."""
+"""The optimum is the optimum, and equals the nearest neighbour where that is good enough."""
 
 from dataclasses import replace
 
@@ -38,7 +38,7 @@ def with_limits(machine: Machine, **limits: tuple[float, float]) -> Machine:
 
 
 def directions(tilt: Floats, azimuth: Floats) -> Floats:
-    """(n, 3) tool axes by their angle from Z and about it, degrees."""
+    """(n, 3) tool axes at a tilt from Z and an azimuth about it, degrees."""
     t, a = np.radians(tilt), np.radians(azimuth)
     return np.column_stack((np.sin(t) * np.cos(a), np.sin(t) * np.sin(a), np.cos(t)))
 
@@ -70,7 +70,7 @@ SMALL = {
 
 @st.composite
 def short_paths(draw: st.DrawFn, rows: int = 6) -> Moves:
-    """Few rows, smooth or rough, often near the pole or on it, some of them rapids."""
+    """A few rows, smooth or rough, often near the pole or in it, some of them rapids."""
     n = draw(st.integers(1, rows))
     rough = draw(st.booleans())
     tilts = st.sampled_from([0.0, 0.3, 3.0, 12.0]) | st.floats(0.0, 80.0)
@@ -86,7 +86,7 @@ def short_paths(draw: st.DrawFn, rows: int = 6) -> Moves:
 
 @settings(deadline=None, max_examples=150)
 @given(st.sampled_from(sorted(SMALL)), short_paths(), st.sampled_from([-1, 0, 1]))
-def test_no_way_through_the_states_is_cheaper(name: str, moves: Moves, prefer: int) -> None:
+def test_no_path_through_the_states_is_cheaper(name: str, moves: Moves, prefer: int) -> None:
     machine = SMALL[name]
     states = states_of(machine).table
     assume(len(states) ** len(moves) < 300_000)
@@ -112,7 +112,7 @@ def test_eight_rows_of_six_states() -> None:
 
 @st.composite
 def smooth_paths(draw: st.DrawFn, most: float = 80.0) -> Moves:
-    """A tool axis that goes evenly through a few directions, with rapids here and there."""
+    """A tool axis that turns evenly through a few directions, with some rapids."""
     corners = draw(st.integers(1, 4))
     n = draw(st.integers(2, 80))
     at = np.linspace(0.0, corners, n)
@@ -125,7 +125,7 @@ def smooth_paths(draw: st.DrawFn, most: float = 80.0) -> Moves:
 
 @settings(deadline=None, max_examples=120)
 @given(smooth_paths(100.0))
-def test_on_the_yl569_the_optimum_is_the_nearest_neighbour_where_that_will_do(moves: Moves) -> None:
+def test_on_the_yl569_the_optimum_is_the_nearest_neighbour_where_that_is_good_enough(moves: Moves) -> None:
     machine = load_machine("yl569")
     naive = nearest_neighbour(machine, moves)
     assume(not naive.rows_beyond_limits and not naive.changes and len(set(naive.branch)) == 1)
@@ -138,16 +138,14 @@ ALIKE = {name: machine for name in shipped_machines() if branches_travel_alike(m
 }
 
 
-def test_most_shipped_machines_have_sides_that_travel_alike() -> None:
+def test_most_shipped_machines_have_branches_that_travel_alike() -> None:
     assert {"yl569", "ucp800", "dmu65", "hs664rt", "mikron_600u", "fork head"} <= set(ALIKE)
     assert not any("nutated" in name for name in ALIKE)
 
 
 @settings(deadline=None, max_examples=400)
 @given(st.sampled_from(sorted(ALIKE)), smooth_paths(100.0) | smooth_paths(4.0) | short_paths(30), st.booleans())
-def test_where_nothing_is_to_be_chosen_one_pass_finds_the_optimum(
-    name: str, moves: Moves, keep_slide_limits: bool
-) -> None:
+def test_without_a_choice_one_pass_finds_the_optimum(name: str, moves: Moves, keep_slide_limits: bool) -> None:
     machine = ALIKE[name]
     found = choose_poses_in_one_pass(machine, moves, keep_slide_limits)
     assume(found is not None)
@@ -163,7 +161,7 @@ def test_where_nothing_is_to_be_chosen_one_pass_finds_the_optimum(
 
 @settings(deadline=None, max_examples=200)
 @given(st.sampled_from(sorted(ALIKE)), smooth_paths(4.0) | short_paths(30), st.integers(1, 12))
-def test_one_pass_does_not_depend_on_how_many_rows_go_by_at_a_time(name: str, moves: Moves, rows: int) -> None:
+def test_one_pass_does_not_depend_on_the_size_of_chunks(name: str, moves: Moves, rows: int) -> None:
     whole = choose_poses_in_one_pass(ALIKE[name], moves, False)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(poses, "_CHUNK", rows)
@@ -175,7 +173,7 @@ def test_one_pass_does_not_depend_on_how_many_rows_go_by_at_a_time(name: str, mo
 
 
 @pytest.mark.parametrize("name", sorted(n for n, m in ALIKE.items() if not any(a.preferred_sign for a in m.axes)))
-def test_one_pass_is_enough_for_a_path_like_most(name: str) -> None:
+def test_one_pass_is_enough_for_a_usual_path(name: str) -> None:
     machine = ALIKE[name]
     rows = np.linspace(0.0, 1.0, 300)
     moves = moves_of(np.zeros((300, 3)), directions(20.0 + 10.0 * np.sin(9.0 * rows), 20.0 + 40.0 * rows))
@@ -184,7 +182,7 @@ def test_one_pass_is_enough_for_a_path_like_most(name: str) -> None:
         assert choose_poses_in_one_pass(machine, path, False) is not None
 
 
-#: The nearest neighbour asks no one which side is preferred.
+#: The nearest neighbour does not look at preferred sides.
 IMPARTIAL = [name for name in shipped_machines() if not any(axis.preferred_sign for axis in load_machine(name).axes)]
 
 
@@ -233,7 +231,7 @@ def test_limits_hold_and_the_tool_points_where_it_should(name: str, moves: Moves
 # Cases in which the nearest neighbour fails.
 
 
-def test_a_pass_that_winds_700_degrees_starts_on_the_turn_where_it_fits() -> None:
+def test_a_pass_of_700_degrees_starts_on_the_turn_where_it_fits() -> None:
     moves = winding(40.0, 100.0, 800.0)
     assert nearest_neighbour(CA, moves).changes, "from 10 degrees it meets the limit of 360 half-way"
     poses = posed(CA, moves)
@@ -244,7 +242,7 @@ def test_a_pass_that_winds_700_degrees_starts_on_the_turn_where_it_fits() -> Non
     assert c.max() <= 360.0
 
 
-def test_one_that_winds_1000_degrees_rewinds_once() -> None:
+def test_a_pass_of_1000_degrees_rewinds_once() -> None:
     poses = posed(CA, winding(40.0, 100.0, 1100.0))
     assert rewinds(poses) == 1
     assert np.abs(np.diff(poses.rotary[:, 0])).max() == pytest.approx(360.0, abs=3.0)
@@ -260,7 +258,7 @@ def test_a_limit_crossed_on_one_side_is_seen_from_the_start() -> None:
     assert poses.rotary[:, 0] == pytest.approx(190.0)
 
 
-def test_a_path_through_the_pole_goes_on_where_the_limits_let_it() -> None:
+def test_a_path_through_the_pole_continues_in_the_branch_within_limits() -> None:
     tilt = np.linspace(-60.0, 60.0, 121)
     moves = moves_of(np.zeros((121, 3)), directions(tilt, np.full(121, 30.0)))
     wide = posed(with_limits(BC, B=(-110, 110)), moves)

@@ -107,7 +107,7 @@ def test_many_rows_beyond_a_limit_are_counted_rather_than_listed() -> None:
     assert found[-1].what == "the same at 45 further points, the last in line 59"
 
 
-def test_a_value_that_prints_as_the_limit_is_put_onto_it() -> None:
+def test_a_value_that_prints_as_the_limit_becomes_the_limit() -> None:
     machine = load_machine("yl569")
     motion = planned(machine, operation(np.zeros((1, 3)), np.array([direction(100.000004, 0)])))
     assert motion.problems == ()
@@ -137,7 +137,7 @@ def test_a_tool_axis_beyond_a_nutated_head_can_never_be_written() -> None:
         planned(machine, operation(np.zeros((1, 3)), np.array([[0, 0, -1.0]])))
 
 
-def test_turning_over_in_a_cut_is_avoided_by_starting_on_the_other_side() -> None:
+def test_a_branch_change_in_a_cut_is_avoided_by_starting_in_the_other_branch() -> None:
     machine = load_machine("yl569")
     axes = np.array([direction(-8, 20), direction(-10, 20), direction(-14, 20)])
     found = planned(machine, operation(np.zeros((3, 3)), axes))
@@ -159,7 +159,7 @@ def test_operations_in_other_coordinate_systems_are_carried_into_the_first_one()
     st.sampled_from(shipped_machines()),
     st.lists(st.tuples(st.floats(0, 35), st.floats(-720, 720), *[st.floats(-60, 60)] * 3), min_size=1, max_size=20),
 )
-def test_the_tool_is_where_the_toolpath_wants_it_on_every_shipped_machine(
+def test_on_every_shipped_machine_the_tool_is_where_the_toolpath_has_it(
     name: str, poses: list[tuple[float, float, float, float, float]]
 ) -> None:
     machine = load_machine(name)

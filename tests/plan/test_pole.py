@@ -1,4 +1,4 @@
-"""The pole: no axis too fast where there is a way, the tool axis off by no more than asked for, the tip where it is."""
+"""The pole: no axis is too fast where a path allows it, the lean keeps its limit, and the tip stays."""
 
 import math
 from dataclasses import replace
@@ -23,14 +23,14 @@ from trunnion.planning.poses.selection import choose_poses
 from trunnion.planning.speed.rotary_speed import REST_LENGTH, speed_shares
 
 
-def quick(name: str) -> Machine:
-    """A shipped machine; rotary axes of which nobody says how fast they are turn with 3600 degrees/min."""
+def with_speeds(name: str) -> Machine:
+    """A shipped machine; rotary axes of unknown speed get 3600 degrees/min."""
     machine = load_machine(name)
     axes = (replace(axis, rapid=axis.rapid or 3600.0) if axis.is_rotary else axis for axis in machine.axes)
     return replace(machine, axes=tuple(axes))
 
 
-MACHINES = {name: quick(name) for name in shipped_machines()}
+MACHINES = {name: with_speeds(name) for name in shipped_machines()}
 
 
 def pole_of(machine: Machine) -> Floats:
@@ -50,7 +50,7 @@ def around_pole(machine: Machine, x: Floats, y: Floats) -> Floats:
 
 @st.composite
 def passes(draw: st.DrawFn, machine: Machine) -> Operation:
-    """One pass or two by the pole, near or nearer, straight or in a bow, slow or quick; some rapids."""
+    """One or two passes by the pole, more or less near, straight or curved, slow or fast; some rapids."""
     n = draw(st.integers(20, 160))
     along = np.linspace(-draw(st.floats(0.3, 6.0)), draw(st.floats(0.3, 6.0)), n)
     off = draw(st.sampled_from([0.0, 0.01, 0.05, 0.2]) | st.floats(0.0, 1.0)) + draw(st.floats(-0.1, 0.1)) * along**2
@@ -64,7 +64,7 @@ def passes(draw: st.DrawFn, machine: Machine) -> Operation:
     return operation_of(rapids_at(moves, [row for row in range(len(moves)) if draw(st.integers(0, 60)) == 0]))
 
 
-def looked_after(machine: Machine, operation: Operation, mode: PoleStrategy, angle: float) -> LeanedMoves:
+def leaned(machine: Machine, operation: Operation, mode: PoleStrategy, angle: float) -> LeanedMoves:
     moves = operation.moves
     poses = choose_poses(machine, moves, False)
     return lean_tool_axis(LeanTask.of(machine, operation, np.zeros(len(moves), bool), angle, False), poses, mode)
@@ -82,13 +82,13 @@ def degrees_between(a: Floats, b: Floats) -> Floats:
 
 @settings(max_examples=150)
 @given(st.data(), st.sampled_from(sorted(MACHINES)), st.sampled_from(list(PoleStrategy)[1:]), st.floats(0.005, 1.0))
-def test_the_tool_axis_leans_by_no_more_than_was_asked_for_and_only_where_it_says(
+def test_the_tool_axis_leans_within_its_limit_and_only_in_the_recorded_rows(
     data: st.DataObject, name: str, mode: PoleStrategy, angle: float
 ) -> None:
     machine = MACHINES[name]
     operation = data.draw(passes(machine))
     moves = operation.moves
-    found = looked_after(machine, operation, mode, angle)
+    found = leaned(machine, operation, mode, angle)
     if (found.poses.outcome > 0).any():
         return  # out of reach, over limits or rewound: the planner's own tests
     off = degrees_between(axes_of(machine, found.poses.rotary), moves.axis)
@@ -107,10 +107,10 @@ def test_the_tool_axis_leans_by_no_more_than_was_asked_for_and_only_where_it_say
 
 @settings(max_examples=150)
 @given(st.data(), st.sampled_from(sorted(MACHINES)), st.floats(0.005, 1.0))
-def test_where_there_is_a_way_no_rotary_axis_is_too_fast(data: st.DataObject, name: str, angle: float) -> None:
+def test_in_solved_regions_no_rotary_axis_is_too_fast(data: st.DataObject, name: str, angle: float) -> None:
     machine = MACHINES[name]
     operation = data.draw(passes(machine))
-    found = looked_after(machine, operation, PoleStrategy.LEAN, angle)
+    found = leaned(machine, operation, PoleStrategy.LEAN, angle)
     if (found.poses.outcome > 0).any():
         return
     share = speed_shares(machine, operation, found.poses.rotary).max(axis=1)
@@ -130,7 +130,7 @@ def test_nothing_is_done_where_nothing_is_too_fast(data: st.DataObject, name: st
     operation = data.draw(passes(machine))
     operation = replace(operation, moves=replace(operation.moves, feed=operation.moves.feed / 1e6))
     for mode in (PoleStrategy.HOLD, PoleStrategy.SPREAD, PoleStrategy.LEAN):
-        found = looked_after(machine, operation, mode, 0.5)
+        found = leaned(machine, operation, mode, 0.5)
         plain = choose_poses(machine, operation.moves, False)
         if not (speed_shares(machine, operation, plain.rotary) > 0.98).any():
             assert not len(found.rows)
@@ -158,7 +158,7 @@ def off_at_best(name: str, axis: Floats) -> Floats:
 
 
 def twin_finds(off: Floats, wanted: Floats, far: Floats, angle: float) -> bool:
-    """Whether a way over the grid of first angles keeps within ``angle`` and ``far``, on the side that is wanted."""
+    """Whether a path over the grid of first angles keeps within ``angle`` and ``far``, in the right branch."""
     nearest = [int(np.argmin(np.abs(FIRST - value))) for value in wanted]
     alive: Flags = np.zeros(len(FIRST), bool)
     alive[nearest[0]] = True
@@ -186,7 +186,7 @@ def twin_finds(off: Floats, wanted: Floats, far: Floats, angle: float) -> bool:
     st.integers(4, 9),
     st.floats(0.0, 6.0),
 )
-def test_a_way_that_a_search_finds_is_found(
+def test_a_path_that_a_search_finds_is_found(
     name: str, past: float, gets: float, angle: float, n: int, turn: float
 ) -> None:
     machine = MACHINES[name]
@@ -210,7 +210,7 @@ def test_a_way_that_a_search_finds_is_found(
     second = closest_second_angles(replace_limits(machine), kinematics, axis, made, np.zeros(n))
     assert degrees_between(axes_of(machine, np.column_stack((made, second))), axis).max() <= lean + 1e-8
     assert lean <= angle
-    assert not twin_finds(off, wanted, far - GRID, 0.9 * lean - 1e-3), "there is a way with less lean"
+    assert not twin_finds(off, wanted, far - GRID, 0.9 * lean - 1e-3), "there is a path with less lean"
 
 
 def replace_limits(machine: Machine) -> Machine:
@@ -220,7 +220,7 @@ def replace_limits(machine: Machine) -> Machine:
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# What is done, by example
+# The strategies, by example
 
 BC = MACHINES["generic_head_table_bc"]
 
@@ -236,17 +236,17 @@ def planned(operation: Operation, **options: object) -> Plan:
     return plan([Toolpath("part.cls", (operation,))], BC, 0.001, PlanOptions(**options))  # type: ignore[arg-type]
 
 
-def test_held_in_the_cone_and_turned_behind_it() -> None:
+def test_hold_turns_after_the_cone() -> None:
     operation = straight_past(0.05)
-    found = looked_after(BC, operation, PoleStrategy.HOLD, 0.1)
+    found = leaned(BC, operation, PoleStrategy.HOLD, 0.1)
     inside = np.flatnonzero(degrees_off_pole(kinematic_parameters(BC), operation.moves.axis) <= 0.1)
     np.testing.assert_allclose(np.diff(found.poses.rotary[inside[0] - 1 : inside[-1] + 1, 0]), 0.0, atol=1e-9)
     assert set(found.rows) <= set(inside.tolist())
 
 
-def test_spread_evenly_over_the_cone() -> None:
+def test_spread_turns_evenly_over_the_cone() -> None:
     operation = straight_past(0.05)
-    found = looked_after(BC, operation, PoleStrategy.SPREAD, 0.1)
+    found = leaned(BC, operation, PoleStrategy.SPREAD, 0.1)
     inside = np.flatnonzero(degrees_off_pole(kinematic_parameters(BC), operation.moves.axis) <= 0.1)
     steps = np.diff(np.unwrap(found.poses.rotary[inside[0] - 1 : inside[-1] + 2, 0], period=360.0))
     np.testing.assert_allclose(steps, steps[0], atol=1e-9)
@@ -259,14 +259,14 @@ def test_the_turn_out_of_the_pole_is_spread_over_the_approach_without_any_lean()
     axis[:5] = around_pole(BC, np.full(5, -3.0), np.full(5, 0.0))
     tip = np.column_stack((np.arange(n) * 0.5, np.zeros(n), np.zeros(n)))
     operation = operation_of(replace(moves_of(tip, axis), feed=np.full(n, 5000.0)))
-    plain = looked_after(BC, operation, PoleStrategy.SPREAD, 0.01)
+    plain = leaned(BC, operation, PoleStrategy.SPREAD, 0.01)
     assert plain.lean.max(initial=0.0) < 1e-9
     steps = np.abs(np.diff(np.unwrap(plain.poses.rotary[:, 0], period=360.0)))
     assert steps[4:40].max() < 4.0
     assert speed_shares(BC, operation, plain.poses.rotary)[:, 0].max() < 1.5
 
 
-def test_by_default_everything_stays_and_the_log_names_place_axis_and_cure() -> None:
+def test_by_default_nothing_changes_and_the_log_names_place_axis_and_cure() -> None:
     operation = straight_past(0.05)
     found = planned(operation, explain=True)
     assert found.motions[0].deviations.is_empty
@@ -278,7 +278,7 @@ def test_by_default_everything_stays_and_the_log_names_place_axis_and_cure() -> 
     assert 10 + 190 < said[0].line < 10 + 210
 
 
-def test_no_way_is_a_warning_with_an_angle_that_would_do() -> None:
+def test_an_unsolved_region_is_a_warning_with_a_sufficient_angle() -> None:
     found = planned(straight_past(0.2), pole_strategy=PoleStrategy.LEAN, pole_angle=0.1)
     assert [str(p.severity) for p in found.problems] == ["warning"]
     assert "no lean of the tool axis by up to 0.1 degrees" in found.problems[0].what
@@ -290,7 +290,7 @@ def test_no_way_is_a_warning_with_an_angle_that_would_do() -> None:
     ] is DecisionTopic.POLE
 
 
-def test_a_machine_that_does_not_say_its_speed_is_named() -> None:
+def test_a_machine_without_rapid_speeds_is_named() -> None:
     machine = load_machine("hs664rt")
     found = plan(
         [Toolpath("part.cls", (straight_past(0.05),))], machine, 0.001, PlanOptions(pole_strategy=PoleStrategy.LEAN)
@@ -302,7 +302,7 @@ def feeds(found: Plan) -> Floats:
     return found.motions[0].operation.moves.feed
 
 
-def test_a_lowered_feed_is_what_the_axes_can_do_and_no_less() -> None:
+def test_a_feed_is_lowered_no_farther_than_the_axes_need() -> None:
     operation = straight_past(0.05)
     found = planned(operation, lower_feed=True)
     motion = found.motions[0]
@@ -318,16 +318,16 @@ def test_a_lowered_feed_is_what_the_axes_can_do_and_no_less() -> None:
     ]
 
 
-def test_leaning_first_leaves_less_to_lower() -> None:
+def test_feeds_are_lowered_less_if_the_tool_axis_leans() -> None:
     operation = straight_past(0.2)
     lowered = feeds(planned(operation, lower_feed=True)).min()
     assert feeds(planned(operation, lower_feed=True, pole_strategy=PoleStrategy.LEAN, pole_angle=0.1)).min() == lowered
     assert feeds(planned(operation, lower_feed=True, pole_strategy=PoleStrategy.LEAN, pole_angle=0.2)).min() == 3000.0
 
 
-def test_moves_keep_their_number_and_their_lines() -> None:
+def test_leaning_keeps_rows_and_lines() -> None:
     operation = straight_past(0.05)
     moves: Moves = planned(operation, pole_strategy=PoleStrategy.LEAN).motions[0].operation.moves
     np.testing.assert_array_equal(moves.line, operation.moves.line)
     np.testing.assert_array_equal(moves.tip, operation.moves.tip)
-    assert REWIND not in looked_after(BC, operation, PoleStrategy.LEAN, 0.1).poses.outcome
+    assert REWIND not in leaned(BC, operation, PoleStrategy.LEAN, 0.1).poses.outcome

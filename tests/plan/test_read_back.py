@@ -1,4 +1,4 @@
-"""Whatever is planned, on every shipped machine: written, read back by the independent reader, and proven."""
+"""Plans for every shipped machine: written, read back by the independent reader, and proven."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -29,12 +29,12 @@ CONTROL = load_control(SINUMERIK.unread_copy())
 #: Every shipped machine with a control whose programs can be written.
 MACHINES = {name: replace(at_zero(name), control=SINUMERIK.unread_copy()) for name in shipped_machines()}
 
-#: How far the rotary axes may be beyond a limit: half of what is printed.
+#: How far the rotary axes may be beyond a limit: half the last printed digit.
 HALF_DIGIT = 0.5e-5 + 1e-9
 
 
 def toolpath_of(moves: Moves) -> Toolpath:
-    """A CL file of one operation, with all that a program needs besides."""
+    """A toolpath of one operation, with the events that a program needs."""
     moves = replace(moves, tip=moves.tip + 20.0 * np.sin(np.arange(len(moves)))[:, None] * [1.0, 0.5, 0.2])
     operation = operation_of(moves)
     events = (LoadTool(0, 1, 1), SpindleOn(0, 2, 1000.0))
@@ -42,7 +42,7 @@ def toolpath_of(moves: Moves) -> Toolpath:
 
 
 def proven(machine: Machine, toolpath: Toolpath, folder: Path) -> Verification:
-    """The proof of the program that a toolpath becomes.
+    """Post a toolpath and return the proof.
 
     Raises
     ------
@@ -67,7 +67,7 @@ paths = smooth_paths(25.0) | smooth_paths(100.0) | smooth_paths(3.0) | short_pat
 
 @settings(max_examples=250)
 @given(name=st.sampled_from(sorted(MACHINES)), moves=paths)
-def test_what_is_planned_is_proven(name: str, moves: Moves, folder: Path) -> None:
+def test_plans_are_proven(name: str, moves: Moves, folder: Path) -> None:
     machine, toolpath = MACHINES[name], toolpath_of(moves)
     try:
         found = proven(machine, toolpath, folder)
@@ -89,7 +89,7 @@ def test_what_is_planned_is_proven(name: str, moves: Moves, folder: Path) -> Non
     turns=st.floats(1.2, 3.6),
     sense=st.sampled_from([-1.0, 1.0]),
 )
-def test_more_than_a_turn_is_wound_or_rewound_and_proven(
+def test_winding_by_several_turns_is_proven(
     name: str, tilt: float, start: float, turns: float, sense: float, folder: Path
 ) -> None:
     machine = MACHINES[name]

@@ -1,4 +1,4 @@
-"""Rewinds in the cut: what is put in, what is refused, and what is said."""
+"""Rewinds in the cut: inserted rows, refusals, and messages."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -27,7 +27,7 @@ def planned(operation: Operation, machine: Machine = CA, options: PlanOptions | 
 
 
 def round_part(n: int = 400) -> Moves:
-    """Round a part once and twice more, the tool leaning outwards: 1000 degrees, where C has room for 720."""
+    """Almost three times around a part with the tool tilted outwards: 1000 degrees, where C has a travel of 720."""
     moves = winding(40.0, 100.0, 1100.0, n)
     return replace(moves, tip=40.0 * moves.axis + np.linspace(0.0, 4.0, n)[:, None] * [0.0, 0.0, 1.0])
 
@@ -39,7 +39,7 @@ def added(motion: Motion, moves: Moves) -> tuple[int, Moves]:
     return int(np.argmax(rows.kind == Kind.RAPID)) - 2, rows
 
 
-def test_the_tool_draws_back_turns_and_comes_back_to_the_same_point() -> None:
+def test_the_tool_retracts_turns_and_returns_to_the_same_point() -> None:
     moves = round_part()
     motion = planned(operation_of(moves), options=PlanOptions(clearance=Clearance(30.0))).motions[0]
     row, rows = added(motion, moves)
@@ -71,7 +71,7 @@ def test_the_tool_draws_back_turns_and_comes_back_to_the_same_point() -> None:
         (Clearance(1.0, ClearanceSurface.SPHERE), None),
     ],
 )
-def test_the_tool_draws_back_to_a_plane_or_out_of_a_sphere(
+def test_the_tool_retracts_to_a_plane_or_out_of_a_sphere(
     setting: Clearance, clear: Callable[[Floats], float] | None
 ) -> None:
     moves = round_part()
@@ -80,13 +80,13 @@ def test_the_tool_draws_back_to_a_plane_or_out_of_a_sphere(
     way = there - moves.tip[row]
     assert np.linalg.norm(np.cross(way, moves.axis[row])) < 1e-9
     assert way @ moves.axis[row] >= MIN_RETRACT - 1e-9
-    if clear is None:  # it is out there already
+    if clear is None:  # it is outside already
         assert way @ moves.axis[row] == pytest.approx(MIN_RETRACT)
     else:
         assert clear(there) < 1e-9
 
 
-def test_a_level_tool_does_not_draw_back_to_a_plane() -> None:
+def test_a_level_tool_does_not_retract_to_a_plane() -> None:
     moves = winding(89.5, 100.0, 1100.0, 400)
     moves = replace(moves, tip=40.0 * moves.axis)
     found = planned(operation_of(moves), options=PlanOptions(clearance=Clearance(90.0, ClearanceSurface.PLANE)))
@@ -118,7 +118,7 @@ def test_without_rewinds_the_program_is_refused_with_line_axis_value_and_limit()
     assert "--set rewind=insert" in problem.cure
 
 
-def test_a_retreat_keeps_the_limits_of_the_slides_where_the_workpiece_zero_is_known() -> None:
+def test_with_a_known_workpiece_zero_a_retract_keeps_the_limits_of_the_slides() -> None:
     known = replace(CA, workpiece_zero=(0.0, 0.0, 100.0))
     assert [p.severity for p in planned(operation_of(round_part()), known).problems] == [Severity.WARNING]
     found = planned(operation_of(round_part()), known, PlanOptions(clearance=Clearance(1800.0))).problems
@@ -128,7 +128,7 @@ def test_a_retreat_keeps_the_limits_of_the_slides_where_the_workpiece_zero_is_kn
     assert "--set clearance=MM" in errors[0].cure
 
 
-def test_without_a_workpiece_zero_a_retreat_needs_room_too() -> None:
+def test_without_a_workpiece_zero_a_retract_needs_travel_too() -> None:
     found = planned(operation_of(round_part()), options=PlanOptions(clearance=Clearance(3000.0))).problems
     assert any("has room for" in p.what for p in found)
 
@@ -189,7 +189,7 @@ def test_a_program_with_a_rewind_is_proven(tmp_path: Path, capfd: pytest.Capture
         ("clearance=sphere:-5", "plane:Z, sphere:R"),
     ],
 )
-def test_settings_that_mean_nothing(
+def test_meaningless_settings_are_refused(
     setting: str, message: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     code, program = posted(tmp_path, round_part(), "--set", setting)
@@ -205,11 +205,11 @@ def test_rewinds_can_be_forbidden(tmp_path: Path, capfd: pytest.CaptureFixture[s
     assert not program.exists()
 
 
-# The retreat as verification sees it.
+# The retract in verification.
 
 
 def blocks_of(text: str) -> tuple[list[str], int]:
-    """Lines of a program without numbers, and where the retreat begins."""
+    """Lines of a program without block numbers, and the index at which the retract begins."""
     lines = [line.partition(" ")[2] for line in text.splitlines()]
     note = next(k for k, line in enumerate(lines) if line.startswith(";Rewind"))
     return lines, note + 2
@@ -238,9 +238,7 @@ FAULTS: dict[str, Callable[[list[str], int], list[str]]] = {
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_verification_reports_whatever_is_no_such_retreat(
-    fault: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_verification_reports_a_faulty_retract(fault: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     code, program = posted(tmp_path, round_part())
     assert code == 0, capfd.readouterr().err
     lines, k = blocks_of(program.read_text(encoding="utf-8"))
@@ -263,7 +261,7 @@ def test_the_same_program_without_a_fault_is_proven(tmp_path: Path, capfd: pytes
     assert "1 retreat along the tool axis to turn" in said.out + said.err
 
 
-def test_a_retreat_below_the_part_is_none(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_move_into_the_part_is_no_retract(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     _, program = posted(tmp_path, round_part())
     lines, k = blocks_of(program.read_text(encoding="utf-8"))
     out, back = (np.array([float(w[1:]) for w in lines[i].split(" ") if w[0] in "XYZ"]) for i in (k, k + 4))
@@ -280,7 +278,7 @@ def test_a_retreat_below_the_part_is_none(tmp_path: Path, capfd: pytest.CaptureF
 # Messages and the log.
 
 
-def test_over_travel_says_how_much_is_lacking_and_what_the_other_pose_would_do() -> None:
+def test_over_travel_names_the_missing_angle_and_the_other_pose() -> None:
     from trunnion.machines import load_machine
 
     axis: Floats = directions(np.array([110.0]), np.array([0.0]))
@@ -308,7 +306,7 @@ def test_a_path_over_the_pole_is_in_the_log() -> None:
 
 @settings(deadline=None, max_examples=25)
 @given(st.floats(5.0, 80.0), st.floats(-400.0, 400.0), st.floats(-3000.0, 3000.0), st.integers(200, 900))
-def test_rows_that_are_put_in_keep_limits_and_points(tilt: float, start: float, sweep: float, n: int) -> None:
+def test_inserted_rows_keep_limits_and_points(tilt: float, start: float, sweep: float, n: int) -> None:
     moves = winding(tilt, start, start + sweep, n)
     found = planned(operation_of(replace(moves, tip=40.0 * moves.axis)))
     motion = found.motions[0]
@@ -325,7 +323,7 @@ def test_rows_that_are_put_in_keep_limits_and_points(tilt: float, start: float, 
     assert steps.max() < 20.0 + 2.0 * abs(sweep) / n, "in the cut no axis winds back"
 
 
-def test_a_step_too_coarse_to_turn_over_in_is_refused() -> None:
+def test_a_step_too_coarse_for_a_branch_change_is_refused() -> None:
     narrow = with_limits(BC, C=(-80, 80), B=(-110, 110))
     moves = moves_of(np.zeros((3, 3)), directions(np.full(3, 40.0), np.array([60.0, 70.0, 110.0])))
     (problem,) = planned(operation_of(moves), narrow).problems

@@ -1,4 +1,4 @@
-"""Rewinds where no TCP holds the tip: the slides follow the turn, out at the clearance, and the proof sees it."""
+"""Rewinds without TCP: the slides follow the turn at the clearance, and the proof checks them."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -31,14 +31,14 @@ def posted(moves: Moves, model: Machine = CA, tolerance: float = 0.01, clearance
 
 
 def turning_rows(done: Posted) -> slice:
-    """Rows of the run in which the tool turns at its clearance."""
+    """Rows of the run in which the tool turns at the clearance."""
     rapids = np.flatnonzero((done.run.kind == Kind.RAPID) & ~done.run.machine_frame & ((done.run.programmed & 7) != 0))
     rapids = rapids[rapids > 10]
     assert (np.diff(rapids) == 1).all(), "one rewind"
     return slice(int(rapids[0]), int(rapids[-1]) + 1)
 
 
-def test_the_slides_hold_the_tip_at_the_clearance_while_the_axes_turn() -> None:
+def test_the_slides_keep_the_tip_at_the_clearance_while_the_axes_turn() -> None:
     moves = round_part()
     done = posted(moves)
     assert [str(check) for check in done.found.checks if not check.passed] == []
@@ -67,7 +67,7 @@ def test_rewinds_can_be_forbidden_without_tcp_too() -> None:
     assert not any(isinstance(e, Message) for e in done.plan.motions[0].operation.events)
 
 
-def test_a_retreat_beyond_the_slides_is_refused_once_with_its_remedy() -> None:
+def test_a_retract_beyond_the_limits_of_slides_is_refused_once_with_its_remedy() -> None:
     near = replace(CA, axes=tuple(replace(a, low=-280.0, high=280.0) if a.name == "Y" else a for a in CA.axes))
     errors = [p for p in posted(round_part(), near).plan.problems if p.severity is Severity.ERROR]
     assert len(errors) == 1
@@ -108,7 +108,7 @@ FAULTS: dict[str, Callable[[list[str], int, int], list[str]]] = {
 
 @pytest.mark.parametrize("fault", sorted(FAULTS))
 @pytest.mark.parametrize("asked", [True, False], ids=["with a tolerance of the tip", "without"])
-def test_the_proof_holds_the_tip_of_a_turn(fault: str, asked: bool, tmp_path: Path) -> None:
+def test_the_proof_checks_the_tip_during_a_turn(fault: str, asked: bool, tmp_path: Path) -> None:
     path = toolpath(operation_of(round_part()))
     done = post(CA, path, PlanOptions(tcp=False))
     lines = done.text.splitlines()
@@ -131,7 +131,7 @@ def test_the_proof_holds_the_tip_of_a_turn(fault: str, asked: bool, tmp_path: Pa
     st.sampled_from([-1.0, 1.0]),
     st.sampled_from([0.01, 0.1]),
 )
-def test_winding_more_than_the_limits_is_proven_everywhere(
+def test_winding_beyond_the_limits_is_proven_everywhere(
     name: str, tilt: float, start: float, turns: float, sense: float, tolerance: float
 ) -> None:
     n = 120

@@ -1,4 +1,4 @@
-"""Points between CL points: enough of them by a look at every hundredth of the way, and no more than it takes."""
+"""Points between CL points: enough by a look at every hundredth of the path, and no more than needed."""
 
 import math
 from dataclasses import replace
@@ -17,7 +17,7 @@ ZERO = (37.0, -21.0, 110.0)
 
 
 def machine(name: str) -> Machine:
-    """A machine with a part clamped off its rotary axes."""
+    """A machine with a part that is clamped off its rotary axes."""
     return replace(load_machine(name), workpiece_zero=ZERO)
 
 
@@ -31,7 +31,7 @@ def great_circle(begin: Floats, end: Floats, part: Floats) -> Floats:
 
 
 def followed(model: Machine, tip: Floats, axis: Floats) -> Floats:
-    """Rotary positions of dense rows, as they wind: on the side that is nearer to home at the first row."""
+    """Rotary positions of dense rows, as they wind, in the branch that is nearer to home at the first row."""
     found = inverse(model, tip, axis)
     options = found.joints[..., list(model.rotary)]
     last = np.array([model.axes[c].home for c in model.rotary])
@@ -54,7 +54,7 @@ def axes_of(model: Machine, tip: Floats, axis: Floats) -> Floats:
 
 
 def off(model: Machine, tip: Floats, axis: Floats, spans: DividedPath, tcp: bool) -> tuple[float, float]:
-    """How far the tip is from the CAM's line, mm, and the tool axis from its great circle, deg, on all ways."""
+    """How far the tip is off the CAM's line, mm, and the tool axis off its great circle, degrees, at most."""
     joints = np.empty((len(spans.tip), 5))
     joints[:] = slide_positions(model, spans.tip, spans.rotary)
     worst_tip = worst_axis = 0.0
@@ -117,7 +117,7 @@ def test_the_tool_stays_within_its_tolerances(
 def fewest(
     model: Machine, tip: Floats, axis: Floats, rotary: Floats, tolerance: tuple[float, float], tcp: bool, nodes: int
 ) -> int:
-    """The fewest spans that end at ``nodes`` even parts of the way, by trying all of them and joining the best."""
+    """The fewest spans between ``nodes`` evenly spaced points, by trying all of them."""
     grid = np.linspace(0.0, 1.0, nodes + 1)
     tips = tip[0] + grid[:, None] * (tip[1] - tip[0])
     axes = great_circle(axis[0], axis[1], grid)
@@ -152,7 +152,7 @@ def fewest(
     st.sampled_from([0.002, 0.01, 0.05]),
     st.sampled_from([0.01, 0.05, 0.5]),
 )
-def test_no_more_points_than_a_tenth_above_the_fewest(
+def test_points_are_at_most_a_tenth_more_than_the_fewest(
     name: str,
     path: list[tuple[tuple[float, float, float], tuple[float, float]]],
     tcp: bool,
@@ -201,7 +201,7 @@ def test_with_tcp_a_short_turn_needs_no_points_and_without_it_does() -> None:
 
 
 def test_a_turn_in_the_pole_is_cut_into_pieces_at_rest() -> None:
-    """The CAM goes through the pole, the machine keeps its side: C turns half-way round under an upright tool."""
+    """The CAM passes through the pole and the machine keeps its branch: C turns half a turn under an upright tool."""
     model = machine("generic_head_table_bc")
     tip = np.array([[-10.0, 0.0, 0.0], [10.0, 0.0, 0.0]])
     axis = np.array([[-0.2, 0.0, 1.0], [0.2, 0.0, 1.0]])
@@ -219,7 +219,7 @@ def test_a_turn_in_the_pole_is_cut_into_pieces_at_rest() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_short_way_under_a_turning_tool_keeps_the_tip_where_it_goes_back_along_its_line(name: str) -> None:
+def test_the_tip_stays_on_a_short_line_along_which_it_goes_back_while_the_tool_turns(name: str) -> None:
     model = machine(name)
     tip = np.array([[10.15, 20.395, 0.354], [10.15, 20.395, 1.314]])
     axis = np.array([[0.0, -0.347, 1.0], [0.0, 0.597, 1.0]])
@@ -229,7 +229,7 @@ def test_a_short_way_under_a_turning_tool_keeps_the_tip_where_it_goes_back_along
     assert off(model, tip, axis, spans, tcp=False)[0] <= 0.001
 
 
-def test_rows_that_are_not_among_those_stay_as_they_are() -> None:
+def test_rows_that_are_not_divisible_stay_as_they_are() -> None:
     model = machine("generic_head_head_ca")
     tip = np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
     axis = np.array([[0.0, 0.2, 1.0], [0.4, 0.2, 1.0], [0.0, 0.2, 1.0]])

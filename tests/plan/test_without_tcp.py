@@ -1,4 +1,4 @@
-"""Programs without TCP, read back by the reader's own control: tip and tool axis on the way, and how long it takes."""
+"""Programs without TCP, read back by the virtual control: tip and tool axis between points, and durations."""
 
 import math
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ SINUMERIK = load_machine("yl569").control
 
 
 def machine(name: str) -> Machine:
-    """A machine with room for its slides, a part off its rotary axes, and a tool where its head turns it."""
+    """A machine with long slides, a part off its rotary axes, and a tool length if a head turns the tool."""
     model = at_zero(name)
     axes = tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in model.axes)
     length = 83.7 if model.has_rotary_head else None
@@ -49,7 +49,7 @@ def toolpath(operation: Operation) -> Toolpath:
 
 @dataclass(frozen=True, eq=False)
 class Posted:
-    """A program, run, and what verification says of it."""
+    """A program with its run and its verification."""
 
     plan: Plan
     text: str
@@ -60,7 +60,7 @@ class Posted:
 
 
 def post(model: Machine, path: Toolpath, options: PlanOptions) -> Posted:
-    """Plan, write, read back and prove, whatever speaks against the plan."""
+    """Plan, write, read back and prove, whatever the problems of the plan."""
     control = load_control(model.control)
     planned = plan([path], model, control.arcs.chord_tolerance, options)
     program = Program(model, control, planned.motions, {}, "part.cls")
@@ -76,7 +76,7 @@ def post(model: Machine, path: Toolpath, options: PlanOptions) -> Posted:
 
 
 def rows_of_points(run: Run, tip: Floats, axis: Floats) -> list[int]:
-    """The row of the run that ends at each point, found one after the other."""
+    """The row of the run that ends at each point, in their order."""
     rows, at = [], 0
     for point, look in zip(tip, axis, strict=True):
         near = (np.abs(run.tip - point).max(axis=1) < 3e-5) & (np.abs(run.axis - look).max(axis=1) < 1e-6)
@@ -107,7 +107,7 @@ def apart(look: Floats, other: Floats) -> Floats:
 
 
 def worst_off(run: Run, tip: Floats, axis: Floats, kind: Sequence[int]) -> tuple[float, float]:
-    """How far tip (mm) and, in cuts, tool axis (deg) are off the CAM's way, at fifty places of every block."""
+    """How far tip (mm) and, in cuts, tool axis (degrees) are off the CAM's path, at fifty places of every block."""
     rows = rows_of_points(run, tip, axis)
     worst_tip = worst_axis = 0.0
     for k in range(1, len(tip)):
@@ -124,7 +124,7 @@ def worst_off(run: Run, tip: Floats, axis: Floats, kind: Sequence[int]) -> tuple
 
 
 def minutes(run: Run, rows: Sequence[int]) -> float:
-    """How long blocks at feed take, by their F and what it means."""
+    """Duration of blocks at feed, by their F and what it counts, min."""
     total = 0.0
     for row in rows:
         way = float(np.linalg.norm(run.tip[row] - run.tip[row - 1]))
@@ -145,7 +145,7 @@ rough = st.lists(st.tuples(steps, lean, lean, kinds), min_size=2, max_size=4)
     st.sampled_from([0.001, 0.01, 0.1]),
     st.sampled_from([0.01, 0.05, 0.5]),
 )
-def test_the_tool_stays_on_its_way_between_blocks(
+def test_the_tool_stays_on_its_path_between_points(
     name: str,
     path: list[tuple[tuple[float, float, float], float, float, Kind]],
     tip_tolerance: float,
@@ -182,7 +182,7 @@ def test_the_tool_stays_on_its_way_between_blocks(
 
 
 def smooth(form: str, turns: float, tilt: float, n: int) -> tuple[Floats, Floats]:
-    """A path and its tool axes: round a part, over the pole and back, or a spiral close by the pole."""
+    """A path and its tool axes: around a part, over the pole and back, or a spiral close by the pole."""
     part = np.linspace(0.0, 1.0, n)
     azimuth = np.radians(20.0 + 360.0 * turns * part)
     lean = np.full(n, math.radians(tilt))
@@ -204,7 +204,7 @@ def smooth(form: str, turns: float, tilt: float, n: int) -> tuple[Floats, Floats
     st.integers(5, 30),
     st.sampled_from([0.001, 0.01, 0.1]),
 )
-def test_smooth_paths_also_past_the_pole_and_round_and_round(
+def test_smooth_paths_also_past_the_pole_and_over_several_turns(
     name: str, form: str, turns: float, tilt: float, n: int, tip_tolerance: float
 ) -> None:
     tip, axis = smooth(form, turns, tilt, n)
@@ -225,7 +225,7 @@ def test_smooth_paths_also_past_the_pole_and_round_and_round(
 
 @settings(deadline=None, max_examples=25, phases=[Phase.generate])
 @given(st.sampled_from(NAMES), rough, st.sampled_from([0.01, 0.1, 1.0]))
-def test_with_tcp_points_keep_the_tool_axis_where_somebody_asks(
+def test_with_tcp_points_keep_the_tool_axis_if_there_is_a_tolerance(
     name: str, path: list[tuple[tuple[float, float, float], float, float, Kind]], tolerance: float
 ) -> None:
     tip = np.round(np.cumsum([step for step, _, _, _ in path], axis=0), 5)
@@ -248,7 +248,7 @@ def test_with_tcp_points_keep_the_tool_axis_where_somebody_asks(
 
 
 def worst_of(planned: Plan, model: Machine, tip: Floats, axis: Floats, kind: Codes) -> float:
-    """How far the tool axis bends between the points in cuts, degrees, if nothing is put in."""
+    """How far the tool axis bends between the points of cuts without inserted points, degrees."""
     rotary = planned.motions[0].rotary
     worst = 0.0
     for k in np.flatnonzero(kind[1:] != Kind.RAPID).tolist():
@@ -264,11 +264,11 @@ def worst_of(planned: Plan, model: Machine, tip: Floats, axis: Floats, kind: Cod
     return worst
 
 
-# What the numbers are, by hand
+# Numbers worked out by hand
 
 
 def test_slides_of_a_tilting_head_follow_pivot_and_tool_length() -> None:
-    """X = x + R sin B and Z = z + R (cos B - 1), R from the pivot to the tip; the table's C turns what is asked for."""
+    """X = x + R sin B and Z = z + R (cos B - 1), R from the pivot to the tip; the table's C turns the point."""
     model = replace(machine("generic_head_table_bc"), workpiece_zero=(0.0, 0.0, 50.0), tool_length=120.0)
     tip, b = np.array([[10.0, 4.0, 2.0], [12.0, 4.0, 1.0]]), np.array([30.0, 40.0])
     axis = np.column_stack((np.sin(np.radians(b)), np.zeros(2), np.cos(np.radians(b))))
@@ -304,7 +304,7 @@ def test_slides_of_a_tilting_table_turn_with_the_part() -> None:
 
 
 def arc_moves(normal: Floats, axis: Floats) -> tuple[Operation, Floats]:
-    """Half a circle of radius 10 about ``normal`` under a steady tool axis, then on under another; and its points."""
+    """A half circle of radius 10 about ``normal`` under a constant tool axis, then a line; and the points."""
     across = np.cross(normal, [0.3, 0.5, 0.8])
     across /= np.linalg.norm(across)
     tip = np.array([10.0 * across, -10.0 * across, -12.0 * across])
@@ -323,9 +323,9 @@ def arc_moves(normal: Floats, axis: Floats) -> tuple[Operation, Floats]:
             [0.0, 0.0, 1.0],
             [0.5, 0.0, math.sqrt(0.75)],
             1,
-        ),  # the head leans, the slides lie flat
+        ),  # the head tilts, the slides do not
         ("generic_head_table_bc", [1.0, 0.0, 0.0], [0.5, 0.0, math.sqrt(0.75)], 0),  # not in the plane of X and Y
-        ("yl569", [0.0, 0.0, 1.0], [0.5, 0.0, math.sqrt(0.75)], 0),  # the table leans, and the circle with it
+        ("yl569", [0.0, 0.0, 1.0], [0.5, 0.0, math.sqrt(0.75)], 0),  # the table tilts, and the circle with it
         ("generic_head_head_ca", [0.0, 0.0, -1.0], [0.5, 0.2, math.sqrt(0.71)], 1),
     ],
 )
