@@ -1,14 +1,17 @@
-"""The families of controls: where the writer and the reader of each stand. A new family is one entry here."""
+"""The registry of control families: the modules that write and read the programs of each.
+
+A new family is one entry here, besides a folder for its writer, one for its reader, and a definition.
+"""
 
 from importlib import import_module
 from typing import Any, Final, NamedTuple
 
 
 class FamilyEntry(NamedTuple):
-    """A family of controls.
+    """The modules of a control family, by their dotted names.
 
-    writer  module that writes its programs (``trunnion.controls.family_writer.FamilyWriter``)
-    reader  module whose ``READER`` reads them (``trunnion.readers.program.family_reader.FamilyReader``), or None
+    writer  has all of ``trunnion.controls.family_writer.FamilyWriter``
+    reader  has ``READER``, a ``trunnion.readers.program.family_reader.FamilyReader``; None: no reader yet
     """
 
     writer: str
@@ -19,7 +22,7 @@ def _family(folder: str) -> FamilyEntry:
     return FamilyEntry(f"trunnion.output.families.{folder}.writer", f"trunnion.readers.families.{folder}.reader")
 
 
-#: By the name that definitions give: ``family`` under ``[control]``.
+#: By the key ``family`` of control definitions.
 FAMILIES: Final[dict[str, FamilyEntry]] = {
     "sinumerik_840d": _family("sinumerik"),
     "linuxcnc": _family("linuxcnc"),
@@ -34,7 +37,7 @@ DEFAULT_FAMILY: Final = "sinumerik_840d"
 
 
 def load_writer(family: str) -> Any:
-    """The writer of a family; its module is imported when it is asked for, and no other."""
+    """Return the writer of a family, a ``FamilyWriter``; importing its module loads no other family."""
     return import_module(FAMILIES[family].writer)
 
 

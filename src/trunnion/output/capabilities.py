@@ -1,4 +1,4 @@
-"""What a control can be told, as the planner needs it: the definition of a control and its settings in one record."""
+"""The capabilities of a control for the planner, from its definition and the settings of a run."""
 
 import math
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ _FEED_REMEDY: Final = (
 
 
 def control_capabilities(control: Control, settings: Mapping[str, str]) -> ControlCapabilities:
-    """The capabilities of a control under the settings of a run, such as its words for planes or vectors."""
+    """Return what the control can do under the settings of a run."""
     return ControlCapabilities(
         modes=control.modes(settings),
         mode_remedies={MachiningMode.WITHOUT_TCP: _FEED_REMEDY} if control.feed_without_tcp == UNKNOWN_FEED else {},

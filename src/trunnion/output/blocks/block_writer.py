@@ -1,7 +1,7 @@
 """The block writer: columns of words and lines of text in, the bytes of numbered blocks out."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import BinaryIO, Final
+from typing import BinaryIO, Final, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,22 @@ CHUNK: Final = 16384
 BLOCK_NUMBER_BYTES: Final = 12
 
 _WORD_BYTES: Final = DIGITS + LETTERS + 2
+
+
+class _WordColumns(NamedTuple):
+    """The words of a table for the kernel; see ``write_blocks``."""
+
+    rule: Ints
+    spelling: Bytes
+    last: Ints
+
+
+class _Lines(NamedTuple):
+    """The lines of text between the rows of a table for the kernel; see ``write_blocks``."""
+
+    before: Ints
+    of: Ints
+    texts: Sequence[str]
 
 
 class BlockWriter:
@@ -126,10 +142,10 @@ class BlockWriter:
         texts = list(lines)
         if not texts:
             return
-        no_words = np.zeros((0, len(texts)), np.int64)
-        none = np.zeros(len(texts), np.int64)
         before = np.arange(len(texts) + 1)
-        self._write(no_words, none, before, before[:-1], texts, self._rule[:0], self._spelling[:0], self._last[:0])
+        no_words = _WordColumns(self._rule[:0], self._spelling[:0], self._last[:0])
+        empty, unforced = np.zeros((0, len(texts)), np.int64), np.zeros(len(texts), np.int64)
+        self._write(empty, unforced, no_words, _Lines(before, before[:-1], texts))
 
     def write_table(
         self,
@@ -167,42 +183,31 @@ class BlockWriter:
             _check_range(self._words[key], table[k])
             if forced and key in forced:
                 flags |= np.int64(1 << k) * np.asarray(forced[key], np.int64)
-        before, line_of, texts = _lines_before(rows, text_before, texts, lines or {})
-        last = self._last[present]
-        self._write(table, flags, before, line_of, texts, self._rule[present], self._spelling[present], last)
-        self._last[present] = last
+        words = _WordColumns(self._rule[present], self._spelling[present], self._last[present])
+        self._write(table, flags, words, _lines_before(rows, text_before, texts, lines or {}))
+        self._last[present] = words.last
 
-    def _write(
-        self,
-        table: Ints,
-        forced: Ints,
-        before: Ints,
-        line_of: Ints,
-        texts: Sequence[str],
-        rule: Ints,
-        spelling: Bytes,
-        last: Ints,
-    ) -> None:
-        """Run the kernel and write its bytes; arguments as ``write_blocks`` has them."""
-        encoded = [text.encode() for text in texts]
+    def _write(self, table: Ints, forced: Ints, words: _WordColumns, lines: _Lines) -> None:
+        """Run the kernel and write its bytes; ``words.last`` is updated."""
+        encoded = [text.encode() for text in lines.texts]
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
         head = BLOCK_NUMBER_BYTES + len(self._letter) + 1
-        row_bytes = head + len(rule) * _WORD_BYTES + 1
-        text_room = sum(len(encoded[k]) + head + 1 for k in line_of)
+        row_bytes = head + len(words.rule) * _WORD_BYTES + 1
+        text_room = sum(len(encoded[k]) + head + 1 for k in lines.of)
         out = np.empty(table.shape[1] * row_bytes + text_room, np.uint8)
         unnumbered = tuple(self._numbers.unnumbered)
         written = write_blocks(
             table,
             forced,
-            before,
-            line_of,
+            lines.before,
+            lines.of,
             text_bytes,
             ends,
-            np.array([text.startswith(unnumbered) for text in texts] or [False], np.bool_),
-            rule,
-            spelling,
-            last,
+            np.array([text.startswith(unnumbered) for text in lines.texts] or [False], np.bool_),
+            words.rule,
+            words.spelling,
+            words.last,
             self._number,
             self._letter,
             self._numbers.numbered,
@@ -213,10 +218,8 @@ class BlockWriter:
         self.size += written
 
 
-def _lines_before(
-    rows: int, text_before: Ints | None, texts: Sequence[str], lines: Mapping[int, str]
-) -> tuple[Ints, Ints, Sequence[str]]:
-    """Return ``line_before`` and ``line_of`` of the kernel, and all texts."""
+def _lines_before(rows: int, text_before: Ints | None, texts: Sequence[str], lines: Mapping[int, str]) -> _Lines:
+    """Return the lines of a table; arguments as ``BlockWriter.write_table``."""
     at = np.full(rows, -1, np.int64) if text_before is None else text_before
     first = np.flatnonzero(at >= 0)
     single = np.array(sorted(lines), np.int64)
@@ -224,7 +227,7 @@ def _lines_before(
     text = np.concatenate((at[first], len(texts) + np.arange(len(single))))
     order = np.argsort(row, kind="stable")
     before = np.searchsorted(row[order], np.arange(rows + 1))
-    return before, text[order], [*texts, *(lines[k] for k in single.tolist())]
+    return _Lines(before, text[order], [*texts, *(lines[k] for k in single.tolist())])
 
 
 def _check_range(word: Word, column: Ints) -> None:
