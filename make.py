@@ -1,41 +1,63 @@
 """Set up Trunnion in a folder of its own and do one thing with it. Needs Python 3.11 or later and nothing else.
 
 python3 make.py sample     set up, and post a real five-axis toolpath
-python3 make.py test       set up, and pass the tests
+python3 make.py test       set up, and run everything that CI runs
+python3 make.py quick      style, types, import contracts, and the fast half of the tests
+python3 make.py docs       build the documentation site in build/site
+python3 make.py package    build the wheel and the sdist in dist, and try both in an environment of their own
+python3 make.py run ...    run a program of the environment, such as pytest
 """
 
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 import venv
+from collections.abc import Callable
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 HOME = HERE / ".venv"
-BIN = HOME / ("Scripts" if os.name == "nt" else "bin")
 SAMPLE = Path("tests", "golden", "yl569", "3_blade_finish.cls")
 
 
-def run(*command: str | Path) -> None:
-    """Run a program of the environment from the project's folder; end with its exit code when it fails."""
+def program_of(environment: Path, name: str) -> Path:
+    """A program in a virtual environment; on Windows ``.exe`` is found by itself."""
+    return environment / ("Scripts" if os.name == "nt" else "bin") / name
+
+
+def run(*command: str | Path, environment: Path = HOME) -> None:
+    """Run a program of an environment from the project's folder; end with its exit code when it fails."""
     print("$", *command, flush=True)
-    program, *arguments = command
-    done = subprocess.run([str(BIN / program), *map(str, arguments)], cwd=HERE, check=False)
+    name, *arguments = command
+    done = subprocess.run([str(program_of(environment, str(name))), *map(str, arguments)], cwd=HERE, check=False)
     if done.returncode:
         sys.exit(done.returncode)
 
 
+def create(environment: Path) -> None:
+    """Create a virtual environment, unless it is there."""
+    if program_of(environment, "python.exe" if os.name == "nt" else "python").exists():
+        return
+    try:
+        venv.create(environment, with_pip=True)
+    except subprocess.CalledProcessError:
+        sys.exit("this Python cannot create virtual environments; on Debian: apt install python3-venv")
+
+
+def install(*what: str | Path, environment: Path = HOME) -> None:
+    """Install packages into an environment."""
+    run("python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *what, environment=environment)
+
+
 def set_up(what: str) -> None:
-    """Make the environment once, and install this checkout into it."""
-    if sys.version_info < (3, 11):  # noqa: UP036 - whoever starts this may have an older one
+    """Create the environment once, and install this checkout into it."""
+    if sys.version_info < (3, 11):  # noqa: UP036 - people start this file with whatever Python they have
         sys.exit("Trunnion needs Python 3.11 or later; this is " + sys.version.split()[0])
-    if not (BIN / ("python.exe" if os.name == "nt" else "python")).exists():
-        try:
-            venv.create(HOME, with_pip=True)
-        except subprocess.CalledProcessError:
-            sys.exit("this Python cannot make virtual environments; on Debian: apt install python3-venv")
-    run("python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--editable", what)
-    run("python", "-m", "compileall", "-q", "src")  # an editable package is not compiled by being installed
+    create(HOME)
+    install("--editable", what)
+    run("python", "-m", "compileall", "-q", "src")  # an editable package is not byte-compiled when it is installed
 
 
 def sample() -> None:
@@ -48,18 +70,71 @@ def sample() -> None:
     print(f"… {len(lines)} blocks in {program}")
 
 
-def test() -> None:
-    """Style, types, the rules of the house, and the tests."""
-    set_up(".[test]")
+def check() -> None:
+    """Style, types and import contracts."""
     run("ruff", "check")
     run("ruff", "format", "--check")
     run("mypy")
     run("lint-imports")
+
+
+def quick() -> None:
+    """What to run before a commit."""
+    set_up(".[test]")
+    check()
+    run("python", "-m", "pytest", "-n", "auto", "-m", "not slow")
+
+
+def test() -> None:
+    """Everything that CI runs."""
+    set_up(".[test,docs]")
+    check()
     run("python", "-m", "pytest", "-n", "auto")
+    site()
+    build()
+
+
+def docs() -> None:
+    """The documentation site."""
+    set_up(".[docs]")
+    site()
+
+
+def site() -> None:
+    """Build the documentation site; a warning, such as a broken link, is an error."""
+    run("python", "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", "docs", "build/site")
+
+
+def package() -> None:
+    """Build the wheel and the sdist, and try both."""
+    set_up(".[test]")
+    build()
+
+
+def build() -> None:
+    """Build the wheel and the sdist, install each into an environment of its own, and post the sample with it."""
+    dist = HERE / "dist"
+    shutil.rmtree(dist, ignore_errors=True)
+    run("python", "-m", "build", "--outdir", dist)
+    for archive in sorted(dist.iterdir()):
+        with tempfile.TemporaryDirectory() as folder:
+            environment = Path(folder, "environment")
+            create(environment)
+            install(archive, environment=environment)
+            output = Path(folder, "blade.mpf")
+            run("trunnion", "post", SAMPLE, "--machine", "yl569", "--output", output, environment=environment)
+            print(f"{archive.name}: {len(output.read_bytes())} bytes of NC")
+
+
+COMMANDS: dict[str, Callable[[], None]] = {
+    "sample": sample, "test": test, "quick": quick, "docs": docs, "package": package,
+}  # fmt: skip
 
 
 if __name__ == "__main__":
-    commands = {"sample": sample, "test": test}
-    if len(sys.argv) != 2 or sys.argv[1] not in commands:
+    if sys.argv[1:2] == ["run"] and len(sys.argv) > 2:
+        run(*sys.argv[2:])
+    elif len(sys.argv) == 2 and sys.argv[1] in COMMANDS:
+        COMMANDS[sys.argv[1]]()
+    else:
         sys.exit(__doc__)
-    commands[sys.argv[1]]()
