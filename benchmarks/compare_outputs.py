@@ -3,9 +3,8 @@
     python benchmarks/compare_outputs.py OLD NEW [CL_FILE_OR_FOLDER ...]
 
 OLD and NEW are checkouts of Trunnion. Every CL file of OLD's tests, and every file named besides, is posted on every
-machine that OLD ships, in several ways (``VARIANTS``), once by each checkout. Programs with their subprograms, report data
-(JSON) and exit codes have to be equal; what is printed on stderr is compared too, and only counted. Exit code 1 if anything
-differs.
+machine that OLD ships, in several ways (``VARIANTS``), once by each checkout. Programs with their subprograms, report
+data (JSON) and exit codes must be equal; differences on stderr are only counted. Exit code 1 if anything differs.
 """
 
 import argparse
@@ -96,9 +95,9 @@ def main() -> int:
                     with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two:
                         folders = [Path(one), Path(two)]
                         settings = [word for setting in variant for word in ("--set", setting)]
+                        common = ["post", str(file), "--machine", machine, *settings, "--force"]
                         asked = [
-                            ["post", str(file), "--machine", machine, *settings, "--force"]
-                            + ["--output", str(folder / "PROGRAM.NC"), "--report", str(folder / "report.json")]
+                            [*common, "--output", str(folder / "PROGRAM.NC"), "--report", str(folder / "report.json")]
                             for folder in folders
                         ]
                         (code, err, found), (code_2, err_2, found_2) = executor.map(
