@@ -111,9 +111,7 @@ def main() -> int:
                         print(f"DIFFERS: {file.name} on {machine} {' '.join(variant)}: {code} and {code_2}")
     for checkout in checkouts:
         checkout.close()
-    print(
-        f"{len(files)} CL files, {len(names)} machines, {len(VARIANTS)} variants: {runs} runs, {written} programs written"
-    )
+    print(f"{len(files)} CL files, {len(names)} machines, {len(VARIANTS)} variants: {runs} runs, {written} written")
     print(f"{differ} differ; messages on stderr differ in {messages}")
     return 1 if differ else 0
 
