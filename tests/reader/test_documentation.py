@@ -65,7 +65,7 @@ def test_every_m_word_and_event_is_in_the_page() -> None:
 def test_limits_are_those_of_the_page() -> None:
     plain = PAGE.replace(" 000", "000")
     assert str(interpreter.DEFAULT_STEP_LIMIT) in plain
-    assert f"After {interpreter.MAX_DIAGNOSTICS} findings" in plain
+    assert f"After {interpreter.MAX_DIAGNOSTICS} diagnostics" in plain
     assert f"at most {MAX_NESTING} inside" in plain
     assert f"At most {interpreter.MAX_CALL_DEPTH} programs" in plain
     assert f"calls at most {interpreter.MAX_SUBPROGRAMS} files" in plain
