@@ -23,10 +23,7 @@ They print nothing and raise ``TrunnionError``. Names are imported when they are
 """
 
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
-
-from trunnion.compiled import keep_kernels
 
 if TYPE_CHECKING:
     from trunnion.api.comparing import diff as diff
@@ -144,6 +141,3 @@ if not TYPE_CHECKING:  # type checkers would take any name for known
 
 def __dir__() -> list[str]:
     return __all__
-
-
-keep_kernels(Path(__file__).parent)

@@ -1,6 +1,6 @@
 """Names for the array types that the rooms hand to each other."""
 
-from typing import TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,3 +11,11 @@ Lines: TypeAlias = NDArray[np.int32]
 Codes: TypeAlias = NDArray[np.uint8]
 Flags: TypeAlias = NDArray[np.bool_]
 Bytes: TypeAlias = NDArray[np.uint8]
+
+# In the signature of a kernel an array has one dimension, unless its name says more (``trunnion.jit.kernel``).
+Floats2: TypeAlias = Annotated[Floats, 2]
+Floats3: TypeAlias = Annotated[Floats, 3]
+Ints2: TypeAlias = Annotated[Ints, 2]
+Ints3: TypeAlias = Annotated[Ints, 3]
+Codes2: TypeAlias = Annotated[Codes, 2]
+Bytes2: TypeAlias = Annotated[Bytes, 2]

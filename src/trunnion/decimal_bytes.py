@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Bytes
-from trunnion.jit import ONE, njit, signed, unsigned
+from trunnion.jit import ONE, inlined, signed, unsigned
 
 #: So many digits always fit into a double, whatever they are.
 EXACT_DIGITS: Final = 15
@@ -29,7 +29,7 @@ _COMMA, _POINT, _ZERO = 44, 46, 48
 
 # Inlined, because a call would count references to ``text`` for every number, a fifth of the time of a scan. The
 # digits are compared as unsigned bytes, where everything below "0" wraps round to more than 9.
-@njit(cache=True, forceinline=True)
+@inlined
 def parse_decimal(text: Bytes, at: int, comma: bool = False) -> tuple[int, int, int, bool, int]:
     """Parse digits with at most one decimal point in them; signs and blanks are the caller's.
 

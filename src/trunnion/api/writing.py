@@ -9,10 +9,9 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import BinaryIO
 
-from trunnion import readers, verification
+from trunnion import readers
 from trunnion.api.observer import SILENT, Observer
 from trunnion.files import OutputFiles, WriteProgress
-from trunnion.jit import load
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.output.program import Program
@@ -57,7 +56,6 @@ def read_back_while_writing(
 def _run(files: OutputFiles, machine: Machine, progress: WriteProgress, divided: bool) -> Run | None:
     if not readers.can_read(machine):
         return None
-    load(*readers.KERNELS, *verification.KERNELS)
     if divided:
         progress.wait_until_finished()
     return readers.run_program(files.path, machine, subprograms=files.other_paths, write_progress=progress)

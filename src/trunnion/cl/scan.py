@@ -9,9 +9,9 @@ The kernels check nothing but syntax: what a statement means is the business of 
 
 import numpy as np
 
-from trunnion.arrays import Bytes, Floats, Ints, Lines
+from trunnion.arrays import Bytes, Floats, Floats2, Ints, Ints2, Lines
 from trunnion.decimal_bytes import MAX_DIGITS, MAX_EXACT, POWERS_OF_TEN, parse_decimal
-from trunnion.jit import ONE, njit, signed, unsigned
+from trunnion.jit import ONE, inlined, inner, kernel, signed, unsigned
 
 #: A statement longer than this is no CL statement; it bounds the memory that one statement can take.
 MAX_STATEMENT_BYTES = 1 << 20
@@ -48,7 +48,7 @@ _TEXT_MAJORS = (
 )
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="tip axis line spans")
 def scan(
     data: Bytes,
     start: int,
@@ -56,10 +56,10 @@ def scan(
     last: bool,
     line_no: int,
     row: int,
-    tip: Floats,
-    axis: Floats,
+    tip: Floats2,
+    axis: Floats2,
     line: Lines,
-    spans: Ints,
+    spans: Ints2,
 ) -> tuple[int, int, int, int]:
     """Read the lines of ``data[start:stop]`` until they, the rows or the spans are used up.
 
@@ -111,7 +111,7 @@ def scan(
     return at, line_no, row, count
 
 
-@njit(cache=True, forceinline=True)
+@inlined
 def _parse_goto(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) -> int:
     """Parse a plain ``GOTO/x,y,z[,i,j,k]`` line into a row; return the start of the next line, or 0 if it is not plain.
 
@@ -151,7 +151,7 @@ def _parse_goto(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) ->
     return _next_line_after_comment(data, at)
 
 
-@njit(cache=True, forceinline=True)
+@inlined
 def _skip_spaces(data: Bytes, at: int) -> int:
     """Place (uint64) of the next byte that is no space."""
     while data[at] == _BLANK:
@@ -159,7 +159,7 @@ def _skip_spaces(data: Bytes, at: int) -> int:
     return at
 
 
-@njit(cache=True, forceinline=True)
+@inlined
 def _next_line_after_comment(data: Bytes, at: int) -> int:
     """Start of the next line if nothing but a ``$$`` comment stands between ``at`` (uint64) and the newline, else 0."""
     if data[at] == _DOLLAR and data[at + ONE] == _DOLLAR:
@@ -170,7 +170,7 @@ def _next_line_after_comment(data: Bytes, at: int) -> int:
     return signed(at + ONE) if data[at] == _NEWLINE else 0
 
 
-@njit(cache=True)
+@inner
 def _find_statement(data: Bytes, at: int, stop: int) -> tuple[int, int, int, int]:
     """Begin, end, lines and mark of the statement at ``at``, bare of blanks and comment; empty if nothing is left."""
     while _is_blank(data[at]) and data[at] != _NEWLINE:
@@ -197,7 +197,7 @@ def _find_statement(data: Bytes, at: int, stop: int) -> tuple[int, int, int, int
         lines += 1
 
 
-@njit(cache=True)
+@inner
 def _find_content_end(data: Bytes, at: int, text: bool) -> tuple[int, int]:
     """End of what counts in the line at ``at``, and where its ``$$`` comment or newline is; text has no comments."""
     content = at
@@ -208,7 +208,7 @@ def _find_content_end(data: Bytes, at: int, text: bool) -> tuple[int, int]:
     return content, at
 
 
-@njit(cache=True)
+@inner
 def _next_line(data: Bytes, at: int) -> int:
     """Start of the line after the one in which ``at`` lies."""
     while data[at] != _NEWLINE:
@@ -216,12 +216,12 @@ def _next_line(data: Bytes, at: int) -> int:
     return at + 1
 
 
-@njit(cache=True)
+@inner
 def _is_blank(byte: int) -> bool:
     return byte in (_BLANK, _TAB, _RETURN, _NEWLINE)
 
 
-@njit(cache=True)
+@inner
 def _skip_word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
     """Where ``word`` ends if it stands at ``at``, in any case and with blanks anywhere; else 0."""
     for letter in word:
@@ -235,7 +235,7 @@ def _skip_word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
     return at
 
 
-@njit(cache=True)
+@inner
 def _makes_row(data: Bytes, begin: int, end: int) -> bool:
     """Whether a statement is a motion: GOTO/, GODLTA/, or GOHOME/ with a number."""
     for word in (_GOTO, _GODLTA):
@@ -253,7 +253,7 @@ def _makes_row(data: Bytes, begin: int, end: int) -> bool:
     return at < end and _ZERO <= data[at] <= _NINE
 
 
-@njit(cache=True)
+@inner
 def _is_text_statement(data: Bytes, begin: int, end: int) -> bool:
     """Whether a statement carries text, in which a dollar sign is a dollar sign."""
     for word in _TEXT_MAJORS:  # noqa: SIM110 - Numba has no generators here
@@ -262,8 +262,8 @@ def _is_text_statement(data: Bytes, begin: int, end: int) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True)
-def fill_modal_axes(axis: Floats, start: int, stop: int, modal_axis: Floats, bad: Ints) -> int:
+@kernel(writes="axis modal_axis bad")
+def fill_modal_axes(axis: Floats2, start: int, stop: int, modal_axis: Floats, bad: Ints) -> int:
     """Give the rows without a vector the one before them, and every vector the length 1.
 
     axis     (n, 3) float64   rows ``start:stop`` are settled in place

@@ -17,10 +17,10 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Bytes, Floats, Ints, Lines
+from trunnion.arrays import Bytes, Floats, Floats2, Ints, Lines
 from trunnion.decimal_bytes import EXACT_DIGITS, POWERS_OF_TEN, parse_decimal
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jit import ONE, njit, unsigned
+from trunnion.jit import ONE, inner, kernel, unsigned
 from trunnion.model.toolpath import Moves, Operation, Tool, Toolpath
 
 #: Bytes read at a time.
@@ -131,8 +131,8 @@ def contact_points(file: Path, line: Lines) -> Floats:
     return found
 
 
-@njit(cache=True, nogil=True)
-def _scan_contact_points(data: Bytes, stop: int, line: Lines, found: Floats, state: Ints) -> None:
+@kernel(writes="found state")
+def _scan_contact_points(data: Bytes, stop: int, line: Lines, found: Floats2, state: Ints) -> None:
     """Go over whole lines; ``state``: the line that comes, the row that comes, whether contact points are said."""
     at = 0
     number, row, announced = state[0], state[1], state[2]
@@ -157,7 +157,7 @@ def _scan_contact_points(data: Bytes, stop: int, line: Lines, found: Floats, sta
     state[0], state[1], state[2] = number, row, announced
 
 
-@njit(cache=True)
+@inner
 def _contains(data: Bytes, begin: int, end: int, word: Bytes) -> bool:
     """Whether a word of capitals stands between two places, in any case."""
     for first in range(begin, end - word.shape[0] + 1):
@@ -172,7 +172,7 @@ def _contains(data: Bytes, begin: int, end: int, word: Bytes) -> bool:
     return False
 
 
-@njit(cache=True)
+@inner
 def _parse_point(data: Bytes, begin: int, found: Floats, row: int) -> None:
     """Parse ``x,y,z`` up to the end of the line into a row; anything else leaves NaN there."""
     at = unsigned(begin)

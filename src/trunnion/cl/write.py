@@ -14,12 +14,12 @@ from typing import BinaryIO
 
 import numpy as np
 
-from trunnion.arrays import Bytes, Floats
+from trunnion.arrays import Bytes, Floats, Floats2
 from trunnion.cl.assemble import COLOUR_PHASES, RADIUS_TOLERANCE, fill_phases
 from trunnion.cl.encoding import EncodingDetector
 from trunnion.decimal_bytes import MAX_EXACT, POWERS_OF_TEN
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jit import njit
+from trunnion.jit import inner, kernel
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -365,7 +365,7 @@ def _number(value: float, decimals: int) -> str:
 def _axis_numbers(axis: tuple[float, float, float]) -> list[str]:
     """A tool axis as the kernel writes it."""
     line = np.empty(_MAX_LINE_BYTES, np.uint8)
-    at = _put_axis(*axis, line, 0)
+    at = _format_axis(*axis, line)
     return line[1:at].tobytes().decode().split(",")
 
 
@@ -394,8 +394,8 @@ def _write_long_point(moves: Moves, row: int, modal_axis: Floats, sink: BinaryIO
     sink.write(_lines([f"GOTO/{','.join(numbers)}"]))
 
 
-@njit(cache=True, nogil=True)
-def _format_points(tip: Floats, axis: Floats, row: int, stop: int, modal_axis: Floats, out: Bytes) -> tuple[int, int]:
+@kernel(writes="modal_axis out")
+def _format_points(tip: Floats2, axis: Floats2, row: int, stop: int, modal_axis: Floats, out: Bytes) -> tuple[int, int]:
     """Write GOTO lines; return the row where it ended, ``stop`` or one whose numbers need a slower way, and the bytes.
 
     tip       (n, 3) float64   mm
@@ -426,7 +426,13 @@ def _format_points(tip: Floats, axis: Floats, row: int, stop: int, modal_axis: F
     return row, at
 
 
-@njit(cache=True)
+@kernel(writes="out")
+def _format_axis(i: float, j: float, k: float, out: Bytes) -> int:
+    """Write a tool axis, a comma before each number; return the end."""
+    return _put_axis(i, j, k, out, 0)
+
+
+@inner
 def _put_length(value: float, out: Bytes, at: int) -> int:
     """Write a length in 6, 9, 12 or 15 decimals, the fewest that say it exactly; return the end, or -1 if none does."""
     for decimals in range(6, 16, 3):
@@ -438,7 +444,7 @@ def _put_length(value: float, out: Bytes, at: int) -> int:
     return -1
 
 
-@njit(cache=True)
+@inner
 def _put_axis(i: float, j: float, k: float, out: Bytes, at: int) -> int:
     """Write a tool axis, a comma before each number; return the end."""
     a, b, c = abs(i), abs(j), abs(k)
@@ -454,7 +460,7 @@ def _put_axis(i: float, j: float, k: float, out: Bytes, at: int) -> int:
     return at
 
 
-@njit(cache=True)
+@inner
 def _put_decimal(negative: bool, count: int, decimals: int, fewest: int, out: Bytes, at: int) -> int:
     """Write a whole number of the last decimal, without zeros at the end beyond ``fewest`` decimals; return the end."""
     if negative and count > 0:

@@ -5,10 +5,10 @@ Results go to stdout, everything else to stderr. Exit 0: done. 1: understood, bu
 """
 
 import gc
+import logging
 import os
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import NoReturn
 
 from trunnion.errors import InputError, RefusedError
@@ -36,12 +36,19 @@ def run_and_exit() -> NoReturn:
     ends as soon as everything is written.
     """
     configure_process()
-    if sys.stderr.isatty() and not Path(os.environ["NUMBA_CACHE_DIR"]).exists():
-        print("first run: compiling the kernels, once; this takes some seconds", file=sys.stderr)
+    _show_log()
     code = main()
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(code)
+
+
+def _show_log() -> None:
+    """Have what the package logs for its user, such as that kernels are being compiled, printed to stderr."""
+    log = logging.getLogger("trunnion")
+    log.addHandler(logging.StreamHandler())
+    log.setLevel(logging.INFO)
+    log.propagate = False
 
 
 def main(argv: Sequence[str] | None = None) -> int:

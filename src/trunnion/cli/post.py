@@ -7,14 +7,12 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-from trunnion import output, planning
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post as post_program
 from trunnion.api.reading import load_machine
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
-from trunnion.jit import load
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 
@@ -26,7 +24,6 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     if arguments.report and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
-    load(*planning.KERNELS, *output.KERNELS)
     for target, files in targets.items():
         result = post_program(
             islice(toolpaths, len(files)),

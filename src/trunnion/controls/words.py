@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
-from trunnion.jit import njit
+from trunnion.jit import kernel
 
 #: The count of a word that is not in the block.
 ABSENT = np.iinfo(np.int64).min
@@ -83,7 +83,7 @@ class Word:
         return self.letter if self.bare else self.letter + self.format.text(value) + self.closing
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="out")
 def round_column(value: Floats, scale: float, out: Ints) -> None:
     """Round ``value * scale`` to whole numbers as if the product were exact.
 
@@ -143,7 +143,7 @@ def round_to_counts(value: Floats, decimals: int, out: Ints | None = None) -> In
         widest = max(abs(float(np.fmax.reduce(value))), abs(float(np.fmin.reduce(value))))
         if widest * scale > LARGEST_COUNT:  # False for NaN: a column without a number
             raise OverflowError(f"{widest:g} with {decimals} decimals has more digits than a control can read")
-    round_column(value, scale, out)
+    round_column(np.asarray(value, np.float64), scale, out)
     return out
 
 

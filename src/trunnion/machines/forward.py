@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats
-from trunnion.jit import njit
+from trunnion.arrays import Flags, Floats, Floats2
+from trunnion.jit import inner, kernel
 from trunnion.machines.machine import Machine
 
 
@@ -78,8 +78,8 @@ class KinematicChain(NamedTuple):
     """
 
     rotary: Flags
-    direction: Floats
-    point: Floats
+    direction: Floats2
+    point: Floats2
     tip_at_zero: Floats
     spindle: Floats
     zero: Floats
@@ -99,14 +99,14 @@ def kinematic_chain(machine: Machine, tool_length: float | None = None) -> Kinem
     )
 
 
-@njit(cache=True, nogil=True)
-def forward_rows(chain: KinematicChain, joints: Floats, tip: Floats, axis: Floats) -> None:
+@kernel(writes="tip axis")
+def forward_rows(chain: KinematicChain, joints: Floats2, tip: Floats2, axis: Floats2) -> None:
     """Write tip and tool axis (n, 3) of each row of ``joints`` (n, 5)."""
     for row in range(joints.shape[0]):
         forward_row(chain, joints[row], tip[row], axis[row])
 
 
-@njit(cache=True)
+@inner
 def forward_row(chain: KinematicChain, joints: Floats, tip: Floats, axis: Floats) -> None:
     """Write tip and tool axis (3,) of displayed values (5,), mm or deg."""
     x, y, z = chain.tip_at_zero[0], chain.tip_at_zero[1], chain.tip_at_zero[2]
@@ -139,9 +139,9 @@ def forward_row(chain: KinematicChain, joints: Floats, tip: Floats, axis: Floats
     axis[0], axis[1], axis[2] = i, j, k
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="axis half_way")
 def tool_axis_rows(
-    chain: KinematicChain, rotary_columns: tuple[int, int], joints: Floats, axis: Floats, half_way: Floats
+    chain: KinematicChain, rotary_columns: tuple[int, int], joints: Floats2, axis: Floats2, half_way: Floats2
 ) -> None:
     """Write the tool axis (n, 3) of rows of ``joints`` (n, 5), and ``half_way`` (n - 1, 3) between each two rows.
 
@@ -164,14 +164,14 @@ def tool_axis_rows(
         half_way[row - 1, 0], half_way[row - 1, 1], half_way[row - 1, 2] = i, j, k
 
 
-@njit(cache=True)
+@inner
 def _cos_sin(q: float) -> tuple[float, float]:
     """Cosine and sine of degrees; whole turns drop out exactly."""
     angle = math.radians(q - 360.0 * math.floor(q / 360.0 + 0.5))
     return math.cos(angle), math.sin(angle)
 
 
-@njit(cache=True)
+@inner
 def _cos_sin_half_way(
     a: float, b: float, cos_a: float, sin_a: float, cos_b: float, sin_b: float
 ) -> tuple[float, float]:
@@ -183,7 +183,7 @@ def _cos_sin_half_way(
     return cos / length, sin / length
 
 
-@njit(cache=True)
+@inner
 def _rotate_about_joint(
     chain: KinematicChain, joint: int, cos: float, sin: float, i: float, j: float, k: float
 ) -> tuple[float, float, float]:

@@ -35,12 +35,12 @@ Status bits, kernels do not raise:
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Final, NamedTuple, TypeAlias
+from typing import Annotated, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats
-from trunnion.jit import njit
+from trunnion.arrays import Codes, Flags, Floats, Floats2, Floats3
+from trunnion.jit import inner, kernel
 from trunnion.machines.machine import Machine
 
 UNREACHABLE: Final = 1
@@ -60,6 +60,9 @@ _MIN_SLIDE_VOLUME: Final = 1e-9
 
 
 FlatArray: TypeAlias = tuple[float, ...]
+Pair: TypeAlias = Annotated[FlatArray, 2]
+Triple: TypeAlias = Annotated[FlatArray, 3]
+Matrix: TypeAlias = Annotated[FlatArray, 9]
 
 
 class KinematicParameters(NamedTuple):
@@ -83,20 +86,20 @@ class KinematicParameters(NamedTuple):
     tool_offset (3,) float    from there to the tool tip, mm
     """
 
-    columns: tuple[int, ...]
-    basis_1: FlatArray
-    basis_2: FlatArray
+    columns: Annotated[tuple[int, ...], 5]
+    basis_1: Matrix
+    basis_2: Matrix
     sense_1: float
-    half_difference: FlatArray
-    half_sum: FlatArray
-    phase: FlatArray
-    spindle: FlatArray
-    slides: FlatArray
-    slides_inverse: FlatArray
-    rotary_below: tuple[int, ...]
-    first_point: FlatArray
-    second_offset: FlatArray
-    tool_offset: FlatArray
+    half_difference: Pair
+    half_sum: Pair
+    phase: Pair
+    spindle: Triple
+    slides: Matrix
+    slides_inverse: Matrix
+    rotary_below: Annotated[tuple[int, ...], 3]
+    first_point: Triple
+    second_offset: Triple
+    tool_offset: Triple
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -239,15 +242,15 @@ def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: 
     return joints
 
 
-@njit(cache=True, nogil=True)
-def slide_rows(kinematics: KinematicParameters, tip: Floats, rotary: Floats, joints: Floats) -> None:
+@kernel(writes="joints")
+def slide_rows(kinematics: KinematicParameters, tip: Floats2, rotary: Floats2, joints: Floats2) -> None:
     """Call ``solve_slides`` for each row; joints (n, 5) is written."""
     for row in range(tip.shape[0]):
         solve_slides(kinematics, rotary[row, 0], rotary[row, 1], tip[row, 0], tip[row, 1], tip[row, 2], joints[row])
 
 
-@njit(cache=True, nogil=True)
-def solve_rows(kinematics: KinematicParameters, tip: Floats, axis: Floats, joints: Floats, status: Codes) -> None:
+@kernel(writes="joints status")
+def solve_rows(kinematics: KinematicParameters, tip: Floats2, axis: Floats2, joints: Floats3, status: Codes) -> None:
     """Call ``solve_point`` for each row; joints (2, n, 5) and status (n,) uint8 are written."""
     for row in range(tip.shape[0]):
         status[row] = solve_point(
@@ -262,7 +265,7 @@ def solve_rows(kinematics: KinematicParameters, tip: Floats, axis: Floats, joint
         )
 
 
-@njit(cache=True)
+@inner
 def solve_point(
     kinematics: KinematicParameters, x: float, y: float, z: float, i: float, j: float, k: float, out: Floats
 ) -> int:
@@ -282,7 +285,7 @@ def solve_point(
     return both
 
 
-@njit(cache=True)
+@inner
 def solve_tilt(kinematics: KinematicParameters, i: float, j: float, k: float) -> tuple[int, float, float, float, float]:
     """Return what both branches of a tool axis share.
 
@@ -317,7 +320,7 @@ def solve_tilt(kinematics: KinematicParameters, i: float, j: float, k: float) ->
     return POLE if pole else 0, u0, u1, (den - num) / (den + num), 2.0 * math.sqrt(num * den) / (den + num)
 
 
-@njit(cache=True)
+@inner
 def branch_angles(
     kinematics: KinematicParameters, u0: float, u1: float, cos: float, sin: float, status: int
 ) -> tuple[float, float, float, float, float, float]:
@@ -357,7 +360,7 @@ def branch_angles(
     return first + 0.0, second + 0.0, cos_1, sin_1, cos, sin  # adding zero turns -0.0 into 0.0
 
 
-@njit(cache=True)
+@inner
 def solve_slides(
     kinematics: KinematicParameters, first: float, second: float, x: float, y: float, z: float, out: Floats
 ) -> int:
@@ -375,7 +378,7 @@ def solve_slides(
     return solve_slides_cos_sin(kinematics, cos_1, sin_1, cos_2, sin_2, x, y, z, out)
 
 
-@njit(cache=True)
+@inner
 def solve_slides_cos_sin(
     kinematics: KinematicParameters,
     cos_1: float,
@@ -446,7 +449,7 @@ def solve_slides_cos_sin(
     return 0
 
 
-@njit(cache=True)
+@inner
 def slide_direction(
     kinematics: KinematicParameters, slide: int, cos_1: float, sin_1: float, cos_2: float, sin_2: float
 ) -> tuple[float, float, float]:
@@ -459,7 +462,7 @@ def slide_direction(
     return x, y, z
 
 
-@njit(cache=True)
+@inner
 def rotate_about(frame: FlatArray, cos: float, sin: float, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Return a vector turned about the third row of ``frame``, an orthonormal 3x3 flattened by rows."""
     a = frame[0] * x + frame[1] * y + frame[2] * z

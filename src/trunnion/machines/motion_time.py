@@ -13,8 +13,8 @@ import math
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats
-from trunnion.jit import njit
+from trunnion.arrays import Flags, Floats, Floats2
+from trunnion.jit import inner, kernel
 from trunnion.machines.machine import Machine
 
 #: How far an axis may leave a corner, mm or degrees: what controls take for cuts of usual accuracy.
@@ -61,9 +61,9 @@ def format_duration(seconds: float) -> str:
     return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} h"
 
 
-@njit(cache=True)
+@kernel(writes="seconds")
 def _fill_seconds(
-    steps: Floats,
+    steps: Floats2,
     length: Floats,
     rate: Floats,
     stops_after: Flags,
@@ -115,7 +115,7 @@ def _fill_seconds(
             before = end
 
 
-@njit(cache=True)
+@inner
 def _trapezoid(length: float, begin: float, end: float, path_speed: float, path_acceleration: float) -> float:
     """Seconds for a length from one speed to another, no faster than ``path_speed`` (infinite: as the ramps allow)."""
     if not math.isfinite(path_acceleration):

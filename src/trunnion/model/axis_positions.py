@@ -12,8 +12,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats
-from trunnion.jit import njit
+from trunnion.arrays import Codes, Flags, Floats, Floats2, Floats3
+from trunnion.jit import inner, kernel
 from trunnion.machines import Machine, inverse
 from trunnion.machines.inverse import KinematicParameters, solve_slides
 
@@ -130,10 +130,6 @@ def joints_from_rows(
     """
     joints = np.empty((len(xyz), 5))
     x, y, z = slide_columns(machine)
-    # Numba compiles once more for what may be written to: columns that still grow are the same as those of a run here.
-    xyz, rotary = xyz.view(), rotary.view()
-    xyz.setflags(write=False)
-    rotary.setflags(write=False)
     write_joints(kinematics, (x, y, z), machine.rotary, xyz_is_tip, xyz, rotary, joints)
     return joints
 
@@ -143,16 +139,16 @@ def slide_columns(machine: Machine) -> list[int]:
     return [machine.column(name) for name in "XYZ"]
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="rotary status")
 def resolve_turns(
-    rotary: Floats,
+    rotary: Floats2,
     turn_rule: Codes,
     vector: Flags,
-    branches: Floats,
+    branches: Floats3,
     pole: Flags,
     current: Floats,
     endless: Flags,
-    travel: Floats,
+    travel: Floats2,
     turn_start: Floats,
     deciding_axis: int,
     status: Codes,
@@ -170,8 +166,8 @@ def resolve_turns(
     a, b = current[0], current[1]
     for row in range(rotary.shape[0]):
         if not vector[row]:
-            a = rotary_position(a, rotary[row, 0], turn_rule[row] & 15, turn_start[0])
-            b = rotary_position(b, rotary[row, 1], turn_rule[row] >> 4, turn_start[1])
+            a = _rotary_position(a, rotary[row, 0], turn_rule[row] & 15, turn_start[0])
+            b = _rotary_position(b, rotary[row, 1], turn_rule[row] >> 4, turn_start[1])
         else:
             found = False
             one, two = a, b
@@ -180,8 +176,8 @@ def resolve_turns(
                 p, q = branches[branch, row, 0], branches[branch, row, 1]
                 if math.isnan(q):
                     continue
-                p = a if pole[row] else nearest_turn(a, p, endless[0], travel[0, 0], travel[0, 1])
-                q = nearest_turn(b, q, endless[1], travel[1, 0], travel[1, 1])
+                p = a if pole[row] else _nearest_turn(a, p, endless[0], travel[0, 0], travel[0, 1])
+                q = _nearest_turn(b, q, endless[1], travel[1, 0], travel[1, 1])
                 fits = (
                     travel[0, 0] - TRAVEL_TOLERANCE <= p <= travel[0, 1] + TRAVEL_TOLERANCE
                     and travel[1, 0] - TRAVEL_TOLERANCE <= q <= travel[1, 1] + TRAVEL_TOLERANCE
@@ -201,7 +197,7 @@ def resolve_turns(
         rotary[row, 1] = b
 
 
-@njit(cache=True)
+@inner
 def preferred(p: float, q: float, one: float, two: float, a: float, b: float, deciding_axis: int) -> bool:
     """Whether a control whose axes stand at ``a`` and ``b`` takes ``p`` and ``q`` rather than ``one`` and ``two``."""
     if deciding_axis == TOTAL_ROTATION:
@@ -219,13 +215,12 @@ def preferred(p: float, q: float, one: float, two: float, a: float, b: float, de
     return False
 
 
-@njit(cache=True)
+@inner
 def from_whole_turn(angle: float) -> float:
     """How far an angle is from the nearest whole turn, degrees."""
     return abs(angle - 360.0 * math.floor(angle / 360.0 + 0.5))
 
 
-@njit(cache=True)
 def rotary_position(current: float, value: float, turn_rule: int, turn_start: float) -> float:
     """Position of a rotary axis that stands at ``current`` after a word with ``value`` (NaN: no word), deg."""
     if math.isnan(value):
@@ -244,7 +239,9 @@ def rotary_position(current: float, value: float, turn_rule: int, turn_start: fl
     return value + 360.0 * math.floor(turns + 0.5)
 
 
-@njit(cache=True)
+_rotary_position = inner(rotary_position)
+
+
 def nearest_turn(current: float, value: float, endless: bool, low: float, high: float) -> float:
     """The angle equal to ``value`` but for whole turns that is nearest to ``current``; inside the travel if any is."""
     close = value + 360.0 * math.floor((current - value) / 360.0 + 0.5)
@@ -258,15 +255,18 @@ def nearest_turn(current: float, value: float, endless: bool, low: float, high: 
     return close
 
 
-@njit(cache=True, nogil=True)
+_nearest_turn = inner(nearest_turn)
+
+
+@kernel(writes="joints")
 def write_joints(
     kinematics: KinematicParameters,
     slides: tuple[int, int, int],
     rotary_columns: tuple[int, int],
     xyz_is_tip: Flags,
-    xyz: Floats,
-    rotary: Floats,
-    joints: Floats,
+    xyz: Floats2,
+    rotary: Floats2,
+    joints: Floats2,
 ) -> None:
     """Write ``joints`` (n, 5) of rows, as ``joints_from_rows`` says.
 

@@ -6,9 +6,9 @@ It compares every word's count with the one printed last, and writes the words t
 of its own, inlined, it takes a third more time.
 """
 
-from trunnion.arrays import Bytes, Flags, Ints
+from trunnion.arrays import Bytes, Bytes2, Flags, Ints, Ints2
 from trunnion.controls.words import ABSENT
-from trunnion.jit import ONE, njit, signed, unsigned
+from trunnion.jit import ONE, inlined, kernel, signed, unsigned
 
 _TWO = ONE + ONE
 _U10, _U100, _U103, _ZERO = unsigned(10), unsigned(100), unsigned(103), unsigned(48)
@@ -33,7 +33,7 @@ LETTERS = 12
 ) = range(11)
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _put_pair(pair: int, out: Bytes, at: int) -> None:
     """Write two digits at ``at``: (pair * 103) >> 10 is pair // 10 for pairs below 100."""
     tens = (pair * _U103) >> _U10
@@ -41,7 +41,7 @@ def _put_pair(pair: int, out: Bytes, at: int) -> None:
     out[at + ONE] = _ZERO + pair - tens * _U10
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _put_whole(number: int, out: Bytes, at: int) -> int:
     """Write the digits of a number that is not negative at ``at``, two at a time; returns where they end."""
     rest, power = unsigned(number), _U10
@@ -62,7 +62,7 @@ def _put_whole(number: int, out: Bytes, at: int) -> int:
     return end
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _put_fraction(fraction: int, decimals: int, out: Bytes, at: int) -> int:
     """Write a number of digits at ``at``, with leading zeros; returns where they end."""
     rest = unsigned(fraction)
@@ -78,7 +78,7 @@ def _put_fraction(fraction: int, decimals: int, out: Bytes, at: int) -> int:
     return end
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _put_number(
     count: int,
     decimals: int,
@@ -122,17 +122,17 @@ def _put_number(
     return at
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="last number out")
 def write_blocks(
-    table: Ints,
+    table: Ints2,
     forced: Ints,
     line_before: Ints,
     line_of: Ints,
     text_bytes: Bytes,
     text_ends: Ints,
     unnumbered: Flags,
-    rule: Ints,
-    spelling: Bytes,
+    rule: Ints2,
+    spelling: Bytes2,
     last: Ints,
     number: Ints,
     number_letter: Bytes,

@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Flags, Floats, Floats2, Ints
+from trunnion.jit import inner, kernel
 from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
 from trunnion.machines.forward import KinematicChain, forward_row, kinematic_chain
 from trunnion.machines.inverse import POLE, branch_angles, solve_slides, solve_tilt
@@ -142,13 +142,13 @@ def branches_of_rows(machine: Machine, rotary: Floats) -> Ints:
     return found
 
 
-@njit(cache=True)
-def _fill_branches(kinematics: KinematicParameters, rotary: Floats, found: Ints) -> None:
+@kernel(writes="found")
+def _fill_branches(kinematics: KinematicParameters, rotary: Floats2, found: Ints) -> None:
     for row in range(rotary.shape[0]):
         found[row] = _branch_of(kinematics, rotary[row, 1])
 
 
-@njit(cache=True)
+@inner
 def _branch_of(kinematics: KinematicParameters, second: float) -> int:
     """Which of the two solutions has this second angle, degrees; -1 where they are one."""
     angle = math.radians(second)
@@ -156,22 +156,22 @@ def _branch_of(kinematics: KinematicParameters, second: float) -> int:
     return -1 if abs(sine) < _SAME_BRANCH_SINE else 0 if sine > 0.0 else 1
 
 
-@njit(cache=True)
+@kernel(writes="copies new_tip new_axis new_rotary")
 def _divide_rows(
     chain: KinematicChain,
     kinematics: KinematicParameters,
     columns: Ints,
-    tip: Floats,
-    axis: Floats,
-    rotary: Floats,
+    tip: Floats2,
+    axis: Floats2,
+    rotary: Floats2,
     divisible: Flags,
     allowed: Floats,
     first: int,
     count: int,
     copies: Ints,
-    new_tip: Floats,
-    new_axis: Floats,
-    new_rotary: Floats,
+    new_tip: Floats2,
+    new_axis: Floats2,
+    new_rotary: Floats2,
 ) -> tuple[int, int]:
     """Write the rows that are added from row ``first`` on behind the ``count`` that there are, and into how many rows
     each row becomes; returns the row before which there was no more room, and how many have been added."""
@@ -230,7 +230,7 @@ def _divide_rows(
     return tip.shape[0], count
 
 
-@njit(cache=True)
+@inner
 def _surely_within(chain: KinematicChain, columns: Ints, begin: Floats, end: Floats, allowed: Floats) -> bool:
     """Whether so little turns that nothing can be off by more than is allowed; most spans of a dense path are such.
 
@@ -257,14 +257,14 @@ def _surely_within(chain: KinematicChain, columns: Ints, begin: Floats, end: Flo
     return within
 
 
-@njit(cache=True)
+@inner
 def _axis_values(kinematics: KinematicParameters, columns: Ints, tip: Floats, rotary: Floats, out: Floats) -> None:
     """Write all five axis values."""
     solve_slides(kinematics, rotary[0], rotary[1], tip[0], tip[1], tip[2], out)
     out[columns[0]], out[columns[1]] = rotary[0], rotary[1]
 
 
-@njit(cache=True)
+@inner
 def _write_added_row(
     columns: Ints,
     tips: Floats,
@@ -289,7 +289,7 @@ def _write_added_row(
         rotary[k] = begin[columns[k]] + share * (end[columns[k]] - begin[columns[k]])
 
 
-@njit(cache=True)
+@inner
 def _angle_between(a: Floats, b: Floats) -> float:
     """Angle between unit vectors, rad, with all digits when it is small."""
     less = math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
@@ -297,7 +297,7 @@ def _angle_between(a: Floats, b: Floats) -> float:
     return 2.0 * math.atan2(less, more)
 
 
-@njit(cache=True)
+@inner
 def _slerp(axes: Floats, part: float, out: Floats) -> None:
     """Write the tool axis on the great circle from ``axes[0]`` to ``axes[1]``, ``axes[2, 0]`` radians apart."""
     angle = axes[2, 0]
@@ -315,7 +315,7 @@ def _slerp(axes: Floats, part: float, out: Floats) -> None:
         out[k] /= total
 
 
-@njit(cache=True)
+@inner
 def _axis_values_at(
     kinematics: KinematicParameters,
     columns: Ints,
@@ -354,14 +354,14 @@ def _axis_values_at(
     out[columns[0]], out[columns[1]] = first, second
 
 
-@njit(cache=True)
+@inner
 def _nearest_turn(angle: float, near: float) -> float:
     """The angle with the whole turns that bring it nearest."""
     wound: float = angle + 360.0 * math.floor((near - angle) / 360.0 + 0.5)
     return wound
 
 
-@njit(cache=True)
+@inner
 def _span_error(
     chain: KinematicChain,
     columns: Ints,
@@ -390,7 +390,7 @@ def _span_error(
     )
 
 
-@njit(cache=True)
+@inner
 def _sampled_error(
     chain: KinematicChain,
     begin: Floats,
@@ -431,7 +431,7 @@ def _sampled_error(
     return worst
 
 
-@njit(cache=True)
+@inner
 def _longest_step(
     chain: KinematicChain,
     kinematics: KinematicParameters,
@@ -476,7 +476,7 @@ def _longest_step(
     return low
 
 
-@njit(cache=True)
+@inner
 def _turn_pieces(
     chain: KinematicChain,
     kinematics: KinematicParameters,

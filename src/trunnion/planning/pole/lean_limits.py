@@ -21,8 +21,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats
-from trunnion.jit import njit
+from trunnion.arrays import Flags, Floats, Floats2
+from trunnion.jit import inner, kernel
 from trunnion.machines import KinematicParameters, Machine
 
 #: Halvings by which the least angle is found.
@@ -103,7 +103,7 @@ def second_angles_within(
     target, slack = np.where(fixed, wanted, target), np.where(fixed, 0.0, slack)
     path = np.empty((3, len(axis)))
     lower, upper = np.maximum(target - slack, bounds[0]), np.minimum(target + slack, bounds[1])
-    return path[0] if _limited_rate_path(np.clip(target, *bounds), lower, upper, max_step, *path) else None
+    return path[0] if _limit_rate(np.clip(target, *bounds), lower, upper, max_step, *path) else None
 
 
 def _between(kinematics: KinematicParameters) -> tuple[float, float]:
@@ -113,10 +113,10 @@ def _between(kinematics: KinematicParameters) -> tuple[float, float]:
     return more + less, more - less
 
 
-@njit(cache=True)
+@kernel(writes="path")
 def _least_lean(
     kinematics: KinematicParameters,
-    axis: Floats,
+    axis: Floats2,
     wanted: Floats,
     max_step: Floats,
     fixed: Flags,
@@ -124,7 +124,7 @@ def _least_lean(
     angle: float,
     g: float,
     b: float,
-    path: Floats,
+    path: Floats2,
 ) -> float:
     """Write the way into ``path[0]``; return the least lean, rad, or NaN. The other rows are for the work."""
     lower, upper = path[3], path[4]
@@ -144,7 +144,7 @@ def _least_lean(
     return high
 
 
-@njit(cache=True)
+@inner
 def _first_angle_ranges(
     kinematics: KinematicParameters,
     axis: Floats,
@@ -186,7 +186,7 @@ def _first_angle_ranges(
         upper[row] = min(wanted[row] + after, bounds[1])
 
 
-@njit(cache=True)
+@inner
 def _allowed_turns(
     kinematics: KinematicParameters, wanted: float, u0: float, u1: float, least: float, most: float
 ) -> tuple[float, float]:
@@ -210,10 +210,10 @@ def _allowed_turns(
     return below, above
 
 
-@njit(cache=True)
+@kernel(writes="target slack")
 def _second_angle_ranges(
     kinematics: KinematicParameters,
-    axis: Floats,
+    axis: Floats2,
     first: Floats,
     near: Floats,
     angle: float,
@@ -249,7 +249,15 @@ def _second_angle_ranges(
         slack[row] = math.degrees(math.acos(min(max(share, -1.0), 1.0)))
 
 
-@njit(cache=True)
+@kernel(writes="path low high")
+def _limit_rate(
+    wanted: Floats, lower: Floats, upper: Floats, max_step: Floats, path: Floats, low: Floats, high: Floats
+) -> bool:
+    """Call ``_limited_rate_path``."""
+    return _limited_rate_path(wanted, lower, upper, max_step, path, low, high)
+
+
+@inner
 def _limited_rate_path(
     wanted: Floats, lower: Floats, upper: Floats, max_step: Floats, path: Floats, low: Floats, high: Floats
 ) -> bool:

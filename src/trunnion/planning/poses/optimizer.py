@@ -24,8 +24,8 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
-from trunnion.arrays import Codes, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Codes, Codes2, Floats, Floats2, Floats3, Ints, Ints2, Ints3
+from trunnion.jit import inlined, inner, kernel
 from trunnion.machines import KinematicParameters
 from trunnion.machines.inverse import POLE, UNREACHABLE, branch_angles, rotate_about, solve_slides_cos_sin, solve_tilt
 from trunnion.planning.poses.placement import first_angle, is_beyond, principal_angle
@@ -68,7 +68,7 @@ Tilt: TypeAlias = tuple[int, float, float, float, float]
 _COS_BEND: Final = math.cos(math.radians(MAX_BEND))
 
 
-@njit(cache=True)
+@inner
 def is_bent(kinematics: KinematicParameters, first: float, second: float, i: float, j: float, k: float) -> bool:
     """Whether the tool axis at these rotary values, degrees, is off the direction i, j, k by more than ``MAX_BEND``."""
     angle = math.radians(second)
@@ -109,7 +109,7 @@ WAS_OPEN: Final = 2
 _SKIPPED: Final = 50
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _solve_branches(
     kinematics: KinematicParameters,
     space: SearchSpace,
@@ -149,7 +149,7 @@ def _solve_branches(
                 branch_status[b, SLIDES_BEYOND] += is_beyond(joints[column], space.low[column], space.high[column])
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _second_branch_is_closed(
     kinematics: KinematicParameters, space: SearchSpace, states: Ints, angle: Floats, branch_status: Ints
 ) -> bool:
@@ -172,7 +172,7 @@ def _second_branch_is_closed(
     return inside and surely and branch_status[0, SLIDES_BEYOND] == 0
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _open_states(
     kinematics: KinematicParameters, space: SearchSpace, states: Ints, count: Ints, angle: Floats, branch_status: Ints
 ) -> None:
@@ -193,7 +193,7 @@ def _open_states(
         branch_status[states[t, 0], IS_OPEN] |= count[CURRENT, OPEN, t]
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _branch_steps(angle: Floats, step: Floats, turn_jump: Ints, branch_status: Ints) -> None:
     """The steps between the branches the nearer way, where they have open states."""
     for a in range(2):
@@ -207,7 +207,7 @@ def _branch_steps(angle: Floats, step: Floats, turn_jump: Ints, branch_status: I
                 turn_jump[a, b, r] = int(whole)
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _travel_from_start(space: SearchSpace, states: Ints, angle: Floats, t: int) -> float:
     """Travel to state ``t`` of the first row, degrees."""
     travel = 0.0
@@ -219,7 +219,7 @@ def _travel_from_start(space: SearchSpace, states: Ints, angle: Floats, t: int) 
     return travel
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _rotary_step(
     space: SearchSpace, states: Ints, step: Floats, turn_jump: Ints, s: int, t: int
 ) -> tuple[float, float, bool]:
@@ -236,7 +236,7 @@ def _rotary_step(
     return one, two, turns == 0
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _natural_source_is_open(
     space: SearchSpace, states: Ints, count: Ints, turn_jump: Ints, branch_status: Ints, t: int
 ) -> bool:
@@ -255,7 +255,7 @@ def _natural_source_is_open(
     return bool(count[PREVIOUS, OPEN, index])
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _find_predecessor(
     kinematics: KinematicParameters,
     space: SearchSpace,
@@ -313,7 +313,7 @@ def _find_predecessor(
     return pointer
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _is_not_preferred(space: SearchSpace, states: Ints, angle: Floats, prefer: int, t: int) -> bool:
     """Whether state ``t`` is not on the preferred side."""
     b = states[t, 0]
@@ -323,7 +323,7 @@ def _is_not_preferred(space: SearchSpace, states: Ints, angle: Floats, prefer: i
     return other
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _nearness_to_limits(
     kinematics: KinematicParameters, space: SearchSpace, states: Ints, angle: Floats, t: int
 ) -> float:
@@ -338,7 +338,7 @@ def _nearness_to_limits(
     return close
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _advance(cost: Floats, count: Ints, angle: Floats, step: Floats, branch_status: Ints) -> None:
     """This row becomes the last one. Costs count from the cheapest on: small numbers keep their digits."""
     base = np.inf
@@ -358,7 +358,7 @@ def _advance(cost: Floats, count: Ints, angle: Floats, step: Floats, branch_stat
         branch_status[b, WAS_OPEN] = branch_status[b, IS_OPEN]
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _half_step(move: float) -> float:
     """Half of a move, degrees; of more than a turn, half a turn: at whole turns nothing is bent."""
     return max(min(0.5 * move, 180.0), -180.0)
@@ -372,22 +372,22 @@ def workspace(states: int) -> tuple[Floats, Ints, Floats, Floats, Ints, Ints, Fl
     )  # fmt: skip
 
 
-@njit(cache=True, nogil=True, _nrt=False)
+@kernel(writes="backpointers cost count angle step turn_jump branch_status joints")
 def find_cheapest(
     kinematics: KinematicParameters,
     space: SearchSpace,
-    states: Ints,
-    tip: Floats,
-    axis: Floats,
+    states: Ints2,
+    tip: Floats2,
+    axis: Floats2,
     cuts: Codes,
     prefer: int,
-    backpointers: Codes,
-    cost: Floats,
-    count: Ints,
-    angle: Floats,
-    step: Floats,
-    turn_jump: Ints,
-    branch_status: Ints,
+    backpointers: Codes2,
+    cost: Floats2,
+    count: Ints3,
+    angle: Floats3,
+    step: Floats3,
+    turn_jump: Ints3,
+    branch_status: Ints2,
     joints: Floats,
 ) -> int:
     """Fill the backpointers ``backpointers`` (n, s); return the state in which the cheapest way ends.
@@ -451,20 +451,20 @@ def find_cheapest(
     return end
 
 
-@njit(cache=True, nogil=True, _nrt=False)
+@kernel(writes="backpointers cost count angle step turn_jump branch_status joints")
 def find_nearest(
     kinematics: KinematicParameters,
     space: SearchSpace,
-    states: Ints,
-    tip: Floats,
-    axis: Floats,
-    backpointers: Codes,
-    cost: Floats,
-    count: Ints,
-    angle: Floats,
-    step: Floats,
-    turn_jump: Ints,
-    branch_status: Ints,
+    states: Ints2,
+    tip: Floats2,
+    axis: Floats2,
+    backpointers: Codes2,
+    cost: Floats2,
+    count: Ints3,
+    angle: Floats3,
+    step: Floats3,
+    turn_jump: Ints3,
+    branch_status: Ints2,
     joints: Floats,
 ) -> int:
     """As ``find_cheapest``, but from row to row the state with the least travel, whatever comes after."""
@@ -494,8 +494,8 @@ def find_nearest(
     return now
 
 
-@njit(cache=True, nogil=True)
-def trace_back(backpointers: Codes, end: int, state: Codes) -> None:
+@kernel(writes="state")
+def trace_back(backpointers: Codes2, end: int, state: Codes) -> None:
     """Read the way back: ``state`` (n,) is the state of each row, with the bits of the step into it."""
     now = end
     for row in range(backpointers.shape[0] - 1, -1, -1):

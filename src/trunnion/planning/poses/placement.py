@@ -10,8 +10,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Codes, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Codes, Floats, Floats2, Ints, Ints2
+from trunnion.jit import inlined, inner, kernel
 from trunnion.machines import KinematicParameters
 from trunnion.machines.inverse import POLE, UNREACHABLE, branch_angles, solve_slides_cos_sin, solve_tilt
 from trunnion.planning.poses.states import (
@@ -56,34 +56,34 @@ UNDECIDED: Final = 4
 WAS_POLE: Final = 5
 
 
-@njit(cache=True)
+@inner
 def is_beyond(value: float, low: float, high: float) -> bool:
     """Whether a value lies outside of its limits for good."""
     return value < low - LIMIT_TOLERANCE or value > high + LIMIT_TOLERANCE
 
 
-@njit(cache=True)
+@inner
 def principal_angle(value: float) -> float:
     """A value without its whole turns, degrees in [-180, 180]."""
     turns: float = np.rint(value / 360.0)
     return value - 360.0 * turns
 
 
-@njit(cache=True)
+@inner
 def first_angle(kinematics: KinematicParameters, i: float, j: float, k: float, branch: int) -> float:
     """Angle of the first rotary axis under a tool axis off the pole, in a branch, degrees."""
     status, u0, u1, cos, sin = solve_tilt(kinematics, i, j, k)
     return branch_angles(kinematics, u0, u1, cos, sin if branch == 0 else -sin, status)[0]
 
 
-@njit(cache=True)
+@inner
 def with_turns(angle: float, turn: int, endless: bool, last: float) -> float:
     """An angle with its turns: those of its state, or those that bring it nearest to the last value."""
     turns: float = np.rint((last - angle) / 360.0) if endless else turn
     return angle + 360.0 * turns
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _write_row(
     kinematics: KinematicParameters,
     space: SearchSpace,
@@ -122,20 +122,20 @@ def _write_row(
         found[row, r] = value if np.isnan(begin) else value - 360.0 * np.floor((value - begin) / 360.0)
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="found outcome excess extremes where changes")
 def place_rows(
     kinematics: KinematicParameters,
     space: SearchSpace,
-    states: Ints,
+    states: Ints2,
     display_low: Floats,
-    tip: Floats,
-    axis: Floats,
+    tip: Floats2,
+    axis: Floats2,
     state: Codes,
-    found: Floats,
+    found: Floats2,
     outcome: Codes,
     excess: Floats,
-    extremes: Floats,
-    where: Ints,
+    extremes: Floats2,
+    where: Ints2,
     changes: Ints,
 ) -> None:
     """Fill the columns of ``PlannedPoses`` for the states of all rows.
@@ -185,8 +185,8 @@ def place_rows(
         last_1, last_2 = joints[columns[0]], joints[columns[1]]
 
 
-@njit(cache=True, nogil=True)
-def solve_rotary(kinematics: KinematicParameters, axis: Floats, branch: int, solutions: Floats) -> None:
+@kernel(writes="solutions")
+def solve_rotary(kinematics: KinematicParameters, axis: Floats2, branch: int, solutions: Floats2) -> None:
     """What tool axes (k, 3) ask of the rotary axes on one side, into ``solutions`` (k, 7), columns as named above."""
     for row in range(axis.shape[0]):
         i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
@@ -209,23 +209,23 @@ def solve_rotary(kinematics: KinematicParameters, axis: Floats, branch: int, sol
             )
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="progress state found outcome excess extremes where changes joints")
 def follow_nearest(
     kinematics: KinematicParameters,
     space: SearchSpace,
     display_low: Floats,
     first_row: int,
-    tip: Floats,
-    axis: Floats,
-    solutions: Floats,
+    tip: Floats2,
+    axis: Floats2,
+    solutions: Floats2,
     solved_branch: int,
     progress: Floats,
     state: Codes,
-    found: Floats,
+    found: Floats2,
     outcome: Codes,
     excess: Floats,
-    extremes: Floats,
-    where: Ints,
+    extremes: Floats2,
+    where: Ints2,
     changes: Ints,
     joints: Floats,
 ) -> bool:
@@ -310,7 +310,7 @@ def follow_nearest(
     return True
 
 
-@njit(cache=True)
+@inner
 def _branch_solution(
     kinematics: KinematicParameters, i: float, j: float, k: float, branch: int
 ) -> tuple[float, float, float, float, float, float]:
@@ -319,7 +319,7 @@ def _branch_solution(
     return branch_angles(kinematics, u0, u1, cos, sin if branch == 0 else -sin, status)
 
 
-@njit(cache=True)
+@inner
 def _fits(angle: float, low: float, high: float) -> bool:
     """Whether an angle lies within limits, maybe with whole turns added."""
     if low == -np.inf or high == np.inf:
@@ -327,7 +327,7 @@ def _fits(angle: float, low: float, high: float) -> bool:
     return not is_beyond(angle + 360.0 * math.ceil((low - LIMIT_TOLERANCE - angle) / 360.0), low, high)
 
 
-@njit(cache=True)
+@inner
 def _note_change(changes: Ints, row: int) -> None:
     """Write a row into ``PlannedPoses.changes``."""
     changes[0], changes[1] = changes[0] + 1, row

@@ -3,14 +3,11 @@
 A state is a branch of the inverse calculation and, for each rotary axis with limits, the whole turns that it is wound
 up by: its value is the angle of the branch in (-180, 180] plus 360 degrees times its turn. An endless axis has one turn
 state only, and goes the shorter way.
-
-The constants are compiled into kernels. ``trunnion.compiled`` keeps these by what the files hold in which the word njit
-stands, and so it does when one of the constants changes.
 """
 
 import math
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Annotated, Final, NamedTuple
 
 import numpy as np
 
@@ -85,12 +82,12 @@ class SearchSpace(NamedTuple):
     both       float       sum of the second angles of both branches, degrees, whole turns left out
     """
 
-    low: FlatArray
-    high: FlatArray
+    low: Annotated[FlatArray, 5]
+    high: Annotated[FlatArray, 5]
     slides: bool
-    turn_ranges: tuple[int, ...]
-    start: FlatArray
-    preferred_sign: FlatArray
+    turn_ranges: Annotated[tuple[int, ...], 4]
+    start: Annotated[FlatArray, 2]
+    preferred_sign: Annotated[FlatArray, 2]
     second_angle_sum: float
 
 

@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Codes, Flags, Floats, Floats2, Ints
+from trunnion.jit import kernel
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 from trunnion.planning.rotary_positions import is_endless
@@ -156,17 +156,17 @@ def _kernel_columns(
     return moves.tip, moves.kind, tip_speeds(operation), rotary, np.array(is_endless(machine)), speeds
 
 
-@njit(cache=True)
+@kernel(writes="share")
 def _speed_shares(
-    tip: Floats,
+    tip: Floats2,
     kind: Codes,
     rate: Floats,
-    rotary: Floats,
+    rotary: Floats2,
     free: Flags,
     rapid: Floats,
     off_part: Ints,
-    after: Floats,
-    share: Floats,
+    after: Floats2,
+    share: Floats2,
 ) -> tuple[float, int, int, int]:
     """Most share, its row and axis, and how many rows ask for more than all; all shares too if there is room."""
     most, where, which, count = 0.0, -1, 0, 0

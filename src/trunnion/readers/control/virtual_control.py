@@ -19,7 +19,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
-from trunnion.machines.inverse import kinematic_parameters, solve_slides
+from trunnion.machines.inverse import kinematic_parameters
 from trunnion.model import axis_positions
 from trunnion.model.run import Orientation, ProgrammedWord
 from trunnion.model.toolpath import Kind
@@ -132,8 +132,8 @@ class VirtualControl(RowRecorder, ABC):
         Both without a tool.
         """
         bare = replace(self.machine, tool_length=None)
-        joints = np.zeros(5)
-        solve_slides(kinematic_parameters(bare), 0.0, 0.0, 0.0, 0.0, 0.0, joints)
+        tip_is_given, tip, rotary = np.ones(1, np.bool_), np.zeros((1, 3)), np.zeros((1, 2))
+        joints = axis_positions.joints_from_rows(bare, kinematic_parameters(bare), tip_is_given, tip, rotary)[0]
         tip = forward(bare, np.zeros((1, 5)))[0][0]
         return np.nan_to_num(joints[self._slides]), tip
 

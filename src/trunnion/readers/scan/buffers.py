@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from trunnion.arrays import Codes, Floats, Ints
+from trunnion.arrays import Codes, Floats, Floats2, Ints, Ints2
 
 #: Fields of ``counters``: motion kind (0 rapid, 1 line, more for circles), rows, comments, place in the text, feeds,
 #: surface normals.
@@ -24,12 +24,12 @@ class ScanTarget(NamedTuple):
 
     kind: Codes
     programmed: Codes
-    xyz: Floats
-    rotary: Floats
+    xyz: Floats2
+    rotary: Floats2
     base: int
     line: Ints
     block_number: Ints
-    vector: Floats
+    vector: Floats2
     turn_rule: Codes
 
 
@@ -44,9 +44,9 @@ class ScanRecords(NamedTuple):
     numbers     (12,) float64  the numbers of one block, while it is being read
     """
 
-    comments: Ints
+    comments: Ints2
     feed_rows: Ints
     feed_values: Floats
     normal_rows: Ints
-    normals: Floats
+    normals: Floats2
     numbers: Floats

@@ -16,8 +16,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Bytes, Codes, Floats, Ints
-from trunnion.jit import ONE, njit, signed, unsigned
+from trunnion.arrays import Bytes, Codes, Floats, Floats2, Ints
+from trunnion.jit import ONE, kernel, signed, unsigned
 from trunnion.readers.scan.buffers import COMMENTS, FEEDS, KIND, LINE, POSITION, ROW, ScanRecords, ScanTarget
 
 NUMBER: Final = 1
@@ -87,7 +87,7 @@ def letter_table(
     return table
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="counters commanded target records")
 def scan_blocks(
     text: Bytes,
     end: int,
@@ -96,8 +96,8 @@ def scan_blocks(
     length_unit: float,
     feed_unit: float,
     turn_rule: int,
-    position_map: Floats,
-    vector_map: Floats,
+    position_map: Floats2,
+    vector_map: Floats2,
     counters: Ints,
     commanded: Floats,
     target: ScanTarget,

@@ -12,8 +12,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Flags, Floats, Floats2, Floats3, Ints
+from trunnion.jit import inner, kernel
 from trunnion.machines.forward import KinematicChain, forward_row, kinematic_chain
 from trunnion.model.run import Orientation, RowPositions, Run
 from trunnion.model.toolpath import Kind
@@ -111,15 +111,15 @@ class LinearizationErrors:
         return tips, axes
 
 
-@njit(cache=True)
+@kernel(writes="off_tip off_axis")
 def _linearization_errors(
     chain: KinematicChain,
-    joints: Floats,
-    tip_at: Floats,
-    axis_at: Floats,
+    joints: Floats2,
+    tip_at: Floats2,
+    axis_at: Floats2,
     rows: Ints,
-    tips: Floats,
-    axes: Floats,
+    tips: Floats3,
+    axes: Floats3,
     free_axis: Flags,
     tcp: Flags,
     tip_uncertainty: float,
@@ -159,7 +159,7 @@ def _linearization_errors(
         off_tip[row], off_axis[row] = worst_tip, math.degrees(worst_axis)
 
 
-@njit(cache=True)
+@inner
 def _distance_to_line(tip: Floats, ends: Floats, length_squared: float, fraction: float) -> float:
     """Distance of a tip from the line between ``ends`` (2, 3), mm; at ``fraction`` of it where it is short."""
     along, off = 0.0, 0.0
@@ -172,7 +172,7 @@ def _distance_to_line(tip: Floats, ends: Floats, length_squared: float, fraction
     return math.sqrt(off)
 
 
-@njit(cache=True)
+@inner
 def _angle_to_great_circle(axis: Floats, ends: Floats, angle: float, fraction: float) -> float:
     """Angle of a tool axis from the vector at ``fraction`` of the great circle between ``ends`` (2, 3), rad."""
     before, after = slerp_weights(angle, fraction)
@@ -182,7 +182,7 @@ def _angle_to_great_circle(axis: Floats, ends: Floats, angle: float, fraction: f
     return 2.0 * math.asin(min(0.5 * math.sqrt(off), 1.0))
 
 
-@njit(cache=True)
+@inner
 def _fraction_done(tip_at: Floats, axis_at: Floats, row: int, tips: Floats, axes: Floats, angle: float) -> float:
     """Fraction of a path at which a position lies: by the tip, or by the tool axis where the path is short."""
     length_squared, along = 0.0, 0.0

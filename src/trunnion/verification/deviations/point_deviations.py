@@ -12,8 +12,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Codes, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Codes, Floats, Floats2, Ints
+from trunnion.jit import kernel
 from trunnion.machines import Machine
 from trunnion.model.run import ProgrammedWord, RowPositions
 from trunnion.verification.expected.path import ExpectedPath, Section
@@ -127,13 +127,13 @@ class _Collector:
         return DeviationSummary(self._largest, rms, self._limit, tuple(bad), self._count)
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="off_tip off_axis")
 def compare_rows(
-    nc_tip: Floats,
-    nc_axis: Floats,
-    joints: Floats,
-    cl_tip: Floats,
-    cl_axis: Floats,
+    nc_tip: Floats2,
+    nc_axis: Floats2,
+    joints: Floats2,
+    cl_tip: Floats2,
+    cl_axis: Floats2,
     nc: Ints,
     cl: Ints,
     column: int,

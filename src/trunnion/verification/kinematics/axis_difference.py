@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.jit import njit
+from trunnion.jit import inner
 from trunnion.machines import Machine
 
 #: By how much forward and inverse map may differ, rad.
@@ -44,7 +44,7 @@ class RotaryGeometry:
         return RotaryGeometry(first, one.sense, np.array(one.direction), np.array(two.direction))
 
 
-@njit(cache=True, nogil=True)
+@inner
 def axis_difference(
     is_: Floats, i: int, expected: Floats, j: int, value: float, sense: float, first: Floats, second: Floats
 ) -> tuple[float, float]:

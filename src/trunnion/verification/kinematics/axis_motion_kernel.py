@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Codes, Flags, Floats, Floats2, Floats3, Ints, Ints2
+from trunnion.jit import inner, kernel
 from trunnion.machines import Machine
 from trunnion.model.feed_path import NO_ROTATION
 
@@ -44,10 +44,10 @@ class ChunkRows(NamedTuple):
                                    slides, else NaN; or empty
     """
 
-    joints: Floats
-    tip: Floats
-    axis: Floats
-    half_way: Floats
+    joints: Floats2
+    tip: Floats2
+    axis: Floats2
+    half_way: Floats2
     kind: Codes
     programmed: Codes
     tcp: Flags
@@ -59,7 +59,7 @@ class ChunkRows(NamedTuple):
     feed_lengths: Floats
 
 
-@njit(cache=True)
+@inner
 def half_way_deviation(axis: Floats, half_way: Floats, row: int) -> float:
     """Degrees from ``half_way`` (k, 3) at a row to the middle of the great circle from ``axis`` there to the next one.
 
@@ -75,7 +75,7 @@ def half_way_deviation(axis: Floats, half_way: Floats, row: int) -> float:
     return math.degrees(chord if chord < 1e-8 else 2.0 * math.asin(min(1.0, 0.5 * chord)))
 
 
-@njit(cache=True, nogil=True)
+@kernel(writes="carry extremes extreme_rows times shares deviation")
 def axis_motion_rows(
     first: int,
     rows: ChunkRows,
@@ -83,10 +83,10 @@ def axis_motion_rows(
     arc_row: Ints,
     arc_length: Floats,
     carry: Floats,
-    extremes: Floats,
-    extreme_rows: Ints,
-    times: Floats,
-    shares: Floats,
+    extremes: Floats2,
+    extreme_rows: Ints2,
+    times: Floats2,
+    shares: Floats3,
     deviation: Floats,
 ) -> None:
     """Analyze k rows from row ``first`` on.
@@ -124,7 +124,7 @@ def axis_motion_rows(
     carry[1] = arc
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _axis_steps(
     rows: ChunkRows, at: int, row: int, rotary: Flags, extremes: Floats, extreme_rows: Ints
 ) -> tuple[float, float]:
@@ -148,14 +148,14 @@ def _axis_steps(
     return math.sqrt(squares), turned
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _tip_travel(tip: Floats, at: int) -> float:
     """Straight distance of the tip in a row, mm."""
     dx, dy, dz = tip[at + 1, 0] - tip[at, 0], tip[at + 1, 1] - tip[at, 1], tip[at + 1, 2] - tip[at, 2]
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _feed_length(
     rows: ChunkRows, at: int, on_arc: bool, travel: float, slides: float, turned: float
 ) -> tuple[float, float]:
@@ -169,7 +169,7 @@ def _feed_length(
     return length, counts
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _feed_and_minutes(rows: ChunkRows, at: int, length: float) -> tuple[float, float]:
     """Feed along a length, per minute, and the minutes it takes; infinite and 0 for rapids and without a feed."""
     if rows.kind[at] == 0:
@@ -184,7 +184,7 @@ def _feed_and_minutes(rows: ChunkRows, at: int, length: float) -> tuple[float, f
     return feed, length / feed
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _axis_shares(
     joints: Floats,
     at: int,

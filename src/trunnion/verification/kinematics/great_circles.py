@@ -3,10 +3,10 @@
 import math
 
 from trunnion.arrays import Floats
-from trunnion.jit import njit
+from trunnion.jit import inner
 
 
-@njit(cache=True)
+@inner
 def angle_between(a: Floats, i: int, b: Floats, j: int) -> float:
     """Angle between the unit vectors ``a[i]`` and ``b[j]``, rad, exact for small angles and for opposite vectors."""
     less, more = 0.0, 0.0
@@ -16,7 +16,7 @@ def angle_between(a: Floats, i: int, b: Floats, j: int) -> float:
     return 2.0 * math.atan2(math.sqrt(less), math.sqrt(more))
 
 
-@njit(cache=True)
+@inner
 def slerp_weights(angle: float, fraction: float) -> tuple[float, float]:
     """Weights of both ends for the vector at a fraction of a great circle of ``angle`` radians."""
     sine = math.sin(angle)

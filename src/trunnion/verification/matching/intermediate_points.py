@@ -13,8 +13,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Codes, Flags, Floats, Floats2, Ints
+from trunnion.jit import inner, kernel
 from trunnion.model.run import RowPositions
 from trunnion.verification.kinematics.axis_difference import RotaryGeometry, axis_difference
 from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
@@ -29,8 +29,8 @@ _ABOUT: Final = 3.0
 class PathPoints(NamedTuple):
     """CL points in their order: tip (m, 3), axis (m, 3) and kind (m,)."""
 
-    tip: Floats
-    axis: Floats
+    tip: Floats2
+    axis: Floats2
     kind: Codes
 
 
@@ -69,8 +69,8 @@ class FollowedPath:
 class _Motions(NamedTuple):
     """Motions in their order; ``value`` (n,) is the position of the first rotary axis, degrees."""
 
-    tip: Floats
-    axis: Floats
+    tip: Floats2
+    axis: Floats2
     kind: Codes
     value: Floats
 
@@ -95,7 +95,7 @@ def follow_path(
     return FollowedPath(motions, reached, cl_point[:motions], arrives[:motions])
 
 
-@njit(cache=True)
+@kernel(writes="cl_point arrives")
 def _follow(
     motions: _Motions,
     points: PathPoints,
@@ -132,7 +132,7 @@ def _follow(
     return followed, reached
 
 
-@njit(cache=True)
+@inner
 def _last_at_point(
     motions: _Motions, i: int, points: PathPoints, j: int, limits: FollowLimits, sense: float, first: Floats,
     second: Floats,
@@ -156,7 +156,7 @@ def _last_at_point(
     return last
 
 
-@njit(cache=True)
+@inner
 def _is_at(tip: Floats, axis: Floats, i: int, points: PathPoints, j: int, near_tip: float, near_axis: float) -> bool:
     for k in range(3):
         if not abs(tip[i, k] - points.tip[j, k]) <= near_tip or not abs(axis[i, k] - points.axis[j, k]) <= near_axis:
@@ -164,7 +164,7 @@ def _is_at(tip: Floats, axis: Floats, i: int, points: PathPoints, j: int, near_t
     return True
 
 
-@njit(cache=True)
+@inner
 def _fraction_of_line(
     motions: _Motions, i: int, points: PathPoints, j: int, limits: FollowLimits, done: float
 ) -> float:

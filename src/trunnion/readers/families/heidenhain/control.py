@@ -10,7 +10,6 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, Mount, forward
-from trunnion.machines.inverse import solve_slides
 from trunnion.model import axis_positions
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
@@ -247,9 +246,9 @@ class HeidenhainControl(VirtualControl):
 
     def _slides_for(self, tip: Floats, joints: Floats) -> Floats | None:
         """Slides X, Y, Z that bring the tip to a point of the workpiece frame, with the rotary axes of ``joints``."""
-        first, second = (float(joints[column]) for column in self.machine.rotary)
-        found = np.zeros(5)
-        solve_slides(self._kinematics, first, second, float(tip[0]), float(tip[1]), float(tip[2]), found)
+        rotary = joints[None, list(self.machine.rotary)]
+        tip_is_given = np.ones(1, np.bool_)
+        found = axis_positions.joints_from_rows(self.machine, self._kinematics, tip_is_given, tip[None], rotary)[0]
         slides = found[self._slides]
         return slides if np.isfinite(slides).all() else None
 

@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Bytes, Codes, Floats, Ints
-from trunnion.jit import njit
+from trunnion.arrays import Bytes, Codes, Floats, Floats2, Ints
+from trunnion.jit import kernel
 from trunnion.readers.scan.buffers import COMMENTS, FEEDS, LINE, NORMALS, POSITION, ROW, ScanRecords, ScanTarget
 
 FEED: Final = 1
@@ -64,7 +64,7 @@ def letter_table(rotary: tuple[str, str]) -> Codes:
     return table
 
 
-@njit(cache=True)
+@kernel(writes="counters commanded target records")
 def scan_blocks(
     text: Bytes,
     end: int,
@@ -73,8 +73,8 @@ def scan_blocks(
     length_unit: float,
     feed_unit: float,
     turn_rule: int,
-    position_map: Floats,
-    vector_map: Floats,
+    position_map: Floats2,
+    vector_map: Floats2,
     counters: Ints,
     commanded: Floats,
     target: ScanTarget,

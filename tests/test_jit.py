@@ -1,0 +1,253 @@
+"""Kernels: kept machine code does what it did when it was compiled, and belongs to one state of the sources."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from trunnion import jit
+
+INNER = """
+from trunnion.jit import inner
+
+FACTOR = 2.0
+
+
+@inner
+def scaled(value):
+    return FACTOR * value
+
+
+@inner
+def folded(value):
+    return value % 360.0
+"""
+
+KERNELS = """
+from some_inner import folded, scaled
+from trunnion.arrays import Floats, Floats2
+from trunnion.jit import kernel
+
+
+@kernel(writes="out")
+def double(values: Floats, out: Floats) -> None:
+    for k in range(len(values)):
+        out[k] = scaled(values[k])
+
+
+@kernel(writes="out")
+def fold(table: Floats2, turn: tuple[int, float], out: Floats) -> bool:
+    for k in range(len(table)):
+        out[k] = folded(table[k, turn[0]] + turn[1])
+    return True
+"""
+
+RUN = """
+import numpy as np
+from some_kernels import double, fold
+
+values, out, again = np.array([0.5, 1.0, -2.0, 1.0, 300.0])[::2], np.empty(3), np.empty(3)
+values.flags.writeable = False
+double(values, out)
+fold(values[:, None], (0, 90.0), again)
+print(out.tolist(), again.tolist())
+print(double.was_loaded, fold.was_loaded)
+"""
+
+SHOW_LOG = "import logging; logging.basicConfig(level='INFO', format='%(message)s')\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with two modules of kernels."""
+    (tmp_path / "some_inner.py").write_text(INNER, encoding="utf-8")
+    (tmp_path / "some_kernels.py").write_text(KERNELS, encoding="utf-8")
+    return tmp_path
+
+
+def run(folder: Path, script: str = RUN, **environment: str) -> list[str]:
+    """What a fresh process prints that keeps its kernels in a folder."""
+    path = os.pathsep.join((str(folder), str(Path(__file__).parents[1] / "src")))
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "kept"), "PYTHONPATH": path, **environment}
+    done = subprocess.run(
+        [sys.executable, "-c", SHOW_LOG + script], env=environment, capture_output=True, text=True, check=True
+    )
+    return done.stdout.splitlines() + done.stderr.splitlines()
+
+
+def change(file: Path, old: str, new: str) -> None:
+    """Change a source file."""
+    source = file.read_text(encoding="utf-8")
+    assert old in source
+    file.write_text(source.replace(old, new), encoding="utf-8")
+
+
+def test_what_is_loaded_is_what_was_compiled(folder: Path) -> None:
+    compiled, loaded = run(folder), run(folder)
+
+    assert compiled[0] == loaded[0] == "[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]"
+    assert compiled[1] == "False False"
+    assert loaded[1:] == ["True True"]
+    assert [line for line in compiled if line.startswith("compiling")] == [
+        "compiling the kernel some_kernels.double, once",
+        "compiling the kernel some_kernels.fold, once",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "result"),
+    [
+        ("FACTOR = 2.0", "FACTOR = 3.0", "[1.5, -6.0, 900.0] [90.5, 88.0, 30.0]"),
+        ("FACTOR * value", "-FACTOR * value", "[-1.0, 4.0, -600.0] [90.5, 88.0, 30.0]"),
+    ],
+)
+def test_a_change_in_another_file_renews_the_kernels_that_it_reaches_and_no_others(
+    folder: Path, old: str, new: str, result: str
+) -> None:
+    run(folder)
+    change(folder / "some_inner.py", old, new)
+
+    assert run(folder)[:2] == [result, "False True"]
+    assert len(list(folder.glob("kept/*/double-*"))) == 1  # the old one is gone
+
+
+def test_a_damaged_file_is_noticed_and_compiled_anew(folder: Path) -> None:
+    compiled = run(folder)
+    for file in folder.glob("kept/*/double-*/*/*.nbc"):
+        code = bytearray(file.read_bytes())
+        code[len(code) // 2] ^= 1
+        file.write_bytes(code)
+    (index,) = folder.glob("kept/*/fold-*/*/*.nbi")
+    index.write_bytes(index.read_bytes()[:50])
+    damaged = run(folder)
+
+    assert damaged[:2] == [compiled[0], "False False"]
+    assert [line for line in damaged if "damaged" in line] == [
+        f"the machine code of some_kernels.{name} was damaged on disk and is compiled anew"
+        for name in ("double", "fold")
+    ]
+    assert run(folder)[1:] == ["True True"]
+
+
+def test_what_cannot_be_loaded_is_compiled_anew(folder: Path) -> None:
+    run(folder)
+    for kept in folder.glob("kept/*/double-*"):
+        for file in kept.glob("*/*.nbc"):
+            file.write_bytes(b"not a pickle")
+        (store,) = [jit._Store(kept.parent, "double", "")]
+        store.folder = kept
+        store.seal()
+    found = run(folder)
+
+    assert found[1] == "False True"
+    assert "the machine code of some_kernels.double cannot be loaded and is compiled anew" in found[2]
+
+
+def test_what_a_process_left_unfinished_is_compiled_again_without_a_word_about_damage(folder: Path) -> None:
+    run(folder)
+    for sums in folder.glob("kept/*/double-*/checksums.json"):
+        sums.unlink()
+    found = run(folder)
+
+    assert found[1] == "False True"
+    assert not [line for line in found if "damaged" in line]
+
+
+def test_a_second_process_compiles_from_the_back(folder: Path) -> None:
+    modules = (folder / "some_kernels.py").read_text(encoding="utf-8")
+    third = modules[modules.index('@kernel(writes="out")\ndef fold') :].replace("def fold", "def fold_again")
+    (folder / "some_kernels.py").write_text(modules + "\n\n" + third, encoding="utf-8")
+    script = """
+import some_kernels as k
+from trunnion.jit import compile_ahead
+compile_ahead([k.double, k.fold, k.fold_again])
+import time
+until = time.monotonic() + 60
+while not (k.fold_again.is_kept and k.fold.is_kept and k.double.is_kept) and time.monotonic() < until:
+    time.sleep(0.02)
+compile_ahead([k.double, k.fold, k.fold_again])
+"""
+    done = run(folder, script + RUN.replace("print(double.", "print(k.fold_again.is_kept, double."))
+
+    assert done == [
+        "[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]",
+        "True True True",
+        "compiling 3 kernels for this computer, once; this takes some seconds",
+    ]
+
+
+def test_processes_that_need_the_same_kernel_wait_for_the_one_that_compiles_it(folder: Path) -> None:
+    path = os.pathsep.join((str(folder), str(Path(__file__).parents[1] / "src")))
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "kept"), "PYTHONPATH": path}
+    started = [
+        subprocess.Popen([sys.executable, "-c", RUN], env=environment, stdout=subprocess.PIPE, text=True)
+        for _ in range(3)
+    ]
+    printed = [process.communicate()[0].splitlines() for process in started]
+
+    assert {lines[0] for lines in printed} == {"[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]"}
+    for which in range(2):
+        assert sum(lines[1].split()[which] == "False" for lines in printed) == 1
+
+
+def test_without_a_folder_that_can_be_written_to_kernels_are_compiled_and_it_is_said_once(folder: Path) -> None:
+    nowhere = folder / "some_inner.py" / "below"
+    script = (
+        f"import pathlib\nfrom trunnion import jit\njit._candidates = lambda: iter([pathlib.Path({str(nowhere)!r})])\n"
+    )
+    found = run(folder, script + RUN)
+
+    assert found[:2] == ["[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]", "False False"]
+    assert len([line for line in found if "no folder can be written to" in line]) == 1
+
+
+def test_the_user_chooses_the_folder_and_the_next_best_is_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("", encoding="utf-8")
+    monkeypatch.setattr(jit._config, "CACHE_DIR", str(tmp_path / "mine"))
+    candidates = list(jit._candidates())
+
+    assert candidates[0].parent == tmp_path / "mine"
+    monkeypatch.setattr(jit, "_candidates", lambda: iter([file / "below", tmp_path / "next"]))
+    assert jit.cache_folder.__wrapped__() == tmp_path / "next"
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="temporary folders are the user's own there")
+def test_machine_code_is_not_taken_from_a_folder_that_others_can_write_to(tmp_path: Path) -> None:
+    open_to_all = tmp_path / "open"
+    open_to_all.mkdir()
+    open_to_all.chmod(0o777)
+    (tmp_path / "link").symlink_to(tmp_path)
+
+    assert jit._is_private(tmp_path / "own")
+    assert not jit._is_private(open_to_all)
+    assert not jit._is_private(tmp_path / "link")
+
+
+def test_an_argument_of_another_type_is_refused(folder: Path) -> None:
+    script = """
+import numpy as np
+from some_kernels import double
+try:
+    double(np.zeros(2, np.int64), np.zeros(2))
+except TypeError as error:
+    print("refused")
+"""
+    assert run(folder, script)[0] == "refused"
+
+
+def test_without_compiling_a_kernel_is_the_function_itself(folder: Path) -> None:
+    script = "import some_kernels\nprint(type(some_kernels.double))"
+
+    assert run(folder, script, NUMBA_DISABLE_JIT="1") == ["<class 'function'>"]
+
+
+def test_importing_the_package_leaves_the_environment_alone() -> None:
+    script = "import os; before = dict(os.environ); import trunnion; print(before == dict(os.environ))"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+
+    assert done.stdout == "True\n"
