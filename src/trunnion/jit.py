@@ -330,7 +330,8 @@ def _reads(kind: Any) -> bool:
     """Whether an argument of a type is, or holds, an array that is not written to."""
     if isinstance(kind, numba.types.Array):
         return not kind.mutable
-    return isinstance(kind, numba.types.BaseTuple) and any(_reads(part) for part in kind)
+    parts: Any = kind if isinstance(kind, numba.types.BaseTuple) else ()
+    return any(_reads(part) for part in parts)
 
 
 def _readable(value: Any) -> Any:
