@@ -1,11 +1,13 @@
-"""How far a program may be from its CL points when it is proven: what its own printed digits come to.
+"""How far a program may be from its CL points when it is proven: half its last printed digit, and what follows from it.
 
 In:     a program as it was planned.
-Out:    limits for each operation, mm and degrees, for ``trunnion.verification``.
+Out:    tolerances of each operation, mm and degrees, for ``trunnion.verification``.
 """
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -16,88 +18,113 @@ from trunnion.model.toolpath import CycleOn
 from trunnion.output.coordinates.plane_from_pose import with_plane_inside_limits
 from trunnion.output.program import Program
 from trunnion.planning.linearization.arc_chords import flat_arcs, radius_change
+from trunnion.verification import Tolerances
 
-if TYPE_CHECKING:
-    from trunnion.verification import Tolerances
+#: Near the pole a turn of a rotary axis still counts as this part of a turn of the tool axis.
+_LEAST_POLE_SINE: Final = 1e-3
 
-#: A turn of the rotary axes turns the tool axis by no less than this part of it, however near the pole.
-_LEAST_POLE_SINE = 1e-3
+#: Added to half a digit, so that a value half-way between two digits is inside.
+_SLACK: Final = 1e-9
+
+#: Added to angles, for the arithmetic between vectors and rotary positions.
+_ANGLE_SLACK: Final = 1e-8
 
 
-def program_tolerances(program: Program) -> "list[Tolerances]":
-    """Half the last digit that each operation prints; in a tilted plane, what that comes to in the program's frame."""
-    from trunnion.verification import Tolerances
-
-    control, machine = program.control, program.machine
-    primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
-    allowed: list[Tolerances] = []
+def program_tolerances(program: Program) -> list[Tolerances]:
+    """Tolerances of each operation; motions that belong to one operation have the largest of theirs."""
+    tolerances: list[Tolerances] = []
     for motion in program.motions:
-        words = control.block_words(primary, secondary, motion.three_axis)
-        half = {word.key: 0.5 * 10.0**-word.format.decimals + 1e-9 for word in words}
-        tip, angle = half["X"], max(half["primary"], half["secondary"])
-        normal = half.get(SURFACE_NORMAL_WORDS[0], 0.0)
-        # Near a pole angles are noisy, and the check takes the ways of the tool axis for straight.
-        angle += 1e-8 + angle * math.radians(angle) / _LEAST_POLE_SINE
-        if motion.plane is not None and control.plane_from_pose:
-            # Places are worked out for the plane as it is printed; only circles stay in it that are not quite in it.
-            widest = float(motion.operation.arcs.radius.max(initial=0.0))
-            tip = _plane_error(motion, tip, 0.0) + 2.0 * widest * math.radians(2.0 * angle)
-        elif motion.plane is not None:
-            turning = control.number_formats(three_axis=False)["plane_angle"].decimals
-            tilt = max(angle, 1.5 * 10.0**-turning)  # three angles of a plane, or a rotary position
-            if with_plane_inside_limits(machine, motion, turning) is not motion:
-                tilt += 1.5 * 10.0**-turning
-            tip, angle = _plane_error(motion, tip, tilt), math.sqrt(2.0) * tilt + 1e-8
-            normal = math.sqrt(3.0) * (normal + math.radians(tilt))
-        tip += _flattened_rise(motion)
-        if "arc_angle" in half:
-            tip += _helix_angle_error(motion, half["X"], half["arc_angle"])
-        if motion.mode is MachiningMode.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
-            # Heights of holes are printed along their axes from the zero, which rounded rotary positions turn.
-            tip += math.radians(angle) * float(np.abs(motion.operation.moves.tip).max())
-        if motion.mode is MachiningMode.WITHOUT_TCP:
-            tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
-        deviations = None if motion.deviations.is_empty else motion.deviations
+        own = _motion_tolerances(program, motion)
         if not motion.starts_operation:
-            before = allowed.pop()
-            tip, angle, normal = max(tip, before.tip), max(angle, before.angle), max(normal, before.normal)
-            deviations = before.deviations
-        found = 2.0 * MAX_CENTRE_ERROR_DIGITS * half["X"] if control.arcs.by_radius else 0.0
-        allowed.append(
-            Tolerances(
-                tip,
-                angle,
-                control.arcs.chord_tolerance,
-                half["feed"],
-                deviations,
-                centre=found,
-                normal=normal,
-                plane=motion.plane is not None,
+            first = tolerances.pop()
+            own = replace(
+                own,
+                tip=max(own.tip, first.tip),
+                angle=max(own.angle, first.angle),
+                normal=max(own.normal, first.normal),
+                deviations=first.deviations,
             )
-        )
-    return allowed
+        tolerances.append(own)
+    return tolerances
+
+
+def _motion_tolerances(program: Program, motion: Motion) -> Tolerances:
+    """Tolerances of one motion."""
+    control = program.control
+    half = _half_digits(program, motion)
+    tip, angle, normal = _in_program_frame(program, motion, half)
+    tip += _flattened_rise(motion)
+    if "arc_angle" in half:
+        tip += _helix_angle_error(motion, half["X"], half["arc_angle"])
+    if motion.mode is MachiningMode.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
+        # Heights of holes are printed along their axes from the zero, which rounded rotary positions turn.
+        tip += math.radians(angle) * float(np.abs(motion.operation.moves.tip).max())
+    if motion.mode is MachiningMode.WITHOUT_TCP:
+        tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
+    return Tolerances(
+        tip,
+        angle,
+        control.arcs.chord_tolerance,
+        half["feed"],
+        None if motion.deviations.is_empty else motion.deviations,
+        centre=2.0 * MAX_CENTRE_ERROR_DIGITS * half["X"] if control.arcs.by_radius else 0.0,
+        normal=normal,
+        plane=motion.plane is not None,
+    )
+
+
+def _half_digits(program: Program, motion: Motion) -> dict[str, float]:
+    """Half the last digit of every word of a motion's blocks, by the key of the word."""
+    machine = program.machine
+    primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
+    words = program.control.block_words(primary, secondary, motion.three_axis)
+    return {word.key: 0.5 * 10.0**-word.format.decimals + _SLACK for word in words}
+
+
+def _in_program_frame(program: Program, motion: Motion, half: Mapping[str, float]) -> tuple[float, float, float]:
+    """Tolerances of coordinates (mm), angles (degrees) and surface normals in the program's coordinate system.
+
+    Coordinates in a tilted plane are rounded in the plane, and the plane itself is as its angles are printed.
+    """
+    control = program.control
+    tip, angle = half["X"], max(half["primary"], half["secondary"])
+    normal = half.get(SURFACE_NORMAL_WORDS[0], 0.0)
+    # Near a pole angles are noisy, and the check takes the paths of the tool axis for straight.
+    angle += _ANGLE_SLACK + angle * math.radians(angle) / _LEAST_POLE_SINE
+    if motion.plane is None:
+        return tip, angle, normal
+    if control.plane_from_pose:
+        # Coordinates are those of the plane as it is printed; circles that are not quite in it are put into it.
+        widest = float(motion.operation.arcs.radius.max(initial=0.0))
+        return _plane_error(motion, tip, 0.0) + 2.0 * widest * math.radians(2.0 * angle), angle, normal
+    decimals = control.number_formats(three_axis=False)["plane_angle"].decimals
+    tilt = max(angle, 1.5 * 10.0**-decimals)  # three angles of a plane, or a rotary position
+    if with_plane_inside_limits(program.machine, motion, decimals) is not motion:
+        tilt += 1.5 * 10.0**-decimals
+    tip, angle = _plane_error(motion, tip, tilt), math.sqrt(2.0) * tilt + _ANGLE_SLACK
+    return tip, angle, math.sqrt(3.0) * (normal + math.radians(tilt))
 
 
 def _flattened_rise(motion: Motion) -> float:
-    """How much higher circles end than they begin that are written as flat ones, mm: less than anybody prints.
+    """How much circles that are written as flat rise from start to end, mm: less than a printed digit.
 
-    Such a circle stands across a tool axis that is off upright by what rotary words do not show, or rises by as little.
+    Such a circle lies across a tool axis that is off upright by less than rotary words show, or rises by as little.
     """
     operation = motion.as_written()
     arcs, tip = operation.arcs, operation.moves.tip
     if not len(arcs.row):
         return 0.0
-    way = np.abs(tip[arcs.row] - tip[arcs.row - 1])
-    rise = way[np.arange(len(way)), np.abs(arcs.normal).argmax(axis=1)]
+    travel = np.abs(tip[arcs.row] - tip[arcs.row - 1])
+    rise = travel[np.arange(len(travel)), np.abs(arcs.normal).argmax(axis=1)]
     return float(rise[flat_arcs(operation)].max(initial=0.0))
 
 
 def _helix_angle_error(motion: Motion, half: float, angle: float) -> float:
-    """How much farther the ends of helices may be off that are said by a centre and an angle, mm.
+    """How much farther the end of a helix may be off that is programmed by its centre and its angle, mm.
 
-    Start and centre are rounded by ``half`` mm, of which the end has that of the centre twice, once turned; the angle
-    by ``angle`` degrees. What the CL file's own end is off the circle comes on top. A helix right behind another begins
-    where that one has really ended.
+    Start and centre are rounded by ``half`` mm, the angle by ``angle`` degrees. The error of the centre counts twice at
+    the end, once turned. Added to it is by how much the end in the CL file is off the circle. A helix that follows
+    another one starts where that one has really ended, so their errors add up.
     """
     operation = motion.as_written()
     arcs, tip = operation.arcs, operation.moves.tip
@@ -112,8 +139,10 @@ def _helix_angle_error(motion: Motion, half: float, angle: float) -> float:
 
 
 def _plane_error(motion: Motion, half: float, tilt: float) -> float:
-    """How far a coordinate may be off where ``half`` is, in each coordinate of the plane and of its origin, mm, and
-    the plane itself by ``tilt`` degrees."""
+    """How far a coordinate may be off, mm, in the program's coordinate system.
+
+    Coordinates of the plane and of its origin are off by ``half`` mm each, the plane itself by ``tilt`` degrees.
+    """
     assert motion.plane is not None
     reach = float(np.abs(motion.as_written().moves.tip).max())
     rounded = half * (1.0 + float(np.abs(motion.plane.matrix()).sum(axis=1).max()))
