@@ -84,9 +84,9 @@ SOMETIMES: Final = {
 _HEAD: Final = """# The matrix
 
 Every control in `controls/library` moves every machine in `machines/library`: a definition that `extends` the machine
-and names the control is enough. `tests/matrix` posts families of random paths for all of these pairs, reads each program
-back, runs it, and holds it against what was asked: all checks pass, and every point is met within half the last digit.
-What a control cannot be told is refused with a reason; this page is held to the tests, and says all of it.
+and names the control is enough. `tests/matrix` posts families of random paths for all of these pairs, reads each
+program back, runs it, and compares it with the CL file: all checks pass, and every point is met within half the last
+digit. What a control does not support is refused with a reason; the tests keep this page complete.
 
 | family of paths | refused |
 | --- | --- |
