@@ -29,7 +29,7 @@ def merged(tables: list[dict[str, Tally]]) -> dict[str, Tally]:
             total = together.setdefault(kind, Tally())
             total.outcomes += tally.outcomes
             total.near += tally.near
-            total.beside += tally.beside
+            total.outside += tally.outside
             for what, texts in tally.not_caught.items():
                 total.not_caught.setdefault(what, []).extend(texts)
     return together
@@ -48,7 +48,7 @@ def whole(tallies: list[Tally]) -> Tally:
     return Tally(
         sum((tally.outcomes for tally in tallies), Counter()),
         sum((tally.near for tally in tallies), Counter()),
-        sum((tally.beside for tally in tallies), Counter()),
+        sum((tally.outside for tally in tallies), Counter()),
     )
 
 
@@ -72,12 +72,12 @@ def main() -> int:
     total = whole(list(together.values()))
     print("| " + " | ".join(row("together", total)) + " |")
     print("\n| not caught | times | why |\n| --- | --- | --- |")
-    for what, count in total.beside.most_common():
+    for what, count in total.outside.most_common():
         print(f"| {what} | {count} | {REASONS.get(what, '')} |")
-    for what in total.beside:
+    for what in total.outside:
         texts = [text for tally in together.values() for text in tally.not_caught.get(what, [])]
         print(f"\n{what}: {len(texts)}", *texts[:SHOWN], sep="\n  ", file=sys.stderr)
-    return 1 if set(total.outcomes) - {"CAUGHT", "SAME", "BESIDE"} else 0
+    return 1 if set(total.outcomes) - {"CAUGHT", "SAME", "OUTSIDE"} else 0
 
 
 if __name__ == "__main__":

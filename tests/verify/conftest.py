@@ -1,4 +1,4 @@
-"""Tiny programs, and what verification says of them."""
+"""Tiny programs and their verification."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +14,7 @@ from trunnion.verification import Check, Verification, verify
 
 Verifier = Callable[..., Verification]
 
-#: Up to the first motion, and from the last one on.
+#: Blocks before the first motion at the part, and after the last one.
 HEAD = "G17 G710 G90 G94\nSUPA G0 Z0 D0\nSUPA G0 X0 Y0 B0 C0 D1\nT1\nM6\nG54\nS1000 M3\n"
 FOOT = "SUPA G0 Z0 D0\nSUPA G0 X0 Y0 B0 C0 D1\nM5\nM30\n"
 
@@ -51,7 +51,7 @@ def ran(tmp_path: Path, yl569: Machine) -> Callable[..., Run]:
 
 @pytest.fixture
 def verified(tmp_path: Path, ran: Callable[..., Run], yl569: Machine) -> Verifier:
-    """Verify a text as a program, maybe against the text of a CL file."""
+    """Verify a text as a program, against the text of a CL file if there is one."""
 
     def verifier(text: str, cl: str = "", machine: Machine = yl569, **settings: Any) -> Verification:
         run = ran(text, machine)
@@ -65,5 +65,5 @@ def verified(tmp_path: Path, ran: Callable[..., Run], yl569: Machine) -> Verifie
 
 
 def check(found: Verification, key: str) -> Check:
-    """The check of this key."""
+    """The check with a key."""
     return next(check for check in found.checks if check.key == key)

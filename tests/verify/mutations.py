@@ -1,14 +1,14 @@
-"""Faults put into programs that ran, one at a time, and whether verification sees them.
+"""Faults in programs that ran, one at a time, and whether verification reports them.
 
-A mutation changes the text of a program. What it comes to is worked out here from the text and from what the reader
-ran, never from what verification says of it:
+A mutation changes the text of a program. Its effect is determined here from the text and from what the reader ran,
+never from what verification reports:
 
-- it changes the work: the motions at the part, or any other thing that a CL file can ask for;
-- it changes something beside the work, such as how the control rounds corners (``beside``);
-- it provably changes nothing: every axis goes where it went with every state as it was, every word that drives the
-  control stands where it stood.
+- it changes the work: the motions at the part, or anything else that a CL file can ask for;
+- it changes something outside the work, such as how the control rounds corners (``outside_work``);
+- it provably changes nothing: every axis goes where it went with every state as it was, and every word that drives the
+  control is where it was.
 
-What is not nothing has to be reported, at the block that was changed or at the first one that does something else.
+Any change must be reported, at the changed block or at the first one that does something else.
 """
 
 import random
@@ -36,7 +36,7 @@ from trunnion.verification import Check, Settings, Tolerances, Verification, ver
 CASES = ("1_contour_rough", "2_hub_rough", "3_blade_finish")
 HALF_DIGIT = {"1_contour_rough": 5e-4, "2_hub_rough": 5e-6, "3_blade_finish": 5e-6}
 
-#: Numbers nearer than this are one number: whole turns and back leave that much rounding, the programs print 1e-5.
+#: Numbers nearer than this are equal: whole turns and back leave that much rounding; the programs print 1e-5.
 SAME = 1e-9
 
 SETTINGS = Settings(work_offset=54, edge=1)
@@ -58,10 +58,10 @@ class Mutation:
 class Outcome:
     """What became of a mutation.
 
-    verdict  CAUGHT; SAME: it provably changes nothing; BESIDE: not reported, but the work stays what it was;
+    verdict  CAUGHT; SAME: it provably changes nothing; OUTSIDE: not reported, but the work is unchanged;
              MISPLACED: reported at other blocks; MISSED: the work changes and nothing is reported
-    what     if CAUGHT, how near: BLOCK, NEXT or SHOWS (the first motion or change of the tool after it, or the first
-             that differs); if BESIDE, what changed
+    what     if CAUGHT, how near: BLOCK, NEXT or SHOWS (the first motion or tool change after it, or the first that
+             differs); if OUTSIDE, what changed
     checks   the checks that failed there
     """
 
@@ -72,13 +72,13 @@ class Outcome:
 
 @cache
 def golden(name: str) -> tuple[tuple[str, ...], Toolpath]:
-    """Lines of a golden program, and what it was made from."""
+    """Lines of a golden program, and its CL file."""
     text = (YL569 / f"{name}.expected.mpf").read_text(encoding="utf-8")
     return tuple(text.splitlines()), read_cl(YL569 / f"{name}.cls")
 
 
 def checked(name: str, run: Run) -> Verification:
-    """A run against the golden CL file, half a digit allowed."""
+    """The verification of a run against the golden CL file within half a digit."""
     half = HALF_DIGIT[name] + 1e-9
     return verify(run, [golden(name)[1]], tolerances=Tolerances(half, half), settings=SETTINGS)
 
@@ -90,7 +90,7 @@ def untouched(name: str) -> Run:
 
 
 def judge(name: str, mutation: Mutation, folder: Path) -> Outcome:
-    """Run a program with a fault in it and see what verification says."""
+    """Run a program with a fault and judge what verification reports."""
     path = folder / "MUTANT.MPF"
     path.write_text("\n".join(mutation.lines) + "\n", encoding="utf-8")
     try:
@@ -99,17 +99,19 @@ def judge(name: str, mutation: Mutation, folder: Path) -> Outcome:
         near = any(abs(problem.line - mutation.line) <= 1 for problem in error.problems)
         return Outcome("CAUGHT" if near else "MISPLACED", "BLOCK", ("refused",))
     first = first_difference(untouched(name), run)
-    changed = [what for what, is_ in beside(run, mutation.lines).items() if is_ != _untouched_beside(name)[what]]
+    changed = [
+        what for what, is_ in outside_work(run, mutation.lines).items() if is_ != _untouched_outside_work(name)[what]
+    ]
     if first is None and not changed:
         return Outcome("SAME")
     failed = [check for check in checked(name, run).checks if not check.passed]
     if not failed:
-        return Outcome("MISSED") if first is not None else Outcome("BESIDE", changed[0])
+        return Outcome("MISSED") if first is not None else Outcome("OUTSIDE", changed[0])
     return _placed(mutation, failed, run, first or set())
 
 
 def _placed(mutation: Mutation, failed: list[Check], run: Run, first: set[int]) -> Outcome:
-    """How near to the fault the failed checks are."""
+    """How near the failed checks are to the fault."""
     motions = run.line[run.line >= mutation.line][:1].tolist()
     changes = [e.line for e in run.events if e.kind == "tool_change" and e.line >= mutation.line][:1]
     shows = {line + k for line in (*first, *motions, *changes) for k in (-1, 0, 1)}
@@ -122,10 +124,10 @@ def _placed(mutation: Mutation, failed: list[Check], run: Run, first: set[int]) 
 
 
 def first_difference(one: Run, two: Run) -> set[int] | None:
-    """Lines of ``two`` where it first does something else, in all motions and in those at the part; None: nowhere."""
+    """Lines at which ``two`` first differs, in all motions and in those at the part; None if it does not."""
     lines: set[int] = set()
     for only_part in (False, True):
-        a, b = _doings(one, only_part), _doings(two, only_part)
+        a, b = _actions(one, only_part), _actions(two, only_part)
         length = min(len(a[0]), len(b[0]))
         same = np.ones(length, np.bool_)
         for x, y in zip(a[1:], b[1:], strict=True):
@@ -141,14 +143,14 @@ def first_difference(one: Run, two: Run) -> set[int] | None:
     return lines or None
 
 
-def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
-    """Lines of the motions, and columns of all that a CL file can ask for; motions that move nothing are left out."""
+def _actions(run: Run, only_part: bool) -> list[np.ndarray]:
+    """Lines of the motions that move, and columns of everything that a CL file can ask for."""
     keep = _moves(run)
     if only_part:
         keep &= ~run.machine_frame
     rapid = run.kind == Kind.RAPID
     home = run.machine_frame
-    # Where no slide is named and TCP is off, the length of the tool and the work offset have no say.
+    # Where no slide is programmed and TCP is off, tool length and work offset have no effect.
     lengthless = home | (((run.programmed & 7) == 0) & ~run.tcp)
     coolant = _coolant(run)
     circle = np.zeros((len(run), 8))
@@ -165,7 +167,7 @@ def _doings(run: Run, only_part: bool) -> list[np.ndarray]:
 
 
 def _end(run: Run) -> tuple[object, ...]:
-    """What happens besides motion: whether the program ends, and words that are not understood."""
+    """Whether the program ends, and its words that are not understood."""
     ends = [event.value for event in run.events if event.kind == "end"]
     unknown = sorted(finding.text for finding in run.diagnostics if finding.severity is Severity.ERROR)
     compensated = [f.text for f in run.diagnostics if f.text.startswith(("G41", "G42"))]
@@ -187,9 +189,9 @@ def _coolant(run: Run) -> Floats:
     return coolant
 
 
-# What changes beside the work
+# What changes outside the work
 
-#: Words that say how the control drives, and words that say again what it was switched to when the program began.
+#: Words for how the control drives, and words that repeat the state in which the program began.
 _DRIVES = (
     words.WITHOUT_PATH_EFFECT
     | words.WITHOUT_PATH_EFFECT_VALUES
@@ -220,63 +222,63 @@ REASONS = {
 }
 
 
-def beside(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
-    """What a program does beside the work, by the kind of thing: two programs that agree in all of it do the same."""
-    finds = _finds(run)
-    counts = _moves(run) | np.array(finds, np.bool_)
+def outside_work(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
+    """What a program does outside the work, by kind: programs that agree in all of it do the same."""
+    firsts = _first_positions(run)
+    counts = _moves(run) | np.array(firsts, np.bool_)
     at = run.line[counts]
     rows = np.concatenate(([0], np.cumsum(counts)))
     state = np.column_stack((run.rpm, run.spindle, run.tool, run.edge, run.work_offset, _coolant(run)))[counts]
-    said = [(int(np.searchsorted(at, k + 1)), _names(line)) for k, line in enumerate(lines)]
+    programmed = [(int(np.searchsorted(at, k + 1)), _names(line)) for k, line in enumerate(lines)]
     changes = [event.before_row for event in run.events if event.kind == "tool_change"]
-    found = [(bits, sum(k <= row for k in changes), int(run.kind[row])) for row, bits in enumerate(finds) if bits]
+    found = [(bits, sum(k <= row for k in changes), int(run.kind[row])) for row, bits in enumerate(firsts) if bits]
     cycles = [(int(rows[e.before_row]), e.value) for e in run.events if e.kind == "cycle832"]
     silent = {"tool", "tool_change", "spindle", "speed", "coolant", "message", "cycle832", "end"}
     return {
         START: found,
         HOME: state.tolist(),
-        DRIVES: _changes((place, names & _DRIVES) for place, names in said),
+        DRIVES: _changes((place, names & _DRIVES) for place, names in programmed),
         SMOOTHING: _changes(cycles),
-        AGAIN: _changes((place, names & _AGAIN) for place, names in said),
+        AGAIN: _changes((place, names & _AGAIN) for place, names in programmed),
         AFTER: [[e.value for e in run.events if e.kind == kind][-1:] for kind in ("spindle", "coolant", "tool_change")],
         OTHERS: [(int(rows[e.before_row]), e.kind, e.value) for e in run.events if e.kind not in silent],
     }
 
 
 @cache
-def _untouched_beside(name: str) -> dict[str, object]:
-    return beside(untouched(name), golden(name)[0])
+def _untouched_outside_work(name: str) -> dict[str, object]:
+    return outside_work(untouched(name), golden(name)[0])
 
 
 def _names(line: str) -> frozenset[str]:
-    """Words of a line without its comment and the texts in it."""
+    """Words of a line without its comment and its texts."""
     return frozenset(_NAME.findall(re.sub(r'"[^"]*"', "", line).partition(";")[0]))
 
 
-def _changes(said: Iterable[tuple[int, object]]) -> list[tuple[int, object]]:
-    """What is said and where, without what says again what was said last."""
+def _changes(values: Iterable[tuple[int, object]]) -> list[tuple[int, object]]:
+    """Values and where they are, without those that repeat the last one."""
     kept: list[tuple[int, object]] = []
-    for place, what in said:
+    for place, what in values:
         if what and (not kept or kept[-1][1] != what):
             kept.append((place, what))
     return kept
 
 
-def _finds(run: Run) -> list[int]:
-    """For every row the axes of which nobody knew the place before, as bits of ``Run.programmed``."""
+def _first_positions(run: Run) -> list[int]:
+    """For every row the axes that are positioned for the first time, as bits of ``Run.programmed``."""
     known = 0
-    finds = []
+    firsts = []
     for bits in (run.programmed & 31).tolist():
-        finds.append(bits & ~known)
+        firsts.append(bits & ~known)
         known |= bits
-    return finds
+    return firsts
 
 
 # The faults
 
 
 def mutations(name: str, digits: int | None, rng: random.Random) -> Iterator[Mutation]:
-    """All structural faults in a golden program, and ``digits`` changed digits; None: each digit to each other one."""
+    """All structural faults in a golden program, and ``digits`` changed digits; None: each digit, to each other one."""
     lines = golden(name)[0]
     yield from _digits(lines, digits, rng)
     for k, line in enumerate(lines):
@@ -292,7 +294,7 @@ def mutations(name: str, digits: int | None, rng: random.Random) -> Iterator[Mut
 
 
 def sample(name: str, most: int, rng: random.Random) -> list[Mutation]:
-    """At most so many mutations of each kind."""
+    """At most ``most`` mutations of each kind."""
     by_kind: dict[str, list[Mutation]] = {}
     for mutation in mutations(name, most, rng):
         by_kind.setdefault(mutation.kind, []).append(mutation)
@@ -308,7 +310,7 @@ def _changed(kind: str, lines: tuple[str, ...], k: int, new: list[str]) -> Mutat
 
 
 def _digits(lines: tuple[str, ...], count: int | None, rng: random.Random) -> Iterator[Mutation]:
-    """Digits that become others, block numbers and comments left alone."""
+    """Digits that become others, except in block numbers and comments."""
     places = [
         (k, at)
         for k, line in enumerate(lines)
@@ -343,7 +345,7 @@ def _words(lines: tuple[str, ...], k: int) -> Iterator[Mutation]:
 
 
 def _particular(lines: tuple[str, ...]) -> Iterator[Mutation]:
-    """Faults by name."""
+    """Faults of particular words."""
     swaps: list[tuple[str, str, str]] = [
         ("G0 becomes G1", r"\bG0\b", "G1"),
         ("G1 becomes G0", r"\bG1\b", "G0"),
@@ -387,21 +389,21 @@ def _particular(lines: tuple[str, ...]) -> Iterator[Mutation]:
 
 @dataclass
 class Tally:
-    """How many mutations of a kind had which outcome, and the texts of those that were not caught."""
+    """Outcomes of the mutations of one kind, and the texts of those that were not caught."""
 
     outcomes: Counter[str] = field(default_factory=Counter)
     near: Counter[str] = field(default_factory=Counter)
-    beside: Counter[str] = field(default_factory=Counter)
+    outside: Counter[str] = field(default_factory=Counter)
     not_caught: dict[str, list[str]] = field(default_factory=dict)
 
     def add(self, name: str, mutation: Mutation, outcome: Outcome) -> None:
-        """Count one."""
+        """Count one mutation."""
         self.outcomes[outcome.verdict] += 1
         if outcome.verdict == "CAUGHT":
             self.near[outcome.what] += 1
         elif outcome.verdict != "SAME":
             what = outcome.what or outcome.verdict
-            self.beside[what] += 1
+            self.outside[what] += 1
             lines = golden(name)[0]
             text = lines[min(mutation.line, len(lines)) - 1]
             self.not_caught.setdefault(what, []).append(f"{name}:{mutation.line}: {mutation.kind}: {text}")

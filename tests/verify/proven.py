@@ -1,4 +1,4 @@
-"""What ``trunnion post`` says of every program: its check lines."""
+"""The check lines that ``trunnion post`` prints for every program."""
 
 import re
 
@@ -6,7 +6,7 @@ _PASSED = re.compile(r"^[a-z]+ +ok +.*\n", re.MULTILINE)
 
 
 def unproven(err: str) -> str:
-    """What is left of stderr without the lines of checks that were passed; there must have been some."""
+    """The rest of stderr without the lines of passed checks, of which there must be some."""
     left, count = _PASSED.subn("", err)
     assert count >= 10, err
     return left

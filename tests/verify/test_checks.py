@@ -60,7 +60,7 @@ def test_a_fault_fails_its_check_at_its_block(old: str, new: str, key: str, bloc
     assert block in [lines[place.nc_line - 1] for place in failed.places]
 
 
-def test_a_block_that_repeats_its_position_is_told_but_harmless(verified: Verifier) -> None:
+def test_a_block_that_repeats_its_position_is_reported_and_passes(verified: Verifier) -> None:
     found = verified(HEAD + CUT + "X20\n" + FOOT, CL)
     assert found.passed
     assert "1 blocks that move nothing" in check(found, "order").summary
@@ -73,7 +73,7 @@ def test_points_that_repeat_the_one_before_need_no_block(verified: Verifier) -> 
     assert "3 repeated ones left out" in check(found, "order").summary
 
 
-def test_lines_may_stand_for_an_arc_and_their_chords_are_told(verified: Verifier) -> None:
+def test_lines_may_replace_an_arc_and_their_chords_are_reported(verified: Verifier) -> None:
     cl = CL_HEAD + "GOTO/10,0,5\nCIRCLE/20,0,5,0,0,1,10.0,0.06,0.5,10.0,0.0\nGOTO/30,0,5\n" + CL_FOOT
     angle = np.pi + np.linspace(0.0, np.pi, 201)[1:]
     points = [(20 + 10 * np.cos(a), 10 * np.sin(a)) for a in angle]
@@ -109,7 +109,7 @@ def test_operations_in_other_coordinate_systems_are_seen_from_the_first(verified
     assert verified(text, cl).passed
 
 
-def test_texts_that_the_cl_file_puts_in_are_its_own_business(verified: Verifier) -> None:
+def test_texts_that_the_cl_file_inserts_are_not_checked(verified: Verifier) -> None:
     cl = CL.replace("GOTO/20,0,5", "INSERT/FROBNICATE(1)\nINSERT/G0 Z80\nGOTO/20,0,5")
     text = HEAD + CUT.replace("X20", "FROBNICATE(1)\nG0 Z80\nG1 X20 Z5") + FOOT
     found = verified(text, cl)
@@ -122,7 +122,7 @@ def test_texts_that_the_cl_file_puts_in_are_its_own_business(verified: Verifier)
 @pytest.mark.parametrize(
     ("text", "says", "block"),
     [
-        ("G0 X0 Y0 Z50\nG1 X10 Z5\n", "no feed was said", "G1 X10 Z5"),
+        ("G0 X0 Y0 Z50\nG1 X10 Z5\n", "no feed is programmed", "G1 X10 Z5"),
         ("M5\nG0 X0 Y0 Z50\nG1 X10 Z5 F500\n", "spindle off", "G1 X10 Z5 F500"),
         ("TRAORI\nG0 X0 Y0 Z50\nM6\nTRAFOOF\n", "changes the tool with TCP on", "M6"),
         ("TRAORI\nG0 X0 Y0 Z50\nSUPA G0 Z100\n", "machine's frame with TCP on", "SUPA G0 Z100"),
@@ -149,7 +149,7 @@ def test_a_proper_end_is_missed_and_tcp_left_on_at_it_is_seen(verified: Verifier
     assert check(verified(body + "TRAFOOF\nM5\nT2\nM6\nM30\n"), "modal").passed
 
 
-def test_a_rotary_word_beyond_its_limit_fails_and_the_margin_is_told(verified: Verifier) -> None:
+def test_a_rotary_word_beyond_its_limit_fails_and_the_margin_is_reported(verified: Verifier) -> None:
     program = HEAD + "G0 X0 Y0 Z50\nG1 X10 F500 B{}\n" + FOOT
     inside = check(verified(program.format(98)), "travel")
     assert inside.passed
@@ -160,7 +160,9 @@ def test_a_rotary_word_beyond_its_limit_fails_and_the_margin_is_told(verified: V
     assert outside.places[0].nc_line == first_line(program.format(101), "G1 X10 F500 B101")
 
 
-def test_slides_have_limits_where_the_zero_is_known_and_room_where_not(verified: Verifier, yl569: Machine) -> None:
+def test_slides_have_limits_where_the_zero_is_known_and_total_travel_where_not(
+    verified: Verifier, yl569: Machine
+) -> None:
     program = HEAD + "G0 X200 Y0 Z50\nG1 X260 F500\n" + FOOT
     free = check(verified(program), "travel")
     assert free.passed
@@ -172,7 +174,7 @@ def test_slides_have_limits_where_the_zero_is_known_and_room_where_not(verified:
     assert not check(verified(wide), "travel").passed
 
 
-def test_feeds_that_an_axis_cannot_follow_are_told_and_pass(verified: Verifier) -> None:
+def test_feeds_that_an_axis_cannot_follow_are_reported_and_pass(verified: Verifier) -> None:
     program = HEAD + "TRAORI\nG0 X0 Y0 Z50\nG1 X0.1 C90 F500\n" + FOOT.replace("SUPA", "TRAFOOF\nSUPA", 1)
     found = verified(program)
     told = check(found, "speed")
@@ -184,7 +186,7 @@ def test_feeds_that_an_axis_cannot_follow_are_told_and_pass(verified: Verifier) 
     assert found.seconds[cut] == pytest.approx(60.0 * 90.0 / 9720.0)
 
 
-def test_acceleration_is_judged_where_the_machine_states_it(verified: Verifier, yl569: Machine) -> None:
+def test_acceleration_is_checked_where_the_machine_states_it(verified: Verifier, yl569: Machine) -> None:
     program = HEAD + "G0 X0 Y0 Z50\nG1 X1 F3000\nX0\n" + FOOT
     silent = check(verified(program), "acceleration")
     assert "states no acceleration" in silent.summary
@@ -195,7 +197,7 @@ def test_acceleration_is_judged_where_the_machine_states_it(verified: Verifier, 
     assert told.passed
 
 
-def test_the_tool_axis_between_the_points_is_told_and_judged_if_asked(verified: Verifier) -> None:
+def test_the_tool_axis_between_the_points_is_reported_and_checked_on_request(verified: Verifier) -> None:
     cut = "G0 B60 C0\nTRAORI\nORIAXES\nG0 X50 Y0 Z50\nG1 X50.1 C90 F500\n"
     program = HEAD + cut + FOOT.replace("SUPA", "TRAFOOF\nSUPA", 1)
     # Half-way the angles give (60, 45); the great circle from (60, 0) to (60, 90) leans less.

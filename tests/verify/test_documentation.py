@@ -1,4 +1,4 @@
-"""The page about the checks and the checks do not drift apart."""
+"""The page about the checks agrees with the checks."""
 
 import re
 from pathlib import Path

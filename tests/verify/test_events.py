@@ -62,7 +62,7 @@ def posted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[[str,
 
 @pytest.fixture
 def failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Proving:
-    """Which checks a text fails as the program of a machine for the CL file that was posted."""
+    """The checks that a text fails as a machine's program for the posted CL file."""
 
     def prove(machine: str, program: str) -> set[str]:
         path = tmp_path / "changed.nc"
@@ -75,7 +75,7 @@ def failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Proving:
 
 
 def without(program: str, word: str) -> str:
-    """The program without the last place where a word stands; its block goes if there is nothing else in it."""
+    """The program without the last occurrence of a word; its block goes if nothing else is in it."""
     at = program.rindex(word)
     return program[:at] + program[at + len(word) :]
 
@@ -94,7 +94,7 @@ def test_dwells_and_stops_are_proven_and_missed(
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-def test_a_stop_that_nobody_asks_for_is_one_within_an_operation_only(
+def test_an_unexpected_stop_is_a_fault_within_an_operation_only(
     machine: str, posted: Callable[[str, str], Path], failed: Proving
 ) -> None:
     program = posted(machine, CUT).read_text(encoding="utf-8")
@@ -114,7 +114,7 @@ def test_dwells_in_holes_belong_to_the_holes(machine: str, posted: Callable[[str
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-def test_radius_compensation_is_on_the_side_and_in_the_blocks_that_were_asked_for(
+def test_radius_compensation_is_on_the_expected_side_in_the_expected_blocks(
     machine: str, posted: Callable[[str, str], Path], failed: Proving
 ) -> None:
     program = posted(machine, CUT).read_text(encoding="utf-8")
@@ -135,7 +135,7 @@ def test_coolant_by_a_word_of_the_machine_builder_is_missed(
     assert failed(machine, without(program, mist)) == {"coolant"}
 
 
-def test_coolant_that_stays_on_to_the_end_of_an_operation_is_told(
+def test_coolant_that_stays_on_to_the_end_of_an_operation_is_reported(
     posted: Callable[[str, str], Path], failed: Proving
 ) -> None:
     program = posted("yl569", CUT).read_text(encoding="utf-8")
@@ -173,7 +173,7 @@ def test_a_rapid_that_comes_back_to_where_it_was_before_holes_is_missed(
     assert "order" in failed(machine, "\n".join(lines[:last] + lines[last + 1 :]) + "\n")
 
 
-def test_whole_turns_of_a_table_stand_it_where_it_stood(posted: Callable[[str, str], Path], failed: Proving) -> None:
+def test_whole_turns_of_a_table_make_no_difference(posted: Callable[[str, str], Path], failed: Proving) -> None:
     turned = "END-OF-PATH\nTOOL PATH/OP2,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nFEDRAT/MMPM,500\n"
     text = (
         "END-OF-PATH\nTOOL PATH/SIDES,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nRAPID\n"
@@ -185,7 +185,7 @@ def test_whole_turns_of_a_table_stand_it_where_it_stood(posted: Callable[[str, s
     assert failed("hs664rt", program) == set()
 
 
-def test_a_lead_to_a_hole_is_not_taken_for_the_point_behind_it(
+def test_an_approach_to_a_hole_is_not_taken_for_the_point_after_it(
     posted: Callable[[str, str], Path], failed: Proving
 ) -> None:
     point = "GOTO/34.641554,-7.892697,-10.698013,-0.448915173576,0.685189928849,-0.573576436351\n"

@@ -1,4 +1,4 @@
-"""Faults in programs that ran are reported at the right block, or change nothing of the work.
+"""Faults in programs that ran are reported at the right block, or do not change the work.
 
 The tests take a sample; ``benchmarks/mutations.py`` puts in every fault that there is.
 """
@@ -32,7 +32,7 @@ from tests.verify.mutations import (
 #: Mutations of each kind in each program.
 MOST = 25
 
-#: Kinds that every program has places for; those with TCP have the last ones too.
+#: Kinds that fit into every program; the last ones only into those with TCP.
 EVERYWHERE = {
     *("change a digit", "drop a block", "double a block", "swap two blocks", "swap two words", "swap two values"),
     *("flip a sign", "G0 becomes G1", "G1 becomes G0", "another tool", "another speed", "M3 becomes M4"),
@@ -66,9 +66,9 @@ def test_every_fault_that_changes_the_work_is_reported_at_its_block(name: str, t
     table = sweep(name, sample(name, MOST, random.Random(569)), tmp_path)
     for kind, tally in table.items():
         assert tally.outcomes["MISSED"] == tally.outcomes["MISPLACED"] == 0, (kind, tally.not_caught)
-        assert set(tally.beside) <= set(REASONS), (kind, tally.not_caught)
+        assert set(tally.outside) <= set(REASONS), (kind, tally.not_caught)
         if kind not in ("change a digit", "drop a block", "swap two blocks"):
-            assert not tally.beside, (kind, tally.not_caught)
+            assert not tally.outside, (kind, tally.not_caught)
     caught = sum(tally.outcomes["CAUGHT"] for tally in table.values())
     told = sum(tally.outcomes.total() - tally.outcomes["SAME"] for tally in table.values())
     assert caught > 0.95 * told
@@ -84,14 +84,14 @@ def test_every_fault_that_changes_the_work_is_reported_at_its_block(name: str, t
         (57, "N570 X45.47319 Y-5.26489 Z-21.28881 C371.03388", "SAME", ""),
         (35, "N350 ;", "SAME", ""),
         (36, "", "SAME", ""),
-        (10, "N100 G40 G17 G710 G94 G90 G60 G602 FNORM", "BESIDE", DRIVES),
-        (44, "N440 ORIMKS", "BESIDE", DRIVES),
-        (23, "N230 _camtolerance=.07", "BESIDE", SMOOTHING),
-        (29, "", "BESIDE", AGAIN),
-        (31, "", "BESIDE", START),
-        (38, "", "BESIDE", HOME),
-        (201, "", "BESIDE", AFTER),
-        (10, "N100 G40 G17 G710 G54 G90 G60 G601 FNORM", "BESIDE", HOME),
+        (10, "N100 G40 G17 G710 G94 G90 G60 G602 FNORM", "OUTSIDE", DRIVES),
+        (44, "N440 ORIMKS", "OUTSIDE", DRIVES),
+        (23, "N230 _camtolerance=.07", "OUTSIDE", SMOOTHING),
+        (29, "", "OUTSIDE", AGAIN),
+        (31, "", "OUTSIDE", START),
+        (38, "", "OUTSIDE", HOME),
+        (201, "", "OUTSIDE", AFTER),
+        (10, "N100 G40 G17 G710 G54 G90 G60 G601 FNORM", "OUTSIDE", HOME),
         (34, "N340 M2", "CAUGHT", "BLOCK"),
     ],
 )
@@ -128,7 +128,7 @@ def _faults(draw: st.DrawFn) -> tuple[str, Mutation]:
 def test_any_one_character_of_a_number_is_proven_or_harmless(fault: tuple[str, Mutation], tmp_path: Path) -> None:
     name, mutation = fault
     outcome = judge(name, mutation, tmp_path)
-    assert outcome.verdict in ("CAUGHT", "SAME", "BESIDE"), (outcome, mutation.lines[mutation.line - 1])
+    assert outcome.verdict in ("CAUGHT", "SAME", "OUTSIDE"), (outcome, mutation.lines[mutation.line - 1])
     assert not outcome.what or outcome.verdict == "CAUGHT" or outcome.what in REASONS
 
 

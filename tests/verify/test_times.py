@@ -1,4 +1,4 @@
-"""Times of runs and of planned motions: never less than a machine could, never more than with a stop at every row."""
+"""Times of runs and of planned motions: never less than the machine needs, never more than with a stop at every row."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -42,7 +42,7 @@ def operations(draw: st.DrawFn) -> Operation:
 
 
 def motion_of(operation: Operation, feed: float = 1.0) -> Motion:
-    """How the machine makes it, with the feed times a factor."""
+    """The planned motion, with the feed times a factor."""
     moves = operation.moves
     operation = replace(operation, moves=replace(moves, feed=feed * moves.feed))
     return plan([Toolpath("part.cls", (operation,))], BC, 0.001, PlanOptions()).motions[0]
@@ -124,7 +124,7 @@ def test_a_run_waits_where_its_program_does(tmp_path: Path, dwell: str, wait: fl
     assert np.array_equal(waits.tip_feed, passes.tip_feed)
 
 
-def test_operations_share_all_rows_among_them(proven: Verification) -> None:
+def test_operations_divide_all_rows_among_them(proven: Verification) -> None:
     assert [share.name for share in proven.operations] == [
         operation.name for operation in read_cl(YL569 / "3_blade_finish.cls").operations if len(operation.moves)
     ]

@@ -125,7 +125,7 @@ class ComparedContext(Context):
         by = first + int(written[-1])
         if by == row or by in self.matching.nc:
             return None
-        return self.place(by, 0.0, f"this is where the rotary axes were put for {self.block_name(row)}")
+        return self.place(by, 0.0, f"this is where the rotary axes were positioned for {self.block_name(row)}")
 
 
 def check_from_places(key: str, title: str, places: Sequence[Place], good: str, count: int | None = None) -> Check:

@@ -37,7 +37,7 @@ def check_holes(context: ComparedContext) -> Check:
         match = by_index.get(index)
         if match is None:
             count += 1
-            places.append(Place(context.last_line, -1, 0.0, "nothing makes this hole", hole.file, hole.line))
+            places.append(Place(context.last_line, -1, 0.0, "nothing drills this hole", hole.file, hole.line))
             continue
         drilled = _Drilled(hole, match)
         faults = list(hole_faults(run, hole, match, dwells, _clearance_on_the_way(context, before, drilled)))
@@ -91,4 +91,4 @@ def _faults_around(context: ComparedContext, drilled: _Drilled) -> Iterator[Hole
     first = row + drilled.match.shares_first_row
     end = drilled.match.end - drilled.match.shares_last_row
     if (k and matching.nc[k - 1] >= first) or (k < len(matching.nc) and matching.nc[k] < end):
-        yield HoleFault(row, 0.0, "the hole is made before or after its turn")
+        yield HoleFault(row, 0.0, "the hole is drilled before or after its turn")

@@ -14,7 +14,7 @@ from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds
 
 _FAULTS: Final = {
-    "no feed": "moves at feed, but no feed was said",
+    "no feed": "moves at feed, but no feed is programmed",
     "spindle off": "moves at feed, spindle off",
     "no time": "moves with inverse time (G93), and has no F of its own",
 }
@@ -107,7 +107,8 @@ def _turned_under_tcp(context: Context) -> list[Place]:
                 break
             turned = float(turns[row - first])
             if turned > _STILL and not run.state.machine_frame[row]:
-                text = f"swings a rotary axis by {turned:.3f} degrees at rapid with TCP on: place it before TRAORI"
+                what = f"swings a rotary axis by {turned:.3f} degrees at rapid with TCP on"
+                text = f"{what}: position it before TCP is switched on"
                 places.append(context.place(row, turned, text))
             if run.programmed[row] & int(POSITION_WORDS):
                 break

@@ -134,7 +134,7 @@ def _wrong_circles(context: ComparedContext) -> Iterator[Place]:
             continue
         turns, should = run.arcs.full_turns[m], expected.arcs.full_turns[k]
         if turns != should:
-            text = f"makes {turns} whole turns besides; the CL file wants {should}"
+            text = f"makes {turns} full turns before its end; the CL file wants {should}"
             yield context.place_with_cl(motion, 0.0, text, row)
         start = run.positions(np.array([motion - 1])).tip[0]
         off_from_start = run.arcs.centre[m] - start - (centre - expected.point(row - 1).tip)

@@ -44,11 +44,11 @@ def check_normals(context: ComparedContext) -> list[Check]:
             faults = (
                 (
                     np.isfinite(should[:, 0]) & np.isnan(is_[:, 0]) & may_have,
-                    "says no surface normal, and the CL file has a contact point",
+                    "has no surface normal, but the CL file has a contact point",
                 ),
                 (
                     np.isnan(should[:, 0]) & np.isfinite(is_[:, 0]),
-                    "says a surface normal where the CL file has no contact point",
+                    "has a surface normal, but the CL file has no contact point",
                 ),
                 (beyond, "the surface normal is off"),
             )

@@ -101,7 +101,7 @@ def _measured(
     count: int,
 ) -> Check:
     if not len(context.matching.nc) and len(context.expected):
-        return Check(key, title, False, "no block answers to any CL point", unit=unit)
+        return Check(key, title, False, "no block goes to any CL point", unit=unit)
     each, whole = ("X, Y or Z", "distance") if unit == "mm" else ("a rotary axis", "angle")
     largest, limit = deviations.largest, deviations.limit
     summary = f"largest {largest:.6f} {unit} in {each}, rms {whole} {deviations.rms:.6f}, allowed {limit:.6f}"

@@ -42,9 +42,7 @@ def check_spindle(context: ComparedContext) -> Check:
     places += _foreign_events(context, asked) if asked else ()
     places.sort(key=lambda place: place.nc_line)
     good = ", ".join(_words(each) for each in sorted(asked, key=lambda each: (each.rpm, each.sense)))
-    return check_from_places(
-        "spindle", "spindle as the CL file says", places, good or "the CL file says nothing of a spindle"
-    )
+    return check_from_places("spindle", "spindle as the CL file says", places, good or "the CL file has no SPINDL")
 
 
 def _foreign_events(context: ComparedContext, asked: set[ExpectedSpindle]) -> Iterator[Place]:
@@ -58,7 +56,7 @@ def _foreign_events(context: ComparedContext, asked: set[ExpectedSpindle]) -> It
         elif event.kind == "speed" and isinstance(event.value, float):
             rpm = event.value
             if not any(abs(each.rpm - rpm) <= RPM_TOLERANCE for each in asked):
-                yield context.place_of_event(event, rpm, f"S{rpm:g} is no speed that the CL file asks for")
+                yield context.place_of_event(event, rpm, f"the CL file never asks for S{rpm:g}")
 
 
 def _stops_after(context: ComparedContext, row: int) -> bool:

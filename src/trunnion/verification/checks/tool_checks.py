@@ -50,7 +50,7 @@ def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, .
     yield context.place_with_cl(row, 0.0, text, cl)
     calls = [event for event in run.events if event.kind in ("tool", "tool_change") and event.before_row <= row]
     if calls:
-        yield context.place_of_event(calls[-1], 0.0, f"{text}: this is the last word on it")
+        yield context.place_of_event(calls[-1], 0.0, f"{text}: this is the last block that calls a tool")
 
 
 def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]]) -> Iterator[Place]:

@@ -91,14 +91,15 @@ def _declared_axes(declared: Deviations, machine: Machine) -> Floats:
 
 def _excessive_leans(section: Section, declared: Deviations, leans: Floats) -> Iterator[DeviationFault]:
     for k in np.flatnonzero(~(leans <= declared.max_lean + _NOISE)).tolist():
-        text = f"the tool axis is said to lean by {leans[k]:.6f} degrees, more than the {declared.max_lean:g} asked for"
+        lean = f"the tool axis is declared to lean by {leans[k]:.6f} degrees"
+        text = f"{lean}, more than the {declared.max_lean:g} asked for"
         yield DeviationFault(section.first + int(declared.leaned_rows[k]), float(leans[k]), text)
 
 
 def _feeds_not_lowered(section: Section, declared: Deviations) -> Iterator[DeviationFault]:
     own = section.operation.moves.feed[declared.slowed_rows]
     for k in np.flatnonzero(~((declared.slowed_feed > 0.0) & (declared.slowed_feed <= own))).tolist():
-        text = f"a feed of {declared.slowed_feed[k]:g} is said to be a lower one than the CL file's"
+        text = f"a feed of {declared.slowed_feed[k]:g} is declared as lowered, but is not below that of the CL file"
         yield DeviationFault(section.first + int(declared.slowed_rows[k]), float(declared.slowed_feed[k]), text)
 
 
@@ -117,7 +118,7 @@ def misplaced_lean_positions(run: Run, expected: ExpectedPath, matching: Matchin
         by_vector = (run.programmed[nc[here]] & int(ProgrammedWord.VECTOR)) != 0
         worst = np.where(by_vector, 0.0, np.abs(off).max(axis=1))
         for bad in np.flatnonzero(~(worst <= section.tolerances.angle)).tolist():
-            text = f"a rotary axis is {worst[bad]:.6f} degrees from where it was said to be near the pole"
+            text = f"a rotary axis is {worst[bad]:.6f} degrees from where it was declared to be near the pole"
             faults.append(DeviationFault(int(cl[here[bad]]), float(worst[bad]), text))
     return faults
 

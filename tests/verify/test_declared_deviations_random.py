@@ -1,4 +1,4 @@
-"""Random passes by the pole with every wish, from the plan to the proof: what is said of a program is what it does."""
+"""Random passes by the pole with all options, from plan to proof: every program does what it declares."""
 
 import tempfile
 from dataclasses import replace
@@ -28,7 +28,7 @@ NAMES = ("yl569", "generic_head_table_bc", "generic_head_head_ca", "generic_nuta
 
 
 def proven(machine: Machine, operation: Operation, options: PlanOptions) -> Verification | None:
-    """The program, written, read back and compared; None where there can be none."""
+    """The program, written, read back and verified; None where planning refuses."""
     operation = replace(
         operation, tool=Tool("MILL", "D10", 10.0, 5.0, 50.0), events=(LoadTool(0, 1, 1), SpindleOn(0, 1, 5000.0))
     )
@@ -65,7 +65,7 @@ def test_what_is_planned_is_proven(
         slowest = found.run.feed[found.run.kind != 0].min(initial=np.inf)
         rotary = {machine.axes[column].name for column in machine.rotary}
         speed = next(c for c in found.checks if c.key == "speed")
-        # Feeds are not lowered without end, and what leads on from a rewind is not looked at.
+        # Feeds have a lower bound, and motions that lead on from a rewind are not lowered.
         if slowest > 0.2 and not any(e.kind == "message" and "Rewind" in str(e.value) for e in found.run.events):
             assert not [place.text for place in speed.places if place.text.split(" ")[0] in rotary]
 

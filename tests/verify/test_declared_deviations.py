@@ -1,4 +1,4 @@
-"""Programs whose tool axis leans near the pole, or whose feed is lowered: proven as they say, and no farther."""
+"""Programs whose tool axis leans near the pole, or whose feed is lowered: proven as declared, and no further."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -27,7 +27,7 @@ ROWS = 81
 
 @dataclass(frozen=True)
 class Posted:
-    """A pass 0.05 degrees from the pole, posted; ``text`` are the lines of its program."""
+    """A posted pass 0.05 degrees from the pole; ``text`` has the lines of its program."""
 
     machine: Machine
     path: Toolpath
@@ -36,7 +36,7 @@ class Posted:
     folder: Path
 
     def verified(self, text: list[str] | None = None, deviations: Deviations | None = None) -> Verification:
-        """The program, or another text in its place, against the CL file and what was agreed upon."""
+        """The program, or another text, verified against the CL file and the declared deviations."""
         file = self.folder / "again.mpf"
         file.write_text("\n".join(self.text if text is None else text) + "\n", encoding="utf-8")
         allowed = [replace(self.expected.tolerances[0], deviations=deviations or self.deviations)]
@@ -94,13 +94,13 @@ def with_word(line: str, letter: str, change: float) -> str:
 
 
 @pytest.mark.parametrize("mode", [PoleStrategy.HOLD, PoleStrategy.SPREAD, PoleStrategy.LEAN])
-def test_a_leaning_program_is_proven_as_it_says(mode: PoleStrategy, tmp_path: Path) -> None:
+def test_a_leaning_program_is_proven_as_declared(mode: PoleStrategy, tmp_path: Path) -> None:
     found = posted(tmp_path, PlanOptions(pole_strategy=mode)).verified()
     assert failed(found) == []
     assert "; leans by up to 0.0" in check(found, "axis").summary
 
 
-def test_without_its_claim_it_fails(leaning: Posted) -> None:
+def test_without_its_declaration_it_fails(leaning: Posted) -> None:
     assert "axis" in failed(leaning.verified(deviations=Deviations.none()))
 
 
@@ -119,20 +119,20 @@ def test_a_wrong_rotary_position_is_found_in_every_row(leaning: Posted) -> None:
     assert tried > 4 * len(leaning.deviations.leaned_rows)
 
 
-def test_a_lean_beyond_what_was_asked_for_is_not_believed(leaning: Posted) -> None:
+def test_a_lean_beyond_the_requested_one_is_not_accepted(leaning: Posted) -> None:
     off = check(leaning.verified(deviations=replace(leaning.deviations, max_lean=0.03)), "axis")
     assert not off.passed
     assert "more than the 0.03 asked for" in off.places[0].text
     assert off.places[0].cl_line in range(12, 12 + ROWS)
 
 
-def test_a_claim_about_other_rows_is_not_met(leaning: Posted) -> None:
+def test_a_declaration_of_other_rows_fails(leaning: Posted) -> None:
     deviations = leaning.deviations
     moved = replace(deviations, leaned_rows=deviations.leaned_rows + 1)
     assert "axis" in failed(leaning.verified(deviations=moved))
 
 
-def test_a_slowed_program_is_proven_as_it_says(slowed: Posted) -> None:
+def test_a_slowed_program_is_proven_as_declared(slowed: Posted) -> None:
     found = slowed.verified()
     assert failed(found) == []
     assert "for the rotary axes" in check(found, "feed").summary
@@ -149,8 +149,8 @@ def test_every_wrong_feed_is_found(slowed: Posted) -> None:
             assert failed(slowed.verified(text)) == ["feed"], slowed.text[k]
 
 
-@pytest.mark.parametrize(("factor", "text"), [(0.5, "need no more than"), (1e3, "said to be a lower one")])
-def test_a_feed_lower_than_needed_or_higher_than_asked_for_is_not_believed(
+@pytest.mark.parametrize(("factor", "text"), [(0.5, "need no more than"), (1e3, "declared as lowered")])
+def test_a_feed_lower_than_needed_or_higher_than_that_of_the_cl_file_is_not_accepted(
     factor: float, text: str, slowed: Posted
 ) -> None:
     deviations = replace(slowed.deviations, slowed_feed=slowed.deviations.slowed_feed * factor)

@@ -1,4 +1,4 @@
-"""Row numbers kept as stretches, against a list of them."""
+"""Row numbers stored as ranges, against a list of them."""
 
 import numpy as np
 from hypothesis import given
@@ -25,11 +25,11 @@ def test_rows_are_the_numbers_of_the_rows_that_have_a_flag(
 
 
 @given(st.lists(st.tuples(st.integers(1, 5), st.integers(0, 4)), max_size=8))
-def test_rows_can_be_put_together_from_stretches(gaps: list[tuple[int, int]]) -> None:
-    stretches, at = [], 0
+def test_rows_can_be_made_from_ranges(gaps: list[tuple[int, int]]) -> None:
+    ranges, at = [], 0
     for gap, count in gaps:
-        stretches.append((at + gap, count))
+        ranges.append((at + gap, count))
         at += gap + count
-    rows = RowRanges.from_ranges(stretches)
-    wanted = [first + k for first, count in stretches for k in range(count)]
+    rows = RowRanges.from_ranges(ranges)
+    wanted = [first + k for first, count in ranges for k in range(count)]
     assert rows.rows(0, len(rows)).tolist() == wanted

@@ -1,4 +1,4 @@
-"""Right programs that are hard to pair with their CL points: each of these was once refused."""
+"""Correct programs that are hard to match with their CL points: each of these once failed."""
 
 import math
 from dataclasses import replace
@@ -34,7 +34,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def failed(text: str, name: str, folder: Path) -> list[Check]:
-    """Checks that the program of a CL file fails on a shipped machine."""
+    """The checks that the program of a CL file fails on a shipped machine."""
     cl, nc = folder / "part.cls", folder / "part.nc"
     cl.write_text(text, encoding="utf-8")
     model = load_machine(name)
@@ -47,8 +47,8 @@ def failed(text: str, name: str, folder: Path) -> list[Check]:
     return failures(found)
 
 
-def test_operations_are_paired_each_within_its_own_limits(folder: Path) -> None:
-    """The second operation is in a plane, where half a digit comes to more than in the first."""
+def test_operations_are_matched_each_within_its_own_limits(folder: Path) -> None:
+    """The second operation is in a plane, where half a digit is a larger error than in the first."""
     upright = "RAPID\nGOTO/0,0,20,0,0,1\nFEDRAT/MMPM,800\nGOTO/0,0,0\nGOTO/5,0,0\n"
     lean = "0.0,-0.292371704723,0.956304755963"
     helix = (
@@ -76,7 +76,7 @@ def test_circles_that_close_nearly_and_rise_hardly_are_proven(
     assert failed(START + start + arc + f"RAPID\nGOTO/{end},50.0\n" + FOOT, name, folder) == []
 
 
-#: Tips, and tool axes as they lean in X and Y, within a hair of the pole and far from it.
+#: Tips, and tool axes as they lean in X and Y, very near the pole and far from it.
 NEAR_POLE = [
     (
         [[14.98734, -12.15472, 19.25685], [17.04214, -24.73153, 2.89901], [-0.11883, -19.25284, 8.04253],
