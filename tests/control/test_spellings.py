@@ -16,6 +16,7 @@ from trunnion.machines import load_machine
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families.heidenhain import writer as heidenhain
 from trunnion.output.families.sinumerik import writer as sinumerik
+from trunnion.readers.program.options import DEFAULT_OPTIONS
 
 #: Whole thousandths of a degree: beside the place where two turns become one, their angles lose half of the digits.
 ANGLES = st.integers(-179999, 180000).map(lambda n: n / 1000)
@@ -45,7 +46,7 @@ def frame_of(text: str, family: str, folder: Path) -> tuple[Floats, Floats]:
     machine = {"fidia_nc15": HS664RT, "sinumerik_840d": YL569}.get(family, DMU65)
     path = folder / "PLANE.NC"
     path.write_text(text, encoding="utf-8")
-    interpreter = load_reader(family).interpreter(path, machine)
+    interpreter = load_reader(family).interpreter(path, machine, DEFAULT_OPTIONS)
     interpreter.run()
     frame = interpreter.control.frame
     return frame.linear.copy(), frame.shift.copy()

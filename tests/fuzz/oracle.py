@@ -16,7 +16,7 @@ from trunnion.machines import Machine, load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.readers import run_program
-from trunnion.readers.program.interpreter import MAX_DIAGNOSTICS
+from trunnion.readers.program.limits import MAX_DIAGNOSTICS
 
 #: Blocks that loops and calls may execute.
 LIMIT: Final = 1500

@@ -16,7 +16,8 @@ from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 from trunnion.readers.families.sinumerik.text import SinumerikText
-from trunnion.readers.program import interpreter
+from trunnion.readers.program.limits import MAX_SUBPROGRAMS
+from trunnion.readers.program.options import RunOptions
 
 
 @pytest.fixture(scope="module")
@@ -192,12 +193,12 @@ def test_labels_of_a_subprogram_are_looked_for_once(folder: Path, monkeypatch: p
 
 
 def test_a_program_calls_so_many_files_and_no_more(tmp_path: Path) -> None:
-    for k in range(interpreter.MAX_SUBPROGRAMS + 1):
+    for k in range(MAX_SUBPROGRAMS + 1):
         (tmp_path / f"P_{k}.SPF").write_text("RET")
     path = tmp_path / "MAIN.MPF"
-    path.write_text("".join(f"P_{k}\n" for k in range(interpreter.MAX_SUBPROGRAMS)))
-    assert len(interpreter_run(path, 10).files) == interpreter.MAX_SUBPROGRAMS + 1
-    path.write_text("".join(f"P_{k}\n" for k in range(interpreter.MAX_SUBPROGRAMS + 1)))
+    path.write_text("".join(f"P_{k}\n" for k in range(MAX_SUBPROGRAMS)))
+    assert len(interpreter_run(path, 10).files) == MAX_SUBPROGRAMS + 1
+    path.write_text("".join(f"P_{k}\n" for k in range(MAX_SUBPROGRAMS + 1)))
     with pytest.raises(InputError, match="calls more than 1000 subprograms"):
         interpreter_run(path, 10)
 
@@ -249,4 +250,4 @@ def test_a_loop_before_a_long_tail_asks_for_no_room_that_it_does_not_need(folder
 def interpreter_run(path: Path, limit: int) -> Run:
     """Run a program of a folder."""
     named = oracle.beside(path, "sinumerik_840d")
-    return SinumerikInterpreter(path, oracle.machine("yl569"), subprograms=named, step_limit=limit).run()
+    return SinumerikInterpreter(path, oracle.machine("yl569"), RunOptions(tuple(named), limit)).run()

@@ -7,7 +7,7 @@ import pytest
 
 from trunnion.readers.families.sinumerik import cycles, expressions, flow, words
 from trunnion.readers.families.sinumerik.text import MAX_NESTING
-from trunnion.readers.program import interpreter, source_text
+from trunnion.readers.program import limits, options, source_text
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reader.md").read_text(encoding="utf-8")
 
@@ -64,11 +64,11 @@ def test_every_m_word_and_event_is_in_the_page() -> None:
 
 def test_limits_are_those_of_the_page() -> None:
     plain = PAGE.replace(" 000", "000")
-    assert str(interpreter.DEFAULT_STEP_LIMIT) in plain
-    assert f"After {interpreter.MAX_DIAGNOSTICS} diagnostics" in plain
+    assert str(options.DEFAULT_STEP_LIMIT) in plain
+    assert f"After {limits.MAX_DIAGNOSTICS} diagnostics" in plain
     assert f"at most {MAX_NESTING} inside" in plain
-    assert f"At most {interpreter.MAX_CALL_DEPTH} programs" in plain
-    assert f"calls at most {interpreter.MAX_SUBPROGRAMS} files" in plain
-    assert f"for every {interpreter.CHARACTERS_PER_STEP} characters" in plain
+    assert f"At most {limits.MAX_CALL_DEPTH} programs" in plain
+    assert f"calls at most {limits.MAX_SUBPROGRAMS} files" in plain
+    assert f"for every {limits.CHARACTERS_PER_STEP} characters" in plain
     assert f"at most {expressions.MAX_NESTING} deep" in plain
     assert f"at most {source_text.MAX_LOADED_SIZE >> 20} MiB" in plain

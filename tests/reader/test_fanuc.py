@@ -383,7 +383,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
     for plain in (True, False):
         with monkeypatch.context() as patch:
             if not plain:
-                patch.setattr(FanucInterpreter, "_may_be_plain", lambda *_: False)
+                patch.setattr(FanucInterpreter, "_may_scan", lambda *_: False)
             try:
                 results.append(run_program(path, MACHINE))
             except InputError as error:
@@ -392,7 +392,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
     if isinstance(fast, Run) and isinstance(slow, Run):
         assert sorted(map(str, fast.diagnostics)) == sorted(map(str, slow.diagnostics))
         for one in (fast, slow):
-            object.__setattr__(one, "findings", ())
+            object.__setattr__(one, "diagnostics", ())
         same(fast, slow)
     else:
         assert fast == slow

@@ -55,7 +55,7 @@ def twice(path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Run, Run]:
     """Run a program with and without the scan kernel."""
     fast = run_program(path, YL569)
     with monkeypatch.context() as patch:
-        patch.setattr(SinumerikInterpreter, "_may_be_plain", lambda *_: False)
+        patch.setattr(SinumerikInterpreter, "_may_scan", lambda *_: False)
         return fast, run_program(path, YL569)
 
 
@@ -134,7 +134,8 @@ def test_vectors_are_followed_on_the_near_branch(b: list[float], c: list[float])
     axis = forward(YL569, joints)[1]
     rotary = np.full((len(b), 2), np.nan)
     status = np.zeros(len(b), np.uint8)
-    axis_positions.resolve_angles(YL569, rotary, np.zeros(len(b), np.uint8), axis, np.zeros(2), status)
+    words = axis_positions.RotaryWords(rotary, np.zeros(len(b), np.uint8), axis)
+    axis_positions.resolve_angles(YL569, words, np.zeros(2), status)
     got = np.zeros((len(b), 5))
     got[:, list(YL569.rotary)] = rotary
     np.testing.assert_allclose(forward(YL569, got)[1], axis, atol=1e-9)

@@ -118,7 +118,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
     for plain in (True, False):
         with monkeypatch.context() as patch:
             if not plain:
-                patch.setattr(LinuxcncInterpreter, "_may_be_plain", lambda *_: False)
+                patch.setattr(LinuxcncInterpreter, "_may_scan", lambda *_: False)
             try:
                 results.append(run_program(path, XYZAC))
             except InputError as error:
@@ -133,7 +133,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
 
 def without_findings(run: Run) -> Run:
     """The run, whose findings may stand in another order."""
-    object.__setattr__(run, "findings", ())
+    object.__setattr__(run, "diagnostics", ())
     return run
 
 

@@ -1,14 +1,15 @@
-"""From what blocks say to where the five axes are.
+"""Positions of the five axes from what blocks program.
 
-In:     per row the tip or the slide values, and a vector or rotary values, or neither: then the angles stay.
-Out:    rotary values as they wind from row to row, and with them five joints a row.
+In:     per row the tip or the slide positions, and a vector or rotary words, or neither, which keeps the angles.
+Out:    rotary positions with all their turns, and with them five joints per row.
 Units:  mm and degrees.
 
-How a rotary word is reached (``turn_rule``): the first rotary axis in the low four bits, the second in the high four.
+The turn rule of a row says in which turn its rotary words end: the rule of the first rotary axis in the low four bits,
+that of the second in the high four.
 """
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -17,105 +18,108 @@ from trunnion.jit import inner, kernel
 from trunnion.machines import Machine, inverse
 from trunnion.machines.inverse import KinematicParameters, solve_slides
 
-#: The number itself, as an axis with an end takes it.
+#: Turn rule: the programmed number itself, as on an axis with end stops.
 PLAIN: Final = 0
-#: By whichever way is shorter, up to half a turn.
+#: The shorter way, at most half a turn.
 SHORTEST: Final = 1
-#: Only with growing values.
+#: In the positive direction only.
 POSITIVE_DIRECTION: Final = 2
-#: Only with falling values.
+#: In the negative direction only.
 NEGATIVE_DIRECTION: Final = 3
-#: Inside the turn in which the axis stands, as an endless axis takes an absolute position.
+#: Within the turn in which the axis stands, as an endless axis takes absolute positions.
 SAME_TURN: Final = 4
 
-#: Row status.
+#: Status bits of a row: a rotary axis leaves its travel, no rotary position gives the vector (the angles stay), and no
+#: position of the slides gives the tip.
 OUT_OF_TRAVEL: Final = 1
 NO_ROTARY_SOLUTION: Final = 2
 NO_SLIDE_SOLUTION: Final = 4
 
-#: How far past its travel a rotary axis may stand before a branch is refused, degrees.
+#: How far beyond its travel a rotary axis may stand before a solution counts as outside, degrees.
 TRAVEL_TOLERANCE: Final = 1e-6
 
-#: Which rotary axis decides between the two positions for a vector: neither, but the sum of both ways.
+#: Instead of a deciding axis: the rotation of both axes together decides between the two solutions for a vector.
 TOTAL_ROTATION: Final = -1
 
-#: Ways that differ by no more than this are the same, degrees.
+#: Rotations that differ by no more than this are equal, degrees.
 _EQUAL_ROTATION: Final = 1e-6
+
+
+class RotaryWords(NamedTuple):
+    """What n consecutive blocks program for the rotary axes.
+
+    rotary     (n, 2) float64  values, deg, NaN where a block has none; replaced by the positions that they lead to
+    turn_rule  (n,) uint8      see the module
+    vector     (n, 3) float64  tool axes of any length, workpiece frame; NaN where a block has none
+    """
+
+    rotary: Floats
+    turn_rule: Codes
+    vector: Floats
 
 
 def resolve_rotary(
     machine: Machine,
     kinematics: KinematicParameters,
     xyz: Floats,
-    rotary: Floats,
-    turn_rule: Codes,
-    vector: Floats,
-    current: Floats,
+    words: RotaryWords,
+    start: Floats,
+    *,
     xyz_is_tip: bool,
     deciding_axis: int = TOTAL_ROTATION,
 ) -> Codes:
-    """Work out where the rotary axes stand after consecutive rows.
+    """Replace the rotary values of consecutive rows by the positions that the axes take.
 
     Parameters
     ----------
-    place : (n, 3) float64, mm
-        Tool tips in the workpiece frame if ``xyz_is_tip``, else slide values in the order X, Y, Z.
-    rotary : (n, 2) float64, deg
-        In: programmed values, NaN where the block has none. Out: positions as they wind.
-    way : (n,) uint8
-        See the module.
-    vector : (n, 3) float64
-        Programmed vectors of any length, workpiece frame; NaN where the block has none.
-    held : (2,) float64
-        Rotary axes before the first row.
-    deciding
-        The rotary axis, 0 or 1, by whose way a control chooses between two positions for a vector; where that is the
-        same for both, the other's way decides, then which position is nearer to 0. ``TOTAL_ROTATION``: the sum of both
-        ways.
+    xyz : (n, 3) float64, mm
+        Tool tips in the workpiece frame if ``xyz_is_tip``, else slide positions in the order X, Y, Z.
+    words
+        Rotary words and vectors; ``words.rotary`` is changed.
+    start : (2,) float64, deg
+        Rotary positions before the first row.
+    deciding_axis
+        The rotary axis, 0 or 1, whose rotation decides between the two solutions for a vector. If it is equal in both,
+        the rotation of the other axis decides, then the solution nearer to 0. ``TOTAL_ROTATION``: the sum of both.
 
     Returns
     -------
     (n,) uint8
-        Bits OUT_OF_TRAVEL, UNREACHABLE (the angles stayed) and SLIDES_DEPENDENT.
+        Bits OUT_OF_TRAVEL, NO_ROTARY_SOLUTION and NO_SLIDE_SOLUTION.
     """
     status = np.zeros(len(xyz), np.uint8)
-    resolve_angles(machine, rotary, turn_rule, vector, current, status, deciding_axis)
-    # Slides get stuck only where a rotary axis turns one of them against another.
+    resolve_angles(machine, words, start, status, deciding_axis)
+    # The slides can only fail where a rotary axis turns one of them against another.
     if xyz_is_tip and len(set(kinematics.rotary_below)) > 1:
-        joints = joints_from_rows(machine, kinematics, np.ones(len(xyz), np.bool_), xyz, rotary)
+        joints = joints_from_rows(machine, kinematics, np.ones(len(xyz), np.bool_), xyz, words.rotary)
         status[np.isnan(joints).any(axis=1)] |= NO_SLIDE_SOLUTION
     return status
 
 
 def resolve_angles(
-    machine: Machine,
-    rotary: Floats,
-    turn_rule: Codes,
-    axis: Floats,
-    current: Floats,
-    status: Codes,
-    deciding_axis: int = TOTAL_ROTATION,
+    machine: Machine, words: RotaryWords, start: Floats, status: Codes, deciding_axis: int = TOTAL_ROTATION
 ) -> None:
-    """Turn ``rotary`` (n, 2) from programmed values or NaN to positions, winding on from ``current`` (2,)."""
-    vector = ~np.isnan(axis[:, 0])
-    branches = np.full((2, len(rotary), 2), np.nan) if vector.any() else np.empty((2, 0, 2))
-    pole = np.zeros(len(rotary), np.bool_)
+    """Replace ``words.rotary`` by positions, beginning at ``start`` (2,), and set bits of ``status`` (n,)."""
+    n = len(words.rotary)
+    has_vector = ~np.isnan(words.vector[:, 0])
+    solutions = np.full((2, n, 2), np.nan) if has_vector.any() else np.empty((2, 0, 2))
+    pole = np.zeros(n, np.bool_)
     columns = list(machine.rotary)
-    if vector.any():
-        solved = inverse(machine, np.zeros((int(vector.sum()), 3)), axis[vector])
-        branches[:, vector] = solved.joints[:, :, columns]
-        pole[vector] = solved.pole
+    if has_vector.any():
+        solved = inverse(machine, np.zeros((int(has_vector.sum()), 3)), words.vector[has_vector])
+        solutions[:, has_vector] = solved.joints[:, :, columns]
+        pole[has_vector] = solved.pole
     axes = [machine.axes[column] for column in columns]
     resolve_turns(
-        rotary,
-        turn_rule,
-        vector,
-        branches,
+        words.rotary,
+        words.turn_rule,
+        has_vector,
+        solutions,
         pole,
-        current,
-        np.array([a.endless for a in axes]),
-        np.array([[a.low, a.high] for a in axes]),
-        np.array([-180.0 if a.output == "-180..180" else 0.0 for a in axes]),
+        start,
+        np.array([axis.endless for axis in axes]),
+        np.array([[axis.low, axis.high] for axis in axes]),
+        np.array([-180.0 if axis.output == "-180..180" else 0.0 for axis in axes]),
         deciding_axis,
         status,
     )
@@ -124,7 +128,7 @@ def resolve_angles(
 def joints_from_rows(
     machine: Machine, kinematics: KinematicParameters, xyz_is_tip: Flags, xyz: Floats, rotary: Floats
 ) -> Floats:
-    """All five axis values, (n, 5), of rows whose ``xyz`` is the tip where ``xyz_is_tip``, else the slides X, Y, Z.
+    """Return all five axis values, (n, 5), of rows whose ``xyz`` is the tip or the slide positions.
 
     Slides that cannot bring the tip there are NaN.
     """
@@ -135,7 +139,7 @@ def joints_from_rows(
 
 
 def slide_columns(machine: Machine) -> list[int]:
-    """Columns of the slides X, Y and Z."""
+    """Return the columns of the slides X, Y and Z."""
     return [machine.column(name) for name in "XYZ"]
 
 
@@ -143,41 +147,41 @@ def slide_columns(machine: Machine) -> list[int]:
 def resolve_turns(
     rotary: Floats2,
     turn_rule: Codes,
-    vector: Flags,
-    branches: Floats3,
+    has_vector: Flags,
+    solutions: Floats3,
     pole: Flags,
-    current: Floats,
+    start: Floats,
     endless: Flags,
     travel: Floats2,
     turn_start: Floats,
     deciding_axis: int,
     status: Codes,
 ) -> None:
-    """Take the values of ``rotary`` (n, 2), NaN where nothing was programmed, to the turns that the control takes.
+    """Replace the values of ``rotary`` (n, 2), NaN where none is programmed, by the positions that the axes take.
 
-    branches  (2, n, 2) float64  both solutions of rows with a vector, in (-180, 180]; may be empty if there are none
-    pole      (n,) bool          the first angle is free: it stays
-    held      (2,) float64       angles before the first row
-    endless   (2,) bool
-    travel    (2, 2) float64     lowest and highest value of each axis
-    lowest    (2,) float64       where the turn that the axis displays begins, 0 or -180
-    deciding  as in ``resolve_rotary``
+    solutions   (2, n, 2) float64  both solutions of rows with a vector, in (-180, 180]; may be empty if there are none
+    pole        (n,) bool          the first angle is free: the axis stays
+    start       (2,) float64       positions before the first row
+    endless     (2,) bool
+    travel      (2, 2) float64     lowest and highest value of each axis
+    turn_start  (2,) float64       where the displayed turn of an axis begins, 0 or -180
+    deciding_axis                  as in ``resolve_rotary``
     """
-    a, b = current[0], current[1]
+    a, b = start[0], start[1]
     for row in range(rotary.shape[0]):
-        if not vector[row]:
-            a = _rotary_position(a, rotary[row, 0], turn_rule[row] & 15, turn_start[0])
-            b = _rotary_position(b, rotary[row, 1], turn_rule[row] >> 4, turn_start[1])
+        if not has_vector[row]:
+            a = rotary_position(a, rotary[row, 0], turn_rule[row] & 15, turn_start[0])
+            b = rotary_position(b, rotary[row, 1], turn_rule[row] >> 4, turn_start[1])
         else:
             found = False
-            one, two = a, b
+            best_a, best_b = a, b
             in_travel = False
             for branch in range(2):
-                p, q = branches[branch, row, 0], branches[branch, row, 1]
+                p, q = solutions[branch, row, 0], solutions[branch, row, 1]
                 if math.isnan(q):
                     continue
-                p = a if pole[row] else _nearest_turn(a, p, endless[0], travel[0, 0], travel[0, 1])
-                q = _nearest_turn(b, q, endless[1], travel[1, 0], travel[1, 1])
+                p = a if pole[row] else nearest_turn(a, p, endless[0], travel[0, 0], travel[0, 1])
+                q = nearest_turn(b, q, endless[1], travel[1, 0], travel[1, 1])
                 fits = (
                     travel[0, 0] - TRAVEL_TOLERANCE <= p <= travel[0, 1] + TRAVEL_TOLERANCE
                     and travel[1, 0] - TRAVEL_TOLERANCE <= q <= travel[1, 1] + TRAVEL_TOLERANCE
@@ -185,52 +189,53 @@ def resolve_turns(
                 if (
                     not found
                     or (fits and not in_travel)
-                    or (fits == in_travel and preferred(p, q, one, two, a, b, deciding_axis))
+                    or (fits == in_travel and preferred(p, q, best_a, best_b, a, b, deciding_axis))
                 ):
-                    one, two, in_travel, found = p, q, fits, True
+                    best_a, best_b, in_travel, found = p, q, fits, True
             if not found:
                 status[row] |= NO_ROTARY_SOLUTION
             elif not in_travel:
                 status[row] |= OUT_OF_TRAVEL
-            a, b = one, two
+            a, b = best_a, best_b
         rotary[row, 0] = a
         rotary[row, 1] = b
 
 
 @inner
-def preferred(p: float, q: float, one: float, two: float, a: float, b: float, deciding_axis: int) -> bool:
-    """Whether a control whose axes stand at ``a`` and ``b`` takes ``p`` and ``q`` rather than ``one`` and ``two``."""
+def preferred(p: float, q: float, best_a: float, best_b: float, a: float, b: float, deciding_axis: int) -> bool:
+    """Whether a control whose axes stand at ``a``, ``b`` moves to ``p``, ``q`` rather than ``best_a``, ``best_b``."""
     if deciding_axis == TOTAL_ROTATION:
-        return abs(p - a) + abs(q - b) < abs(one - a) + abs(two - b) - 1e-9
+        return abs(p - a) + abs(q - b) < abs(best_a - a) + abs(best_b - b) - 1e-9
     if deciding_axis == 1:
-        p, q, one, two, a, b = q, p, two, one, b, a
-    for turn_rule in (
-        abs(p - a) - abs(one - a),
-        abs(q - b) - abs(two - b),
-        from_whole_turn(p) - from_whole_turn(one),
-        from_whole_turn(q) - from_whole_turn(two),
+        p, q, best_a, best_b, a, b = q, p, best_b, best_a, b, a
+    for difference in (
+        abs(p - a) - abs(best_a - a),
+        abs(q - b) - abs(best_b - b),
+        from_whole_turn(p) - from_whole_turn(best_a),
+        from_whole_turn(q) - from_whole_turn(best_b),
     ):
-        if abs(turn_rule) > _EQUAL_ROTATION:
-            return turn_rule < 0.0
+        if abs(difference) > _EQUAL_ROTATION:
+            return difference < 0.0
     return False
 
 
 @inner
 def from_whole_turn(angle: float) -> float:
-    """How far an angle is from the nearest whole turn, degrees."""
+    """Return the distance of an angle from the nearest whole turn, degrees."""
     return abs(angle - 360.0 * math.floor(angle / 360.0 + 0.5))
 
 
+@inner
 def rotary_position(current: float, value: float, turn_rule: int, turn_start: float) -> float:
-    """Position of a rotary axis that stands at ``current`` after a word with ``value`` (NaN: no word), deg."""
+    """Return where a rotary axis at ``current`` goes for a word with ``value`` (NaN: no word), degrees."""
     if math.isnan(value):
         return current
     if turn_rule == PLAIN:
         return value
     if turn_rule == SAME_TURN:
-        in_travel = value - 360.0 * math.floor((value - turn_start) / 360.0)
-        return in_travel + 360.0 * math.floor((current - turn_start) / 360.0)
-    # Counted in whole turns added to the number, so that the digits written are the digits reached.
+        in_first_turn = value - 360.0 * math.floor((value - turn_start) / 360.0)
+        return in_first_turn + 360.0 * math.floor((current - turn_start) / 360.0)
+    # Whole turns are added to the programmed number, so that the position has its digits.
     turns = (current - value) / 360.0
     if turn_rule == POSITIVE_DIRECTION:
         return value + 360.0 * math.ceil(turns - 1e-12)
@@ -239,11 +244,9 @@ def rotary_position(current: float, value: float, turn_rule: int, turn_start: fl
     return value + 360.0 * math.floor(turns + 0.5)
 
 
-_rotary_position = inner(rotary_position)
-
-
+@inner
 def nearest_turn(current: float, value: float, endless: bool, low: float, high: float) -> float:
-    """The angle equal to ``value`` but for whole turns that is nearest to ``current``; inside the travel if any is."""
+    """Return ``value`` plus the whole turns that bring it nearest to ``current``, within the travel if possible."""
     close = value + 360.0 * math.floor((current - value) / 360.0 + 0.5)
     if endless or low <= close <= high:
         return close
@@ -253,9 +256,6 @@ def nearest_turn(current: float, value: float, endless: bool, low: float, high: 
             if low <= other <= high:
                 return other
     return close
-
-
-_nearest_turn = inner(nearest_turn)
 
 
 @kernel(writes="joints")
@@ -268,10 +268,9 @@ def write_joints(
     rotary: Floats2,
     joints: Floats2,
 ) -> None:
-    """Write ``joints`` (n, 5) of rows, as ``joints_from_rows`` says.
+    """Write ``joints`` (n, 5) of rows as ``joints_from_rows`` returns them.
 
-    slides    columns of X, Y and Z in ``joints``
-    turning   columns of the rotary axes
+    slides, rotary_columns   columns of X, Y and Z and of the rotary axes in ``joints``
     """
     for row in range(xyz.shape[0]):
         a, b = rotary[row, 0], rotary[row, 1]

@@ -1,4 +1,4 @@
-"""Columns of a run that are stored by their changes: values that change seldom, and numbers that grow evenly."""
+"""Columns of a run in compact form: values that change seldom, and whole numbers that increase evenly."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +13,7 @@ from trunnion.arrays import Ints
 class StepColumn:
     """A column of n rows that changes seldom: ``values[k]`` holds from row ``rows[k]`` on.
 
-    rows     (m,) int64, growing; the first is 0, and some may be n or more
+    rows     (m,) int64, ascending; the first is 0, and the last ones may be n or more
     values   (m,)
     """
 
@@ -23,21 +23,21 @@ class StepColumn:
 
     @staticmethod
     def constant(n: int, value: float, dtype: type[np.generic]) -> "StepColumn":
-        """A column that never changes."""
+        """Return a column with one value throughout."""
         return StepColumn(n, np.zeros(1, np.int64), np.array([value], dtype))
 
     def __len__(self) -> int:
         return self.n
 
     def __getitem__(self, row: int) -> Any:
-        """The value of one row, counted from the end if negative."""
+        """Return the value of one row, counted from the end if negative."""
         row = row if row >= 0 else self.n + row
         if not 0 <= row < self.n:
             raise IndexError(row)
         return self.values[np.searchsorted(self.rows, row, "right") - 1].item()
 
     def at(self, rows: Ints) -> NDArray[Any]:
-        """Values of rows, (k,), in any order."""
+        """Return the values of rows in any order, (k,)."""
         if not len(rows):
             return self.values[:0].copy()
         low, high = np.searchsorted(self.rows, (rows.min(), rows.max()), "right").tolist()
@@ -46,7 +46,7 @@ class StepColumn:
         return np.asarray(self.values[np.searchsorted(self.rows, rows, "right") - 1])
 
     def part(self, first: int, end: int) -> NDArray[Any]:
-        """Values of consecutive rows, (end - first,)."""
+        """Return the values of consecutive rows, (end - first,)."""
         low = int(self.rows.searchsorted(first, "right")) - 1
         high = max(int(self.rows.searchsorted(end)), low + 1)
         if high == low + 1:
@@ -56,21 +56,21 @@ class StepColumn:
         return np.repeat(self.values[low:high], np.diff(bounds))
 
     def column(self) -> NDArray[Any]:
-        """All values, (n,), read-only."""
+        """Return the whole column, (n,), read-only."""
         whole = self.part(0, self.n)
         whole.setflags(write=False)
         return whole
 
     def distinct(self) -> NDArray[Any]:
-        """The values that rows have, each once, growing."""
+        """Return the values that occur, each once, ascending."""
         return np.unique(self.values[: np.searchsorted(self.rows, self.n)])
 
     def rows_changing_to(self, value: float) -> list[int]:
-        """Rows from which on a value holds that did not hold in the row before."""
+        """Return the rows at which the column changes to a value."""
         return [int(self.rows[k]) for k in np.flatnonzero(self.values == value) if self.rows[k] < self.n]
 
     def rows_with(self, value: float) -> Ints:
-        """Rows that have a value, growing."""
+        """Return the rows that have a value, ascending."""
         ends = np.minimum(np.append(self.rows[1:], self.n), self.n)
         found = [np.arange(self.rows[k], ends[k]) for k in np.flatnonzero(self.values == value).tolist()]
         return np.concatenate((np.zeros(0, np.int64), *found))
@@ -78,9 +78,9 @@ class StepColumn:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RampColumn:
-    """A column of n whole numbers that grow evenly most of the time, as lines and block numbers do.
+    """A column of n whole numbers that mostly increase evenly, as line and block numbers do.
 
-    From row ``rows[k]`` on it is ``values[k]``, and ``steps[k]`` more with every row; all (m,) int64.
+    It is ``values[k]`` at row ``rows[k]`` and increases by ``steps[k]`` with every row after it; all (m,) int64.
     """
 
     n: int
@@ -99,7 +99,7 @@ class RampColumn:
         return int(self.values[k] + self.steps[k] * (row - self.rows[k]))
 
     def column(self, dtype: type[np.generic]) -> NDArray[Any]:
-        """All values, (n,), read-only."""
+        """Return the whole column, (n,), read-only."""
         length = np.diff(self.rows, append=self.n)
         column = np.repeat(self.steps, length)
         column *= np.arange(self.n) - np.repeat(self.rows, length)

@@ -1,7 +1,7 @@
-"""What F per minute counts in a block in which rotary axes turn and nobody holds the tip.
+"""The path length that F refers to in blocks whose rotary axes turn without TCP.
 
-With TCP, and where no rotary axis turns, that is the tip's way. Without TCP each control has its own rule; the readers
-of the families say which, and docs/reader.md from where it is known.
+With TCP, and where no rotary axis turns, it is the path of the tool tip. Without TCP every control has a rule of its
+own; the reader of its family sets it, and ``docs/reader.md`` gives the source of each rule.
 """
 
 from enum import IntEnum
@@ -14,23 +14,23 @@ from trunnion.machines import Machine, forward
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 
-#: Rotary axes that turn by less than this, degrees, stand still.
+#: Rotary axes that turn by no more than this, degrees, count as still.
 NO_ROTATION: Final = 1e-9
 
-#: Slides that move by less than this, mm, rest.
+#: Slides that move by less than this, mm, count as still.
 _NO_TRAVEL: Final = 1e-9
 
-#: Share of a block over which the speed at its start is taken.
+#: The share of a block over which the speed at its start is measured.
 _START_SHARE: Final = 1e-5
 
 
 class FeedPath(IntEnum):
     """The rule of a control.
 
-    SLIDES  the way of the slides, and the rotary axes arrive with them; where no slide moves, the degrees of the axis
+    SLIDES  the path of the slides, with which the rotary axes arrive; where no slide moves, the degrees of the axis
             that turns farthest
-    AXES    all axes together as one way, a degree as a millimetre
-    TIP     the way that the tip would make at the speed that it has at the block's start
+    AXES    all axes together as one path, a degree counting as a millimetre
+    TIP     the path that the tip would cover at the speed that it has at the start of the block
     """
 
     SLIDES = 0
@@ -39,42 +39,44 @@ class FeedPath(IntEnum):
 
 
 def feed_path_lengths(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats:
-    """(k,) float64: what F counts on k ways of the axes, mm or degrees; it takes that over F to go them.
+    """Return the lengths that F refers to for k motions of the axes, (k,) mm or degrees; length over F is the time.
 
     Parameters
     ----------
     before, after : (k, 5) float64
-        Axis values at both ends, as they wind.
+        Axis values at both ends, rotary values with all turns.
     path : (k,) uint8
-        A ``FeedPath`` for each.
+        A ``FeedPath`` for each motion.
     """
     steps = after - before
     slides = np.linalg.norm(steps[:, list(machine.linear)], axis=1)
     turned = np.abs(steps[:, list(machine.rotary)]).max(axis=1)
-    way: Floats = np.where(slides < _NO_TRAVEL, turned, slides)
+    length: Floats = np.where(slides < _NO_TRAVEL, turned, slides)
     together = path == FeedPath.AXES
-    way[together] = np.linalg.norm(steps[together], axis=1)
-    start = path == FeedPath.TIP
-    if start.any():
-        tip, on = (forward(machine, before[start] + share * steps[start])[0] for share in (0.0, _START_SHARE))
-        way[start] = np.linalg.norm(on - tip, axis=1) / _START_SHARE
-    return way
+    length[together] = np.linalg.norm(steps[together], axis=1)
+    at_start = path == FeedPath.TIP
+    if at_start.any():
+        tip, shortly_after = (
+            forward(machine, before[at_start] + share * steps[at_start])[0] for share in (0.0, _START_SHARE)
+        )
+        length[at_start] = np.linalg.norm(shortly_after - tip, axis=1) / _START_SHARE
+    return length
 
 
 def row_feed_path_lengths(run: Run, rows: Ints) -> Floats:
-    """(k,) float64: what F per minute counts in rows, in any order, where that is not the tip's way; else NaN."""
-    way = np.full(len(rows), np.nan)
-    without = ~run.state.tcp.at(rows)
-    if not without.any():
-        return way
-    free = np.flatnonzero(without & (run.kind[rows] == Kind.LINEAR) & (run.state.feed_mode.at(rows) == 94))
-    if not len(free):
-        return way
-    before = run.rotary[rows[free] - 1]
-    before[rows[free] < 1] = run.start[list(run.machine.rotary)]
-    led = free[np.abs(run.rotary[rows[free]] - before).max(axis=1) > NO_ROTATION]
-    if len(led):
-        there = rows[led]
-        ends = run.positions(there - 1).joints, run.positions(there).joints
-        way[led] = feed_path_lengths(run.machine, *ends, run.state.feed_path.at(there))
-    return way
+    """Return the lengths that F in mm/min refers to in rows, (k,), in any order; NaN where it is the tip's path."""
+    length = np.full(len(rows), np.nan)
+    without_tcp = ~run.state.tcp.at(rows)
+    if not without_tcp.any():
+        return length
+    candidates = np.flatnonzero(without_tcp & (run.kind[rows] == Kind.LINEAR) & (run.state.feed_mode.at(rows) == 94))
+    if not len(candidates):
+        return length
+    before = run.rotary[rows[candidates] - 1]
+    before[rows[candidates] < 1] = run.start[list(run.machine.rotary)]
+    turning = candidates[np.abs(run.rotary[rows[candidates]] - before).max(axis=1) > NO_ROTATION]
+    if len(turning):
+        those = rows[turning]
+        ends = run.positions(those - 1).joints, run.positions(those).joints
+        length[turning] = feed_path_lengths(run.machine, *ends, run.state.feed_path.at(those))
+    return length

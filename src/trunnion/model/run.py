@@ -1,12 +1,12 @@
-"""What a control did with a program: one row a motion, in columns, and what happened between the rows.
+"""What a control did with a program: columns with one row per motion, and the events between the rows.
 
-A run keeps what its blocks say and what cannot be worked out from a row alone. State that changes seldom is kept by its
-changes (``ModalState``); slides, tips and tool axes come from the machine. ``positions`` and ``chunk`` work them out
-for some rows; as whole columns they are made when they are first asked for, and then kept.
+A run stores what its blocks program and what a single row does not determine. Values that change seldom are stored by
+their changes (``ModalState``). Slides, tips and tool axes follow from the machine's kinematics: ``positions`` and
+``chunk`` compute them for some rows; the whole columns are computed on first access and cached.
 
-Units: mm, degrees, unit vectors, rev/min; feeds in mm/min, mm/rev or 1/min as ``feed_mode`` says.
-Frame: the workpiece frame of the machine, that is the zero point set by the work offset; programmable frames and
-swivelled planes are already resolved to it.
+Units: mm, degrees, unit vectors, rev/min; feeds in mm/min, mm/rev or 1/min according to ``feed_mode``.
+Frame: the workpiece frame of the machine, whose origin is the zero set by the work offset. Programmable frames and
+tilted planes are already transformed into it.
 """
 
 from collections.abc import Iterator
@@ -25,12 +25,12 @@ from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.toolpath import Arcs
 
-#: Rows that are worked out at a time: some megabytes, and milliseconds enough that two threads seldom meet.
+#: Rows computed at a time: a few megabytes, and long enough that handing over to the other thread costs nothing.
 CHUNK_ROWS = 32768
 
 
 class ProgrammedWord(IntFlag):
-    """Words that a block really wrote, as bits of ``Run.programmed``."""
+    """The words that a block contains, as bits of ``Run.programmed``; FIRST and SECOND are the rotary axes."""
 
     X = 1
     Y = 2
@@ -42,7 +42,7 @@ class ProgrammedWord(IntFlag):
 
 
 class Orientation(IntEnum):
-    """How the tool axis moves between rows while TCP is on: angles linear, or the vector on a great circle."""
+    """How the tool axis moves within a block under TCP: rotary angles linear, or the vector on a great circle."""
 
     ANGLES = 0
     GREAT_CIRCLE = 1
@@ -50,7 +50,7 @@ class Orientation(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """Something that the reader did not know, could not do or finds odd; line from 1, in ``file``."""
+    """Something in a program that the reader does not know, does not simulate or finds odd; ``line`` counts from 1."""
 
     line: int
     text: str
@@ -64,7 +64,7 @@ class Diagnostic:
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """A comment of the program, without its semicolon, and the row before which it stands; file as in ``Run.file``."""
+    """A comment of the program, without its delimiters, and the row that follows it; ``file`` as in ``Run.file``."""
 
     line: int
     before_row: int
@@ -77,12 +77,12 @@ EventValue = float | str | tuple[float | str | None, ...] | None
 
 @dataclass(frozen=True, slots=True)
 class RunEvent:
-    """Something that happens before row ``before_row`` (``before_row == n``: after the last one).
+    """Something that happens before row ``before_row``, or after the last row where that is n.
 
     kind    one of the names in ``docs/reader.md``: tool, tool_change, spindle, coolant, dwell, stop, message, ...
-    value   a number, a text or the values of the cycle, as the kind has it
+    value   a number, a text or the values of a cycle, depending on the kind
     file    as in ``Run.file``
-    tcp     the control held the tip then (TCP); the rows beside it need not tell
+    tcp     TCP was on; the neighbouring rows do not always show it
     """
 
     line: int
@@ -93,24 +93,24 @@ class RunEvent:
     tcp: bool = False
 
 
-#: Codes of work offsets above this are those of ``G54.1 P``.
+#: Work offsets with higher codes are called by ``G54.1 P``.
 EXTENDED_OFFSET_BASE = 600
 
 
 def offset_name(code: int) -> str:
-    """The word of a work offset that is called by one: ``G54``, ``G505``, ``G54.1 P3``."""
+    """Return the word that calls a work offset: ``G54``, ``G505``, ``G54.1 P3``."""
     return f"G{code}" if code <= EXTENDED_OFFSET_BASE else f"G54.1 P{code - EXTENDED_OFFSET_BASE}"
 
 
-#: ``ModalState.orientation`` before the first word of an ``Orientation``: as the words of each block have it.
+#: ``ModalState.orientation`` before the program sets an ``Orientation``: a block with a vector moves on a great circle.
 ORIENTATION_FROM_WORDS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfaceNormals:
-    """The surface's normals that blocks say: ``row`` (k,), growing, and ``vector`` (k, 3) in the workpiece frame.
+    """Surface normals that blocks program: ``row`` (k,), ascending, and ``vector`` (k, 3) in the workpiece frame.
 
-    Vectors are as long as the program has them.
+    The vectors keep the length that they have in the program.
     """
 
     row: Ints
@@ -124,17 +124,17 @@ class SurfaceNormals:
         return len(self.row)
 
     @staticmethod
-    def none() -> "SurfaceNormals":
-        """No normals at all."""
+    def empty() -> "SurfaceNormals":
+        """Return a table without normals."""
         return SurfaceNormals(np.zeros(0, np.int64), np.zeros((0, 3)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModalState:
-    """What changes seldom, as columns that are kept by their changes. The same names in ``Run`` are the whole columns.
+    """Values that change seldom, as columns stored by their changes; ``Run`` has whole columns of the same names.
 
-    xyz_is_tip  ``Run.xyz`` is the tool tip, not the slides
-    feed_path   a ``FeedPath``: what the feed would count where rotary axes turn without TCP
+    xyz_is_tip  ``Run.xyz`` is the tool tip, not the slide positions
+    feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
     """
 
     file: StepColumn
@@ -156,7 +156,7 @@ class ModalState:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RowPositions:
-    """Where axes and tool are in k rows: ``joints`` (k, 5), ``tip`` and ``axis`` (k, 3) as in ``Run``, read-only."""
+    """Axes and tool at the end of k rows: ``joints`` (k, 5), ``tip`` and ``axis`` (k, 3) as in ``Run``, read-only."""
 
     joints: Floats
     tip: Floats
@@ -169,49 +169,48 @@ class RowPositions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PositionChunk(RowPositions):
-    """Consecutive rows: ``midpoint_axis`` (k - 1, 3) is the tool axis where every joint is half-way from row to row."""
+    """Consecutive rows; ``midpoint_axis`` (k - 1, 3) is the tool axis with every joint half-way from row to row."""
 
     midpoint_axis: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A program as a machine's control ran it; columns have n rows and are read-only.
+    """A program as the control of a machine ran it; columns have n rows and are read-only.
 
-    Kept:
+    Stored:
 
     lines          (n,)   RampColumn    line of the file, from 1
     block_numbers  (n,)   RampColumn    N number of the block, -1 where it has none
     kind           (n,)   uint8    a ``trunnion.model.toolpath.Kind``
     programmed     (n,)   uint8    ``ProgrammedWord`` bits
-    xyz            (n, 3) float64  what X Y Z come to, mm: the tool tip, workpiece frame, where ``state.xyz_is_tip``;
-    else
-                                   the values of the slides X, Y and Z
-    rotary         (n, 2) float64  positions of the rotary axes as they wind, deg, as in ``machine.rotary``
+    xyz            (n, 3) float64  target of X, Y and Z, mm: the tool tip in the workpiece frame where
+                                   ``state.xyz_is_tip``, else the positions of the slides X, Y and Z
+    rotary         (n, 2) float64  positions of the rotary axes with all their turns, deg, order of ``machine.rotary``
     start          (5,)   float64  axis values before row 0
-    normals                        a ``SurfaceNormals``: where blocks say that of the surface (LN)
-    uses_length_numbers            programs of this control select a tool length by its number (H), the column ``edge``
+    normals                        a ``SurfaceNormals``: those of blocks that program them (LN)
+    uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
 
-    Worked out of these when asked for:
+    Computed on first access:
 
     tip            (n, 3) float64  tool tip, mm, workpiece frame
     axis           (n, 3) float64  unit vector from tip to holder, workpiece frame
     line           (n,)   int32    ``lines`` as a whole column
     block_number   (n,)   int64    ``block_numbers`` as a whole column
-    joints         (n, 5) float64  axis values as displayed, mm or deg, machine order; rotary values as they wind
+    joints         (n, 5) float64  axis values as displayed, mm or deg, machine order; rotary values with all turns
     file           (n,)   uint16   index into ``files``: 0 is the program itself, others are its subprograms
-    feed           (n,)   float64  NaN before the first F; rapids carry it on
+    feed           (n,)   float64  NaN before the first F; rapids keep the last one
     feed_mode      (n,)   uint8    94 mm/min, 95 mm/rev, 93 inverse time (1/min)
     rpm            (n,)   float64  programmed spindle speed, 0 before the first S
     spindle        (n,)   int8     +1 M3, -1 M4, 0 off
-    tool           (n,)   int32    index into ``tools``; 0 is the empty name, no tool yet
-    edge           (n,)   int32    D number, -1 before the first D; Fanuc, LinuxCNC: H of the length in force, else -1
-    compensation   (n,)   int8     of the tool's radius: +1 left of the path (G41), -1 right of it, 0 off; not simulated
+    tool           (n,)   int32    index into ``tools``; 0, the empty name, before the first tool
+    edge           (n,)   int32    D number, -1 before the first; Fanuc, LinuxCNC: H of the active length, else -1
+    compensation   (n,)   int8     cutter radius compensation: +1 left (G41), -1 right (G42), 0 off; not simulated
     work_offset    (n,)   uint16   work offset as the program numbers it (G54, preset 2), 0 before the first
-    tcp            (n,)   bool     tool centre point control was on
-    machine_frame  (n,)   bool     a block with positions of machine axes: SUPA, G53, M91
-    inches         (n,)   bool     lengths were programmed in inches (the columns are in mm)
-    orientation    (n,)   uint8    an ``Orientation``: how the tool axis got here from the row before
+    tcp            (n,)   bool     tool centre point control is on
+    machine_frame  (n,)   bool     the block programs positions of the machine axes: SUPA, G53, M91
+    inches         (n,)   bool     lengths are programmed in inches (the columns are in mm)
+    orientation    (n,)   uint8    an ``Orientation``: how the tool axis moves to this row
     """
 
     machine: Machine
@@ -225,7 +224,7 @@ class Run:
     state: ModalState
     start: Floats
     arcs: Arcs
-    normals: SurfaceNormals = field(default_factory=SurfaceNormals.none)
+    normals: SurfaceNormals = field(default_factory=SurfaceNormals.empty)
     tools: tuple[str, ...] = ("",)
     comments: list[Comment] = field(default_factory=list)
     events: list[RunEvent] = field(default_factory=list)
@@ -243,8 +242,8 @@ class Run:
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
-        """Findings that make the columns doubtful: words unknown or not acted upon."""
-        return tuple(finding for finding in self.diagnostics if finding.severity is Severity.ERROR)
+        """The diagnostics that put the columns in doubt: words that are unknown or not executed."""
+        return tuple(diagnostic for diagnostic in self.diagnostics if diagnostic.severity is Severity.ERROR)
 
     # Some rows
 
@@ -253,7 +252,7 @@ class Run:
         return kinematic_parameters(self.machine)
 
     def positions(self, rows: Ints) -> RowPositions:
-        """Where axes and tool are at the end of rows, in any order; row -1 is the place before the first one."""
+        """Return axes and tool at the end of rows, in any order; row -1 is the start of the program."""
         if not len(self) or not len(rows):
             joints = np.tile(self.start, (len(rows), 1))
             return RowPositions(joints, *forward(self.machine, joints))
@@ -268,7 +267,7 @@ class Run:
         return RowPositions(joints, tip, axis)
 
     def chunk(self, first: int, end: int) -> PositionChunk:
-        """Where axes and tool are in consecutive rows, led by the place before them: (end - first + 1) rows."""
+        """Return axes and tool of consecutive rows, preceded by those of the row before: (end - first + 1) rows."""
         rows = slice(max(first - 1, 0), end)
         xyz_is_tip = self.state.xyz_is_tip.part(rows.start, end)
         xyz = self.xyz[rows]
@@ -283,19 +282,19 @@ class Run:
         return PositionChunk(joints, tip, *tool_axes(self.machine, joints))
 
     def chunks(self) -> Iterator[tuple[int, int, PositionChunk]]:
-        """All rows, ``CHUNK_ROWS`` at a time: first row, the row after the last, and ``chunk`` of them.
+        """Yield all rows, ``CHUNK_ROWS`` at a time: first row, row after the last, and their ``chunk``.
 
-        While one chunk is looked at the next one is worked out, on another core if there is one.
+        Another thread computes the next chunk while the caller works on this one.
         """
         bounds = [(first, min(first + CHUNK_ROWS, len(self))) for first in range(0, len(self), CHUNK_ROWS)]
         for (first, end), poses in zip(bounds, prefetch(lambda rows: self.chunk(*rows), bounds), strict=True):
             yield first, end, poses
 
     def orientation_between(self, first: int, end: int) -> Codes:
-        """Column ``orientation`` of consecutive rows."""
-        said = self.state.orientation.part(first, end)
+        """Return column ``orientation`` of consecutive rows."""
+        set_by_program = self.state.orientation.part(first, end)
         vectors = (self.programmed[first:end] & int(ProgrammedWord.VECTOR)) != 0
-        return np.where(said == ORIENTATION_FROM_WORDS, vectors, said).astype(np.uint8)
+        return np.where(set_by_program == ORIENTATION_FROM_WORDS, vectors, set_by_program).astype(np.uint8)
 
     # Whole columns
 

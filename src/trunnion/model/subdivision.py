@@ -1,12 +1,12 @@
-"""Where the tool is between the rows of a run, as the control interpolates.
+"""Positions of axes and tool between the rows of a run, as the control interpolates them.
 
-In:     a ``Run`` and how many pieces each row is cut into.
+In:     a ``Run`` and the number of pieces into which each row is cut.
 Out:    axis values, tip and tool axis at the end of every piece, row after row.
 Units:  mm and degrees, workpiece frame.
 
-With TCP the tip moves on its line or circle, and the tool axis with it: angles linear, or the vector on a great
-circle. Without it the axes themselves move linearly, and the tip goes where they take it. On circles the tip stays on
-the circle in both cases; the rotary angles are linear.
+With TCP the tip moves on its line or circle, while the rotary angles move linearly or the tool axis on a great circle.
+Without TCP the axes move linearly and the tip follows from them. On circles the tip stays on the circle in both cases,
+and the rotary angles move linearly.
 """
 
 from dataclasses import dataclass
@@ -20,16 +20,16 @@ from trunnion.model import axis_positions
 from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
 
-#: Start and end nearer than this, mm, make a full circle.
+#: If start and end are nearer than this, mm, the circle is a full one.
 FULL_CIRCLE_GAP: float = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Samples:
-    """Positions along rows, in order; the last one of each row is its end.
+    """Positions along rows, in order; the last sample of each row is its end.
 
     row       (k,)   int64    row that the sample belongs to
-    fraction  (k,)   float64  how much of the row is done, in (0, 1]
+    fraction  (k,)   float64  completed part of the row, in (0, 1]
     joints    (k, 5) float64  mm or deg, machine order
     tip       (k, 3) float64  mm, workpiece frame
     axis      (k, 3) float64  unit vectors, workpiece frame
@@ -42,8 +42,17 @@ class Samples:
     axis: Floats
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Pieces:
+    """The pieces of rows: row and completed part as in ``Samples``, and the joints (k, 5) at the start of their row."""
+
+    row: Ints
+    fraction: Floats
+    start: Floats
+
+
 def subdivide(run: Run, pieces: int | Ints, rows: slice = slice(None)) -> Samples:
-    """Cut rows of a run into pieces, equal parts of each block.
+    """Cut rows of a run into pieces of equal length.
 
     Parameters
     ----------
@@ -54,6 +63,31 @@ def subdivide(run: Run, pieces: int | Ints, rows: slice = slice(None)) -> Sample
     rows
         Consecutive rows, all of them by default.
     """
+    cut = _cut(run, pieces, rows)
+    row, fraction = cut.row, cut.fraction
+    joints = cut.start + fraction[:, None] * (run.joints[row] - cut.start)
+    tip = np.empty((len(row), 3))
+    arc = run.kind[row] == Kind.ARC
+    tcp = run.tcp[row] & ~run.machine_frame[row]
+    by_tip = tcp | arc
+    tip[by_tip] = _interpolated_tips(run, row[by_tip], fraction[by_tip], cut.start[by_tip])
+    great_circle = tcp & ~arc & (run.orientation[row] == Orientation.GREAT_CIRCLE)
+    if great_circle.any():
+        _move_on_great_circles(run, cut, great_circle, joints)
+    if by_tip.any():
+        rotary = joints[np.ix_(by_tip, run.machine.rotary)]
+        every = np.ones(len(rotary), np.bool_)
+        joints[by_tip] = axis_positions.joints_from_rows(
+            run.machine, kinematic_parameters(run.machine), every, tip[by_tip], rotary
+        )
+    reached, axis = forward(run.machine, joints)
+    tip[~by_tip] = reached[~by_tip]
+    ends = fraction == 1.0
+    joints[ends], tip[ends], axis[ends] = run.joints[row[ends]], run.tip[row[ends]], run.axis[row[ends]]
+    return Samples(row, fraction, joints, tip, axis)
+
+
+def _cut(run: Run, pieces: int | Ints, rows: slice) -> _Pieces:
     first, last, step = rows.indices(len(run))
     if step != 1:
         raise ValueError("rows must be consecutive")
@@ -67,37 +101,17 @@ def subdivide(run: Run, pieces: int | Ints, rows: slice = slice(None)) -> Sample
     before = np.vstack((run.start[None], run.joints[first : first + count]))
     if first:
         before[0] = run.joints[first - 1]
-    start = before[row - first]
-    joints = start + fraction[:, None] * (run.joints[row] - start)
-    tip, axis = np.empty((len(row), 3)), np.empty((len(row), 3))
-    arc = run.kind[row] == Kind.ARC
-    xyz_is_tip = (run.tcp[row] & ~run.machine_frame[row]) | arc
-    tip[xyz_is_tip] = _interpolated_tips(run, row[xyz_is_tip], fraction[xyz_is_tip], before[row[xyz_is_tip] - first])
-    great = run.tcp[row] & ~run.machine_frame[row] & ~arc & (run.orientation[row] == Orientation.GREAT_CIRCLE)
-    if great.any():
-        _great_circle(run, row, fraction, before, first, great, joints)
-    if xyz_is_tip.any():
-        turned = joints[np.ix_(xyz_is_tip, run.machine.rotary)]
-        every = np.ones(len(turned), np.bool_)
-        joints[xyz_is_tip] = axis_positions.joints_from_rows(
-            run.machine, kinematic_parameters(run.machine), every, tip[xyz_is_tip], turned
-        )
-    reached, axis = forward(run.machine, joints)
-    tip[~xyz_is_tip] = reached[~xyz_is_tip]
-    ends = fraction == 1.0
-    joints[ends], tip[ends], axis[ends] = run.joints[row[ends]], run.tip[row[ends]], run.axis[row[ends]]
-    return Samples(row, fraction, joints, tip, axis)
+    return _Pieces(row, fraction, before[row - first])
 
 
-def _interpolated_tips(run: Run, row: Ints, fraction: Floats, before: Floats) -> Floats:
-    """Tips on lines and circles, (k, 3)."""
-    start = forward(run.machine, before)[0]
+def _interpolated_tips(run: Run, row: Ints, fraction: Floats, start_joints: Floats) -> Floats:
+    """Return tips on lines and circles, (k, 3)."""
+    start = forward(run.machine, start_joints)[0]
     end = run.tip[row]
     tip = start + fraction[:, None] * (end - start)
-    which = np.searchsorted(run.arcs.row, row)
     on_arc = run.kind[row] == Kind.ARC
     if on_arc.any():
-        k = which[on_arc]
+        k = np.searchsorted(run.arcs.row, row)[on_arc]
         tip[on_arc] = circle_points(
             start[on_arc],
             end[on_arc],
@@ -110,7 +124,7 @@ def _interpolated_tips(run: Run, row: Ints, fraction: Floats, before: Floats) ->
 
 
 def circle_points(start: Floats, end: Floats, centre: Floats, normal: Floats, turns: Ints, fraction: Floats) -> Floats:
-    """Points of circles and helices, (k, 3) mm; the radius goes evenly from that of the start to that of the end."""
+    """Return points of circles and helices, (k, 3) mm; the radius changes evenly from that at start to that at end."""
     rise = np.einsum("ij,ij->i", end - start, normal)
     a = start - centre
     a = a - np.einsum("ij,ij->i", a, normal)[:, None] * normal
@@ -123,12 +137,12 @@ def circle_points(start: Floats, end: Floats, centre: Floats, normal: Floats, tu
     first, last = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
     angle = fraction * sweep
     size = (1.0 + fraction * (last - first) / np.where(first > 0.0, first, 1.0))[:, None]
-    turned = np.cos(angle)[:, None] * a + np.sin(angle)[:, None] * np.cross(normal, a)
-    return np.asarray(centre + size * turned + (height + fraction * rise)[:, None] * normal)
+    rotated = np.cos(angle)[:, None] * a + np.sin(angle)[:, None] * np.cross(normal, a)
+    return np.asarray(centre + size * rotated + (height + fraction * rise)[:, None] * normal)
 
 
 def slerp(start: Floats, end: Floats, fraction: Floats) -> Floats:
-    """Unit vectors on great circles, (k, 3); opposite ones have no great circle and give the start."""
+    """Return unit vectors on great circles, (k, 3); opposite vectors have no great circle and give the start."""
     cross = np.linalg.norm(np.cross(start, end), axis=1)
     angle = np.arctan2(cross, np.einsum("ij,ij->i", start, end))
     safe = np.where(cross > 1e-12, cross, 1.0)
@@ -139,20 +153,16 @@ def slerp(start: Floats, end: Floats, fraction: Floats) -> Floats:
     return np.asarray(vector / np.linalg.norm(vector, axis=1)[:, None])
 
 
-def _great_circle(
-    run: Run, row: Ints, fraction: Floats, before: Floats, first: int, great: Flags, joints: Floats
-) -> None:
-    """Write the rotary columns of samples whose tool axis moves on a great circle."""
-    begin = forward(run.machine, before[row[great] - first])[1]
-    vector = slerp(begin, run.axis[row[great]], fraction[great])
-    places = np.flatnonzero(great)
-    # Each unbroken stretch of rows winds from where the row before it ended.
-    for stretch in np.split(np.arange(len(places)), np.flatnonzero(np.diff(places) > 1) + 1):
-        at = places[stretch]
-        columns = np.array(run.machine.rotary)
-        rotary = np.empty((len(at), 2))
-        zero = np.zeros(len(at), np.uint8)
-        axis_positions.resolve_angles(
-            run.machine, rotary, zero, vector[stretch], before[row[at[0]] - first, columns], zero.copy()
-        )
-        joints[np.ix_(at, columns)] = rotary
+def _move_on_great_circles(run: Run, cut: _Pieces, great_circle: Flags, joints: Floats) -> None:
+    """Write the rotary columns of the pieces whose tool axis moves on a great circle."""
+    begin = forward(run.machine, cut.start[great_circle])[1]
+    vector = slerp(begin, run.axis[cut.row[great_circle]], cut.fraction[great_circle])
+    places = np.flatnonzero(great_circle)
+    columns = np.array(run.machine.rotary)
+    # The turns of every unbroken sequence continue from the row before it.
+    for sequence in np.split(np.arange(len(places)), np.flatnonzero(np.diff(places) > 1) + 1):
+        at = places[sequence]
+        no_turn_rule = np.zeros(len(at), np.uint8)
+        words = axis_positions.RotaryWords(np.empty((len(at), 2)), no_turn_rule, vector[sequence])
+        axis_positions.resolve_angles(run.machine, words, cut.start[at[0], columns], no_turn_rule.copy())
+        joints[np.ix_(at, columns)] = words.rotary

@@ -1,14 +1,15 @@
-"""Programs read back: an independent author of what a control does with them.
+"""Reading NC programs: what a control does with a program, worked out independently of what wrote it.
 
-The readers are written from the language of the controls. They share nothing with what writes programs but the machine.
+The readers are written from the manuals of the controls. They share nothing with the writers but the machine model.
 """
 
 from trunnion.machines.forward import forward_rows
 from trunnion.model.axis_positions import resolve_turns, write_joints
 from trunnion.readers.registry import can_read, reader_of, run_program
-from trunnion.readers.scan.letter_blocks import scan_blocks
+from trunnion.readers.scan.letter_blocks import read_blocks
+from trunnion.readers.scan.rows import execute_blocks
 
 #: Kernels that most programs need.
-KERNELS = (write_joints, forward_rows, scan_blocks, resolve_turns)
+KERNELS = (write_joints, forward_rows, read_blocks, execute_blocks, resolve_turns)
 
 __all__ = ["KERNELS", "can_read", "reader_of", "run_program"]

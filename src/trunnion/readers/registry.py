@@ -1,4 +1,4 @@
-"""Which reader reads the programs of a machine."""
+"""Running a program with the reader of a machine's control."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.readers.program.family_reader import FamilyReader
-from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT
+from trunnion.readers.program.options import DEFAULT_STEP_LIMIT, RunOptions
 from trunnion.readers.program.settings import family_of
 
 
@@ -32,35 +32,34 @@ def run_program(
     path
         The program.
     subprograms
-        The files that it may call, by their names. No others are looked for: a call of one that is not here is an error
-        among ``Run.findings``.
+        The files that it may call, by their names. No others are looked for: calling a missing one is an error among
+        ``Run.diagnostics``.
     machine
-        Three slides X, Y and Z, two rotary axes. Every tool has the length of ``machine.tool_length``, or 0: the
-        tip is then where the control takes it to be.
+        Three slides X, Y and Z, and two rotary axes. Every tool has the length ``machine.tool_length``, or 0, which
+        puts the tip where the control assumes it.
     family
-        The control whose language it is, a key of ``FAMILIES``; None: as the machine's definition has it.
+        The family of controls whose language the program has, a key of ``FAMILIES``; None for the machine's control.
     step_limit
         Blocks that loops and calls may execute, besides once through each file.
     skip
         Leave out blocks that begin with ``/``.
     shortest
-        How endless rotary axes reach plain words: True the shorter way, False inside the turn displayed; None as the
-        control does. Axes whose values are written as they wind take the number as it is, but for True.
-    growing
-        How far the program's file has come, if it is still being written: it is run as far as it is there, and the
-        rest is waited for. None: it is complete. What comes out is the same.
+        How endless rotary axes reach plain words: True by the shorter way, False within the displayed turn, None as
+        the control does it. Axes whose output has all turns take the number as it is, except with True.
+    write_progress
+        The progress of the program's file if it is still being written: the program runs as far as it is there, and
+        waits for the rest. None for a complete file. The result is the same.
 
     Raises
     ------
     InputError
-        If a file cannot be read, does not end, or is nested wrongly or too deeply, or if no reader knows the
-        control. What is only not understood is in ``Run.findings``.
+        If a file cannot be read, does not end, is nested wrongly or too deeply, or if there is no reader for the
+        control. Words that are not understood are in ``Run.diagnostics``.
     """
     reader = reader_of(machine, family)
-    interpreter = reader.interpreter(
-        Path(path), machine, subprograms=tuple(subprograms), step_limit=step_limit, skip=skip, shortest=shortest
-    )
-    return replace(interpreter.run(write_progress), uses_length_numbers=reader.uses_length_numbers)
+    options = RunOptions(tuple(subprograms), step_limit, skip, shortest)
+    run = reader.interpreter(Path(path), machine, options).run(write_progress)
+    return replace(run, uses_length_numbers=reader.uses_length_numbers)
 
 
 def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:

@@ -1,17 +1,13 @@
 """The reader of the toy control, written from its description and not from its writer."""
 
 import re
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Final
 
 from trunnion.arrays import Codes
 from trunnion.machines import Axis, Machine
-from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.program.family_reader import FamilyReader
-from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT
-from trunnion.readers.program.source_text import SourceText, Subprograms
+from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Value
@@ -33,11 +29,7 @@ class _NoParameters:
         return False
 
 
-def _no_operation(name: str, a: float, b: float) -> float:
-    raise BlockError("the toy has no expressions")
-
-
-_ARITHMETIC: Final = Arithmetic(levels=(), operate=_no_operation, functions={}, pairs={})
+_ARITHMETIC: Final = Arithmetic(levels=(), operators={}, functions={}, pairs={})
 
 
 class ToyControl(Rs274Control):
@@ -45,11 +37,9 @@ class ToyControl(Rs274Control):
 
     relative_centres = False
 
-    def __init__(
-        self, machine: Machine, note: Note, file: StepColumnBuilder[int], *, shortest: bool | None = None
-    ) -> None:
-        super().__init__(machine, note, file, shortest=shortest)
-        self.table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
+    def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
+        super().__init__(machine, note, shortest=shortest)
+        self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         return True
@@ -60,31 +50,19 @@ class ToyInterpreter(Rs274Interpreter[ActiveProgram]):
 
     semicolon = True
 
-    def __init__(
-        self,
-        path: Path,
-        machine: Machine,
-        *,
-        subprograms: Sequence[Path] = (),
-        step_limit: int = DEFAULT_STEP_LIMIT,
-        skip: bool = False,
-        shortest: bool | None = None,
-    ) -> None:
-        super().__init__(path, machine, Subprograms(subprograms, ()), step_limit=step_limit, skip=skip)
-        self._control = ToyControl(machine, self._note, self._file, shortest=shortest)
+    control: ToyControl
+
+    def _make_control(self) -> ToyControl:
+        return ToyControl(self._machine, self._note, shortest=self._options.shortest)
 
     @property
-    def control(self) -> ToyControl:
-        return self._control
+    def _letter_table(self) -> Codes:
+        return self.control.letter_table
 
-    @property
-    def _table(self) -> Codes:
-        return self._control.table
+    def _main_program(self, source: SourceText) -> ActiveProgram:
+        return ActiveProgram(source, 0)
 
-    def _main_program(self, text: SourceText) -> ActiveProgram:
-        return ActiveProgram(text, 0)
-
-    def _may_scan(self, text: SourceText) -> bool:
+    def _may_scan(self, source: SourceText) -> bool:
         return False
 
     def _execute_block(self, active: ActiveProgram, line: int, text: str) -> None:
@@ -92,7 +70,7 @@ class ToyInterpreter(Rs274Interpreter[ActiveProgram]):
         if match is None:
             raise BlockError("no command")
         command, rest = match.group(), text[match.end() :]
-        control = self._control
+        control = self.control
         if command == "TOOL":
             control.select_tool(rest)
             control.change_tool()
@@ -117,10 +95,10 @@ class ToyInterpreter(Rs274Interpreter[ActiveProgram]):
                 raise BlockError(f"unknown M{code}")
         self._feed_and_speed(block)
         if command == "PARK":
-            self._control.kind = 0
-            self._control.move(self._axis_words(block), None, machine_frame=True)
+            self.control.motion = 0
+            self.control.move(self._axis_words(block), None, machine_frame=True)
         elif command:
-            self.motion = _MOTIONS[command]
+            self.motion_code = _MOTIONS[command]
             self._move(block, self._axis_words(block))
         self._report_unused_words(block)
 

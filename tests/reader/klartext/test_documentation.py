@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from trunnion.families import FAMILIES
-from trunnion.readers.families.heidenhain import cycles, fn_functions, interpreter, parameters, words
+from trunnion.readers.families.heidenhain import cycles, flow, fn_functions, parameters, words
 
 DOCS = Path(__file__).parents[3] / "docs"
 PAGE = (DOCS / "reader-klartext.md").read_text(encoding="utf-8")
@@ -55,7 +55,7 @@ def test_every_fn_function_is_in_the_page() -> None:
 
 
 def test_limits_are_those_of_the_page() -> None:
-    assert f"at most {interpreter.MAX_LABEL_DEPTH}" in PAGE
+    assert f"at most {flow.MAX_LABEL_DEPTH}" in PAGE
     assert f"at most {parameters.MAX_NESTING} deep" in PAGE
 
 

@@ -103,7 +103,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
     text = "\n".join(f"{k} {line}" if numbered else line for k, line in enumerate(["M128" if tcp else "", *texts]))
     fast = ran(text, tmp_path_factory)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(HeidenhainInterpreter, "_may_be_plain", lambda *_: False)
+        patch.setattr(HeidenhainInterpreter, "_may_scan", lambda *_: False)
         slow = ran(text, tmp_path_factory)
     assert fast.diagnostics == slow.diagnostics
     assert fast.events == slow.events

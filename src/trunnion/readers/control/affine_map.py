@@ -1,6 +1,6 @@
-"""Coordinate systems of programs: shifted, turned, mirrored and scaled ones, as affine maps.
+"""Coordinate systems of programs, shifted, rotated, mirrored or scaled, as affine maps.
 
-A frame takes a programmed position to the frame below it: ``linear @ p + shift``, mm.
+A frame of a program maps positions in it to the frame that it is defined in: ``linear @ p + shift``, mm.
 """
 
 import math
@@ -19,28 +19,19 @@ class AffineMap:
     shift: Floats = field(default_factory=lambda: np.zeros(3))
 
     def compose(self, inner: "AffineMap") -> "AffineMap":
-        """Return the frame of ``inner`` given in this frame."""
+        """Return the map of a frame ``inner`` that is defined in this frame."""
         return AffineMap(self.linear @ inner.linear, self.linear @ inner.shift + self.shift)
 
-    def apply(self, point: Floats) -> Floats:
-        """Return a programmed position in the frame below."""
-        return np.asarray(self.linear @ point + self.shift)
-
     def solve(self, point: Floats) -> Floats:
-        """Return which programmed position lies at ``point`` of the frame below."""
+        """Return the position whose image is ``point``, (3,) mm."""
         if self.keeps_lengths:
             return np.asarray(self.linear.T @ (point - self.shift))
         return np.asarray(np.linalg.solve(self.linear, point - self.shift), np.float64)
 
     @property
     def keeps_lengths(self) -> bool:
-        """Whether lengths stay what they are (mirrors included)."""
+        """Whether lengths stay the same; mirroring keeps them too."""
         return bool(np.allclose(self.linear.T @ self.linear, np.eye(3), rtol=0.0, atol=1e-12))
-
-    @property
-    def mirrors(self) -> bool:
-        """Whether right becomes left."""
-        return float(np.linalg.det(self.linear)) < 0.0
 
     @property
     def keeps_circles(self) -> bool:
@@ -50,7 +41,7 @@ class AffineMap:
 
 
 def rotation_matrix(axis: int, angle: float) -> Floats:
-    """(3, 3) float64: right-handed about axis 0, 1 or 2, degrees; exact at multiples of 90."""
+    """Return the right-handed rotation about axis 0, 1 or 2, degrees, as (3, 3); exact at multiples of 90."""
     quarter = angle / 90.0
     if quarter == math.floor(quarter) and abs(quarter) < 1e9:
         cos, sin = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarter) % 4]
@@ -64,7 +55,7 @@ def rotation_matrix(axis: int, angle: float) -> Floats:
 
 
 def rotation_about(direction: Floats, angle: float) -> Floats:
-    """(3, 3) float64: right-handed about a unit vector, degrees (Rodrigues)."""
+    """Return the right-handed rotation about a unit vector, degrees, as (3, 3) (Rodrigues' formula)."""
     a, b, c = direction
     cross = np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
     radians = math.radians(math.fmod(angle, 360.0))
@@ -72,5 +63,5 @@ def rotation_about(direction: Floats, angle: float) -> Floats:
 
 
 def affine_matrix(linear: Floats, shift: Floats) -> Floats:
-    """(3, 4) float64 from (3, 3) and (3,): applied as ``m[:, :3] @ p + m[:, 3]``."""
+    """Return a linear map (3, 3) and a shift (3,) as one matrix (3, 4), applied as ``m[:, :3] @ p + m[:, 3]``."""
     return np.ascontiguousarray(np.column_stack((linear, shift)))

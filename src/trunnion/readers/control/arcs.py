@@ -1,7 +1,7 @@
-"""Circles as blocks say them: by centre, radius, opening angle or a point on the way; and how frames carry them.
+"""Circles as blocks program them: by centre, radius, opening angle or an intermediate point; and their maps.
 
-In and out in programmed coordinates, mm and degrees. A plane is the axis that stands on it: 2 for G17 (X, Y),
-1 for G18 (Z, X), 0 for G19 (Y, Z); seen from its positive end G3 turns counter-clockwise.
+Input and output in programmed coordinates, mm and degrees. A plane is given by the axis normal to it: 2 for G17 (X, Y),
+1 for G18 (Z, X), 0 for G19 (Y, Z). Seen from the positive end of this axis, G3 turns counter-clockwise.
 """
 
 import math
@@ -12,25 +12,28 @@ import numpy as np
 
 from trunnion.arrays import Floats
 
-#: How much the radius may differ between start and end: an amount, mm, or a part of the radius, whichever is more.
-#: These are the values that a Sinumerik is delivered with.
+#: How much the radii at start and end may differ: an amount, mm, or a ratio of the radius, whichever is more. These are
+#: the default settings of a Sinumerik.
 RADIUS_ERROR: Final = 0.01
 RADIUS_RATIO: Final = 0.001
 
-#: Points nearer than this are one point, mm.
+#: Points nearer than this coincide, mm.
 SAME_POINT: Final = 1e-9
 
-#: No machine makes circles with a larger radius, mm.
+#: Larger radii, mm, are mistakes of the program.
 MAX_RADIUS: Final = 1e7
 
 
 class ArcError(Exception):
-    """Why there is no such circle, in words."""
+    """The reason why a block programs no circle."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arc:
-    """A circle or helix from start to end about a centre; it turns about ``normal`` by the right-hand rule."""
+    """A circle or helix to ``end`` about a centre; it turns about ``normal`` by the right-hand rule.
+
+    turns   whole turns besides
+    """
 
     end: Floats
     centre: Floats
@@ -41,7 +44,7 @@ class Arc:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ArcMap:
-    """How circles come through an affine map: linear (3, 3), shift (3,), normals (3, 3) and scale."""
+    """The map of circles under an affine map that keeps them: linear (3, 3), shift (3,), normals (3, 3) and scale."""
 
     linear: Floats
     shift: Floats
@@ -50,25 +53,25 @@ class ArcMap:
 
     @staticmethod
     def of(linear: Floats, shift: Floats) -> "ArcMap":
-        """Return that of a map that keeps circles. Normals turn with the cofactors, which know mirrors."""
+        """Return the map of circles; normals map with the cofactors, which takes mirroring into account."""
         volume = float(np.linalg.det(linear))
         scale = abs(volume) ** (1.0 / 3.0)
         return ArcMap(linear, shift, np.linalg.inv(linear).T * (scale * math.copysign(1.0, volume)), scale)
 
     def map_arc(self, arc: Arc) -> tuple[Floats, Floats, float]:
-        """Return centre, normal and radius of an arc behind the map."""
+        """Return centre, normal and radius of the mapped arc."""
         return self.linear @ arc.centre + self.shift, self.normals @ arc.normal, arc.radius * self.scale
 
 
 def normal_of(plane: int, clockwise: bool) -> Floats:
-    """Unit vector about which the arc turns by the right-hand rule."""
+    """Return the unit vector about which an arc turns by the right-hand rule."""
     normal = np.zeros(3)
     normal[plane] = -1.0 if clockwise else 1.0
     return normal
 
 
 def by_centre(start: Floats, end: Floats, centre: Floats, plane: int, clockwise: bool, turns: int) -> Arc:
-    """Centre given; its coordinate along the plane's axis does not matter. A full circle if start is end."""
+    """Return the arc about a centre, whose coordinate along the normal is ignored; a full circle if start is end."""
     middle = centre.copy()
     middle[plane] = start[plane]
     first, last = start - middle, end - middle
@@ -83,7 +86,7 @@ def by_centre(start: Floats, end: Floats, centre: Floats, plane: int, clockwise:
 
 
 def by_radius(start: Floats, end: Floats, radius: float, plane: int, clockwise: bool, turns: int) -> Arc:
-    """Radius and end point: a negative radius takes the longer way."""
+    """Return the arc of a radius; a negative radius means the longer arc."""
     chord = _chord(start, end, plane)
     length = float(np.linalg.norm(chord))
     if length < SAME_POINT:
@@ -96,7 +99,7 @@ def by_radius(start: Floats, end: Floats, radius: float, plane: int, clockwise: 
 
 
 def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
-    """Opening angle and end point."""
+    """Return the arc of an opening angle to an end point."""
     chord = _chord(start, end, plane)
     length = float(np.linalg.norm(chord))
     if length < SAME_POINT or not 0.0 < angle < 360.0:
@@ -109,7 +112,7 @@ def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bo
 
 
 def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
-    """Opening angle and centre: the end follows."""
+    """Return the arc of an opening angle about a centre, which determine its end."""
     if not 0.0 < angle < 360.0:
         raise ArcError(f"an opening angle of {angle:g} makes no circle here")
     u, v = (plane + 1) % 3, (plane + 2) % 3
@@ -122,7 +125,7 @@ def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int,
 
 
 def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
-    """Any plane in space, through a point on the way."""
+    """Return the arc through an intermediate point, in any plane."""
     a, b = through - start, end - start
     normal = np.cross(a, b)
     size = float(normal @ normal)
@@ -144,7 +147,7 @@ def _chord(start: Floats, end: Floats, plane: int) -> Floats:
 def _from_chord(
     start: Floats, end: Floats, chord: Floats, height: float, plane: int, clockwise: bool, turns: int
 ) -> Arc:
-    """Centre at a height over the middle of the chord: to its left when turning counter-clockwise."""
+    """Return the arc whose centre is at a height over the middle of the chord, to its left if counter-clockwise."""
     left = np.cross(normal_of(plane, clockwise), chord)
     centre = start + 0.5 * chord + height * left / np.linalg.norm(left)
     middle = np.asarray(centre)

@@ -1,12 +1,15 @@
-"""Words that say a position: a value, and how it is meant."""
+"""Axis words: values, how they are meant, and what those of the rotary axes amount to."""
 
+import math
+from dataclasses import dataclass
 from enum import StrEnum
+from typing import Final
 
 
 class PositionMode(StrEnum):
-    """How a position is said: as the control is set, or in a way that the word itself names.
+    """How a position is meant: as the control is set (G90, G91), or as the word itself says.
 
-    The last three are for endless rotary axes: the shorter way, with growing, with falling values.
+    The last three are for endless rotary axes: the shorter way, in positive and in negative direction.
     """
 
     MODAL = ""
@@ -17,5 +20,23 @@ class PositionMode(StrEnum):
     NEGATIVE = "ACN"
 
 
-#: A word's value and how it was said.
+#: The value of a word and its mode.
 AxisWord = tuple[float, PositionMode]
+
+
+@dataclass(frozen=True, slots=True)
+class RotaryTarget:
+    """What a block programs for the rotary axes.
+
+    values     of the first and the second axis, degrees, NaN without a word
+    turn_rule  see ``trunnion.model.axis_positions``
+    bits       the words that are written, as bits of a ``ProgrammedWord``
+    """
+
+    values: tuple[float, float] = (math.nan, math.nan)
+    turn_rule: int = 0
+    bits: int = 0
+
+
+#: No rotary words: the axes stay.
+NO_ROTARY: Final = RotaryTarget()

@@ -1,30 +1,30 @@
-"""What a drilling cycle does at one hole, as the motions of the virtual control."""
+"""The motions of a drilling cycle at one hole."""
 
 import math
 from dataclasses import dataclass
 from typing import Final
 
-#: Faster feeds, mm/min, are none that a cycle means.
+#: Faster feeds, mm/min, are mistakes of the program.
 MAX_FEED: Final = 1e9
 
-#: More pecks than this at one hole are a mistake.
+#: More pecks than this at one hole are a mistake of the program.
 MAX_PECKS: Final = 1000
 
 
 class CycleExecutionError(Exception):
-    """Why a cycle cannot be done, in words."""
+    """The reason why a cycle cannot be executed; the message continues "the cycle"."""
 
 
 @dataclass(frozen=True, slots=True)
 class HoleMotion:
-    """One motion at a hole.
+    """One motion at a hole; lengths in the units of the program.
 
-    rapid     at rapid instead of at feed
-    height    where to, along the drilling axis; None: stay
-    feed      mm/min, or None: the feed in force; negative: that part of it
-    aside     offsets in the first and second axis of the plane, mm, from the hole
-    dwell     seconds to wait afterwards, negative: spindle turns
-    turns     whole turns about the hole on the way, positive counter-clockwise
+    rapid    at rapid instead of at feed
+    height   position along the drilling axis at the end; None: stay
+    feed     mm/min; None: the feed in force; negative: that fraction of the feed in force
+    lateral  offsets from the hole in the first and second axis of the plane
+    dwell    seconds to wait afterwards; negative: spindle revolutions
+    turns    whole turns about the hole on the way, positive counter-clockwise
     """
 
     rapid: bool
@@ -35,8 +35,16 @@ class HoleMotion:
     turns: int = 0
 
 
+def check_pecks(depth: float, stroke: float, word: str) -> None:
+    """Refuse strokes, given by ``word``, that would not get to a depth within ``MAX_PECKS`` pecks."""
+    if stroke <= 0.0:
+        raise CycleExecutionError(f"has a {word} that is not above 0")
+    if depth / stroke > MAX_PECKS:
+        raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
+
+
 def finite(value: float | None) -> float | None:
-    """Return a cycle's number, refusing what no program means."""
+    """Return a number of a cycle; refuse infinity and NaN."""
     if value is not None and not math.isfinite(value):
         raise CycleExecutionError("has a number that is none")
     return value

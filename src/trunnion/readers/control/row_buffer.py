@@ -1,4 +1,4 @@
-"""The columns of a run while its program runs: rows as they are added, and builders of columns stored by changes."""
+"""The columns of a run while its program runs: dense ones, and builders of compact ones."""
 
 from array import array
 from typing import Any, Final, Generic, TypeVar
@@ -11,18 +11,17 @@ from trunnion.model.columns import RampColumn, StepColumn
 
 T = TypeVar("T", int, float, bool)
 
-#: Rows that may be unresolved at a time; the buffers of what only they need have this length.
+#: Rows that may be unresolved at a time: the length of the buffers that only these rows need.
 MAX_UNRESOLVED_ROWS: Final = 16384
 
 
 class RowBuffer:
-    """The dense columns of a run while it is being made; ``n`` rows are in use, the first ``resolved`` for good.
+    """The dense columns of a run; ``n`` rows are in use, and the axis positions of the first ``resolved`` are final.
 
-    ``xyz`` is the tool tip or the values of the slides, as ``Run.xyz``. The rotary columns of rows that are not
-    settled hold the programmed values or NaN. Some columns have only the rows from ``base`` on, that of row
-    ``base + k`` at k: line and number of the block, its programmed vector (or NaN) in ``vector``, and in ``turn_rule``
-    how its rotary words want to be reached (see ``trunnion.model.axis_positions``). When they are full, ``clear`` takes
-    them away.
+    ``xyz`` is the tool tip or the slide positions, as in ``Run.xyz``. The rotary columns of unresolved rows hold the
+    programmed values, or NaN. Four columns hold only the rows from ``base`` on, row ``base + k`` at index k: line and
+    number of the block, its programmed vector or NaN, and the turn rule of its rotary words (see
+    ``trunnion.model.axis_positions``). When these are full, ``clear`` empties them.
     """
 
     def __init__(self, capacity: int = 4096) -> None:
@@ -44,30 +43,30 @@ class RowBuffer:
 
     @property
     def capacity(self) -> int:
-        """Rows there is room for."""
+        """Number of rows that fit."""
         return len(self.kind)
 
     @property
-    def full(self) -> bool:
-        """Whether there is room for no more rows before ``clear``."""
-        return self.n - self.base == MAX_UNRESOLVED_ROWS
+    def free(self) -> int:
+        """Number of rows that fit before ``clear`` must be called."""
+        return MAX_UNRESOLVED_ROWS - (self.n - self.base)
 
     def clear(self) -> None:
-        """Keep lines and numbers in another form, and begin anew; the rows must be settled."""
+        """Compact lines and block numbers, and empty the buffers of unresolved rows; all rows must be resolved."""
         self.lines.extend(self.line[: self.n - self.base])
         self.block_numbers.extend(self.block_number[: self.n - self.base])
         self.base = self.n
 
     def reserve(self, rows: int, expected: int = 0) -> None:
-        """Make room for this many rows more, or for ``expected`` rows in all if that is more.
+        """Make room for ``rows`` more rows, or for ``expected`` rows in all if that is more.
 
-        Room that nobody writes to costs nothing, rows that are copied do: who knows how long the program is says so.
-        One column goes after another, so that little is held twice.
+        Memory that is never written to costs nothing, copying rows does: a good estimate of the length pays. Columns
+        are copied one after another, so that little memory is held twice.
         """
-        wanted = self.n + rows
-        if wanted <= self.capacity:
+        needed = self.n + rows
+        if needed <= self.capacity:
             return
-        size = max(wanted, expected, self.capacity + self.capacity // 2)
+        size = max(needed, expected, self.capacity + self.capacity // 2)
         for name in self._GROWING:
             old = getattr(self, name)
             new = np.empty((size, *old.shape[1:]), old.dtype)
@@ -76,18 +75,18 @@ class RowBuffer:
 
 
 class RampColumnBuilder:
-    """A column of ``RampColumn`` while it is being made."""
+    """Builds a ``RampColumn``."""
 
     def __init__(self) -> None:
         self._n = 0
         self._ramps: list[Ints] = []
 
     def extend(self, values: Ints) -> None:
-        """Add rows."""
+        """Append rows."""
         if not len(values):
             return
         step = np.diff(values)
-        # A row that does not go on evenly begins a ramp; the row after it says how steep that is, whatever it is.
+        # A row that breaks the even sequence begins a ramp; the row after it gives the increment, whatever it is.
         uneven = np.flatnonzero(np.diff(step)) + 2
         place = np.arange(len(uneven))
         lead = np.maximum.accumulate(np.where(np.diff(uneven, prepend=-1) > 1, place, 0))
@@ -96,12 +95,12 @@ class RampColumnBuilder:
         self._n += len(values)
 
     def ramps(self) -> RampColumn:
-        """The column, with as many rows as were added."""
+        """Return the column of all appended rows."""
         return RampColumn(self._n, *np.concatenate((np.zeros((3, 0), np.int64), *self._ramps), axis=1))
 
 
 class StepColumnBuilder(Generic[T]):
-    """A column of ``StepColumn`` while it is being made."""
+    """Builds a ``StepColumn``; knows the value in force."""
 
     def __init__(self, value: T) -> None:
         self._rows = array("q", [0])
@@ -127,16 +126,16 @@ class StepColumnBuilder(Generic[T]):
         self._values.append(value)
 
     def extend(self, rows: Ints, values: Floats) -> None:
-        """Add changes at growing rows, all beyond the last one; each value another one than that before it."""
+        """Append changes at ascending rows beyond the last change; every value differs from the one before it."""
         self._rows.frombytes(rows.tobytes())
         self._values.frombytes(values.tobytes())
 
     def steps(self, n: int, dtype: type[np.generic]) -> StepColumn:
-        """The column, when it has n rows; nothing may be added afterwards."""
+        """Return the column with n rows; nothing may be added afterwards."""
         values: NDArray[Any] = np.frombuffer(self._values, self._values.typecode)
         return StepColumn(n, np.frombuffer(self._rows, np.int64), values.astype(dtype, copy=False))
 
 
 def _same_value(one: float, two: float) -> bool:
-    """Whether two values are the same; not known (NaN) is the same as not known."""
+    """Whether two values are the same; unknown (NaN) equals unknown."""
     return one == two or (one != one and two != two)

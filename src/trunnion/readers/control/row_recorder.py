@@ -1,11 +1,12 @@
-"""The rows that motion blocks become, the state that goes with them, and where the axes stand after them.
+"""Rows of motion blocks, the modal state that belongs to them, and the axis positions after them.
 
-This half of the virtual control keeps books: it takes ends of motions and turns them into columns, by hand or from a
-scan kernel. What a programmed position means is for the other half, ``trunnion.readers.control.virtual_control``.
+This part of the virtual control records: it takes the ends of motions, one by one or from a scan, and writes columns.
+What programmed positions mean is the subject of ``trunnion.readers.control.coordinates``.
 """
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -13,190 +14,153 @@ from trunnion.arrays import Codes, Floats, Ints
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.machines.inverse import kinematic_parameters
-from trunnion.model import axis_positions
-from trunnion.model.feed_path import FeedPath
-from trunnion.model.run import (
-    ORIENTATION_FROM_WORDS,
-    Comment,
-    Diagnostic,
-    EventValue,
-    ModalState,
-    ProgrammedWord,
-    Run,
-    RunEvent,
-    SurfaceNormals,
+from trunnion.model.axis_positions import (
+    NO_ROTARY_SOLUTION,
+    NO_SLIDE_SOLUTION,
+    OUT_OF_TRAVEL,
+    TOTAL_ROTATION,
+    RotaryWords,
+    joints_from_rows,
+    resolve_rotary,
+    slide_columns,
 )
+from trunnion.model.run import Comment, Diagnostic, EventValue, ProgrammedWord, Run, RunEvent, SurfaceNormals
 from trunnion.model.toolpath import Arcs, Kind
 from trunnion.readers.control.affine_map import affine_matrix
-from trunnion.readers.control.row_buffer import RowBuffer, StepColumnBuilder
-from trunnion.readers.scan.buffers import (
-    COMMENTS,
-    COUNTER_COUNT,
-    FEEDS,
-    KIND,
-    LINE,
-    NORMALS,
-    POSITION,
-    RECORD_CAPACITY,
-    ROW,
-    ScanRecords,
-    ScanTarget,
-)
+from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
+from trunnion.readers.control.modal_builder import ModalBuilder
+from trunnion.readers.control.row_buffer import RowBuffer
+from trunnion.readers.scan.buffers import MAX_BLOCKS, BlockWords, RowColumns, ScanRecords, ScanSettings
+from trunnion.readers.scan.rows import execute_blocks
 
-#: Larger positions (mm, degrees) are none that a machine could have.
-MAX_POSITION = 1e7
+#: Larger positions (mm, degrees) are mistakes: no machine reaches so far.
+MAX_POSITION: Final = 1e7
 
+_ROTARY_WORDS: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
+
+#: Reports a diagnostic at the block that is being executed.
 Note = Callable[[str, Severity], None]
 
 
-class RowRecorder:
-    """Rows while a program runs. ``line`` and ``block_number`` are those of the block that is being executed.
+class ScannedRows(NamedTuple):
+    """What a scan added: its rows, its comments (k, 4) as in ``ScanRecords``, and its feed changes.
 
-    place   (5,)     programmed X Y Z, mm, feed, and feed of the row before
-    map     (3, 4)   from programmed position to the tool tip in the workpiece frame, or to the slides
-    turn    (3, 3)   from programmed vector to the workpiece frame
-    tips    whether ``map`` leads to the tool tip
-    held    (5,)     axis values after the rows that are settled
+    rows         the rows, consecutive
+    words        the ``ProgrammedWord`` bits of all rows together
+    feed_before  the feed before the first of them
     """
 
-    #: The rotary axis that decides between two positions for a vector, as ``axis_positions.resolve_rotary`` has it.
-    deciding_axis = axis_positions.TOTAL_ROTATION
+    rows: range
+    words: int
+    comments: Ints
+    feed_before: float
+    feed_rows: Ints
+    feed_values: Floats
 
-    def __init__(self, machine: Machine, note: Note, file: StepColumnBuilder[int]) -> None:
+
+class RowRecorder:
+    """Records the rows and events of a run.
+
+    line, block_number   of the block that is being executed
+    programmed_position  (3,)    X, Y and Z as programmed, mm
+    programmed_feed              feed of the next motion
+    position_map         (3, 4)  from programmed position to the tool tip in the workpiece frame, or to the slides
+    vector_map           (3, 3)  from programmed vector to the workpiece frame
+    tip_programmed               whether ``position_map`` gives the tool tip
+    current_joints       (5,)    axis values after the rows that are resolved
+    """
+
+    #: The rotary axis that decides between two solutions for a vector, as in ``resolve_rotary``.
+    deciding_axis = TOTAL_ROTATION
+
+    def __init__(self, machine: Machine, note: Note) -> None:
         self.machine = machine
         self.note = note
-        self._file = file
         self.line = 0
         self.block_number = -1
         self.columns = RowBuffer()
+        self.modal = ModalBuilder()
         self.events: list[RunEvent] = []
-        self._kinematics = kinematic_parameters(machine)
-        self._slides = axis_positions.slide_columns(machine)
-        self.start = machine.home.copy()
-        self.current_joints = machine.home.copy()
-        self._rotary_unresolved = False
-
-        self.feed = StepColumnBuilder(math.nan)
-        self.feed_mode = StepColumnBuilder(94)
-        self.rpm = StepColumnBuilder(0.0)
-        self.spindle = StepColumnBuilder(0)
-        self.tool = StepColumnBuilder(0)
         self.tools: dict[str, int] = {"": 0}
         self._tool_names = [""]
         self._selected_tool = 0
-        self.edge = StepColumnBuilder(-1)
-        self.compensation = StepColumnBuilder(0)
-        self.work_offset = StepColumnBuilder(0)
-        self.tcp_rows = StepColumnBuilder(False)
-        self.machine_rows = StepColumnBuilder(False)
-        self.inch_rows = StepColumnBuilder(False)
-        self.orientation = StepColumnBuilder(ORIENTATION_FROM_WORDS)
-        self.xyz_is_tip = StepColumnBuilder(False)
-        self.feed_path = StepColumnBuilder(int(FeedPath.SLIDES))
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
-        self._normal_records: list[tuple[Ints, Floats]] = []
-
-        self.counters = np.zeros(COUNTER_COUNT, np.int64)
-        self.counters[KIND] = 1
-        self.scan_records = ScanRecords(
-            np.empty((RECORD_CAPACITY, 4), np.int64),
-            np.empty(RECORD_CAPACITY, np.int64),
-            np.empty(RECORD_CAPACITY),
-            np.empty(RECORD_CAPACITY, np.int64),
-            np.empty((RECORD_CAPACITY, 3)),
-            np.zeros(12),
-        )
-        self.commanded = np.zeros(5)
-        self.commanded[3] = math.nan
+        self._normals: list[tuple[Ints, Floats]] = []
+        self._kinematics = kinematic_parameters(machine)
+        self._slides = slide_columns(machine)
+        self.start = machine.home.copy()
+        self.current_joints = machine.home.copy()
+        self._rotary_unresolved = False
+        # X, Y, Z, the feed, and the feed of the row before: the kernel needs one array.
+        self._commanded = np.array([0.0, 0.0, 0.0, math.nan, math.nan])
         self.position_map = affine_matrix(np.eye(3), np.zeros(3))
         self.vector_map = np.eye(3)
         self.tip_programmed = False
+        self.words = BlockWords.empty()
+        self._records = ScanRecords.empty()
 
     @property
     def row(self) -> int:
         """The row that the next motion becomes."""
         return self.columns.n
 
+    @property
+    def programmed_position(self) -> Floats:
+        """X, Y and Z as programmed, (3,) mm; writable."""
+        return self._commanded[:3]
+
+    @programmed_position.setter
+    def programmed_position(self, position: Floats) -> None:
+        self._commanded[:3] = position
+
+    @property
+    def programmed_feed(self) -> float:
+        """The feed of the next motion, in the unit of the feed mode; NaN before the first F."""
+        return float(self._commanded[3])
+
+    @programmed_feed.setter
+    def programmed_feed(self, feed: float) -> None:
+        self._commanded[3] = feed
+
     def add_event(self, kind: str, value: EventValue = None) -> None:
-        """Note that something happens before the next row."""
-        self.events.append(RunEvent(self.line, self.row, kind, value, self._file.current, bool(self.tcp_rows.current)))
+        """Record an event before the next row."""
+        modal = self.modal
+        self.events.append(RunEvent(self.line, self.row, kind, value, modal.file.current, bool(modal.tcp.current)))
 
     # Tools
 
     def select_tool(self, name: str) -> None:
-        """Choose the tool for the next change."""
+        """Select the tool for the next change."""
         self._selected_tool = self.tools.setdefault(name, len(self.tools))
         if self._selected_tool == len(self._tool_names):
             self._tool_names.append(name)
         self.add_event("tool", name)
 
     def change_tool(self) -> None:
-        """Change to the tool that was chosen."""
-        self.tool.set(self.row, self._selected_tool)
+        """Change to the selected tool."""
+        self.modal.tool.set(self.row, self._selected_tool)
         self.add_event("tool_change", self._tool_names[self._selected_tool])
 
     @property
     def tool_in_spindle(self) -> str:
-        """Number or name of the tool that was changed to last; empty before the first change."""
-        return self._tool_names[self.tool.current]
+        """Number or name of the tool in the spindle; empty before the first change."""
+        return self._tool_names[self.modal.tool.current]
 
-    # With a kernel
-
-    def scan_target(self) -> ScanTarget:
-        """Return the columns, for the scan kernel."""
-        c = self.columns
-        return ScanTarget(c.kind, c.programmed, c.xyz, c.rotary, c.base, c.line, c.block_number, c.vector, c.turn_rule)
-
-    def before_scan(self, position: int, line: int) -> None:
-        """Set the shared counters, and see that rows may wait."""
-        self._clear_if_full()
-        self.counters[ROW] = self.columns.n
-        self.counters[COMMENTS] = 0
-        self.counters[FEEDS] = 0
-        self.counters[NORMALS] = 0
-        self.commanded[4] = self.feed.current
-        self.counters[POSITION] = position
-        self.counters[LINE] = line
-
-    def after_scan(self) -> int:
-        """Take over what the kernel did; returns the ``ProgrammedWord`` bits of all its rows together."""
-        old, new = self.columns.n, int(self.counters[ROW])
-        if new == old:
-            return 0
-        bits = int(np.bitwise_or.reduce(self.columns.programmed[old:new]))
-        self._rotary_unresolved |= bool(bits & (ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR))
-        noted = int(self.counters[FEEDS])
-        self.feed.extend(self.scan_records.feed_rows[:noted], self.scan_records.feed_values[:noted])
-        if count := int(self.counters[NORMALS]):
-            self._normal_records.append(
-                (self.scan_records.normal_rows[:count].copy(), self.scan_records.normals[:count].copy())
-            )
-        self.columns.n = new
-        return bits
-
-    @property
-    def full(self) -> bool:
-        """Whether the kernel came back for want of room."""
-        return (
-            self.columns.n == self.columns.capacity
-            or self.columns.full
-            or RECORD_CAPACITY in (self.counters[COMMENTS], self.counters[FEEDS], self.counters[NORMALS])
-        )
-
-    # By hand
+    # Rows
 
     def add_row(
-        self, kind: Kind, end: Floats, bits: int, rotary: Sequence[float], turn_rule: int, vector: Floats | None
+        self, kind: Kind, end: Floats, rotary: RotaryTarget = NO_ROTARY, bits: int = 0, vector: Floats | None = None
     ) -> bool:
-        """Make a row; False, with a finding, if no machine could do it.
+        """Add a row; False, with a diagnostic, if no machine could reach its end.
 
         end      (3,) programmed position
-        rotary   programmed values, NaN where there are none; ``turn_rule`` as in ``trunnion.model.axis_positions``
-        vector   (3,) programmed tool axis, any length
+        bits     ``ProgrammedWord`` bits of the words besides rotary ones and the vector
+        vector   (3,) programmed tool axis, of any length
         """
-        if not within_limits(end) or any(abs(value) > MAX_POSITION for value in rotary):
+        if not within_limits(end) or any(abs(value) > MAX_POSITION for value in rotary.values):
             self.note("a position is farther away than any machine reaches: the block is not executed", Severity.ERROR)
             return False
+        bits |= rotary.bits if vector is None else int(ProgrammedWord.VECTOR)
         c = self.columns
         self._clear_if_full()
         c.reserve(1)
@@ -205,61 +169,94 @@ class RowRecorder:
         c.block_number[pending] = self.block_number
         c.kind[row] = kind
         c.programmed[row] = bits
-        c.xyz[row] = self.position_map[:, :3] @ end + self.position_map[:, 3]
-        c.rotary[row] = rotary
-        c.turn_rule[pending] = turn_rule
+        c.xyz[row] = self._mapped(end)
+        c.rotary[row] = rotary.values
+        c.turn_rule[pending] = rotary.turn_rule
         c.vector[pending] = math.nan if vector is None else self.vector_map @ vector
-        self.feed.set(row, float(self.commanded[3]))
+        self.modal.feed.set(row, self.programmed_feed)
         c.n += 1
-        self.commanded[:3] = end
-        self._rotary_unresolved |= bool(bits & (ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR))
+        self.programmed_position = end
+        self._rotary_unresolved |= bool(bits & _ROTARY_WORDS)
         return True
 
+    def _mapped(self, position: Floats) -> Floats:
+        """Return a programmed position as a tool tip or slide positions, (3,) mm."""
+        return np.asarray(self.position_map[:, :3] @ position + self.position_map[:, 3])
+
     def add_arc(self, row: int, centre: Floats, normal: Floats, radius: float, turns: int) -> None:
-        """Note the circle of a row of kind ``Kind.ARC``, in the workpiece frame."""
+        """Record the circle of a row of kind ``Kind.ARC``, in the workpiece frame."""
         self._arcs.append((row, centre, normal, radius, turns))
 
     def add_normal(self, normal: Floats) -> None:
-        """Note the surface's normal (3,), as it was programmed, of the row that was made last."""
-        self._normal_records.append((np.array([self.row - 1]), (self.vector_map @ normal)[None]))
+        """Record the programmed surface normal (3,) of the last row."""
+        self._normals.append((np.array([self.row - 1]), (self.vector_map @ normal)[None]))
+
+    # Scans
+
+    def scan_limit(self) -> int:
+        """Return the number of blocks that the next scan may read, at least 1 if ``columns`` has free rows."""
+        self._clear_if_full()
+        c = self.columns
+        return min(c.capacity - c.n, c.free, MAX_BLOCKS)
+
+    def execute_scanned(self, count: int, settings: ScanSettings) -> ScannedRows:
+        """Execute the first ``count`` blocks of ``words``, which begin at ``line``."""
+        c, records, first = self.columns, self._records, self.row
+        feed_before, self._commanded[4] = self.programmed_feed, self.modal.feed.current
+        rows = RowColumns(c.kind, c.programmed, c.xyz, c.rotary, c.base, c.line, c.block_number, c.vector, c.turn_rule)
+        c.n, comments, feeds, normals = execute_blocks(
+            count, self.line, first, self.words, settings, self._commanded, rows, records
+        )
+        bits = int(np.bitwise_or.reduce(c.programmed[first : c.n]))
+        self._rotary_unresolved |= bool(bits & _ROTARY_WORDS)
+        self.modal.feed.extend(records.feed_rows[:feeds], records.feed_values[:feeds])
+        if normals:
+            self._normals.append((records.normal_rows[:normals].copy(), records.normals[:normals].copy()))
+        return ScannedRows(
+            range(first, c.n),
+            bits,
+            records.comments[:comments],
+            feed_before,
+            records.feed_rows[:feeds],
+            records.feed_values[:feeds],
+        )
+
+    # Axis positions
 
     def resolve_rows(self) -> None:
-        """Work out where the axes are after the rows so far."""
+        """Determine the axis positions after the rows so far."""
         c = self.columns
         if c.resolved == c.n:
             return
         rows, pending = slice(c.resolved, c.n), slice(c.resolved - c.base, c.n - c.base)
-        columns = list(self.machine.rotary)
-        place, rotary = c.xyz[rows], c.rotary[rows]
-        status = axis_positions.resolve_rotary(
+        xyz, words = c.xyz[rows], RotaryWords(c.rotary[rows], c.turn_rule[pending], c.vector[pending])
+        status = resolve_rotary(
             self.machine,
             self._kinematics,
-            place,
-            rotary,
-            c.turn_rule[pending],
-            c.vector[pending],
-            self.current_joints[columns],
-            self.tip_programmed,
-            self.deciding_axis,
+            xyz,
+            words,
+            self.current_joints[list(self.machine.rotary)],
+            xyz_is_tip=self.tip_programmed,
+            deciding_axis=self.deciding_axis,
         )
-        self.xyz_is_tip.set(c.resolved, self.tip_programmed)
+        self.modal.xyz_is_tip.set(c.resolved, self.tip_programmed)
         self._report(status, c.resolved - c.base)
         xyz_is_tip = np.array([self.tip_programmed])
-        held = axis_positions.joints_from_rows(self.machine, self._kinematics, xyz_is_tip, place[-1:], rotary[-1:])[0]
-        self.current_joints = np.where(np.isfinite(held), held, self.current_joints)
+        joints = joints_from_rows(self.machine, self._kinematics, xyz_is_tip, xyz[-1:], words.rotary[-1:])[0]
+        self.current_joints = np.where(np.isfinite(joints), joints, self.current_joints)
         c.resolved = c.n
         self._rotary_unresolved = False
 
     def _clear_if_full(self) -> None:
-        if self.columns.full:
+        if not self.columns.free:
             self.resolve_rows()
             self.columns.clear()
 
     def _report(self, status: Codes, first: int) -> None:
         texts = (
-            (axis_positions.OUT_OF_TRAVEL, "no rotary position inside the travel gives this tool axis"),
-            (axis_positions.NO_ROTARY_SOLUTION, "no rotary position gives this tool axis: the axes stay"),
-            (axis_positions.NO_SLIDE_SOLUTION, "the slides cannot reach this position"),
+            (OUT_OF_TRAVEL, "no rotary position inside the travel gives this tool axis"),
+            (NO_ROTARY_SOLUTION, "no rotary position gives this tool axis: the axes stay"),
+            (NO_SLIDE_SOLUTION, "the slides cannot reach this position"),
         )
         if not status.any():
             return
@@ -268,13 +265,13 @@ class RowRecorder:
             self.line = int(self.columns.line[first + row])
             for bit, text in texts:
                 if status[row] & bit:
-                    self.note(text, Severity.WARNING if bit == axis_positions.OUT_OF_TRAVEL else Severity.ERROR)
+                    self.note(text, Severity.WARNING if bit == OUT_OF_TRAVEL else Severity.ERROR)
         self.line = here
 
     # The end
 
     def finish(self, files: Sequence[str], comments: list[Comment], diagnostics: Sequence[Diagnostic]) -> Run:
-        """Return what was done, once everything is settled; no row may follow."""
+        """Return the run once all rows are resolved; no row may follow."""
         c = self.columns
         c.clear()
         n = c.n
@@ -287,23 +284,7 @@ class RowRecorder:
             programmed=c.programmed[:n],
             xyz=c.xyz[:n],
             rotary=c.rotary[:n],
-            state=ModalState(
-                file=self._file.steps(n, np.uint16),
-                feed=self.feed.steps(n, np.float64),
-                feed_mode=self.feed_mode.steps(n, np.uint8),
-                rpm=self.rpm.steps(n, np.float64),
-                spindle=self.spindle.steps(n, np.int8),
-                tool=self.tool.steps(n, np.int32),
-                edge=self.edge.steps(n, np.int32),
-                compensation=self.compensation.steps(n, np.int8),
-                work_offset=self.work_offset.steps(n, np.uint16),
-                tcp=self.tcp_rows.steps(n, np.bool_),
-                machine_frame=self.machine_rows.steps(n, np.bool_),
-                inches=self.inch_rows.steps(n, np.bool_),
-                orientation=self.orientation.steps(n, np.uint8),
-                xyz_is_tip=self.xyz_is_tip.steps(n, np.bool_),
-                feed_path=self.feed_path.steps(n, np.uint8),
-            ),
+            state=self.modal.state(n),
             start=self.start,
             arcs=self._arc_columns(),
             normals=self._normal_columns(),
@@ -314,9 +295,9 @@ class RowRecorder:
         )
 
     def _normal_columns(self) -> SurfaceNormals:
-        if not self._normal_records:
-            return SurfaceNormals.none()
-        rows, vectors = zip(*self._normal_records, strict=True)
+        if not self._normals:
+            return SurfaceNormals.empty()
+        rows, vectors = zip(*self._normals, strict=True)
         return SurfaceNormals(np.concatenate(rows), np.concatenate(vectors))
 
     def _arc_columns(self) -> Arcs:
@@ -329,5 +310,5 @@ class RowRecorder:
 
 
 def within_limits(point: Floats) -> bool:
-    """Whether a machine could be so large, NaN being nowhere."""
+    """Whether some machine could reach a point; NaN is nowhere."""
     return float(np.abs(point).max()) < MAX_POSITION

@@ -1,4 +1,4 @@
-"""Tilted planes: how the tool's frame lies with the rotary axes somewhere, and where they must be for a plane."""
+"""Tool orientation and rotary positions: the tool's frame at a position, and the positions for a tilted plane."""
 
 import math
 
@@ -12,7 +12,7 @@ from trunnion.readers.control.affine_map import rotation_about
 
 
 def tool_frame(machine: Machine, rotary: tuple[float, float]) -> Floats:
-    """(3, 3): the tool's frame as seen from the workpiece, with the rotary axes at these values, degrees."""
+    """Return the tool's frame in the workpiece frame, (3, 3), with the rotary axes at ``rotary``, degrees."""
     linear = np.eye(3)
     for column, value in sorted(zip(machine.rotary, rotary, strict=True)):
         axis = machine.axes[column]
@@ -21,9 +21,9 @@ def tool_frame(machine: Machine, rotary: tuple[float, float]) -> Floats:
 
 
 def solutions(machine: Machine, normal: Floats, current_joints: Floats) -> list[tuple[float, float]]:
-    """Both rotary positions whose tool axis is ``normal`` (3,), degrees; none if there is no such position.
+    """Return both rotary positions whose tool axis is ``normal`` (3,), degrees; an empty list if there are none.
 
-    Where the first axis is free it stays as it is in ``held`` (5,).
+    At the pole, where the first axis is free, it keeps its value in ``current_joints`` (5,).
     """
     solved = inverse(machine, np.zeros((1, 3)), normal[None])
     columns = list(machine.rotary)
@@ -36,9 +36,9 @@ def solutions(machine: Machine, normal: Floats, current_joints: Floats) -> list[
 
 
 def align_first_axis(machine: Machine, rotary: tuple[float, float], along: Floats) -> tuple[float, float]:
-    """Return the position with the first axis, which is free there, turned so that the tool's X looks ``along`` (3,).
+    """Return a position at the pole with its free first axis turned so that the tool's X points ``along`` (3,).
 
-    ``along`` is seen from the workpiece. Only turns about the first axis are looked at.
+    ``along`` is in the workpiece frame; only its part normal to the first axis counts.
     """
     axis = machine.axes[machine.rotary[0]]
     about_first = np.array(axis.direction)
@@ -48,13 +48,13 @@ def align_first_axis(machine: Machine, rotary: tuple[float, float], along: Float
 
 
 def first_axis_is_free(machine: Machine, rotary: tuple[float, float]) -> bool:
-    """Whether the tool axis stands along the first rotary axis, so that this one does not tilt it."""
+    """Whether the tool axis is parallel to the first rotary axis, so that this one does not tilt it."""
     tool = tool_frame(machine, rotary) @ np.array(machine.spindle_direction)
     return float(np.linalg.norm(np.cross(tool, np.array(machine.axes[machine.rotary[0]].direction)))) < POLE_TOLERANCE
 
 
 def is_in_travel(machine: Machine, rotary: tuple[float, float]) -> bool:
-    """Whether both rotary axes have the position in their travel, in some turn."""
+    """Whether a position is in the travel of both rotary axes, in some turn."""
     axes = (machine.axes[column] for column in machine.rotary)
     return all(
         axis.endless
@@ -66,7 +66,7 @@ def is_in_travel(machine: Machine, rotary: tuple[float, float]) -> bool:
 
 
 def nearest_in_travel(machine: Machine, rotary: tuple[float, float], current_joints: Floats) -> tuple[float, float]:
-    """The turns of a rotary position that lie inside the travel, nearest to where the axes stand in ``held`` (5,)."""
+    """Return a position in the turns within the travel that are nearest to ``current_joints`` (5,)."""
     first, second = (
         float(
             nearest_turn(

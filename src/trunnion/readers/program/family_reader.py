@@ -1,49 +1,34 @@
 """What a family of controls contributes to reading: one record, in the module ``reader`` of the family's folder."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from trunnion.machines import Machine
-from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT, Interpreter
+from trunnion.readers.program.interpreter import Interpreter
+from trunnion.readers.program.options import RunOptions
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
 RS274_COMMENTS = rb"\([^)\n]*\)|;[^\n]*"
-
-
-class InterpreterFactory(Protocol):
-    """Makes the interpreter of one program; the arguments are those of ``trunnion.readers.run_program``."""
-
-    def __call__(
-        self,
-        path: Path,
-        machine: Machine,
-        /,
-        *,
-        subprograms: Sequence[Path] = (),
-        step_limit: int = DEFAULT_STEP_LIMIT,
-        skip: bool = False,
-        shortest: bool | None = None,
-    ) -> Interpreter[Any]: ...
 
 
 @dataclass(frozen=True, slots=True)
 class FamilyReader:
     """The reader of one family of controls.
 
-    interpreter          makes the interpreter that runs a program
+    interpreter          makes the interpreter that runs a program on a machine
     words_without_path   words, as written without leading zeros, that the path does not depend on
     comments             regular expression of comments and texts, in which words mean nothing
     uses_length_numbers  programs select the tool length by a number (H); it is the column ``Run.edge``
     """
 
-    interpreter: InterpreterFactory
+    interpreter: Callable[[Path, Machine, RunOptions], Interpreter[Any]]
     words_without_path: frozenset[str]
     comments: bytes = RS274_COMMENTS
     uses_length_numbers: bool = False
 
 
 def g_words(tenths: frozenset[int]) -> frozenset[str]:
-    """G words from codes in tenths: 541 is G54.1."""
+    """Return G words for codes in tenths: 541 is G54.1."""
     return frozenset(f"G{code / 10:g}" for code in tenths)

@@ -1,11 +1,9 @@
-"""The text of a program: in chunks as long as it runs from top to bottom, whole as soon as it jumps.
+"""The text of a program: read in chunks while it runs from top to bottom, loaded as a whole as soon as it jumps.
 
 Lines count from 1. Buffers always hold whole lines: the last one ends in a line feed even if the file does not.
 """
 
 import os
-import re
-from collections.abc import Sequence
 from copy import copy
 from pathlib import Path
 from typing import Final, Self
@@ -19,25 +17,27 @@ from trunnion.files import WriteProgress
 #: Bytes read at a time.
 CHUNK: Final = 1 << 20
 
-#: Longer lines belong to no program.
+#: A file with longer lines is no program.
 MAX_LINE_LENGTH: Final = 1 << 16
 
-#: No block that moves is shorter.
-SHORTEST_ROW: Final = len("X1\n")
+#: The shortest block that makes a row.
+_SHORTEST_ROW: Final = len("X1\n")
 
-#: Bytes looked at for the end of a line at first.
-_LINE: Final = 256
+#: Bytes in which the end of a line is looked for first.
+_LINE_WINDOW: Final = 256
 
-#: The largest file that may jump or be a subprogram: it is held whole.
+#: The largest file that may jump or be a subprogram, and so is loaded as a whole.
 MAX_LOADED_SIZE: Final = 256 << 20
 
 
 class SourceText:
-    """A program file, the place where it is being read, and where its jumps lead.
+    """A program file and the position at which it is read; subclasses find the targets of jumps.
 
-    buffer    (m,) uint8   whole lines
-    position  int          byte of the buffer where the next line begins
-    line      int          number of that line
+    buffer     (m,) uint8  whole lines
+    position   first byte of the next line in the buffer
+    line       number of that line
+    whole      the buffer is the whole file
+    first_row  row of the run before which the text began
     """
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
@@ -46,17 +46,16 @@ class SourceText:
         try:
             if not path.is_file():
                 raise InputError(Problem(str(path), 0, "is no file"))
-            # Held open while the program is read; ``close`` is called by whoever runs it.
+            # Stays open while the program is read; the interpreter calls ``close``.
             self._file = path.open("rb", buffering=0)
         except (OSError, ValueError) as error:
             raise InputError(Problem(str(path), 0, f"cannot be read: {error}")) from None
         self.whole = False
         self._write_progress: WriteProgress | None = None
         self._size = os.fstat(self._file.fileno()).st_size
-        #: Row of the run before which this text began.
         self.first_row = 0
         self._ended = False
-        # A chunk, and before it what the last one held of its line.
+        # A chunk, preceded by the beginning of its first line from the chunk before.
         self._chunk = bytearray(0 if whole else MAX_LINE_LENGTH + CHUNK + 1)
         self._remainder = self._filled = 0
         self.buffer: Bytes = np.zeros(0, np.uint8)
@@ -67,7 +66,7 @@ class SourceText:
             self.load()
 
     def restarted(self) -> Self:
-        """Return the same text, held whole, at its first line: what it knows of itself is shared."""
+        """Return the loaded text at its first line; buffer and jump targets are shared."""
         self.load()
         other = copy(self)
         other.jump(1)
@@ -78,16 +77,16 @@ class SourceText:
         self._file.close()
 
     def problem(self, line: int, what: str, cure: str = "") -> InputError:
-        """Return the error that says what is wrong at a line."""
+        """Return the error for a fault at a line."""
         return InputError(Problem(str(self.path), line, what, cure))
 
     def follow(self, write_progress: WriteProgress) -> None:
-        """Take it that the file is still being written: what is not there yet is waited for."""
+        """Read a file that is still being written: wait for what is not there yet."""
         self._write_progress = write_progress
 
     @property
     def size(self) -> int:
-        """Bytes of the file; while it is being written, about as many as it will have, and no fewer than it has."""
+        """Bytes of the file; while it is being written, an estimate that is no smaller than what is there."""
         if self._write_progress is not None:
             return self._write_progress.expected_size
         return len(self.buffer) if self.whole else self._size
@@ -98,15 +97,15 @@ class SourceText:
         return self.position + (0 if self.whole else self._file.tell() - self._filled)
 
     def expected_rows(self, rows: int) -> int:
-        """How many rows there will be if the text goes on as it began, with ``rows`` up to here.
+        """Estimate the rows of the run if the text continues as it began, with ``rows`` rows so far.
 
-        A loop makes many rows of few bytes: what lies ahead bounds what may be expected of it.
+        Loops make many rows of few bytes, so the estimate is bounded by the bytes that are left.
         """
-        behind, size, here = self._bytes_read, self.size, rows - self.first_row
-        return self.first_row + min(here * size // max(behind, 1), here + (size - behind) // SHORTEST_ROW)
+        read, size, own = self._bytes_read, self.size, rows - self.first_row
+        return self.first_row + min(own * size // max(read, 1), own + (size - read) // _SHORTEST_ROW)
 
     def fill(self) -> bool:
-        """See that the buffer holds a line; False at the end of the program."""
+        """Make sure that the buffer holds the next line; False at the end of the program."""
         while self.position >= len(self.buffer):
             if self.whole or self._ended:
                 return False
@@ -114,8 +113,8 @@ class SourceText:
         return True
 
     def next_line(self) -> str:
-        """Return the next line and step over it; only after ``fill``."""
-        size = _LINE
+        """Return the next line and go past it; call ``fill`` before."""
+        size = _LINE_WINDOW
         while True:
             window = self.buffer[self.position : self.position + size].tobytes()
             length = window.find(b"\n")
@@ -130,7 +129,7 @@ class SourceText:
         return decode(window[:length])
 
     def _read(self) -> None:
-        """Take the next chunk: what is left of the last one goes before it, in the same memory."""
+        """Read the next chunk behind the incomplete last line of the chunk before."""
         self._wait(self._file.tell() + CHUNK)
         left, end = self._remainder, self._filled
         self._chunk[: end - left] = self._chunk[left:end]
@@ -153,13 +152,13 @@ class SourceText:
         self.position = 0
 
     def _wait(self, size: int) -> None:
-        """See that so many bytes of a file that is being written are there, or all of them."""
+        """Wait until ``size`` bytes of a file that is being written are there, or all of them."""
         if self._write_progress is not None and not self._write_progress.wait_for(size):
             self._write_progress = None
             self._size = os.fstat(self._file.fileno()).st_size
 
     def load(self) -> None:
-        """Hold the whole program, at the same line: from now on it may jump."""
+        """Load the whole program, staying at the same line: from now on it may jump."""
         if self.whole:
             return
         if self._write_progress is not None:
@@ -185,101 +184,42 @@ class SourceText:
         self.jump(self.line)
 
     def whole_bytes(self) -> bytes:
-        """Return the whole program."""
+        """Return the bytes of the whole program."""
         self.load()
         return self.buffer.tobytes()
 
     @property
     def known_lines(self) -> int:
-        """Number of lines, as far as it is known without holding the program whole."""
+        """Number of lines, as far as it is known without loading the program."""
         return self.lines if self.whole else self.line
 
     @property
     def lines(self) -> int:
-        """Number of lines; the program must be held whole."""
+        """Number of lines; loads the program."""
         return len(self.starts) - 1
 
     @property
     def starts(self) -> Ints:
-        """First byte of each line, and one more; (lines + 1,) int64."""
+        """First byte of each line, and the end; (lines + 1,) int64."""
         if self._starts is None:
             self.load()
         assert self._starts is not None
         return self._starts
 
     def jump(self, line: int) -> None:
-        """Go on at a line."""
+        """Continue at a line."""
         line = min(line, self.lines + 1)
         self.line = line
         self.position = int(self.starts[line - 1])
 
     def line_of(self, byte: int) -> int:
-        """Return the line that a byte belongs to; the program must be held whole."""
+        """Return the line of a byte; the program must be loaded."""
         return int(np.searchsorted(self.starts, byte, side="right"))
 
 
 def decode(data: bytes) -> str:
-    """Return text: UTF-8, or one character a byte where it is none."""
+    """Return bytes as text: UTF-8, or Latin-1 where they are not."""
     try:
         return data.decode()
     except UnicodeDecodeError:
         return data.decode("latin-1")
-
-
-class Subprograms:
-    """The files that a program may call: those that whoever runs it has named, and no others.
-
-    suffixes   how names of programs end on this control, those first that go before others; "" for no ending
-    prefix     what the control may write before a name
-    """
-
-    def __init__(self, named: Sequence[Path], suffixes: Sequence[str], prefix: str = "") -> None:
-        self._suffixes = tuple(suffixes)
-        self._prefix = prefix
-        self._files: dict[str, Path] = {}
-        problems = []
-        found: dict[tuple[str, int], Path] = {}
-        for path in named:
-            rank = self._rank(path.name.upper())
-            if not _is_file(path):
-                problems.append(Problem(str(path), 0, "is no file"))
-            elif rank is None:
-                endings = ", ".join(suffix for suffix in self._suffixes if suffix)
-                problems.append(Problem(str(path), 0, "is no name of a subprogram", f"let it end in one of {endings}"))
-            elif (first := found.setdefault((self._stem(path.name), rank), path)) is not path:
-                problems.append(Problem(str(path), 0, f"is called as {first} is", "name one of them"))
-        if problems:
-            raise InputError(problems)
-        for (stem, _), path in sorted(found.items(), key=lambda each: each[0][1]):
-            self._files.setdefault(stem, path)
-
-    def find(self, name: str) -> Path | None:
-        """Return the subprogram of this name, whatever the case of its letters, or None.
-
-        A name may have its ending and prefix or not. Folders of the control are not those of this computer: of a name
-        with a folder its last part counts.
-        """
-        parts = [part for part in re.split(r"[/\\:]", name.strip()) if part]
-        if not parts or ".." in parts or len(name) > 200:
-            return None
-        return self._files.get(self._stem(parts[-1]))
-
-    def _rank(self, upper: str) -> int | None:
-        """Place among the suffixes of the one with which a name ends."""
-        for k, suffix in enumerate(self._suffixes):
-            if upper.endswith(suffix) if suffix else "." not in upper:
-                return k
-        return None
-
-    def _stem(self, name: str) -> str:
-        stem = name.upper()
-        for suffix in self._suffixes:
-            stem = stem.removesuffix(suffix)
-        return stem.removeprefix(self._prefix)
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError, RuntimeError):  # links in circles, names that no system has
-        return False

@@ -1,1 +1,1 @@
-"""What languages of the RS274 kind share: blocks of letters and numbers, and their arithmetic."""
+"""What languages of the RS274 kind share: blocks of letters and numbers, expressions, circles and cycles."""

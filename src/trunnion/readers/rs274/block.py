@@ -1,4 +1,4 @@
-"""Blocks of languages of the RS274 kind: letters with numbers, in any order and with blanks anywhere."""
+"""Blocks of languages of the RS274 kind: letters with numbers, in any order, blanks ignored."""
 
 import re
 from collections.abc import Callable
@@ -7,10 +7,10 @@ from typing import Final
 
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, ExpressionReader, Parameters, Value
 
-#: Longer blocks are no blocks.
+#: Longer lines are no blocks.
 MAX_LENGTH: Final = 8192
 
-#: Larger codes are none that a control has.
+#: No control has larger codes.
 _MAX_CODE: Final = 100_000
 
 _NUMBERED = re.compile(r"N([0-9]{1,15})(?:\.[0-9]*)?")
@@ -18,7 +18,7 @@ _NUMBERED = re.compile(r"N([0-9]{1,15})(?:\.[0-9]*)?")
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """The value of a word; ``whole``: written as digits without a point."""
+    """The value of a word; ``whole`` if it is written without a point."""
 
     value: float
     whole: bool = False
@@ -26,13 +26,13 @@ class Number:
 
 @dataclass(slots=True)
 class Block:
-    """What a block says.
+    """The words of a block.
 
-    words      by letter, other than N, G and M
-    g          G codes in the order of the block, in tenths: G54.1 is 541
-    m          M codes
-    settings   parameters that get values, which count from the next block on
-    used       letters that something in the block has made use of
+    words        by letter, other than N, G and M
+    g            G codes in the order of the block, in tenths: G54.1 is 541
+    m            M codes
+    assignments  new values of parameters, which hold from the next block on
+    used         letters of the words that have been used
     """
 
     words: dict[str, Number] = field(default_factory=dict)
@@ -42,7 +42,7 @@ class Block:
     used: set[str] = field(default_factory=set)
 
     def take(self, letter: str) -> float | None:
-        """Return the value of a word, which has now found its use; None if there is no such word."""
+        """Return the value of a word and mark it as used; None if there is no such word."""
         number = self.words.get(letter)
         if number is None:
             return None
@@ -50,17 +50,17 @@ class Block:
         return number.value
 
     def unused(self) -> list[str]:
-        """Letters that nothing in the block made use of."""
+        """Return the letters of words that have not been used."""
         return [letter for letter in self.words if letter not in self.used]
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line without its comments: what is left, in capitals and without blanks.
+    """A line without its comments and block number, in capitals and without blanks.
 
-    number     N number, -1 where it has none
-    skipped    the line begins with a slash; ``level`` is its digit or 0
-    comments   as they stand, without their brackets
+    number      N number, -1 for none
+    block_skip  the line begins with a slash
+    comments    without their parentheses
     """
 
     text: str
@@ -70,9 +70,9 @@ class Line:
 
 
 def split_line(raw: str, *, semicolon: bool) -> Line:
-    """Take a line apart; BlockError if a comment does not end.
+    """Split a line into its parts; BlockError if a comment does not end.
 
-    semicolon   a semicolon begins a comment, else it ends the block
+    semicolon   a semicolon begins a comment; else it ends the block
     """
     parts: list[str] = []
     comments: list[str] = []
@@ -108,7 +108,7 @@ def split_line(raw: str, *, semicolon: bool) -> Line:
 
 
 def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]) -> Block:
-    """Read the rest of a block; ``on_repeated_word`` is told of words that stand in it more than once."""
+    """Read the rest of a block; ``on_repeated_word`` is called with the letter of a word that is written twice."""
     block = Block()
     while not reader.ended:
         letter = reader.letter()
@@ -120,7 +120,7 @@ def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]
             raise BlockError(f"{letter!r} is no word")
         value, whole = reader.signed_value()
         if value is None:
-            # A word with a value that nobody set is as good as not written.
+            # A word whose value is an unset parameter counts as not written.
             continue
         if letter == "G":
             block.g.append(_code(value, letter, 10))
@@ -134,7 +134,7 @@ def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]
 
 
 def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> ExpressionReader:
-    """Return a reader at the beginning of a block."""
+    """Return a reader at the start of a block."""
     if len(text) > MAX_LENGTH:
         raise BlockError(f"the block is longer than {MAX_LENGTH} characters")
     return ExpressionReader(text, arithmetic, parameters)
@@ -148,6 +148,6 @@ def _code(value: float, letter: str, parts: int) -> int:
 
 
 def g_code_text(code: int) -> str:
-    """A G code as it is written: 541 is G54.1."""
+    """Return the word of a G code: 541 is G54.1."""
     whole, tenth = divmod(code, 10)
     return f"G{whole}.{tenth}" if tenth else f"G{whole}"

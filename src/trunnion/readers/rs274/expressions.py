@@ -1,11 +1,11 @@
-"""Arithmetic of languages of the RS274 kind: numbers, ``#`` parameters, and expressions in square brackets.
+"""Expressions of languages of the RS274 kind: numbers, ``#`` parameters, and arithmetic in square brackets.
 
-Expressions are worked out while they are read, by recursive descent. How deep they may nest is limited, so that no
-program can exhaust the stack of its reader. A value may be None: a parameter that nobody set, where the language knows
-such values.
+Expressions are evaluated while they are read, by recursive descent. Their nesting is limited, so that no program can
+exhaust the stack. A value may be None: that of an unset parameter, in languages that distinguish it from 0.
 """
 
 import math
+import operator
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from typing import Final, Protocol
 #: How deep brackets and signs may nest.
 MAX_NESTING: Final = 40
 
-#: Larger numbers are none that a machine could mean.
+#: Larger numbers are mistakes of the program.
 MAX_VALUE: Final = 1e300
 
 _NUMBER = re.compile(r"[0-9]+\.?[0-9]*|\.[0-9]+")
@@ -24,11 +24,11 @@ Value = float | None
 
 
 class BlockError(Exception):
-    """What is wrong with a block, in words."""
+    """The reason why a block is not executed."""
 
 
 class Parameters(Protocol):
-    """Where expressions find the values behind ``#``."""
+    """Where expressions look up parameters."""
 
     def value(self, key: int | str) -> Value:
         """Return the value of a parameter by number or name, or raise BlockError."""
@@ -43,16 +43,16 @@ class Parameters(Protocol):
 class Arithmetic:
     """The operations of a language.
 
-    levels      binary operators by how tightly they bind, loosest first
-    operate     what an operator does with two numbers
-    functions   functions of one number in brackets
-    pairs       functions of two numbers, ``NAME[a]/[b]`` or ``NAME[a,b]``
-    bare        what follows the sign = may be an expression without brackets
-    compare_unset  how operators that compare see a value that nobody set; None: values always count as numbers
+    levels                    binary operators by precedence, lowest first
+    operators                 what each operator does with two numbers
+    functions                 functions of one number in brackets
+    pairs                     functions of two numbers, ``NAME[a]/[b]`` or ``NAME[a,b]``
+    assigns_without_brackets  the right side of an assignment may be an expression without brackets
+    compare_unset             evaluates a comparison with an unset value, None for other operators
     """
 
     levels: tuple[tuple[str, ...], ...]
-    operate: Callable[[str, float, float], float]
+    operators: Mapping[str, Callable[[float, float], float]]
     functions: Mapping[str, Callable[[float], float]]
     pairs: Mapping[str, Callable[[float, float], float]]
     assigns_without_brackets: bool = False
@@ -60,7 +60,7 @@ class Arithmetic:
 
 
 class ExpressionReader:
-    """A place in a block without blanks, in capitals, and how to go on from there."""
+    """Reads a block, in capitals and without blanks, from a position on; evaluates its expressions."""
 
     def __init__(self, text: str, arithmetic: Arithmetic, parameters: Parameters) -> None:
         self.text = text
@@ -71,35 +71,35 @@ class ExpressionReader:
 
     @property
     def ended(self) -> bool:
-        """Whether nothing is left."""
+        """Whether the block is read to its end."""
         return self.at >= len(self.text)
 
     @property
     def rest(self) -> str:
-        """What is left, cut short for messages."""
+        """The rest of the block, cut short for messages."""
         return self.text[self.at : self.at + 40]
 
     def accept(self, text: str) -> bool:
-        """Step over a text if it comes next."""
+        """Read a text if it comes next."""
         if self.text.startswith(text, self.at):
             self.at += len(text)
             return True
         return False
 
     def expect(self, text: str) -> None:
-        """Step over a text that must come next."""
+        """Read a text that must come next."""
         if not self.accept(text):
             raise BlockError(
                 f"{text} is missing before {self.rest!r}" if self.rest else f"{text} is missing at the end"
             )
 
     def letter(self) -> str:
-        """Step over one character and return it."""
+        """Read one character."""
         self.at += 1
         return self.text[self.at - 1]
 
     def number(self) -> tuple[float, bool]:
-        """Return a plain number and whether it was written without a point."""
+        """Read a number; returns it, and whether it is written without a point."""
         match = _NUMBER.match(self.text, self.at)
         if match is None:
             raise BlockError(
@@ -112,7 +112,7 @@ class ExpressionReader:
         return value, "." not in match.group()
 
     def signed_value(self) -> tuple[Value, bool]:
-        """Return a value behind a letter or sign, and whether it was written as digits without a point."""
+        """Read the value of a word; returns it, and whether it is a number without a point."""
         self._deeper()
         try:
             if self.accept("-"):
@@ -132,7 +132,7 @@ class ExpressionReader:
             self._depth -= 1
 
     def parameter_key(self) -> int | str:
-        """Return the number or name of a parameter, behind its ``#``."""
+        """Read the number or name of a parameter, after its ``#``."""
         match = _NAME.match(self.text, self.at)
         if match is not None:
             self.at = match.end()
@@ -143,20 +143,20 @@ class ExpressionReader:
         return round(value)
 
     def bracket(self) -> Value:
-        """Return the value of an expression in square brackets."""
+        """Read an expression in square brackets."""
         self.expect("[")
         value = self._level(0)
         self.expect("]")
         return value
 
     def assigned_value(self) -> Value:
-        """Return what follows the sign of an assignment."""
+        """Read the equals sign of an assignment and the value after it."""
         self.expect("=")
         return self._level(0) if self._arithmetic.assigns_without_brackets else self.signed_value()[0]
 
     def bracket_value(self) -> float:
-        """Return the value of a bracket; what nobody set counts as 0."""
-        return _plain(self.bracket())
+        """Read an expression in square brackets; an unset value counts as 0."""
+        return _or_zero(self.bracket())
 
     def _level(self, level: int) -> Value:
         levels = self._arithmetic.levels
@@ -164,25 +164,24 @@ class ExpressionReader:
             return self.signed_value()[0]
         left = self._level(level + 1)
         while True:
-            operator = next((name for name in levels[level] if self.accept_operator(name)), None)
-            if operator is None:
+            symbol = next((name for name in levels[level] if self.accept_operator(name)), None)
+            if symbol is None:
                 return left
-            right = self._level(level + 1)
-            left = self._apply(operator, left, right)
+            left = self._apply(symbol, left, self._level(level + 1))
 
     def accept_operator(self, name: str) -> bool:
-        """Step over an operator; ``*`` is not half of ``**``."""
+        """Read an operator if it comes next; ``*`` is not half of ``**``."""
         if name == "*" and self.text.startswith("**", self.at):
             return False
         return self.accept(name)
 
-    def _apply(self, operator: str, left: Value, right: Value) -> float:
-        empty = self._arithmetic.compare_unset
-        if empty is not None:
-            answer = empty(operator, left, right)
+    def _apply(self, symbol: str, left: Value, right: Value) -> float:
+        compare = self._arithmetic.compare_unset
+        if compare is not None:
+            answer = compare(symbol, left, right)
             if answer is not None:
                 return answer
-        return _sane(lambda: self._arithmetic.operate(operator, _plain(left), _plain(right)), operator)
+        return _evaluate(lambda: self._arithmetic.operators[symbol](_or_zero(left), _or_zero(right)), symbol)
 
     def _function(self) -> str:
         names = (*self._arithmetic.functions, *self._arithmetic.pairs, "EXISTS")
@@ -198,17 +197,17 @@ class ExpressionReader:
         pairs = self._arithmetic.pairs
         if name not in pairs:
             value = self.bracket_value()
-            return _sane(lambda: self._arithmetic.functions[name](value), name)
+            return _evaluate(lambda: self._arithmetic.functions[name](value), name)
         self.expect("[")
-        first = _plain(self._level(0))
+        first = _or_zero(self._level(0))
         if self.accept(","):
-            second = _plain(self._level(0))
+            second = _or_zero(self._level(0))
             self.expect("]")
         else:
             self.expect("]")
             self.expect("/")
             second = self.bracket_value()
-        return _sane(lambda: pairs[name](first, second), name)
+        return _evaluate(lambda: pairs[name](first, second), name)
 
     def _deeper(self) -> None:
         self._depth += 1
@@ -216,14 +215,14 @@ class ExpressionReader:
             raise BlockError(f"expressions nest deeper than {MAX_NESTING} levels")
 
 
-def _plain(value: Value) -> float:
+def _or_zero(value: Value) -> float:
     return 0.0 if value is None else value
 
 
-def _sane(work: Callable[[], float], name: str) -> float:
-    """Do arithmetic, and say in words what cannot be done."""
+def _evaluate(operation: Callable[[], float], name: str) -> float:
+    """Evaluate an operation; BlockError if it has no finite value."""
     try:
-        value = work()
+        value = operation()
     except (ValueError, OverflowError, ZeroDivisionError):
         raise BlockError(f"{name} has no value here") from None
     if isinstance(value, complex) or not abs(value) <= MAX_VALUE:
@@ -232,12 +231,24 @@ def _sane(work: Callable[[], float], name: str) -> float:
 
 
 def round_half_away(value: float) -> float:
-    """Round to a whole number, halves away from zero."""
+    """Round to a whole number; halves away from zero."""
     return math.copysign(math.floor(abs(value) + 0.5), value)
 
 
-#: Functions that all these languages have; angles in degrees.
-COMMON: Final[Mapping[str, Callable[[float], float]]] = {
+#: Operators that all these languages share; comparisons give 1 or 0.
+COMMON_OPERATORS: Final[Mapping[str, Callable[[float, float], float]]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "GT": lambda a, b: float(a > b),
+    "GE": lambda a, b: float(a >= b),
+    "LT": lambda a, b: float(a < b),
+    "LE": lambda a, b: float(a <= b),
+}
+
+#: Functions that all these languages share; angles in degrees.
+COMMON_FUNCTIONS: Final[Mapping[str, Callable[[float], float]]] = {
     "ABS": abs,
     "ACOS": lambda a: math.degrees(math.acos(a)),
     "ASIN": lambda a: math.degrees(math.asin(a)),

@@ -1,26 +1,81 @@
-"""What a scan kernel and the virtual control hand to each other: counters, columns with room, and notes."""
+"""What the scan kernels and the virtual control share: words of blocks, settings, rows, and records besides rows.
+
+A scan has two steps. The kernel of a language reads plain blocks to ``BlockWords``; ``execute_blocks``, which all
+languages share, turns them into rows.
+"""
 
 from typing import Final, NamedTuple
 
+import numpy as np
+
 from trunnion.arrays import Codes, Floats, Floats2, Ints, Ints2
 
-#: Fields of ``counters``: motion kind (0 rapid, 1 line, more for circles), rows, comments, place in the text, feeds,
-#: surface normals.
-KIND: Final = 0
-ROW: Final = 1
-COMMENTS: Final = 2
-POSITION: Final = 3
-LINE: Final = 4
-FEEDS: Final = 5
-NORMALS: Final = 6
-COUNTER_COUNT: Final = 7
+#: Blocks that a scan reads at most, so that what is recorded of them besides rows always has room.
+MAX_BLOCKS: Final = 4096
 
-#: Comments, feeds and normals that a kernel may note before it comes back.
-RECORD_CAPACITY: Final = 4096
+#: Slots of the words of a block, that is columns of ``BlockWords.values`` and bits of ``BlockWords.seen``. Slots below
+#: ``FEED`` are free for each kernel.
+FEED: Final = 3
+SLIDE: Final = 4  # X, and the two after it: Y, Z
+ROTARY: Final = 7  # and the one after it
+VECTOR: Final = 9  # and the two after it: the tool axis
+NORMAL: Final = 12  # and the two after it: the surface normal
+SLOT_COUNT: Final = 15
+
+SLIDE_BITS: Final = 0b111 << SLIDE
+ROTARY_BITS: Final = 0b11 << ROTARY
+VECTOR_BITS: Final = 0b111 << VECTOR
+NORMAL_BITS: Final = 0b111 << NORMAL
+MOTION_BITS: Final = SLIDE_BITS | ROTARY_BITS | VECTOR_BITS
 
 
-class ScanTarget(NamedTuple):
-    """Columns that rows go to; see ``RowBuffer``. In those from ``line`` on, row r is at r - ``base``."""
+class BlockWords(NamedTuple):
+    """The words of up to m plain blocks, which are those of consecutive lines.
+
+    seen     (m,) int64       bits of the words that are written
+    kind     (m,) uint8       motion in force: 0 rapid, 1 line
+    number   (m,) int64       N number, -1 for none
+    values   (m, 15) float64  numbers by their slots
+    comment  (m, 2) int64     first byte of the comment, -1 for none, and the byte after it
+    """
+
+    seen: Ints
+    kind: Codes
+    number: Ints
+    values: Floats2
+    comment: Ints2
+
+    @staticmethod
+    def empty() -> "BlockWords":
+        """Return buffers for ``MAX_BLOCKS`` blocks."""
+        return BlockWords(
+            np.empty(MAX_BLOCKS, np.int64),
+            np.empty(MAX_BLOCKS, np.uint8),
+            np.empty(MAX_BLOCKS, np.int64),
+            np.empty((MAX_BLOCKS, SLOT_COUNT)),
+            np.empty((MAX_BLOCKS, 2), np.int64),
+        )
+
+
+class ScanSettings(NamedTuple):
+    """What programmed numbers mean while blocks are scanned.
+
+    length_unit   mm of a programmed length
+    feed_unit     mm of the length in a programmed feed
+    turn_rule     turn rules of both rotary axes, see ``trunnion.model.axis_positions``
+    position_map  (3, 4) float64  from programmed position to ``RowColumns.xyz``
+    vector_map    (3, 3) float64  from programmed vector to the workpiece frame
+    """
+
+    length_unit: float
+    feed_unit: float
+    turn_rule: int
+    position_map: Floats2
+    vector_map: Floats2
+
+
+class RowColumns(NamedTuple):
+    """The columns of a ``RowBuffer``. From ``line`` on, row r is at index r - ``base``."""
 
     kind: Codes
     programmed: Codes
@@ -34,14 +89,13 @@ class ScanTarget(NamedTuple):
 
 
 class ScanRecords(NamedTuple):
-    """What the kernel notes besides rows, written from the top; ``counters`` says how many there are.
+    """What is recorded of blocks besides rows.
 
-    comments    (k, 4) int64   line, row, first byte and end of each comment
-    feed_rows   (k,) int64     rows from which another feed holds
-    feed_values (k,) float64   that feed
-    touching    (k,) int64     rows whose blocks say the surface's normal
-    normals     (k, 3) float64 that normal, workpiece frame, as long as it was said
-    numbers     (12,) float64  the numbers of one block, while it is being read
+    comments     (k, 4) int64    line, row, first byte and end of each comment
+    feed_rows    (k,) int64      rows from which on another feed holds
+    feed_values  (k,) float64    that feed
+    normal_rows  (k,) int64      rows whose blocks program the surface normal
+    normals      (k, 3) float64  that normal, workpiece frame, of the programmed length
     """
 
     comments: Ints2
@@ -49,4 +103,14 @@ class ScanRecords(NamedTuple):
     feed_values: Floats
     normal_rows: Ints
     normals: Floats2
-    numbers: Floats
+
+    @staticmethod
+    def empty() -> "ScanRecords":
+        """Return buffers with room for what ``MAX_BLOCKS`` blocks can hold."""
+        return ScanRecords(
+            np.empty((MAX_BLOCKS, 4), np.int64),
+            np.empty(MAX_BLOCKS, np.int64),
+            np.empty(MAX_BLOCKS),
+            np.empty(MAX_BLOCKS, np.int64),
+            np.empty((MAX_BLOCKS, 3)),
+        )

@@ -1,52 +1,57 @@
 """Subprograms and macros of a Fanuc program."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.readers.families.fanuc import words
+from trunnion.readers.families.fanuc.control import FanucControl
 from trunnion.readers.families.fanuc.flow import ActiveProgram, Flow, ModalMacro
 from trunnion.readers.families.fanuc.settings import settings_of
 from trunnion.readers.families.fanuc.text import SUFFIXES, FanucText
 from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.program.interpreter import ProgramEnd
-from trunnion.readers.program.source_text import Subprograms
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block, Number
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import Rs274Interpreter
 
-#: Times that a subprogram may be called at once.
-_MOST_CALLS: Final = 1_000_000_000
+#: How often a subprogram may be repeated by one call.
+_MAX_REPEATS: Final = 1_000_000_000
 
-#: Macros inside each other, as the manual has it (B-63684EN).
-_MOST_MACROS: Final = 4
+#: How deep macros may nest, from the manual (B-63684EN).
+_MAX_MACRO_DEPTH: Final = 4
 
-#: Programs of a number of at most four digits: more are how often they run.
-_FOUR: Final = 10_000
+#: Program numbers of M98 without L have four digits; the digits before them are the number of repeats.
+_FOUR_DIGITS: Final = 10_000
 
 
 class CallInterpreter(Rs274Interpreter[ActiveProgram]):
-    """Calls and returns; what blocks say besides is for the class below."""
+    """Executes calls and returns."""
 
-    def __init__(
-        self, path: Path, machine: Machine, *, subprograms: Sequence[Path], step_limit: int, skip: bool
-    ) -> None:
-        named = Subprograms(subprograms, SUFFIXES)
-        super().__init__(path, machine, named, step_limit=step_limit, skip=skip)
-        self._settings = settings_of(machine)
+    control: FanucControl
+
+    source_type = FanucText
+    suffixes = SUFFIXES
+
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
         self._variables = Variables(self._system_value)
         self._flow = Flow(self._note, self._variables)
 
+    def _make_control(self) -> FanucControl:
+        settings = settings_of(self._machine)
+        return FanucControl(self._machine, self._note, settings, shortest=self._options.shortest)
+
     @abstractmethod
     def _system_value(self, key: int) -> float | None:
-        """Return what the control itself puts behind a number; None if it is none of its own."""
+        """Return the value of a system variable; None for one that is not simulated."""
 
     def _macro(self, active: ActiveProgram, block: Block) -> None:
-        """G65 and G66: a macro with arguments, now or after every motion."""
-        number, times = block.take("P"), block.take("L")
+        """G65 and G66: a macro with arguments, called now or after every motion."""
+        number, repeats = block.take("P"), block.take("L")
         if number is None:
             raise BlockError("the call of a macro needs P")
         arguments: dict[int, float] = {}
@@ -60,82 +65,78 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             arguments[words.ARGUMENTS[letter]] = self._argument(letter, word)
         if block.m:
             arguments[words.ARGUMENTS["M"]] = float(block.m[0])
-        macro = ModalMacro(_program(number), _times(times), arguments)
+        macro = ModalMacro(_program_number(number), _repeats(repeats), arguments)
         if words.MODAL_MACRO in block.g:
             active.modal = macro
         else:
-            self._enter_subprogram(macro.number, macro.times, macro.arguments)
+            self._enter_subprogram(macro.number, macro.repeats, macro.arguments)
 
     def _argument(self, letter: str, word: Number) -> float:
-        if word.whole and word.value and not self._settings.calculator and letter not in "DEHMST":
+        if word.whole and word.value and not self.control.settings.calculator and letter not in "DEHMST":
             self._note(f"argument {letter} without a point: taken as it is written", Severity.WARNING)
         return word.value
 
-    def _call_modal(self, active: ActiveProgram) -> None:
+    def _call_modal_macro(self, active: ActiveProgram) -> None:
         if active.modal is not None:
-            self._enter_subprogram(active.modal.number, active.modal.times, dict(active.modal.arguments))
+            self._enter_subprogram(active.modal.number, active.modal.repeats, dict(active.modal.arguments))
 
     def _call(self, block: Block) -> None:
-        """M98: P is the number, L how often; without L the digits before the last four."""
-        number, times = block.take("P"), block.take("L")
+        """M98: P is the program, L the number of repeats; without L the digits of P before the last four."""
+        number, repeats = block.take("P"), block.take("L")
         if number is None:
             raise BlockError("M98 needs P")
-        program = _program(number)
-        if times is None and program >= _FOUR:
-            times = float(program // _FOUR)
-            program %= _FOUR
-        self._enter_subprogram(program, _times(times), None)
+        program = _program_number(number)
+        if repeats is None and program >= _FOUR_DIGITS:
+            repeats = float(program // _FOUR_DIGITS)
+            program %= _FOUR_DIGITS
+        self._enter_subprogram(program, _repeats(repeats), None)
 
-    def _enter_subprogram(self, number: int, times: int, arguments: dict[int, float] | None) -> None:
-        """Begin a subprogram: of this file, or of those that were named."""
-        if times < 1:
+    def _enter_subprogram(self, number: int, repeats: int, arguments: dict[int, float] | None) -> None:
+        """Start a program of this file or a subprogram file; a macro if there are ``arguments``."""
+        if repeats < 1:
             return
         self._check_depth()
-        here = self._stack[-1]
-        begin = here.source.program(number)
-        if begin is not None:
-            entered = ActiveProgram(here.source.restarted(), here.file, times)
-        else:
-            path = next(
-                (
-                    path
-                    for name in (f"O{number:04d}", f"O{number}", f"{number:04d}", f"{number}")
-                    if (path := self._subprograms.find(name))
-                ),
-                None,
-            )
-            if path is None:
-                raise BlockError(f"missing subprogram O{number:04d}; name its file")
-            text, file = self._open_subprogram(path)
-            assert isinstance(text, FanucText)
-            entered = ActiveProgram(text, file, times)
-            begin = text.program(number) or 1
+        entered, begin = self._find_program(number, repeats)
         entered.row, entered.line = self.control.row, begin
         entered.begun = entered.source.program(number) is not None
         entered.source.jump(begin)
         entered.macro = arguments is not None
         if arguments is not None:
             self._variables.enter(arguments)
-            if self._variables.depth > _MOST_MACROS:
-                what = f"macros inside each other deeper than {_MOST_MACROS} levels: controls may have no more"
+            if self._variables.depth > _MAX_MACRO_DEPTH:
+                what = f"macros inside each other deeper than {_MAX_MACRO_DEPTH} levels: controls may have no more"
                 self._note(what, Severity.WARNING)
         self._stack.append(entered)
 
+    def _find_program(self, number: int, repeats: int) -> tuple[ActiveProgram, int]:
+        """Return a program and its first line."""
+        here = self._stack[-1]
+        begin = here.source.program(number)
+        if begin is not None:
+            return ActiveProgram(here.source.restarted(), here.file, repeats), begin
+        names = (f"O{number:04d}", f"O{number}", f"{number:04d}", f"{number}")
+        path = next((path for name in names if (path := self._subprograms.find(name))), None)
+        if path is None:
+            raise BlockError(f"missing subprogram O{number:04d}; name its file")
+        source, file = self._open_subprogram(path)
+        assert isinstance(source, FanucText)
+        return ActiveProgram(source, file, repeats), source.program(number) or 1
+
     def _return(self, active: ActiveProgram, line: int, block: Block) -> None:
-        """M99: back, P the block there that goes on; in the program itself it would begin anew without end."""
+        """M99: return, to block P of the caller; the main program would start again without end."""
         target = block.take("P")
         if len(self._stack) < 2:
             if target is not None:
-                self._flow.jump(active, line, _program(target))
+                self._flow.jump(active, line, _program_number(target))
                 return
             self._note("M99 begins the program anew without end: it ends here", Severity.WARNING)
             self.control.add_event("end", "M99")
             raise ProgramEnd
-        deep = len(self._stack)
+        depth = len(self._stack)
         self._leave_program()
-        if target is not None and len(self._stack) < deep:
+        if target is not None and len(self._stack) < depth:
             caller = self._stack[-1]
-            self._flow.jump(caller, caller.source.line - 1, _program(target))
+            self._flow.jump(caller, caller.source.line - 1, _program_number(target))
 
     def _leave_program(self) -> None:
         active = self._stack[-1]
@@ -143,22 +144,22 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             active.repeats -= 1
             active.percents = 0
             active.source.jump(active.line)
-            self._count_blocks(1)
+            self._counter.count_blocks(1)
             return
         super()._leave_program()
         if active.macro:
             self._variables.leave()
 
 
-def _program(number: float) -> int:
+def _program_number(number: float) -> int:
     if number != int(number) or not 0 <= number < 1e9:
         raise BlockError("P is not the number of a program or block")
     return int(number)
 
 
-def _times(times: float | None) -> int:
-    if times is None:
+def _repeats(repeats: float | None) -> int:
+    if repeats is None:
         return 1
-    if times != int(times) or not 0 <= times <= _MOST_CALLS:
+    if repeats != int(repeats) or not 0 <= repeats <= _MAX_REPEATS:
         raise BlockError("L is not how often")
-    return int(times)
+    return int(repeats)

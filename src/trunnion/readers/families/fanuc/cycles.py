@@ -1,12 +1,12 @@
 """Canned cycles of a Fanuc as the motions that they make at one hole.
 
-Heights are positions along the axis on the working plane, in the units of the program.
+Heights are positions along the axis normal to the working plane, in the units of the program.
 """
 
 from dataclasses import dataclass
 from typing import Final
 
-from trunnion.readers.control.hole_motion import MAX_PECKS, CycleExecutionError, HoleMotion
+from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
 
 #: Canned cycles, by their G code in tenths.
 CYCLES: Final = frozenset({730, 740, 760, 810, 820, 830, 840, 850, 860, 870, 880, 890})
@@ -14,29 +14,32 @@ CYCLES: Final = frozenset({730, 740, 760, 810, 820, 830, 840, 850, 860, 870, 880
 #: Those that need Q.
 NEED_Q: Final = frozenset({730, 830})
 
-#: Words of cycles that hold until they end.
+#: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "RZPQIJ"
 
-#: How far G73 backs off and how far above the last depth G83 goes back at rapid, mm: parameters of the control.
+#: How far G73 backs off, and how far above the last depth the rapid approach of G83 ends, mm: settings of the control.
 CHIP_BREAK: Final = 1.0
 ABOVE: Final = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class Hole:
-    """What a cycle knows at a hole.
+    """The values of a cycle at a hole.
 
-    initial   height before the cycles began
-    back      whether it ends there (G98), else at R
-    aside     shift of boring tools in the two axes of the plane
-    units     the program's units in a millimetre
-    dwell     seconds
+    retract     height R
+    bottom      height Z
+    initial     height before the cycles began
+    to_initial  whether the cycle ends at the initial height (G98), else at R
+    stroke      Q
+    lateral     shift of boring tools in the two axes of the plane
+    dwell       seconds
+    units       units of the program in a millimetre
     """
 
     retract: float
     bottom: float
     initial: float
-    back: bool
+    to_initial: bool
     stroke: float
     lateral: tuple[float, float]
     dwell: float
@@ -44,66 +47,56 @@ class Hole:
 
 
 def cycle_motions(code: int, hole: Hole) -> list[HoleMotion]:
-    """Return the motions of a cycle from the hole's position on."""
+    """Return the motions of a cycle from the position of the hole on."""
     into = HoleMotion(False, hole.bottom)
-    stay = HoleMotion(False, hole.bottom, dwell=hole.dwell)
+    into_and_dwell = HoleMotion(False, hole.bottom, dwell=hole.dwell)
     out = HoleMotion(True, hole.retract)
-    back = [HoleMotion(True, hole.initial)] if hole.back and hole.initial != hole.retract else []
+    back = [HoleMotion(True, hole.initial)] if hole.to_initial and hole.initial != hole.retract else []
     start = [HoleMotion(True, hole.retract)]
     match code:
-        case 810:
+        case 810 | 860:
             return [*start, into, *(back or [out])]
         case 820:
-            return [*start, stay, *(back or [out])]
+            return [*start, into_and_dwell, *(back or [out])]
         case 730 | 830:
             return [*start, *_peck(hole, full=code == 830), *(back or [out])]
         case 740 | 840 | 890:
-            return [*start, stay, HoleMotion(False, hole.retract), *back]
+            return [*start, into_and_dwell, HoleMotion(False, hole.retract), *back]
         case 850:
             return [*start, into, HoleMotion(False, hole.retract), *back]
-        case 860:
-            return [*start, into, *(back or [out])]
         case 880:
-            return [*start, stay, out, *back]
+            return [*start, into_and_dwell, out, *back]
         case 760:
-            end = hole.initial if back else hole.retract
-            lateral = hole.lateral
-            return [
-                *start,
-                stay,
-                HoleMotion(True, hole.bottom, lateral=lateral),
-                HoleMotion(True, end, lateral=lateral),
-                HoleMotion(True, end),
-            ]
+            end, lateral = hole.initial if back else hole.retract, hole.lateral
+            beside = [HoleMotion(True, hole.bottom, lateral=lateral), HoleMotion(True, end, lateral=lateral)]
+            return [*start, into_and_dwell, *beside, HoleMotion(True, end)]
         case _:
             assert code == 870
             return _back_bore(hole)
 
 
 def _peck(hole: Hole, full: bool) -> list[HoleMotion]:
-    if hole.stroke <= 0.0:
-        raise CycleExecutionError("has a Q that is not above 0")
+    """Return the pecks of G73, or of G83 with ``full`` retracts."""
     total = abs(hole.retract - hole.bottom)
-    if total / hole.stroke > MAX_PECKS:
-        raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
+    check_pecks(total, hole.stroke, "Q")
     down = -1.0 if hole.bottom < hole.retract else 1.0
-    made: list[HoleMotion] = []
+    motions: list[HoleMotion] = []
     depth = hole.stroke
     while depth < total - 1e-9:
-        made.append(HoleMotion(False, hole.retract + down * depth))
+        motions.append(HoleMotion(False, hole.retract + down * depth))
         if full:
-            made.append(HoleMotion(True, hole.retract))
+            motions.append(HoleMotion(True, hole.retract))
             if depth > ABOVE * hole.units:
-                made.append(HoleMotion(True, hole.retract + down * (depth - ABOVE * hole.units)))
+                motions.append(HoleMotion(True, hole.retract + down * (depth - ABOVE * hole.units)))
         else:
-            made.append(HoleMotion(True, hole.retract + down * max(depth - CHIP_BREAK * hole.units, 0.0)))
+            motions.append(HoleMotion(True, hole.retract + down * max(depth - CHIP_BREAK * hole.units, 0.0)))
         depth += hole.stroke
-    return [*made, HoleMotion(False, hole.bottom)]
+    return [*motions, HoleMotion(False, hole.bottom)]
 
 
 def _back_bore(hole: Hole) -> list[HoleMotion]:
-    """G87: beside the hole down to R, over to it, up to Z and a little back, out beside it."""
-    if not hole.back:
+    """Return the motions of G87: beside the hole down to R, over it, up to Z, and out beside it."""
+    if not hole.to_initial:
         raise CycleExecutionError("G87 needs G98")
     lateral = hole.lateral
     return [

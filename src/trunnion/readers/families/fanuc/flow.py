@@ -1,4 +1,4 @@
-"""Where a Fanuc program goes on: conditions, jumps and loops of macros."""
+"""Control flow of a Fanuc program: conditions, jumps and loops."""
 
 import re
 from dataclasses import dataclass
@@ -14,18 +14,18 @@ from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
 
 _WORD = re.compile(r"IF|GOTO|WHILE|DO|END(?=[0-9#\[])")
 
-#: The highest block number and loop number.
+#: Block and loop numbers are smaller.
 _HIGHEST: Final = 10**9
 
 
 @dataclass(slots=True)
 class ActiveProgram(interpreter.ActiveProgram):
-    """A program or subprogram being executed.
+    """A program or subprogram that is being executed.
 
-    line    where it began, for repetitions
-    begun   its O number has gone by
+    line    its first line, for repeats
+    begun   its O number has been read
     macro   it has local variables of its own
-    modal   the macro that G66 has called for every motion of it
+    modal   the macro of G66 that is called after every motion
     """
 
     source: FanucText
@@ -37,22 +37,22 @@ class ActiveProgram(interpreter.ActiveProgram):
 
 @dataclass(frozen=True, slots=True)
 class ModalMacro:
-    """A macro of G66: its number, how often it is called, and its arguments."""
+    """A macro of G66: its number, its repeats and its arguments."""
 
     number: int
-    times: int
+    repeats: int
     arguments: dict[int, float]
 
 
 class Flow:
-    """Executes the words of flow; the text is behind the block when they are."""
+    """Executes the keywords of control flow; the source is at the line after the block then."""
 
     def __init__(self, note: Note, variables: Variables) -> None:
         self._note = note
         self._variables = variables
 
     def accept(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> bool:
-        """Execute a word of flow if one comes next."""
+        """Execute a keyword if one comes next."""
         match = _WORD.match(reader.text, reader.at)
         if match is None:
             return False
@@ -65,7 +65,7 @@ class Flow:
         return True
 
     def _holds(self, reader: ExpressionReader) -> bool:
-        """Return a condition; one that cannot be worked out does not hold."""
+        """Evaluate a condition; one with an error is taken as false."""
         begin = reader.at
         try:
             return bool(reader.bracket_value())
@@ -94,7 +94,7 @@ class Flow:
 
     @staticmethod
     def jump(active: ActiveProgram, line: int, number: int) -> None:
-        """Go on at a block number."""
+        """Continue at a block number."""
         target = active.source.number(number, line)
         if target is None:
             raise BlockError(f"there is no block N{number} to go to")
@@ -124,7 +124,7 @@ def _whole(value: float | None) -> int:
 
 
 def _behind_bracket(text: str, at: int) -> int:
-    """Place behind the bracket that begins at a place."""
+    """Return the position after the bracket that opens at a position."""
     depth = 0
     for place in range(at, len(text)):
         depth += {"[": 1, "]": -1}.get(text[place], 0)
@@ -134,6 +134,6 @@ def _behind_bracket(text: str, at: int) -> int:
 
 
 def assign(variables: Variables, block: Block) -> None:
-    """Give variables the values that a block says."""
+    """Execute the assignments of a block."""
     for key, value in block.assignments:
         variables.set(key, value)

@@ -1,30 +1,23 @@
-"""What takes the words of its block on a Fanuc: work offsets, shifts, turned frames, planes, the way home, dwells."""
-
-from abc import abstractmethod
+"""Blocks of a Fanuc whose axis words are no target: work offsets, shifts, rotations, planes, home and dwells."""
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
+from trunnion.model.run import EXTENDED_OFFSET_BASE, offset_name
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.calls import CallInterpreter
-from trunnion.readers.families.fanuc.control import FanucControl
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
 
 
 class OffsetInterpreter(CallInterpreter):
-    """Blocks whose words are no motion to where they say; motions are for the class below."""
+    """Executes G codes that take the axis words of their block."""
 
-    @property
-    @abstractmethod
-    def control(self) -> FanucControl:
-        """The virtual control."""
-
-    def _offset(self, code: int, block: Block) -> None:
+    def _work_offset(self, code: int, block: Block) -> None:
         control = self.control
         system = words.OFFSETS.index(code) + 1 if code in words.OFFSETS else 1
         more = block.take("P") if code in (540, words.MORE_OFFSETS) else None
@@ -35,11 +28,12 @@ class OffsetInterpreter(CallInterpreter):
                 raise BlockError("P of G54.1 is not from 1 to 300")
             system = 6 + int(more)
         control.system = system
-        name = f"G{53 + system}" if system <= 6 else f"G54.1 P{system - 6}"
-        control.set_offset(53 + system if system <= 6 else 594 + system, name)
-        control.refresh()
+        offset = 53 + system if system <= 6 else EXTENDED_OFFSET_BASE + system - 6
+        control.set_offset(offset, offset_name(offset))
+        control.update_frame()
 
-    def _special(self, code: int, block: Block) -> None:
+    def _execute_with_axis_words(self, code: int, block: Block) -> None:
+        """Execute a G code of ``words.TAKING_AXIS_WORDS``, except for macros."""
         control = self.control
         if control.tilted and code in (words.LOCAL, words.PRESET):
             self._note("shifts in a tilted plane are not simulated", Severity.ERROR)
@@ -51,26 +45,15 @@ class OffsetInterpreter(CallInterpreter):
             case words.HOME | words.OTHER_HOME:
                 self._go_home(code, block)
             case words.LOCAL:
-                values = self._point(block)
-                control.local = np.array(
-                    [old if new is None else new for old, new in zip(control.local, values, strict=True)]
-                )
-                control.refresh()
+                control.local = _changed(control.local, self._point(block))
+                control.update_frame()
             case words.PRESET:
-                for axis, value in enumerate(self._point(block)):
-                    if value is not None:
-                        control.preset[axis] += float(control.commanded[axis]) - value
-                if control.tilted or not control.rotation.keeps_lengths or self._turned():
-                    self._note("G92 in a turned frame is not simulated", Severity.ERROR)
-                control.refresh()
+                self._preset(block)
             case words.ROTATE:
                 self._rotate(block)
             case _:
                 assert code == words.TILT
                 self._tilt(block)
-
-    def _turned(self) -> bool:
-        return not np.allclose(self.control.rotation.linear, np.eye(3))
 
     def _dwell(self, block: Block) -> None:
         number = block.words.get("X") or block.words.get("U")
@@ -78,14 +61,17 @@ class OffsetInterpreter(CallInterpreter):
             block.take(letter)
         milliseconds = block.take("P")
         if number is not None:
-            self.control.add_event("dwell", number.value * (self._settings.seconds if number.whole else 1.0))
+            unit = self.control.settings.seconds if number.whole else 1.0
+            self.control.add_event("dwell", number.value * unit)
         elif milliseconds is not None:
             self.control.add_event("dwell", milliseconds / 1000.0)
         else:
             self._note("G4 without a time", Severity.WARNING)
 
+    # Offsets and shifts
+
     def _point(self, block: Block) -> list[float | None]:
-        """X, Y and Z of a block in mm; words of rotary axes must be 0 where they would shift."""
+        """Return X, Y and Z of a block in mm; shifts of rotary axes are reported unless they are 0."""
         for name in self.control.rotary_names:
             if block.take(name):
                 self._note(f"a shift of {name} is not simulated", Severity.ERROR)
@@ -95,8 +81,19 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError("a shift is larger than any machine")
         return scaled
 
+    def _preset(self, block: Block) -> None:
+        """G92: give the present position new coordinates."""
+        control = self.control
+        for axis, value in enumerate(self._point(block)):
+            if value is not None:
+                control.preset[axis] += float(control.programmed_position[axis]) - value
+        rotation = control.rotation
+        if control.tilted or not rotation.keeps_lengths or not np.allclose(rotation.linear, np.eye(3)):
+            self._note("G92 in a turned frame is not simulated", Severity.ERROR)
+        control.update_frame()
+
     def _set_data(self, block: Block) -> None:
-        """G10: a work offset, or data of tools."""
+        """G10: set a work offset, or data of tools."""
         control = self.control
         kind, number = block.take("L"), block.take("P")
         if kind in (10.0, 11.0, 12.0, 13.0, 1.0, 3.0):
@@ -112,13 +109,16 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError("G10 L2 with this P is not simulated")
         system = int(number) if kind == 2.0 else 6 + int(number)
         old = control.offset_of(system)
-        base = np.zeros(3) if control.absolute else old
-        control.set_values(
-            system, np.array([o if v is None else b + v for o, b, v in zip(old, base, values, strict=True)])
-        )
+        added = [
+            value if control.absolute or value is None else value + float(was)
+            for value, was in zip(values, old, strict=True)
+        ]
+        control.set_values(system, _changed(old, added))
+
+    # Home
 
     def _go_home(self, code: int, block: Block) -> None:
-        """G28 and G30: over the point that the block says to the reference position."""
+        """G28 and G30: through the programmed point to the reference position."""
         control = self.control
         axes = self._axis_words(block)
         if not axes:
@@ -126,32 +126,31 @@ class OffsetInterpreter(CallInterpreter):
         if code == words.OTHER_HOME:
             which = block.take("P")
             self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING)
-        self._count_blocks(1)
-        kind, control.kind = control.kind, RAPID
-        before = control.commanded[:3].copy()
-        moving = {name: word for name, word in axes.items() if not (not control.absolute and word[0] == 0.0)}
-        if moving and (set(moving) - set("XYZ") or not np.array_equal(before, self._goal(moving))):
+        self._counter.count_blocks(1)
+        motion, control.motion = control.motion, RAPID
+        before = control.programmed_position.copy()
+        moving = {name: word for name, word in axes.items() if control.absolute or word[0] != 0.0}
+        if moving and (set(moving) - set("XYZ") or not np.array_equal(before, self._target(moving))):
             control.move(moving, None)
         control.go_to_machine({name: float(control.machine.axis(name).home) for name in axes})
-        control.kind = kind
+        control.motion = motion
 
-    def _goal(self, axes: dict[str, AxisWord]) -> Floats:
+    def _target(self, axes: dict[str, AxisWord]) -> Floats:
         control = self.control
-        goal = control.commanded[:3].copy()
+        target = control.programmed_position.copy()
         for axis, name in enumerate("XYZ"):
             if name in axes:
                 value = axes[name][0] * control.length_unit
-                goal[axis] = value if control.absolute else goal[axis] + value
-        return np.asarray(goal)
+                target[axis] = value if control.absolute else target[axis] + value
+        return np.asarray(target)
+
+    # Rotations and planes
 
     def _rotate(self, block: Block) -> None:
-        """G68: in the working plane, or with I J K in space."""
+        """G68: rotate in the working plane, or with I J K about any axis."""
         control = self.control
         angle = block.take("R")
-        point = self._point(block)
-        centre = np.array(
-            [now if value is None else value for now, value in zip(control.commanded[:3], point, strict=True)]
-        )
+        centre = _changed(control.programmed_position, self._point(block))
         direction = [block.take(letter) for letter in "IJK"]
         axis = np.zeros(3)
         if any(value is not None for value in direction):
@@ -164,22 +163,27 @@ class OffsetInterpreter(CallInterpreter):
         control.rotate(centre, axis / length, angle)
 
     def _tilt(self, block: Block) -> None:
-        """G68.2: the plane by its origin and Euler angles."""
-        control = self.control
-        way = block.take("P")
+        """G68.2: tilt the plane by its origin and Euler angles."""
+        kind = block.take("P")
         block.take("R")
         origin = np.array([value or 0.0 for value in self._point(block)])
         angles = [block.take(letter) or 0.0 for letter in "IJK"]
         order = block.take("Q")
-        if way or (order is not None and order != 313):
+        if kind or (order is not None and order != 313):
             raise BlockError("G68.2 with P or Q is not simulated: only Euler angles are")
         if any(not abs(angle) < MAX_POSITION for angle in angles):
             raise BlockError("an angle is none that a plane has")
-        control.tilt(origin, (angles[0], angles[1], angles[2]))
+        self.control.tilt(origin, (angles[0], angles[1], angles[2]))
 
     def _align_with_plane(self, block: Block) -> None:
-        way = block.take("P")
-        if way:
-            self._note(f"G53.1 P{way:g}: taken as G53.1, the way on which the axes turn least", Severity.WARNING)
-        self._count_blocks(1)
+        """G53.1: turn the rotary axes to the tilted plane."""
+        which = block.take("P")
+        if which:
+            self._note(f"G53.1 P{which:g}: taken as G53.1, the way on which the axes turn least", Severity.WARNING)
+        self._counter.count_blocks(1)
         self.control.align_with_plane()
+
+
+def _changed(old: Floats, values: list[float | None]) -> Floats:
+    """Return a point with the values that are not None in place of the old ones, (3,) mm."""
+    return np.array([was if value is None else value for was, value in zip(old, values, strict=True)])

@@ -1,4 +1,4 @@
-"""What may be set differently on a Fanuc, and how numbers without a point count."""
+"""Settings of a Fanuc: how numbers without a decimal point count."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -7,11 +7,11 @@ from trunnion.machines import Machine
 from trunnion.readers.program.settings import reading_of
 from trunnion.readers.rs274.block import Block, Number
 
-#: Letters whose whole numbers are counted in least increments: lengths, and angles.
+#: Letters whose whole numbers count in least increments: lengths, and angles.
 LENGTHS: Final = "XYZUVWIJKRQ"
 ANGLES: Final = "ABC"
 
-#: Least increments of inches, of feeds in inch/min, mm/rev and inch/rev, and seconds of a dwell.
+#: The least increment of inches as a ratio of that of millimetres; feeds by feed mode and inches; seconds of a dwell.
 _INCH_PART: Final = 0.1
 _FEEDS: Final = {(94, False): 1.0, (94, True): 0.01, (95, False): 0.01, (95, True): 0.0001}
 _SECONDS: Final = 0.001
@@ -19,37 +19,37 @@ _SECONDS: Final = 0.001
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How a control is set.
+    """The settings of a control.
 
-    calculator   numbers without a point are whole millimetres, inches and degrees, not least increments
-    increment    the least increment, mm and degrees; of inches a tenth of it
+    calculator   numbers without a point are millimetres, inches and degrees, not least increments
+    increment    the least increment, mm and degrees; a tenth of it for inches
     """
 
     calculator: bool = False
     increment: float = 0.001
 
     def length(self, inches: bool) -> float:
-        """Return what a whole number of a length counts, in mm or inches."""
+        """Return the unit of whole numbers that are lengths, in mm or inches."""
         if self.calculator:
             return 1.0
         return self.increment * _INCH_PART if inches else self.increment
 
     @property
     def angle(self) -> float:
-        """What a whole number of degrees counts."""
+        """The unit of whole numbers that are angles, degrees."""
         return 1.0 if self.calculator else self.increment
 
     @property
     def seconds(self) -> float:
-        """What a whole number of seconds counts."""
+        """The unit of whole numbers that are times, seconds."""
         return 1.0 if self.calculator else _SECONDS
 
     def feed(self, mode: int, inches: bool) -> float:
-        """What a whole number behind F counts; of inverse time as it stands."""
+        """Return the unit of whole numbers that are feeds; 1 for inverse time."""
         return 1.0 if self.calculator else _FEEDS.get((mode, inches), 1.0)
 
     def scale(self, block: Block, mode: int, inches: bool, *, angles: str = "") -> None:
-        """Count the whole numbers of a block; the letters ``angles`` are angles in it besides A, B and C."""
+        """Scale the whole numbers of a block by their units; the letters ``angles`` are angles besides A, B and C."""
         if self.calculator:
             return
         for letter, number in block.words.items():

@@ -1,4 +1,4 @@
-"""Where jumps and calls of a Fanuc program lead: its O numbers, block numbers and loops."""
+"""Targets of jumps and calls in a Fanuc program: O numbers, block numbers and loops."""
 
 import re
 from bisect import bisect_right
@@ -8,10 +8,10 @@ from typing import Final
 
 from trunnion.readers.program.source_text import SourceText
 
-#: How names of programs end.
+#: Endings of program names.
 SUFFIXES: Final = (".NC", ".CNC", ".TAP", ".PRG", ".TXT", "")
 
-#: How deep loops may stand inside each other; the control itself has 3 levels.
+#: How deep loops may nest; the control itself allows 3 levels.
 MAX_NESTING: Final = 64
 
 _START: Final = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?"
@@ -25,7 +25,7 @@ _LOOP = re.compile(
 
 @dataclass(slots=True)
 class _JumpTargets:
-    """Lines of O numbers, of block numbers, and of the other half of each loop; None before they are asked for."""
+    """Lines of O numbers, of block numbers, and of the counterparts of DO and END; each found on first use."""
 
     programs: dict[int, int] | None = None
     numbers: dict[int, list[int]] | None = None
@@ -33,15 +33,15 @@ class _JumpTargets:
 
 
 class FanucText(SourceText):
-    """A program file with the places where its jumps lead."""
+    """A program file with the targets of its jumps and calls."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        # Shared by all that run the same text: see ``restarted``.
+        # Shared by the copies that ``restarted`` makes.
         self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole)
 
     def program(self, number: int) -> int | None:
-        """Line of an O number, None if this file has none like it."""
+        """Return the line of an O number, None if the file does not have it."""
         return self._programs().get(number)
 
     def _programs(self) -> dict[int, int]:
@@ -53,13 +53,13 @@ class FanucText(SourceText):
         return self._jump_targets.programs
 
     def _program_lines(self, line: int) -> tuple[int, int]:
-        """First line of the O program that a line belongs to, and the line after its last."""
+        """Return the first line of the O program of a line, and the line after its last."""
         begins = sorted(self._programs().values())
         at = bisect_right(begins, line)
         return begins[at - 1] if at else 1, begins[at] if at < len(begins) else self.lines + 1
 
     def number(self, number: int, here: int) -> int | None:
-        """Line of a block number: the next one after ``here``, else the first of the program."""
+        """Return the line of a block number: the next one after ``here``, else the first of the program."""
         if self._jump_targets.numbers is None:
             numbers: dict[int, list[int]] = {}
             for match in _N_NUMBER.finditer(self.whole_bytes()):
@@ -70,7 +70,7 @@ class FanucText(SourceText):
         return next((line for line in lines if line > here), lines[0] if lines else None)
 
     def partner(self, line: int) -> int:
-        """Return the line of END for a DO, of DO for an END."""
+        """Return the line of the END of a DO, or of the DO of an END."""
         if self._jump_targets.loops is None:
             self._jump_targets.loops = self._match_loops()
         try:

@@ -1,17 +1,24 @@
-"""Variables of macros, and their arithmetic. A variable that nobody set is empty, and so is #0."""
+"""Variables of macros, and their arithmetic. Unset variables are empty, and so is #0."""
 
 import math
 from collections.abc import Callable
 from typing import Final
 
-from trunnion.readers.rs274.expressions import COMMON, Arithmetic, BlockError, Value, round_half_away
+from trunnion.readers.rs274.expressions import (
+    COMMON_FUNCTIONS,
+    COMMON_OPERATORS,
+    Arithmetic,
+    BlockError,
+    Value,
+    round_half_away,
+)
 
-#: Local variables of a macro, common ones, and the first that the control itself sets.
+#: Number of local variables, and the first common and system variables.
 LOCAL_COUNT: Final = 33
 COMMON_FROM: Final = 100
 SYSTEM_FROM: Final = 1000
 
-#: Numbers nearer than this are one to comparisons.
+#: Comparisons take numbers that differ by no more as equal.
 _EQUAL: Final = 1e-8
 
 _LARGEST_BITS: Final = 2**31
@@ -24,41 +31,8 @@ def _bits(value: float) -> int:
     return number
 
 
-def _operate(name: str, a: float, b: float) -> float:
-    match name:
-        case "+":
-            return a + b
-        case "-":
-            return a - b
-        case "*":
-            return a * b
-        case "/":
-            return a / b
-        case "MOD":
-            return math.fmod(a, b)
-        case "AND":
-            return float(_bits(a) & _bits(b))
-        case "OR":
-            return float(_bits(a) | _bits(b))
-        case "XOR":
-            return float(_bits(a) ^ _bits(b))
-        case "EQ":
-            return float(abs(a - b) <= _EQUAL)
-        case "NE":
-            return float(abs(a - b) > _EQUAL)
-        case "GT":
-            return float(a > b)
-        case "GE":
-            return float(a >= b)
-        case "LT":
-            return float(a < b)
-        case _:
-            assert name == "LE"
-            return float(a <= b)
-
-
 def _compare_empty(name: str, a: Value, b: Value) -> float | None:
-    """EQ and NE tell an empty variable from a 0; other operators take it as 0."""
+    """Compare with EQ or NE, which distinguish empty from 0; None for other operators and for values."""
     if name not in ("EQ", "NE") or (a is not None and b is not None):
         return None
     same = a is None and b is None
@@ -66,28 +40,39 @@ def _compare_empty(name: str, a: Value, b: Value) -> float | None:
 
 
 def _atan(y: float, x: float) -> float:
-    """Angle from 0 to 360 degrees, as the control is delivered."""
+    """Return the angle from 0 to 360 degrees, the default setting of the control."""
     return math.degrees(math.atan2(y, x)) % 360.0
 
 
 ARITHMETIC: Final = Arithmetic(
     levels=(("EQ", "NE", "GT", "GE", "LT", "LE"), ("+", "-", "OR", "XOR"), ("*", "/", "AND", "MOD")),
-    operate=_operate,
+    operators={
+        **COMMON_OPERATORS,
+        "MOD": math.fmod,
+        "AND": lambda a, b: float(_bits(a) & _bits(b)),
+        "OR": lambda a, b: float(_bits(a) | _bits(b)),
+        "XOR": lambda a, b: float(_bits(a) ^ _bits(b)),
+        "EQ": lambda a, b: float(abs(a - b) <= _EQUAL),
+        "NE": lambda a, b: float(abs(a - b) > _EQUAL),
+    },
     functions={
-        **COMMON,
+        **COMMON_FUNCTIONS,
         "SQR": math.sqrt,
         "RND": round_half_away,
         "FIX": math.trunc,
         "FUP": lambda a: math.copysign(math.ceil(abs(a)), a),
     },
-    pairs={"ATAN": _atan, "POW": lambda a, b: float(a**b)},
+    pairs={"ATAN": _atan, "POW": lambda a, b: a**b},
     assigns_without_brackets=True,
     compare_unset=_compare_empty,
 )
 
 
 class Variables:
-    """What ``#`` names; ``system_value`` returns what the control itself sets, None for what it does not."""
+    """The variables of a running program.
+
+    system_value   returns a system variable, None for one that is not simulated
+    """
 
     def __init__(self, system_value: Callable[[int], float | None]) -> None:
         self._system_value = system_value
@@ -95,7 +80,7 @@ class Variables:
         self._local: list[dict[int, float]] = [{}]
 
     def value(self, key: int | str) -> Value:
-        """Return a value, None for an empty one."""
+        """Return the value of a variable, None for an empty one."""
         if isinstance(key, str):
             raise BlockError(f"#<{key}>: variables have numbers here")
         if key == 0:
@@ -125,13 +110,13 @@ class Variables:
 
     @property
     def depth(self) -> int:
-        """How many macros are inside each other now."""
+        """The number of nested macros."""
         return len(self._local) - 1
 
     def enter(self, arguments: dict[int, float]) -> None:
-        """Begin a macro with local variables of its own."""
+        """Start a macro, whose local variables are the arguments."""
         self._local.append(arguments)
 
     def leave(self) -> None:
-        """End it."""
+        """End a macro."""
         self._local.pop()

@@ -1,4 +1,4 @@
-"""Every word of a Fanuc that the reader knows, by what it does; G codes are in tenths."""
+"""The words of a Fanuc that the reader knows, by their effect; G codes are in tenths."""
 
 from typing import Final
 
@@ -24,17 +24,17 @@ TCP: Final = 434
 TCP_VECTOR: Final = 435
 LENGTH_OFF: Final = 490
 
-#: Codes that use the axis words of their block, which then makes no other motion.
+#: G codes that take the axis words of their block, which then makes no other motion.
 TAKING_AXIS_WORDS: Final = frozenset(
     {DWELL, SET_DATA, HOME, OTHER_HOME, LOCAL, MACRO, MODAL_MACRO, ROTATE, TILT, PRESET}
 )
 
-#: G codes that change how the control drives, or what is not there: tool lengths are 0.
+#: G codes that the path does not depend on.
 WITHOUT_PATH_EFFECT: Final = frozenset(
     {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 500, 501, 600, 610, 620, 630, 640, 970}
 )
 
-#: G codes that are known and not simulated: text, and whether the path is wrong without it.
+#: G codes that are not simulated: the message, and whether the path is wrong without them.
 NOT_SIMULATED: Final = {
     53: ("not simulated", False),
     61: ("a smooth curve is not simulated", True),
@@ -67,13 +67,13 @@ NOT_SIMULATED: Final = {
     960: ("constant surface speed: only the kind of feed is followed", False),
 }
 
-#: G codes whose motion is a straight line here, in force until another one.
+#: Motions that are taken as straight lines.
 TAKEN_AS_LINES: Final = frozenset({310, 330})
 
-#: G codes whose block makes no motion here, and whose words are not positions.
+#: G codes whose axis words are no positions: their block makes no motion.
 NO_MOTION: Final = frozenset({50, 51, 53, 61, 62, 80, 220, 270, 290, 501, 510, 511, 536, 661, 683, 684, 921})
 
-#: Words that belong to a code, and that need no look here.
+#: Words that belong to a G code and have no effect here.
 WORDS_OF_CODE: Final = {
     50: "P",
     51: "QRXYZABC",
@@ -124,5 +124,5 @@ ARGUMENTS: Final = {
     "S": 19, "T": 20, "U": 21, "V": 22, "W": 23, "X": 24, "Y": 25, "Z": 26,
 }  # fmt: skip
 
-#: Words of a macro's flow.
+#: Keywords of control flow.
 FLOW: Final = ("IF", "GOTO", "WHILE", "DO", "END", "THEN")

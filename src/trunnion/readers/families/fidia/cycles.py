@@ -6,15 +6,15 @@ positions along Z, in the units of the program.
 
 from typing import Final
 
-from trunnion.readers.control.hole_motion import MAX_PECKS, CycleExecutionError, HoleMotion
+from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
 
 #: Canned cycles, by their G code in tenths.
 CYCLES: Final = frozenset({810, 820, 830, 840, 850, 860, 890})
 
-#: Words of cycles that hold until they end.
+#: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "ZERDH"
 
-#: How far above the last depth G83 goes back at rapid, mm (unconfirmed).
+#: How far above the last depth the rapid approach of G83 ends, mm (unconfirmed).
 ABOVE: Final = 1.0
 
 
@@ -22,7 +22,7 @@ def cycle_motions(code: int, words: dict[str, float], units: float) -> list[Hole
     """Return the motions of a cycle from the height of positioning on and back to it.
 
     words   Z, E and R at least
-    units   the program's units in a millimetre
+    units   units of the program in a millimetre
     """
     height, start, depth = words["Z"], words["R"], words["E"]
     if not height >= start > depth:
@@ -32,28 +32,25 @@ def cycle_motions(code: int, words: dict[str, float], units: float) -> list[Hole
     into = HoleMotion(False, depth, dwell=dwell)
     match code:
         case 810 | 820 | 860:
-            made = [into]
+            cut = [into]
         case 830:
-            made = _peck(start, depth, words.get("D", 0.0), dwell, units)
+            cut = _peck(start, depth, words.get("D", 0.0), dwell, units)
         case _:
             assert code in (840, 850, 890)
-            made = [into, HoleMotion(False, start)]
+            cut = [into, HoleMotion(False, start)]
     back = [HoleMotion(True, height)] if code not in (840, 850, 890) or start != height else []
-    return [*down, *made, *back]
+    return [*down, *cut, *back]
 
 
 def _peck(start: float, depth: float, stroke: float, dwell: float, units: float) -> list[HoleMotion]:
-    if stroke <= 0.0:
-        raise CycleExecutionError("has a D that is not above 0")
     total = start - depth
-    if total / stroke > MAX_PECKS:
-        raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
-    made: list[HoleMotion] = []
+    check_pecks(total, stroke, "D")
+    motions: list[HoleMotion] = []
     reached = stroke
     while reached < total - 1e-9:
-        made.append(HoleMotion(False, start - reached, dwell=dwell))
-        made.append(HoleMotion(True, start))
+        motions.append(HoleMotion(False, start - reached, dwell=dwell))
+        motions.append(HoleMotion(True, start))
         if reached > ABOVE * units:
-            made.append(HoleMotion(True, start - reached + ABOVE * units))
+            motions.append(HoleMotion(True, start - reached + ABOVE * units))
         reached += stroke
-    return [*made, HoleMotion(False, depth, dwell=dwell)]
+    return [*motions, HoleMotion(False, depth, dwell=dwell)]

@@ -1,7 +1,6 @@
-"""Fidia programs, block by block: what each one says goes to the virtual control. They have no jumps and no loops."""
+"""Interpreter of Fidia programs, which have no jumps and no loops."""
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -9,17 +8,17 @@ from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.readers.control.axis_word import AxisWord
-from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
+from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fidia import cycles, words
 from trunnion.readers.families.fidia.control import FidiaControl
-from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT
-from trunnion.readers.program.source_text import SourceText, Subprograms
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
+from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Value
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, ActiveProgram, Rs274Interpreter
 
-#: A tool's number may stand behind a point: T.1.
+#: A tool's number may follow a point: T.1.
 _TOOL = re.compile(r"T\.?([0-9]{1,9})")
 
 
@@ -34,68 +33,51 @@ class _NoParameters:
 
 
 _NO_PARAMETERS: Final = _NoParameters()
-
-
-def _no_operation(name: str, a: float, b: float) -> float:
-    raise BlockError("expressions are not simulated")
-
-
-_ARITHMETIC: Final = Arithmetic(levels=(), operate=_no_operation, functions={}, pairs={})
+_NO_ARITHMETIC: Final = Arithmetic(levels=(), operators={}, functions={}, pairs={})
 
 
 class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
     """Runs one Fidia program on one machine."""
 
-    def __init__(
-        self,
-        path: Path,
-        machine: Machine,
-        *,
-        subprograms: Sequence[Path] = (),
-        step_limit: int = DEFAULT_STEP_LIMIT,
-        skip: bool = False,
-        shortest: bool | None = None,
-    ) -> None:
-        super().__init__(path, machine, Subprograms(subprograms, ()), step_limit=step_limit, skip=skip)
-        self._control = FidiaControl(machine, self._note, self._file, shortest=shortest)
+    control: FidiaControl
+
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
+        # Words of cycles that hold until the cycles end.
         self._modal_words: dict[str, float] = {}
 
-    @property
-    def control(self) -> FidiaControl:
-        """The virtual control."""
-        return self._control
+    def _make_control(self) -> FidiaControl:
+        return FidiaControl(self._machine, self._note, shortest=self._options.shortest)
 
     @property
-    def _table(self) -> Codes:
-        return self._control.plain_table
+    def _letter_table(self) -> Codes:
+        return self.control.letter_table
 
-    def _main_program(self, text: SourceText) -> ActiveProgram:
-        return ActiveProgram(text, 0)
+    def _main_program(self, source: SourceText) -> ActiveProgram:
+        return ActiveProgram(source, 0)
 
-    def _may_scan(self, text: SourceText) -> bool:
+    def _may_scan(self, source: SourceText) -> bool:
         # In a plane without TCP, rotary words leave the slides where they are.
-        control = self._control
-        return (control.tcp or not control.tilted) and super()._may_scan(text)
+        control = self.control
+        return (control.tcp or not control.tilted) and super()._may_scan(source)
 
     def _execute_block(self, active: ActiveProgram, line: int, text: str) -> None:
         tool = _TOOL.search(text)
         if tool is not None:
             text = text[: tool.start()] + text[tool.end() :]
         # The time of a dwell has two letters.
-        block = read_block(
-            block_reader(text.replace("HD", "H"), _ARITHMETIC, _NO_PARAMETERS), self._report_repeated_word
-        )
+        reader = block_reader(text.replace("HD", "H"), _NO_ARITHMETIC, _NO_PARAMETERS)
+        block = read_block(reader, self._report_repeated_word)
         if block.assignments:
             raise BlockError("parameters are not simulated")
         self._execute_words(block, None if tool is None else tool.group(1))
 
     def _execute_words(self, block: Block, tool: str | None) -> None:
-        control = self._control
-        machine_frame = words.MACHINE in block.g
-        begun = False
+        control = self.control
+        selected = False
         for code in block.g:
             if code in MOTIONS or code in cycles.CYCLES or code == CANCEL:
-                begun = True
+                selected = True
                 self._select_motion(code)
             elif code != words.MACHINE:
                 self._g_code(code, block)
@@ -110,25 +92,25 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         if tool is not None and words.TOOL not in block.m and 6 not in block.m:
             self._note(f"T{tool} without M306 or M6: the tool is only chosen", Severity.WARNING)
         if not any(code in words.NO_MOTION for code in block.g):
-            self._execute_motion(block, machine_frame, begun)
+            self._execute_motion(block, selected)
         self._report_unused_words(block)
         for code in block.m:
             if code in words.AFTER_MOTION:
                 self._m_code(code)
 
     def _select_motion(self, code: int) -> None:
-        """Take up a motion or a cycle, or end a cycle."""
-        control = self._control
+        """Select a motion or a cycle, or cancel the cycle."""
+        control = self.control
         if code in cycles.CYCLES:
-            if self.motion not in cycles.CYCLES:
+            if self.motion_code not in cycles.CYCLES:
                 self._modal_words = {}
-            self.motion = code
+            self.motion_code = code
             return
-        self.motion = control.kind * 10 if code == CANCEL else code
-        control.kind = MOTIONS[self.motion]
+        self.motion_code = control.motion * 10 if code == CANCEL else code
+        control.motion = MOTIONS[self.motion_code]
 
     def _g_code(self, code: int, block: Block) -> None:
-        control = self._control
+        control = self.control
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in words.UNITS:
@@ -153,81 +135,72 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         if seconds is None:
             self._note("G4 without a time HD", Severity.WARNING)
         else:
-            self._control.add_event("dwell", seconds)
+            self.control.add_event("dwell", seconds)
 
     def _m_code(self, code: int) -> None:
-        control = self._control
+        control = self.control
         if code == words.TOOL:
             control.change_tool()
         elif code == words.RETRACT:
-            self._count_blocks(1)
+            self._counter.count_blocks(1)
             control.retract()
         elif not self._common_m_code(code):
             control.add_event("m", float(code))
 
     # Motion
 
-    def _execute_motion(self, block: Block, machine_frame: bool, begun: bool) -> None:
-        """Make the motion that the words of the block ask for."""
-        control = self._control
-        if self.motion in cycles.CYCLES:
-            self._cycle(block, begun)
+    def _execute_motion(self, block: Block, selected: bool) -> None:
+        """Execute the motion or cycle in force; ``selected`` if the block itself selects it."""
+        control = self.control
+        if self.motion_code in cycles.CYCLES:
+            self._cycle(block, selected)
             return
         axes = self._axis_words(block)
-        circle = self.motion in (20, 30) and any(letter in block.words for letter in "IJKR")
+        circle = self.motion_code in (20, 30) and any(letter in block.words for letter in "IJKR")
         if not axes and not circle:
             return
-        written = "F" in block.words
-        turns = set(axes) & set(control.rotary_names)
-        if machine_frame:
-            control.kind = MOTIONS[self.motion]
-            self._check_feed(written)
-            control.go_to_machine(axes, feed_written=written)
-        elif turns and control.tilted and not control.tcp:
-            if set(axes) != turns:
+        rotary = set(axes) & set(control.rotary_names)
+        if words.MACHINE in block.g:
+            control.motion = MOTIONS[self.motion_code]
+            control.go_to_machine(axes, feed_written=self._check_feed(block))
+        elif rotary and control.tilted and not control.tcp:
+            if set(axes) != rotary:
                 self._note("positions and rotary words in one block of a plane: only the axes turn", Severity.ERROR)
-            control.kind = MOTIONS[self.motion]
-            self._check_feed(written)
-            control.turn_axes({name: axes[name] for name in turns}, feed_written=written)
+            control.motion = MOTIONS[self.motion_code]
+            control.turn_axes({name: axes[name] for name in rotary}, feed_written=self._check_feed(block))
         else:
             self._move(block, axes)
 
-    def _cycle(self, block: Block, begun: bool) -> None:
+    def _cycle(self, block: Block, selected: bool) -> None:
         """Drill at the position of a block."""
-        control = self._control
-        given = {letter: value for letter in cycles.MODAL_WORDS if (value := block.take(letter)) is not None}
-        self._modal_words |= given
+        control = self.control
+        self._modal_words |= {
+            letter: value for letter in cycles.MODAL_WORDS if (value := block.take(letter)) is not None
+        }
         axes = self._axis_words(block)
         axes.pop("Z", None)
-        if not axes and not begun:
+        if not axes and not selected:
             return
-        if set(axes) - set("XY"):
-            self._note("rotary words in a cycle: they are not executed", Severity.ERROR)
+        self._report_rotary_words(axes)
         if control.plane_axis != 2 or not control.absolute:
             raise BlockError("cycles are simulated in G17 and G90 only")
-        missing = [letter for letter in "ZER" if letter not in self._modal_words]
-        if missing:
-            raise BlockError(f"the cycle has no {missing[0]}")
-        if not control.commanded[3] > 0.0:
-            self._note("a cycle without a feed", Severity.ERROR)
-        made = self._motions()
-        self._count_blocks(len(made) + 2)
-        place: dict[str, AxisWord] = {name: word for name, word in axes.items() if name in "XY"}
-        height = self._modal_words["Z"]
-        up = float(control.commanded[2]) < height * control.length_unit
-        kind, control.kind = control.kind, RAPID
-        if up:
-            control.drill([HoleMotion(True, height)])
-        control.move(place, None)
-        control.drill(
-            made
-            if up or float(control.commanded[2]) == height * control.length_unit
-            else [HoleMotion(True, height), *made]
+        self._require_words(self._modal_words, "ZER")
+        self._check_cycle_feed()
+        motions = self._cycle_motions(
+            lambda: cycles.cycle_motions(self.motion_code, self._modal_words, 1.0 / control.length_unit)
         )
-        control.kind = kind
+        self._counter.count_blocks(len(motions) + 2)
+        self._drill({name: word for name, word in axes.items() if name in "XY"}, motions)
 
-    def _motions(self) -> list[HoleMotion]:
-        try:
-            return cycles.cycle_motions(self.motion, self._modal_words, 1.0 / self._control.length_unit)
-        except CycleExecutionError as error:
-            raise BlockError(f"the cycle {error}") from None
+    def _drill(self, place: dict[str, AxisWord], motions: list[HoleMotion]) -> None:
+        """Drill at a place: up to the height of positioning before the rapid motion, or down to it afterwards."""
+        control = self.control
+        to_height = HoleMotion(True, self._modal_words["Z"])
+        height = self._modal_words["Z"] * control.length_unit
+        motion, control.motion = control.motion, RAPID
+        up = float(control.programmed_position[2]) < height
+        if up:
+            control.drill([to_height])
+        control.move(place, None)
+        control.drill(motions if up or float(control.programmed_position[2]) == height else [to_height, *motions])
+        control.motion = motion

@@ -1,4 +1,4 @@
-"""Every word of a Fidia NC15 that the reader knows, by what it does; G codes are in tenths."""
+"""The words of a Fidia NC15 that the reader knows, by their effect; G codes are in tenths."""
 
 from typing import Final
 
@@ -11,10 +11,10 @@ TCP_ON: Final = frozenset({960, 1960})
 TCP_OFF: Final = frozenset({970, 1970})
 UNITS: Final = {700: True, 710: False}
 
-#: G codes that change how the control drives; feeds are in mm/min on this control.
+#: G codes that the path does not depend on; feeds are in mm/min on this control.
 WITHOUT_PATH_EFFECT: Final = frozenset({400, 940})
 
-#: G codes that are known and not simulated: text, and whether the path is wrong without it.
+#: G codes that are not simulated: the message, and whether the path is wrong without them.
 NOT_SIMULATED: Final = {
     200: ("ends a plane of G21, which is not simulated", True),
     210: ("a plane by its angles is not simulated", True),
@@ -24,13 +24,13 @@ NOT_SIMULATED: Final = {
     420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
 }
 
-#: G codes whose block makes no motion here, and whose words are not positions.
+#: G codes whose axis words are no positions: their block makes no motion.
 NO_MOTION: Final = frozenset({200, 210, 220, 230})
 
-#: Words that belong to a code, and that need no look here.
+#: Words that belong to a G code and have no effect here.
 WORDS_OF_CODE: Final = {170: "Q", 180: "Q", 190: "Q", 210: "XYZ", 220: "XYZIJKP", 230: "XYZIJKP", 410: "D", 420: "D"}
 
-#: M words: the tool and its offset, and the retract of Z.
+#: M codes: the tool change with its offset, and the retract of Z.
 TOOL: Final = 306
 RETRACT: Final = 242
 

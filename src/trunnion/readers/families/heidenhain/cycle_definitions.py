@@ -1,4 +1,4 @@
-"""CYCL DEF blocks: cycles that act at once, and those that wait for their call."""
+"""CYCL DEF blocks: cycles that act at once, and cycles that a later block calls."""
 
 import math
 import re
@@ -8,7 +8,7 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
-from trunnion.readers.families.heidenhain.control import HeidenhainControl, Positioning
+from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycles import (
     CYCLES,
     LEGACY_CYCLES,
@@ -19,6 +19,7 @@ from trunnion.readers.families.heidenhain.cycles import (
 from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.path_blocks import value_of
+from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.words import (
     AXIS_SCALING,
@@ -41,7 +42,7 @@ _ASSIGNED = re.compile(
 )
 _LAST = re.compile(r"([+-]?)[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+))[ \t]*$")
 
-#: What the lines of cycles 1, 2 and 17 say, by their number after the point.
+#: The values in the lines of cycles 1, 2 and 17, by the number after the point.
 _FIELDS: Final = {
     1: {1: "DIST", 2: "DEPTH", 3: "PLNGNG", 4: "DWELL", 5: "F"},
     2: {1: "DIST", 2: "DEPTH", 3: "DWELL", 4: "F"},
@@ -51,14 +52,14 @@ _FIELDS: Final = {
 #: Rapid as a feed of a cycle.
 _RAPID: Final = ("MAX", "FMAX")
 
-#: Scales beyond these are slips.
-_LEAST_SCALE: Final = 1e-6
-_LARGEST_SCALE: Final = 1e6
+#: Other scales are mistakes of the program.
+_MIN_SCALE: Final = 1e-6
+_MAX_SCALE: Final = 1e6
 
 
 @dataclass(slots=True)
 class Cycle:
-    """A cycle that waits for its call: its number, and its values by name; those of the 200 series by Q number."""
+    """A cycle that blocks can call: its number, and its values by name, or by Q number in the 200 series."""
 
     number: int
     values: dict[str, float] = field(default_factory=dict)
@@ -66,7 +67,10 @@ class Cycle:
 
 
 class Definitions:
-    """What CYCL DEF blocks have said."""
+    """Executes CYCL DEF blocks.
+
+    defined_cycle   the cycle that CYCL CALL executes
+    """
 
     def __init__(self, control: HeidenhainControl, note: Note) -> None:
         self._control = control
@@ -74,20 +78,20 @@ class Definitions:
         self.defined_cycle: Cycle | None = None
 
     def define(self, text: str, parameters: Parameters) -> None:
-        """Execute what stands behind CYCL DEF."""
+        """Execute a block; ``text`` is what follows CYCL DEF."""
         match = _NUMBER.match(text)
         if match is None:
             raise KlartextError("a cycle has a number")
         number, rest = int(match[1]), text[match.end() :].strip()
         if match[2] is None:
-            self._with_parameters(number, rest, parameters)
+            self._define_with_parameters(number, rest, parameters)
         elif int(match[2]) == 0:
-            self._begin(number, rest)
+            self._begin_definition(number, rest)
         else:
             self._continue_definition(number, int(match[2]), rest, parameters)
 
-    def _begin(self, number: int, title: str) -> None:
-        """The first line of an older cycle: its title."""
+    def _begin_definition(self, number: int, title: str) -> None:
+        """Execute the first line of an older cycle: its title."""
         if number in LEGACY_CYCLES or number in CYCLES_NOT_SIMULATED:
             self.defined_cycle = Cycle(number)
         elif number not in _IMMEDIATE:
@@ -138,32 +142,32 @@ class Definitions:
             raise KlartextError("a shift that no machine has")
         self._control.set_datum(replace(self._control.datum, shift=(shift[0], shift[1], shift[2])))
 
-    def _mirror(self, said: list[Word]) -> None:
-        names = [word.name for word in said]
+    def _mirror(self, block_words: list[Word]) -> None:
+        names = [word.name for word in block_words]
         if any(name not in ("X", "Y", "Z") for name in names):
             raise KlartextError("only X, Y and Z are mirrored here")
         mirrored = ("X" in names, "Y" in names, "Z" in names)
         self._control.set_datum(replace(self._control.datum, mirrored=mirrored))
 
-    def _rotate(self, said: list[Word], parameters: Parameters) -> None:
+    def _rotate(self, block_words: list[Word], parameters: Parameters) -> None:
         angle = self._control.datum.angle
-        for word in said:
+        for word in block_words:
             if word.name != "ROT" or word.operand is None:
                 raise KlartextError(f"unknown word {word.name}")
             value = value_of(word.operand, parameters)
             angle = angle + value if word.incremental else value
         self._control.set_datum(replace(self._control.datum, angle=angle))
 
-    def _scale(self, said: list[Word], parameters: Parameters) -> None:
+    def _scale(self, block_words: list[Word], parameters: Parameters) -> None:
         scale, centre = [1.0, 1.0, 1.0], [0.0, 0.0, 0.0]
-        for word in said:
+        for word in block_words:
             if word.operand is None:
                 raise KlartextError(f"{word.name} needs a value")
             value = value_of(word.operand, parameters)
             if word.name in ("CCX", "CCY", "CCZ"):
                 centre["XYZ".index(word.name[2])] = value * self._control.length_unit
                 continue
-            if not _LEAST_SCALE < value < _LARGEST_SCALE:
+            if not _MIN_SCALE < value < _MAX_SCALE:
                 raise KlartextError(f"a scale of {value:g}")
             if word.name == "SCL":
                 scale = [value, value, value]
@@ -176,22 +180,35 @@ class Definitions:
         )
         self._control.set_datum(datum)
 
-    def _tilt(self, said: list[Word], parameters: Parameters) -> None:
-        """Cycle 19: spatial angles, without a motion; that the machine is set to mean these is unconfirmed."""
-        said = [word for word in said if word.name not in ("F", "ABST", "DIST")]
-        if not said:
+    def _tilt(self, block_words: list[Word], parameters: Parameters) -> None:
+        """Cycle 19: tilt by spatial angles, without a motion; that the angles are spatial ones is unconfirmed."""
+        block_words = [word for word in block_words if word.name not in ("F", "ABST", "DIST")]
+        if not block_words:
             self._control.untilt(Positioning())
             return
-        angles = {word.name: value for word, value in _axis_values(said, parameters, "ABC")}
+        angles = {word.name: value for word, value in _axis_values(block_words, parameters, "ABC")}
         linear = spatial(*(angles.get(name, 0.0) for name in "ABC"))
         store_rotary_angles(parameters, self._control, self._control.tilt(linear, Positioning()))
 
     # Cycles with Q parameters
 
-    def _with_parameters(self, number: int, rest: str, parameters: Parameters) -> None:
-        """A cycle of the 200 series, whose values are Q parameters from now on."""
+    def _define_with_parameters(self, number: int, rest: str, parameters: Parameters) -> None:
+        """Define a cycle of the 200 series; its values become those of the Q parameters."""
         begin = re.search(r"(?:^|[ \t])Q[0-9]{1,4}[ \t]*=", rest)
         title, rest = (rest, "") if begin is None else (rest[: begin.start()], rest[begin.start() :])
+        q_values = self._read_parameters(number, rest, parameters)
+        if number in CYCLES or number in CYCLES_NOT_SIMULATED:
+            self.defined_cycle = Cycle(number, q_values=q_values)
+            if number == BORE_MILLING:
+                text = "cycle 208: the tool's radius is the control's, and the path is that of the wall"
+                self._note(text, Severity.WARNING)
+        elif number == PRESET:
+            self._preset(q_values)
+        else:
+            self._note(f"cycle {number} {title[:40].strip()} is unknown", Severity.ERROR)
+
+    def _read_parameters(self, number: int, rest: str, parameters: Parameters) -> dict[int, float]:
+        """Assign the Q parameters of a definition; returns them by number."""
         q_values: dict[int, float] = {}
         at = 0
         while at < len(rest.rstrip()):
@@ -211,15 +228,7 @@ class Definitions:
             value = -value if sign == "-" else value
             parameters[canonical(target)] = value
             q_values[int(target[1:])] = value
-        if number in CYCLES or number in CYCLES_NOT_SIMULATED:
-            self.defined_cycle = Cycle(number, q_values=q_values)
-            if number == BORE_MILLING:
-                text = "cycle 208: the tool's radius is the control's, and the path is that of the wall"
-                self._note(text, Severity.WARNING)
-        elif number == PRESET:
-            self._preset(q_values)
-        else:
-            self._note(f"cycle {number} {title[:40].strip()} is unknown", Severity.ERROR)
+        return q_values
 
     def _preset(self, q_values: dict[int, float]) -> None:
         preset = q_values.get(339, 0.0)
@@ -229,13 +238,13 @@ class Definitions:
 
     # Calls
 
-    def motions_of_call(self, parameters: Parameters) -> list[HoleMotion]:
-        """Return the motions of the cycle that was defined last, where the tool is.
+    def call(self, parameters: Parameters) -> list[HoleMotion]:
+        """Return the motions of the defined cycle at the present position.
 
         Raises
         ------
-        CycleError
-            If there is none, if it is not simulated, or if it makes no sense.
+        CycleExecutionError
+            If no cycle is defined, or if it is not simulated or impossible.
         """
         cycle, control = self.defined_cycle, self._control
         if cycle is None:
@@ -244,16 +253,19 @@ class Definitions:
             raise CycleExecutionError(
                 f"{cycle.number} ({CYCLES_NOT_SIMULATED[cycle.number]}) is known but not simulated"
             )
-        # A pitch counts in the units of lengths, and not in those of feeds.
-        rpm = float(control.rpm.current) * control.length_unit / control.feed_unit
+        # A pitch counts in the unit of lengths, a feed in that of feeds.
+        rpm = float(control.modal.rpm.current) * control.length_unit / control.feed_unit
         if cycle.number in LEGACY_CYCLES:
-            here = float(control.commanded[control.plane_axis]) / control.length_unit
-            made = legacy_cycle_motions(cycle.number, cycle.values, rpm, here)
+            here = float(control.programmed_position[control.plane_axis]) / control.length_unit
+            motions = legacy_cycle_motions(cycle.number, cycle.values, rpm, here)
         else:
-            made = cycle_motions(cycle.number, cycle.q_values, rpm)
+            motions = cycle_motions(cycle.number, cycle.q_values, rpm)
         if control.feed_unit == 1.0:
-            return made
-        return [step if step.feed is None else replace(step, feed=step.feed * control.feed_unit) for step in made]
+            return motions
+        return [
+            motion if motion.feed is None else replace(motion, feed=motion.feed * control.feed_unit)
+            for motion in motions
+        ]
 
 
 #: Older cycles that act as soon as they are defined.
@@ -262,15 +274,16 @@ _IMMEDIATE: Final = frozenset({
 })  # fmt: skip
 
 
-def _axis_values(said: list[Word], parameters: Parameters, names: str) -> list[tuple[Word, float]]:
-    for word in said:
+def _axis_values(block_words: list[Word], parameters: Parameters, names: str) -> list[tuple[Word, float]]:
+    """Return the words of axes with their values; no others may be there."""
+    for word in block_words:
         if word.operand is None or word.name not in names:
             raise KlartextError(f"unknown word {word.name or word.text}")
-    return [(word, value_of(word.operand, parameters)) for word in said if word.operand is not None]
+    return [(word, value_of(word.operand, parameters)) for word in block_words if word.operand is not None]
 
 
 def _last(text: str, parameters: Parameters) -> float:
-    """The number that a line ends in."""
+    """Return the number at the end of a line."""
     match = _LAST.search(text)
     if match is None:
         raise KlartextError("a number is missing")
@@ -279,7 +292,7 @@ def _last(text: str, parameters: Parameters) -> float:
 
 
 def store_rotary_angles(parameters: Parameters, control: HeidenhainControl, rotary: tuple[float, float] | None) -> None:
-    """Put the rotary position of a plane into Q120 (A), Q121 (B) and Q122 (C)."""
+    """Store the rotary position of a plane in Q120 (A), Q121 (B) and Q122 (C)."""
     if rotary is None:
         return
     found = dict(zip(control.rotary_names, rotary, strict=True))

@@ -1,4 +1,4 @@
-"""FN functions: arithmetic with Q parameters, and jumps."""
+"""FN functions of Klartext: arithmetic with Q parameters, and jumps."""
 
 import math
 import re
@@ -18,27 +18,27 @@ from trunnion.readers.families.heidenhain.parameters import (
 )
 from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED
 
-#: A parameter that takes a value.
+#: The left side of an assignment to a parameter.
 ASSIGNED: Final = re.compile(r"(Q[LR]?[0-9]{1,4})[ \t]*=[ \t]*")
 
 _OPERAND: Final = r"([+-]?[ \t]*(?:Q[LR]?[0-9]{1,4}|[0-9]+[.,]?[0-9]*|[.,][0-9]+))"
 _NUMBER = re.compile(r"[ \t]*([0-9]{1,2})[ \t]*:?[ \t]*")
 
-#: Functions of two operands: the word between them, and what they do.
+#: Functions of two operands: the operator, and what it does.
 _ARITHMETIC: Final[dict[int, tuple[str, Callable[[float, float], float]]]] = {
     1: (r"\+", lambda a, b: a + b),
     2: ("-", lambda a, b: a - b),
     3: (r"\*", lambda a, b: a * b),
     4: ("DIV", lambda a, b: a / b),
     8: ("LEN", math.hypot),
-    # The angle whose sine and cosine stand as the two operands to each other.
+    # The angle whose sine and cosine have the ratio of the operands.
     13: ("ANG", lambda a, b: math.degrees(math.atan2(a, b)) % 360.0),
 }
 
 #: Functions of one operand.
 _SINGLE: Final = {5: "SQRT", 6: "SIN", 7: "COS"}
 
-#: Jumps: the word between the operands, and whether it holds.
+#: Conditional jumps: the operator, and the condition.
 _CONDITIONS: Final[dict[int, tuple[str, Callable[[float, float], bool]]]] = {
     9: ("EQU", lambda a, b: a == b),
     10: ("NE", lambda a, b: a != b),
@@ -46,17 +46,19 @@ _CONDITIONS: Final[dict[int, tuple[str, Callable[[float, float], bool]]]] = {
     12: ("LT", lambda a, b: a < b),
 }
 
-#: Reads what only the control knows.
+#: Reads system data, which only the control knows.
 _SYSTEM: Final = 18
 
 
 def execute(text: str, parameters: Parameters, note: Note) -> str | None:
-    """Execute what stands behind FN; returns the label that it jumps to, as written, or None.
+    """Execute a function; returns the label to jump to, as written, or None.
+
+    text   what follows FN
 
     Raises
     ------
     KlartextError
-        If it is not understood. A parameter that it would have set has no value then.
+        If the function is not understood; the parameter that it sets has no value then.
     """
     match = _NUMBER.match(text)
     if match is None:
@@ -84,11 +86,11 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
 
 
 def assign(name: str, text: str, parameters: Parameters) -> None:
-    """Set a parameter by a formula; raises as ``execute``."""
+    """Set a parameter by a formula; raises errors as ``execute`` does."""
     try:
         parameters[canonical(name)] = formula(text, parameters)
     except KlartextError:
-        # What it was is no longer true.
+        # The old value no longer holds.
         parameters.forget(canonical(name))
         raise
 

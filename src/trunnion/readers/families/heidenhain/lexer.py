@@ -1,14 +1,14 @@
-"""A line of Klartext cut into its parts, and a statement into its words."""
+"""Splits a line of Klartext into its parts, and a statement into its words."""
 
 import re
 from typing import Final, NamedTuple
 
 from trunnion.readers.families.heidenhain.parameters import KlartextError
 
-#: The longest statement that is looked at.
+#: Longer statements are not executed.
 MAX_LENGTH: Final = 4096
 
-#: More digits than any word has.
+#: Numbers with more digits are mistakes of the program.
 MOST_DIGITS: Final = 40
 
 _HEAD = re.compile(r"[ \t]*(/?)[ \t]*([0-9]{1,15}(?![0-9.,]))?[ \t]*(/?)[ \t]*")
@@ -23,14 +23,18 @@ _WORD = re.compile(
     re.VERBOSE | re.ASCII,
 )
 
-#: Words with an I before them count from where the tool is.
+#: Incremental words.
 _INCREMENTAL: Final = frozenset({"IX", "IY", "IZ", "IA", "IB", "IC", "IU", "IV", "IW", "IPR", "IPA", "IROT"})
 
 
 class Line(NamedTuple):
-    """A line: number of its block or -1, whether it may be skipped, its statement in capitals but for texts, comment.
+    """The parts of a line.
 
-    ``continues``: a ``~`` at its end takes the next line into the same block.
+    number      number of the block, -1 for none
+    block_skip  the line begins with a slash
+    statement   in capitals except for texts
+    comment     without its semicolon, None for none
+    continues   a ``~`` at the end continues the block in the next line
     """
 
     number: int
@@ -41,7 +45,7 @@ class Line(NamedTuple):
 
 
 class Operand(NamedTuple):
-    """A number, or a parameter whose value is looked up when the block is executed, with its sign."""
+    """A number, or a parameter whose value is looked up when the block is executed; and its sign."""
 
     sign: float
     number: float
@@ -49,7 +53,7 @@ class Operand(NamedTuple):
 
 
 class Word(NamedTuple):
-    """A word: its name without the I of incremental ones, and its operand; flags (FMAX, DR+) and texts have none."""
+    """A word: its name, without the I of incremental words, and its operand; flags (FMAX, DR+) and texts have none."""
 
     name: str
     operand: Operand | None = None
@@ -58,7 +62,7 @@ class Word(NamedTuple):
 
 
 def split_line(raw: str) -> Line:
-    """Cut a line into its parts."""
+    """Split a line into its parts."""
     head = _HEAD.match(raw)
     assert head is not None
     number = int(head.group(2)) if head.group(2) else -1
@@ -83,12 +87,12 @@ def split_line(raw: str) -> Line:
 
 
 def words(statement: str, at: int = 0) -> list[Word]:
-    """Cut what follows the head of a statement into words.
+    """Split a statement, from a position on, into words.
 
     Raises
     ------
     KlartextError
-        At the first character that belongs to no word.
+        If there is something that is no word.
     """
     found: list[Word] = []
     end = len(statement.rstrip())
@@ -114,7 +118,7 @@ def _word(match: re.Match[str]) -> Word:
 
 
 def number_of(text: str) -> float:
-    """Return a number with a point or a comma."""
+    """Return a number written with a point or a comma."""
     if len(text) > MOST_DIGITS:
         raise KlartextError(f"{text[:20]}... has more than {MOST_DIGITS} digits")
     return float(text.replace(",", "."))

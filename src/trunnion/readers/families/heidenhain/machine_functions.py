@@ -1,4 +1,4 @@
-"""M words, and TOOL CALL: what acts on the machine besides its axes."""
+"""M functions and TOOL CALL of Klartext."""
 
 import math
 import re
@@ -33,7 +33,7 @@ from trunnion.readers.families.heidenhain.words import (
 )
 from trunnion.readers.program.interpreter import ProgramEnd
 
-#: M words that are looked at in other places, or change only how the control drives.
+#: M functions that are executed elsewhere, or that the path does not depend on.
 _HANDLED_ELSEWHERE: Final = frozenset({M_MACHINE, M_SECOND_MACHINE, M_CALL, *M_EVENTS, *M_WITHOUT_PATH_EFFECT})
 
 _TOOL = re.compile(
@@ -43,9 +43,9 @@ _TOOL = re.compile(
 
 
 class MFunctions:
-    """Executes M words.
+    """Executes M functions.
 
-    modal_call   M89: the cycle is called at every position
+    modal_call   M89: every position calls the cycle
     """
 
     def __init__(self, control: HeidenhainControl, note: Note) -> None:
@@ -54,13 +54,13 @@ class MFunctions:
         self.modal_call = False
 
     def execute_before_motion(self, block: Block) -> None:
-        """Execute those that act before the motion of their block."""
+        """Execute the M functions of a block that act before its motion."""
         for code, arguments in block.m:
             if code not in M_AFTER_MOTION:
                 self._execute(code, arguments)
 
     def execute_after_motion(self, block: Block) -> None:
-        """Execute those that act after it; raises ``ProgramEnd``."""
+        """Execute the M functions of a block that act after its motion; may raise ``ProgramEnd``."""
         for code, arguments in block.m:
             if code in M_AFTER_MOTION:
                 self._execute(code, arguments)
@@ -68,7 +68,7 @@ class MFunctions:
     def _execute(self, code: int, arguments: dict[str, float | None]) -> None:
         control = self._control
         if code in M_SPINDLE:
-            control.spindle.set(control.row, M_SPINDLE[code])
+            control.modal.spindle.set(control.row, M_SPINDLE[code])
         for kind, value in M_EVENTS.get(code, ()):
             control.add_event(kind, value)
         if code in (M_SHORTEST, M_NOT_SHORTEST):
@@ -77,7 +77,7 @@ class MFunctions:
             control.spatial_angles_active = False
             control.set_tcp(code == M_TCP)
         elif code in (M_PER_TURN, M_PER_MINUTE):
-            control.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
+            control.modal.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
         elif code in (M_FEED_AT_TIP, M_FEED_IN_DEGREES):
             control.feed_at_tip(code == M_FEED_AT_TIP)
         elif code == M_RETRACT:
@@ -88,8 +88,8 @@ class MFunctions:
             control.add_event("end", f"M{code}")
             raise ProgramEnd
         elif code in M_NOT_SIMULATED:
-            text, grave = M_NOT_SIMULATED[code]
-            self._note(f"M{code}: {text}", Severity.ERROR if grave else Severity.WARNING)
+            text, changes_path = M_NOT_SIMULATED[code]
+            self._note(f"M{code}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
         elif code not in _HANDLED_ELSEWHERE:
             control.add_event("m", float(code))
 
@@ -107,40 +107,45 @@ class MFunctions:
 
 
 def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) -> float | None:
-    """Execute TOOL CALL or TOOL DEF; returns the feed that it says, mm/min, for F AUTO.
+    """Execute TOOL CALL or TOOL DEF; returns its feed for F AUTO, mm/min, None if it has none.
 
-    rest   what stands behind TOOL
+    rest   what follows TOOL
     """
     match = _TOOL.match(rest)
     if match is None:
         raise KlartextError("TOOL needs CALL or DEF")
-    said = words(rest, match.end())
-    name = match["name"]
-    if match["number"]:
-        name = f"{float(match['number'].replace(',', '.')):.10g}"
-    elif match["parameter"]:
-        name = f"{parameters[canonical(match['parameter'])]:.10g}"
+    block_words = words(rest, match.end())
+    name = _tool_name(match, parameters)
     if match["kind"] == "DEF":
-        # With a length and a radius it defines a tool; without, it is the next one.
-        if name is not None and not said:
+        # With a length and a radius it defines a tool; without them it announces the next one.
+        if name is not None and not block_words:
             control.select_tool(name)
         return None
-    values = {word.name: value_of(word.operand, parameters) for word in said if word.operand is not None}
-    flags = [word.name for word in said if word.operand is None]
-    unknown = [*(set(flags) - {"X", "Y", "Z"}), *(values.keys() - {"S", "F", "DL", "DR", "DR2"})]
+    values = {word.name: value_of(word.operand, parameters) for word in block_words if word.operand is not None}
+    tool_axes = [word.name for word in block_words if word.operand is None]
+    unknown = [*(set(tool_axes) - {"X", "Y", "Z"}), *(values.keys() - {"S", "F", "DL", "DR", "DR2"})]
     if unknown:
         raise KlartextError(f"unknown word {unknown[0] or 'in quotes'}")
     feed = values.get("F")
     if feed is not None and not 0.0 <= feed <= MAX_FEED:
         raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}")
-    control.call_tool(name, "XYZ".index(flags[-1]) if flags else None)
+    control.call_tool(name, "XYZ".index(tool_axes[-1]) if tool_axes else None)
     if "S" in values:
-        control.rpm.set(control.row, abs(values["S"]))
+        control.modal.rpm.set(control.row, abs(values["S"]))
         control.add_event("speed", abs(values["S"]))
     deltas = tuple(values.get(key) for key in ("DL", "DR", "DR2"))
     if any(deltas):
         control.add_event("delta", deltas)
     if feed is None:
         return None
-    control.commanded[3] = feed * control.feed_unit
-    return float(control.commanded[3])
+    control.programmed_feed = feed * control.feed_unit
+    return control.programmed_feed
+
+
+def _tool_name(match: re.Match[str], parameters: Parameters) -> str | None:
+    if match["number"]:
+        return f"{float(match['number'].replace(',', '.')):.10g}"
+    if match["parameter"]:
+        return f"{parameters[canonical(match['parameter'])]:.10g}"
+    name: str | None = match["name"]
+    return name

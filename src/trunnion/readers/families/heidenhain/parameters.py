@@ -1,4 +1,4 @@
-"""Q parameters, and the formulas that set them."""
+"""Q parameters, and formulas."""
 
 import math
 import re
@@ -6,21 +6,21 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
-#: Parentheses and signs inside each other.
+#: How deep parentheses and signs may nest.
 MAX_NESTING: Final = 40
 
-#: Larger values are none that a parameter can have.
+#: Parameters can have no larger values.
 MAX_VALUE: Final = 1e10
 
 _TOKEN = re.compile(r"[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+)|([A-Z]+)|([-+*/^%()]))")
 
 
 class KlartextError(Exception):
-    """Why a block is not understood, in words."""
+    """The reason why a block is not executed."""
 
 
 class Parameters:
-    """The parameters of a program: Q and QR of all programs together, QL of each by itself."""
+    """The parameters of a program: Q and QR are shared by all programs, QL are local to each."""
 
     def __init__(self, shared: "Parameters | None" = None) -> None:
         self._values: dict[str, float] = {} if shared is None else shared._values
@@ -30,7 +30,7 @@ class Parameters:
         return self._local if name.startswith("QL") else self._values
 
     def get(self, name: str) -> float | None:
-        """Return the value of a parameter, None if it has none."""
+        """Return the value of a parameter, None if it is not known."""
         return self._table(name).get(name)
 
     def __getitem__(self, name: str) -> float:
@@ -43,19 +43,19 @@ class Parameters:
         self._table(name)[name] = checked(value)
 
     def forget(self, name: str) -> None:
-        """Take a parameter's value away: only the control knows it."""
+        """Mark the value of a parameter as not known."""
         self._table(name).pop(name, None)
 
 
 def checked(value: float) -> float:
-    """Return a value, refusing what no parameter can hold."""
+    """Return a value that a parameter can have; KlartextError for others."""
     if not abs(value) <= MAX_VALUE:
         raise KlartextError("a value is larger than any parameter can hold")
     return value
 
 
 def canonical(name: str) -> str:
-    """Name of a parameter without leading zeros."""
+    """Return the name of a parameter without leading zeros."""
     letter_table = name.rstrip("0123456789")
     return f"{letter_table}{int(name[len(letter_table) :])}"
 
@@ -94,9 +94,9 @@ FUNCTIONS: Final[dict[str, Callable[[float], float]]] = {
 
 
 def formula(text: str, parameters: Parameters) -> float:
-    """Return the value of a formula: ``Q1 = SQ 3 + (Q2 - 4) ^ 2`` without what stands before it.
+    """Evaluate a formula, such as ``SQ 3 + (Q2 - 4) ^ 2``.
 
-    Powers bind tightest, then multiplication and division, then addition. A function takes the value behind it.
+    Powers come first, then multiplication and division, then addition. A function applies to the value after it.
     """
     parser = _Parser(text, parameters)
     value = parser.sum()
@@ -106,6 +106,8 @@ def formula(text: str, parameters: Parameters) -> float:
 
 
 class _Parser:
+    """Evaluates a formula while it reads it, by recursive descent."""
+
     def __init__(self, text: str, parameters: Parameters) -> None:
         self._tokens: list[str] = []
         at = 0
@@ -186,9 +188,9 @@ class _Parser:
         raise KlartextError(f"{token[:20]} belongs to no formula")
 
 
-def guarded(work: Callable[[], float], name: str) -> float:
-    """Return what a function gives, refusing what it has no value for."""
+def guarded(function: Callable[[], float], name: str) -> float:
+    """Evaluate a function; KlartextError if it has no value."""
     try:
-        return checked(work())
+        return checked(function())
     except (ValueError, OverflowError, ZeroDivisionError):
         raise KlartextError(f"{name} has no value here") from None

@@ -1,4 +1,4 @@
-"""The words of path blocks, and where polar coordinates and circles lead."""
+"""The words of path blocks, polar coordinates and circles."""
 
 import math
 from collections.abc import Sequence
@@ -18,10 +18,10 @@ from trunnion.readers.families.heidenhain.lexer import Operand, Word
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.words import M_ARGUMENTS
 
-#: Larger feeds are slips of the program.
+#: Higher feeds are mistakes of the program.
 MAX_FEED: Final = 1e9
 
-#: More turns of a helix are none that a program means.
+#: Helices with more turns are mistakes of the program.
 MAX_TURNS: Final = 1000
 
 _AXES: Final = frozenset("XYZABCUVW")
@@ -30,7 +30,7 @@ _FLAGS: Final = frozenset({"FMAX", "R0", "RL", "RR", "R", "DR+", "DR-", "F", "AU
 
 
 def value_of(operand: Operand, parameters: Parameters) -> float:
-    """Return what an operand stands for."""
+    """Return the value of an operand."""
     if operand.parameter:
         return operand.sign * parameters[canonical(operand.parameter)]
     return operand.sign * operand.number
@@ -38,14 +38,15 @@ def value_of(operand: Operand, parameters: Parameters) -> float:
 
 @dataclass(slots=True)
 class Block:
-    """The words of a path block, their values looked up.
+    """The words of a path block with their values.
 
-    axes        axes by letter
-    vectors     components of surface normal and tool axis
-    polar       PR and PA
-    direction   1 for DR+, -1 for DR-, 0 without
-    side        RL, RR or R0
-    m           M words with what belongs to them, None for flags
+    axes          axes by letter
+    vectors       components of surface normal and tool axis
+    polar         PR and PA
+    direction     1 for DR+, -1 for DR-, 0 without
+    side          RL, RR or R0
+    feed_of_tool  F AUTO: the feed of the tool call
+    m             M functions with their words, whose value is None for flags
     """
 
     axes: dict[str, AxisWord] = field(default_factory=dict)
@@ -69,7 +70,7 @@ class Block:
 
     @property
     def normal(self) -> Floats | None:
-        """NX NY NZ, (3,), the same way."""
+        """NX NY NZ, (3,); components that are not written are 0."""
         return self._vector("NX", "NY", "NZ")
 
     def _vector(self, *names: str) -> Floats | None:
@@ -79,12 +80,12 @@ class Block:
 
 
 def read_block(words: Sequence[Word], parameters: Parameters) -> Block:
-    """Give the words of a path block their places.
+    """Return the block of words.
 
     Raises
     ------
     KlartextError
-        For a word that no path block has, and for a parameter without a value.
+        For a word that path blocks do not have, and for a parameter without a value.
     """
     block = Block()
     for word in words:
@@ -133,7 +134,7 @@ def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
             raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}")
         block.feed = value
     elif name == "R":
-        # R0 switches compensation off; a radius stands before it.
+        # R0 switches cutter compensation off; other values are the radius of a circle.
         if value == 0.0:
             block.side = "R0"
         else:
@@ -146,14 +147,14 @@ def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
         raise KlartextError(f"unknown word {name}{value:g}")
 
 
-# Where polar words lead
+# Polar coordinates
 
 
 def polar_end(control: HeidenhainControl, block: Block, *, circle: bool) -> dict[str, AxisWord]:
-    """Return the axes of LP, CP or CTP with the end in the plane among them, in the units of the program."""
+    """Return the axes of LP, CP or CTP including those of the plane, in the units of the program."""
     pole = _pole(control)
     first, second = (control.plane_axis + 1) % 3, (control.plane_axis + 2) % 3
-    here = control.commanded[:3] - pole
+    here = control.programmed_position - pole
     radius = math.hypot(here[first], here[second])
     angle = math.degrees(math.atan2(here[second], here[first]))
     if "PR" in block.polar and not circle:
@@ -208,7 +209,7 @@ def circle_of(control: HeidenhainControl, head: str, block: Block) -> Circle:
 
 
 def _tangential(control: HeidenhainControl, start: Floats, end: Floats) -> arcs.Arc:
-    """The circle that goes on where the last motion went to."""
+    """Return the circle that continues in the direction of the last motion."""
     heading = control.end_direction()
     plane = control.plane_axis
     chord = end - start

@@ -1,4 +1,4 @@
-"""PLANE and FUNCTION TCPM: their words, and what they ask of the control."""
+"""PLANE and FUNCTION TCPM blocks."""
 
 import math
 from collections.abc import Sequence
@@ -9,11 +9,12 @@ from trunnion.errors import Severity
 from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import rotation_matrix
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
-from trunnion.readers.families.heidenhain.control import HeidenhainControl, Positioning
+from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycle_definitions import store_rotary_angles
 from trunnion.readers.families.heidenhain.lexer import Word
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
 from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, value_of
+from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import plane
 
 #: Kinds of PLANE that are simulated, besides RELATIV, AXIAL and RESET.
@@ -23,87 +24,89 @@ _POSITIONING_MODES: Final = frozenset({"TURN", "MOVE", "STAY"})
 _SEQUENCES: Final = {"SEQ+": 1, "SEQ-": -1, "SYM+": 1, "SYM-": -1}
 
 
-def plane_block(control: HeidenhainControl, said: Sequence[Word], parameters: Parameters, note: Note) -> None:
-    """Execute a PLANE block; ``said`` are its words without PLANE."""
-    if not said or said[0].operand is not None:
+def plane_block(control: HeidenhainControl, block_words: Sequence[Word], parameters: Parameters, note: Note) -> None:
+    """Execute a PLANE block; ``block_words`` without PLANE."""
+    if not block_words or block_words[0].operand is not None:
         raise KlartextError("PLANE needs its kind")
-    kind = said[0].name
-    how, values = _positioning(control, said[1:], parameters, note)
+    kind = block_words[0].name
+    positioning, values = _positioning(control, block_words[1:], parameters, note)
     if kind == "RESET":
-        control.untilt(how)
+        control.untilt(positioning)
     elif kind == "AXIAL":
-        _axial(control, values, how, parameters)
+        _axial(control, values, positioning, parameters)
     elif kind == "RELATIV":
         if len(values) != 1 or not values.keys() <= {"SPA", "SPB", "SPC"}:
             raise KlartextError("PLANE RELATIV takes one of SPA, SPB and SPC")
         ((name, angle),) = values.items()
         store_rotary_angles(
-            parameters, control, control.tilt(rotation_matrix("ABC".index(name[2]), angle), how, relative=True)
+            parameters, control, control.tilt(rotation_matrix("ABC".index(name[2]), angle), positioning, relative=True)
         )
     elif kind in _KINDS:
-        store_rotary_angles(parameters, control, control.tilt(plane(kind, values), how))
+        store_rotary_angles(parameters, control, control.tilt(plane(kind, values), positioning))
     else:
         note(f"PLANE {kind} is known but not simulated", Severity.ERROR)
 
 
-def _axial(control: HeidenhainControl, values: dict[str, float], how: Positioning, parameters: Parameters) -> None:
+def _axial(
+    control: HeidenhainControl, values: dict[str, float], positioning: Positioning, parameters: Parameters
+) -> None:
     unknown = values.keys() - set(control.rotary_names)
     if unknown or not values:
         raise KlartextError(f"PLANE AXIAL takes {' and '.join(control.rotary_names)}")
     control.resolve_rows()
     held = [float(control.current_joints[column]) for column in control.machine.rotary]
     first, second = (values.get(name, was) for name, was in zip(control.rotary_names, held, strict=True))
-    control.tilt_axial((first, second), how)
+    control.tilt_axial((first, second), positioning)
     store_rotary_angles(parameters, control, (first, second))
 
 
 def _positioning(
-    control: HeidenhainControl, said: Sequence[Word], parameters: Parameters, note: Note
+    control: HeidenhainControl, block_words: Sequence[Word], parameters: Parameters, note: Note
 ) -> tuple[Positioning, dict[str, float]]:
-    """Return how the axes move, and the values that define the plane."""
-    how = Positioning(mode="")
+    """Return how the block positions the rotary axes, and the values that define the plane."""
+    positioning = Positioning(mode="")
     values: dict[str, float] = {}
-    names = [word.name for word in said]
-    for place, word in enumerate(said):
+    names = [word.name for word in block_words]
+    for place, word in enumerate(block_words):
         value = None if word.operand is None else value_of(word.operand, parameters)
         before = names[place - 1] if place else ""
         match word.name, value:
             case (("TURN" | "MOVE" | "STAY"), None):
-                how = replace(how, mode=word.name)
+                positioning = replace(positioning, mode=word.name)
             case (("SEQ+" | "SEQ-" | "SYM+" | "SYM-"), None):
-                how = replace(how, sequence=_SEQUENCES[word.name])
+                positioning = replace(positioning, sequence=_SEQUENCES[word.name])
             case "FMAX", None:
-                how = replace(how, rapid=True)
+                positioning = replace(positioning, rapid=True)
             case "MAX", None if before == "MB":
-                how = replace(how, retract=math.inf)
+                positioning = replace(positioning, retract=math.inf)
             case "ROT", None if before in ("COORD", "TABLE"):
-                how = replace(how, table=before == "TABLE")
+                positioning = replace(positioning, table=before == "TABLE")
             case (("COORD" | "TABLE" | "MB"), None):
                 pass
             case "F", float() if 0.0 <= value <= MAX_FEED:
-                how = replace(how, feed=value * control.feed_unit)
+                positioning = replace(positioning, feed=value * control.feed_unit)
             case (("DIST" | "ABST"), float()) if abs(value) * control.length_unit < MAX_POSITION:
-                how = replace(how, distance=value * control.length_unit)
+                positioning = replace(positioning, distance=value * control.length_unit)
             case "MB", float() if abs(value) * control.length_unit < MAX_POSITION:
-                how = replace(how, retract=value * control.length_unit)
+                positioning = replace(positioning, retract=value * control.length_unit)
             case _, float():
                 if word.name in values:
                     raise KlartextError(f"{word.name} is written twice")
                 values[word.name] = value
             case _:
                 raise KlartextError(f"unknown word {word.name or word.text}")
-    if not how.mode:
-        if said:
+    if not positioning.mode:
+        if block_words:
             note("PLANE without TURN, MOVE or STAY: taken as STAY", Severity.WARNING)
-        how = replace(how, mode="STAY")
-    return how, values
+        positioning = replace(positioning, mode="STAY")
+    return positioning, values
 
 
-def tcpm_block(control: HeidenhainControl, said: Sequence[Word], note: Note) -> None:
-    """Execute FUNCTION TCPM; ``said`` are its words without FUNCTION TCPM."""
-    names = [word.name for word in said]
+def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: Note) -> None:
+    """Execute FUNCTION TCPM; ``block_words`` without FUNCTION TCPM."""
+    names = [word.name for word in block_words]
     pairs = list(zip(names[::2], names[1::2], strict=False))
-    by_angles = False
+    spatial_angles = False
     orientation = Orientation.ANGLES
     for pair in pairs:
         match pair:
@@ -112,7 +115,7 @@ def tcpm_block(control: HeidenhainControl, said: Sequence[Word], note: Note) -> 
             case "F", "CONT":
                 note("FUNCTION TCPM with F CONT: feeds count for the machine's axes", Severity.WARNING)
             case "AXIS", "SPAT":
-                by_angles = True
+                spatial_angles = True
             case "PATHCTRL", ("AXIS" | "VECTOR"):
                 orientation = Orientation.GREAT_CIRCLE if pair[1] == "VECTOR" else Orientation.ANGLES
             case _:
@@ -120,6 +123,6 @@ def tcpm_block(control: HeidenhainControl, said: Sequence[Word], note: Note) -> 
     if len(names) % 2:
         note(f"FUNCTION TCPM: {names[-1]} stands alone", Severity.ERROR)
     control.set_tcp(True)
-    control.spatial_angles_active = by_angles
+    control.spatial_angles_active = spatial_angles
     control.angles = [0.0, 0.0, 0.0]
     control.set_orientation(orientation)

@@ -1,6 +1,6 @@
 """Datum shift, mirror, rotation and scale, and the planes of the PLANE function, as affine maps.
 
-All angles are in degrees and right-handed. A plane's matrix takes positions in the tilted plane to the one below it.
+All angles are in degrees and right-handed. The matrix of a plane maps positions in it to those outside of it.
 """
 
 from collections.abc import Mapping
@@ -13,13 +13,13 @@ from trunnion.arrays import Floats
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.heidenhain.parameters import KlartextError
 
-#: Vectors shorter than this, or so nearly parallel, make no plane.
+#: Vectors that are shorter, or parallel within this, make no plane.
 _FLAT: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
 class Datum:
-    """What cycles 7, 8, 10, 11 and 26 have set.
+    """The values of cycles 7, 8, 10, 11 and 26.
 
     shift      mm
     mirrored   of X, Y and Z
@@ -34,9 +34,9 @@ class Datum:
     centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def frame(self, plane: int) -> AffineMap:
-        """Return the map: scaled first, then turned about the axis ``plane``, mirrored, and shifted.
+        """Return the map: first scaled, then rotated about the axis ``plane``, mirrored, and shifted.
 
-        Cycles may come in any order; that they always act in this one is unconfirmed.
+        That this order holds whatever the order of the cycles is unconfirmed.
         """
         scale, centre = np.diag(self.scale), np.array(self.centre)
         mirror = np.diag([-1.0 if mirrored else 1.0 for mirrored in self.mirrored])
@@ -45,17 +45,17 @@ class Datum:
 
 
 def spatial(a: float, b: float, c: float) -> Floats:
-    """(3, 3): spatial angles, about the fixed axes X, Y and Z in this order."""
+    """Return the plane of spatial angles, about the fixed axes X, Y and Z in this order, (3, 3)."""
     return rotation_matrix(2, c) @ rotation_matrix(1, b) @ rotation_matrix(0, a)
 
 
 def euler(precession: float, nutation: float, rotation: float) -> Floats:
-    """(3, 3): about Z, the new X, the new Z."""
+    """Return the plane of Euler angles, about Z, the new X and the new Z, (3, 3)."""
     return rotation_matrix(2, precession) @ rotation_matrix(0, nutation) @ rotation_matrix(2, rotation)
 
 
 def from_vectors(base: Floats, normal: Floats) -> Floats:
-    """(3, 3): Z along ``normal``, X as near to ``base`` as it goes; vectors of any length."""
+    """Return the plane with Z along ``normal`` and X along the part of ``base`` in the plane, (3, 3)."""
     z = _unit(normal)
     along = base / max(float(np.linalg.norm(base)), _FLAT)
     x = _unit(along - (along @ z) * z)
@@ -63,7 +63,7 @@ def from_vectors(base: Floats, normal: Floats) -> Floats:
 
 
 def through_points(first: Floats, second: Floats, third: Floats) -> Floats:
-    """(3, 3): X from the first point to the second, the third on the side of Y."""
+    """Return the plane with X from the first point to the second, and the third point on the side of +Y, (3, 3)."""
     x = _unit(second - first)
     lateral = third - first
     return from_vectors(x, np.cross(x, lateral / max(float(np.linalg.norm(lateral)), _FLAT)))
@@ -77,12 +77,12 @@ def _unit(vector: Floats) -> Floats:
 
 
 def plane(kind: str, values: Mapping[str, float]) -> Floats:
-    """Return the matrix of a PLANE block, (3, 3), but for RELATIV and AXIAL, which need more than their words.
+    """Return the matrix of a PLANE block, (3, 3); not of RELATIV and AXIAL, which depend on the axes.
 
     Raises
     ------
     KlartextError
-        If a word is missing or the plane is none.
+        If a word is missing, or if the values define no plane.
     """
 
     def need(*names: str) -> list[float]:

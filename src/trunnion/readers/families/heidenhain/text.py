@@ -1,4 +1,4 @@
-"""Where the jumps of a Klartext program lead: its labels."""
+"""Targets of the jumps in a Klartext program: labels."""
 
 import re
 from dataclasses import dataclass
@@ -7,10 +7,10 @@ from typing import Final
 
 from trunnion.readers.program.source_text import SourceText, decode
 
-#: How names of programs end.
+#: Endings of program names.
 SUFFIXES: Final = (".H", "")
 
-# Blanks are matched in one place each: two runs of them side by side would take quadratic time on a line of blanks.
+# No two runs of blanks follow each other: matching a line of blanks would take quadratic time.
 _LABEL = re.compile(
     rb'^[ \t]*(?:/[ \t]*)?(?:[0-9]+[ \t]*)?LBL[ \t]*(?:([0-9]{1,5})|"([^"\r\n]{1,64})")', re.IGNORECASE | re.MULTILINE
 )
@@ -18,21 +18,21 @@ _LABEL = re.compile(
 
 @dataclass(slots=True)
 class _JumpTargets:
-    """Where the labels of a text stand, found out when they are first asked for."""
+    """Lines of labels; found on first use."""
 
     labels: dict[str, int] | None = None
 
 
 class KlartextText(SourceText):
-    """A program file with the places where its jumps lead."""
+    """A program file with the targets of its jumps."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        # Shared by all that run the same text: see ``restarted``.
+        # Shared by the copies that ``restarted`` makes.
         self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole)
 
     def label(self, name: str) -> int | None:
-        """Line of a label, by its number or its name; of several the first. Label 0 ends subprograms and is none."""
+        """Return the first line of a label, by number or name, or None; label 0 ends subprograms and is no target."""
         labels = self._jump_targets.labels
         if labels is None:
             labels = self._jump_targets.labels = {}

@@ -1,4 +1,4 @@
-"""Every word that the reader knows, by what it does. ``docs/controls/heidenhain.md`` says the same to people."""
+"""The words of Klartext that the reader knows, by their effect; ``docs/controls/heidenhain.md`` describes them."""
 
 from typing import Final
 
@@ -7,10 +7,10 @@ def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-#: How path blocks begin.
+#: Path functions.
 PATHS: Final = _words("L LN LP C CR CP CT CTP")
 
-#: Blocks that are known and whose effect on the path is not simulated: what the reader says instead.
+#: Blocks that are not simulated: the message.
 BLOCKS_NOT_SIMULATED: Final = {
     "RND": "rounds the corner: not simulated, the corner stays sharp",
     "CHF": "chamfers the corner: not simulated, the corner stays sharp",
@@ -32,7 +32,7 @@ BLOCKS_NOT_SIMULATED: Final = {
     "OPEN": "files are not written",
 }
 
-#: M words that act on the path, on the cycles or on the program.
+#: M functions with an effect on the path, the cycles or the program.
 M_MACHINE: Final = 91
 M_SECOND_MACHINE: Final = 92
 M_SHORTEST: Final = 126
@@ -48,7 +48,7 @@ M_FEED_AT_TIP: Final = 116
 M_FEED_IN_DEGREES: Final = 117
 M_PROGRAM_ENDS: Final = frozenset({2, 30})
 
-#: M words that become events: kind and value, in the order in which they happen.
+#: M functions that make events: kinds and values, in order.
 M_EVENTS: Final = {
     0: (("stop", None),),
     1: (("optional_stop", None),),
@@ -61,13 +61,13 @@ M_EVENTS: Final = {
     14: (("spindle", "counter-clockwise"), ("coolant", "flood")),
 }
 
-#: Sense of rotation of the spindle after an M word.
+#: Sense of rotation of the spindle after an M function.
 M_SPINDLE: Final = {3: 1, 4: -1, 5: 0, 13: 1, 14: -1}
 
-#: M words that act after the motion of their block.
+#: M functions that act after the motion of their block.
 M_AFTER_MOTION: Final = frozenset({0, 1, 5, 9, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_CALL}) | M_PROGRAM_ENDS
 
-#: M words that change how the control drives, not where to.
+#: M functions that the path does not depend on.
 M_WITHOUT_PATH_EFFECT: Final = {
     90: "constant contour speed at corners",
     94: "the display of rotary axes comes back below 360",
@@ -92,7 +92,7 @@ M_WITHOUT_PATH_EFFECT: Final = {
     149: "no lift-off",
 }
 
-#: M words that are known and whose effect on the path is not simulated: a finding each time; whether it is an error.
+#: M functions that are not simulated: the message, and whether the path is wrong without them.
 M_NOT_SIMULATED: Final = {
     98: ("ends an open contour corner: not simulated", False),
     104: ("takes the last datum again: not simulated", True),
@@ -110,7 +110,7 @@ M_NOT_SIMULATED: Final = {
     204: ("laser cutting is not simulated", False),
 }
 
-#: Words that belong to an M word if they follow it.
+#: Words that belong to an M function if they follow it.
 M_ARGUMENTS: Final = {
     94: _words("X Y Z A B C U V W"),
     103: _words("F"),
@@ -134,10 +134,10 @@ AXIS_SCALING: Final = 26
 TOLERANCE: Final = 32
 PRESET: Final = 247
 
-#: The one whose path the reader knows but for the tool's radius.
+#: Its path is simulated without the tool radius.
 BORE_MILLING: Final = 208
 
-#: Cycles that are known and not simulated: whether the path is doubtful because of it when they are called.
+#: Cycles that are not simulated: their names.
 CYCLES_NOT_SIMULATED: Final = {
     3: "slot milling", 4: "pocket milling", 5: "circular pocket", 6: "rough-out", 12: "program call", 14: "contour",
     15: "pilot drilling", 16: "contour milling", 18: "thread cutting", 20: "contour data", 21: "pilot drilling",
@@ -152,7 +152,7 @@ CYCLES_NOT_SIMULATED: Final = {
     274: "OCM side finishing", 275: "trochoidal slot", 276: "three-dimensional contour train",
 }  # fmt: skip
 
-#: FN functions that are known and not simulated.
+#: FN functions that are not simulated: what they do.
 FN_NOT_SIMULATED: Final = {
     14: "an error message", 15: "prints", 16: "prints to a file", 17: "writes system data", 19: "speaks to the PLC",
     20: "waits for the PLC", 25: "sets a preset", 26: "opens a table", 27: "writes to a table", 28: "reads a table",

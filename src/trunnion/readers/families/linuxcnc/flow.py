@@ -1,16 +1,17 @@
-"""Where a LinuxCNC program goes on: its O words."""
+"""Control flow of a LinuxCNC program: its O words."""
 
 import re
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC, LOCAL_COUNT, Parameters
-from trunnion.readers.families.linuxcnc.text import SUFFIXES, LinuxcncText
-from trunnion.readers.program.source_text import Subprograms
+from trunnion.readers.families.linuxcnc.text import SUFFIXES, LinuxcncText, Structure
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274 import interpreter
 from trunnion.readers.rs274.block import block_reader, split_line
 from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
@@ -21,59 +22,80 @@ _KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT
 
 @dataclass(slots=True)
 class ActiveProgram(interpreter.ActiveProgram):
-    """A program or subprogram being executed, and how often its REPEAT loops have still to run, by line."""
+    """A program or subprogram that is being executed.
+
+    counters   remaining repeats of REPEAT loops, by their line
+    """
 
     source: LinuxcncText
     counters: dict[int, int] = field(default_factory=dict)
 
 
-class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
-    """Branches, loops and subprograms; what blocks say besides is for the class below."""
+class OWord(NamedTuple):
+    """An O word, and the reader of the text after its keyword."""
 
-    def __init__(
-        self, path: Path, machine: Machine, *, subprograms: Sequence[Path], step_limit: int, skip: bool
-    ) -> None:
-        named = Subprograms(subprograms, SUFFIXES)
-        super().__init__(path, machine, named, step_limit=step_limit, skip=skip)
+    active: ActiveProgram
+    line: int
+    label: str
+    reader: ExpressionReader
+
+    @property
+    def structure(self) -> Structure:
+        """The control structure that the O word belongs to."""
+        return self.active.source.structure(self.line)
+
+    def jump(self, line: int) -> None:
+        """Continue at a line."""
+        self.active.source.jump(line)
+
+
+class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
+    """Executes branches, loops and subprograms."""
+
+    source_type = LinuxcncText
+    suffixes = SUFFIXES
+
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
         self._parameters = Parameters(self._system_value)
         self._returned: float | None = None
-
-    @abstractmethod
-    def _system_value(self, key: int | str) -> float | None:
-        """Return what the control itself puts behind a number or name; None if it is none of its own."""
-
-    def _o_word(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
-        label = self._label(reader)
-        match = _KEYWORD.match(reader.text, reader.at)
-        if match is None:
-            if not reader.ended:
-                raise BlockError(f"no O word: {reader.rest!r}")
-            return
-        # The longest word that fits: the text goes on with a bracket or not at all.
-        word = re.match("[A-Z]+", reader.text[reader.at :])
-        assert word is not None
-        name = word.group()
-        reader.at += len(name)
-        handler = {
-            "SUB": self._skip_sub,
+        self._handlers: dict[str, Callable[[OWord], None]] = {
+            "SUB": lambda word: word.jump(word.structure.end + 1),
             "ENDSUB": self._return,
             "RETURN": self._return,
             "CALL": self._call,
             "IF": self._if,
-            "ELSEIF": self._past_branches,
-            "ELSE": self._past_branches,
-            "ENDIF": self._nothing,
+            "ELSEIF": self._end_branch,
+            "ELSE": self._end_branch,
+            "ENDIF": self._check_structure,
             "WHILE": self._while,
-            "ENDWHILE": self._again,
-            "DO": self._nothing,
+            "ENDWHILE": lambda word: word.jump(word.structure.begin),
+            "DO": self._check_structure,
             "REPEAT": self._repeat,
             "ENDREPEAT": self._end_repeat,
-            "BREAK": self._break,
+            "BREAK": lambda word: word.jump(word.structure.end + 1),
             "CONTINUE": self._continue,
-        }.get(name)
+        }
+
+    @abstractmethod
+    def _system_value(self, key: int | str) -> float | None:
+        """Return a parameter that the control sets, by number or name; None for one that is not simulated."""
+
+    def _o_word(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
+        label = self._label(reader)
+        if _KEYWORD.match(reader.text, reader.at) is None:
+            if not reader.ended:
+                raise BlockError(f"no O word: {reader.rest!r}")
+            return
+        # All letters belong to the keyword: what follows it is in brackets.
+        keyword = re.match("[A-Z]+", reader.text[reader.at :])
+        assert keyword is not None
+        name = keyword.group()
+        reader.at += len(name)
+        handler = self._handlers.get(name)
         if handler is None:
             raise BlockError(f"no O word: {name[:40]}")
-        handler(active, line, reader, label)
+        handler(OWord(active, line, label, reader))
         if not reader.ended:
             self._note(f"not understood behind {name}: {reader.rest!r}", Severity.ERROR)
 
@@ -91,64 +113,70 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
             raise BlockError("an O word needs a whole number or a name")
         return str(int(value))
 
-    def _nothing(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        active.source.structure(line)
+    @staticmethod
+    def _check_structure(word: OWord) -> None:
+        """See that the O word belongs to a structure."""
+        assert word.structure is not None
 
-    def _skip_sub(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        active.source.jump(active.source.structure(line).end + 1)
+    # Subprograms
 
-    def _return(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+    def _return(self, word: OWord) -> None:
         if len(self._stack) < 2:
             raise BlockError("the end of a subprogram outside one")
         self._returned = None
-        if not reader.ended:
-            self._returned = reader.bracket_value()
+        if not word.reader.ended:
+            self._returned = word.reader.bracket_value()
         self._leave_program()
 
     def _leave_program(self) -> None:
-        deep = len(self._stack)
+        depth = len(self._stack)
         super()._leave_program()
-        if len(self._stack) < deep:
+        if len(self._stack) < depth:
             self._parameters.leave()
 
-    def _call(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
+    def _call(self, word: OWord) -> None:
         arguments: list[float] = []
-        while not reader.ended and len(arguments) < LOCAL_COUNT:
-            arguments.append(reader.bracket_value())
+        while not word.reader.ended and len(arguments) < LOCAL_COUNT:
+            arguments.append(word.reader.bracket_value())
         self._check_depth()
-        here = active.source.subprogram(label)
-        if here is not None:
-            self._file.set(self.control.row, active.file)
-            entered = ActiveProgram(active.source.restarted(), active.file)
-            begin = here.begin
-        else:
-            path = self._subprograms.find(label.strip("<>"))
-            if path is None:
-                raise BlockError(f"missing subprogram O{label[:80]}; name its file")
-            text, file = self._open_subprogram(path)
-            assert isinstance(text, LinuxcncText)
-            found = text.subprogram(label)
-            if found is None:
-                self._file.set(self.control.row, active.file)
-                raise BlockError(f"{path.name} holds no O{label[:80]} SUB")
-            entered, begin = ActiveProgram(text, file), found.begin
+        entered, begin = self._find_subprogram(word.active, word.label)
         entered.row = self.control.row
         entered.source.jump(begin + 1)
         self._parameters.enter(arguments)
         self._stack.append(entered)
 
-    def _if(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        structure = active.source.structure(line)
-        if self._holds(reader):
+    def _find_subprogram(self, active: ActiveProgram, label: str) -> tuple[ActiveProgram, int]:
+        """Return a subprogram of this file or of another one, and its first line."""
+        file_of_rows = self.control.modal.file
+        here = active.source.subprogram(label)
+        if here is not None:
+            file_of_rows.set(self.control.row, active.file)
+            return ActiveProgram(active.source.restarted(), active.file), here.begin
+        path = self._subprograms.find(label.strip("<>"))
+        if path is None:
+            raise BlockError(f"missing subprogram O{label[:80]}; name its file")
+        source, file = self._open_subprogram(path)
+        assert isinstance(source, LinuxcncText)
+        found = source.subprogram(label)
+        if found is None:
+            file_of_rows.set(self.control.row, active.file)
+            raise BlockError(f"{path.name} holds no O{label[:80]} SUB")
+        return ActiveProgram(source, file), found.begin
+
+    # Branches and loops
+
+    def _if(self, word: OWord) -> None:
+        structure = word.structure
+        if self._is_true(word.reader):
             return
         for branch in structure.branches:
-            head = self._head(active, branch)
-            if head is None or (head.accept("ELSEIF") and self._holds(head)):
-                active.source.jump(branch + 1)
+            condition = self._condition_of(word.active, branch)
+            if condition is None or (condition.accept("ELSEIF") and self._is_true(condition)):
+                word.jump(branch + 1)
                 return
 
-    def _head(self, active: ActiveProgram, line: int) -> ExpressionReader | None:
-        """Return a reader at the ELSEIF of a line; None at an ELSE or at the end."""
+    def _condition_of(self, active: ActiveProgram, line: int) -> ExpressionReader | None:
+        """Return a reader at the ELSEIF of a line; None at an ELSE or ENDIF."""
         here = active.source.line
         active.source.jump(line)
         text = split_line(active.source.next_line(), semicolon=True).text
@@ -158,8 +186,8 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
         self._label(reader)
         return reader if reader.text.startswith("ELSEIF", reader.at) else None
 
-    def _holds(self, reader: ExpressionReader) -> bool:
-        """Return a condition; one that cannot be worked out does not hold."""
+    def _is_true(self, reader: ExpressionReader) -> bool:
+        """Evaluate a condition; one with an error is taken as false."""
         try:
             return bool(reader.bracket_value())
         except BlockError as error:
@@ -167,44 +195,41 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
             reader.at = len(reader.text)
             return False
 
-    def _past_branches(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        """A branch that was executed ends here."""
-        reader.at = len(reader.text)
-        active.source.jump(active.source.structure(line).end + 1)
+    @staticmethod
+    def _end_branch(word: OWord) -> None:
+        """End the branch that was executed, at the beginning of the next one."""
+        word.reader.at = len(word.reader.text)
+        word.jump(word.structure.end + 1)
 
-    def _while(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        structure = active.source.structure(line)
-        holds = self._holds(reader)
+    def _while(self, word: OWord) -> None:
+        structure = word.structure
+        is_true = self._is_true(word.reader)
         if structure.word == "DO":
-            if holds:
-                active.source.jump(structure.begin + 1)
-        elif not holds:
-            active.source.jump(structure.end + 1)
+            if is_true:
+                word.jump(structure.begin + 1)
+        elif not is_true:
+            word.jump(structure.end + 1)
 
-    def _again(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        active.source.jump(active.source.structure(line).begin)
-
-    def _repeat(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        structure = active.source.structure(line)
-        times = 0
+    def _repeat(self, word: OWord) -> None:
+        structure = word.structure
+        repeats = 0
         try:
-            times = int(min(max(reader.bracket_value(), 0.0), 1e12))
+            repeats = int(min(max(word.reader.bracket_value(), 0.0), 1e12))
         except BlockError as error:
             self._note(f"not understood: {error}: not repeated", Severity.ERROR)
-            reader.at = len(reader.text)
-        if times < 1:
-            active.source.jump(structure.end + 1)
-        active.counters[line] = times
+            word.reader.at = len(word.reader.text)
+        if repeats < 1:
+            word.jump(structure.end + 1)
+        word.active.counters[word.line] = repeats
 
-    def _end_repeat(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        begin = active.source.structure(line).begin
-        active.counters[begin] = active.counters.get(begin, 0) - 1
-        if active.counters[begin] > 0:
-            active.source.jump(begin + 1)
+    @staticmethod
+    def _end_repeat(word: OWord) -> None:
+        begin, counters = word.structure.begin, word.active.counters
+        counters[begin] = counters.get(begin, 0) - 1
+        if counters[begin] > 0:
+            word.jump(begin + 1)
 
-    def _break(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        active.source.jump(active.source.structure(line).end + 1)
-
-    def _continue(self, active: ActiveProgram, line: int, reader: ExpressionReader, label: str) -> None:
-        structure = active.source.structure(line)
-        active.source.jump(structure.begin if structure.word == "WHILE" else structure.end)
+    @staticmethod
+    def _continue(word: OWord) -> None:
+        structure = word.structure
+        word.jump(structure.begin if structure.word == "WHILE" else structure.end)

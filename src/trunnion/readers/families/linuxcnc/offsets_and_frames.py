@@ -1,11 +1,11 @@
-"""Words of LinuxCNC whose axis words are no goal of a motion: dwells, offsets, and the ways home."""
+"""Blocks of LinuxCNC whose axis words are no target: dwells, offsets and home."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.readers.control.affine_map import rotation_matrix
@@ -14,88 +14,81 @@ from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.linuxcnc.control import ORDER, LinuxcncControl, Offset
 from trunnion.readers.families.linuxcnc.flow import OWordInterpreter
-from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
 
-#: G codes, in tenths: a dwell, what sets offsets and tools, the ways home with what stores their ends, and offsets
-#: that a block says in its axis words, takes off or puts on again.
+#: G codes, in tenths: dwell, data of offsets and tools, home with the codes that store its positions, and axis offsets
+#: that a block sets, switches off or on again.
 DWELL: Final = 40
-SETUP: Final = 100
+SET_DATA: Final = 100
 HOMES: Final = {280: 281, 300: 301}
 AXIS_OFFSETS: Final = frozenset({520, 920})
-SHIFTS: Final = frozenset({921, 922, 923})
+AXIS_OFFSET_SWITCHES: Final = frozenset({921, 922, 923})
 
 #: All of them, and those that take the axis words of their block.
-SPECIAL: Final = frozenset({DWELL, SETUP, *HOMES, *HOMES.values(), *AXIS_OFFSETS, *SHIFTS})
-TAKING_AXIS_WORDS: Final = frozenset({SETUP, *HOMES, *AXIS_OFFSETS})
+SPECIAL: Final = frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, *AXIS_OFFSET_SWITCHES})
+TAKING_AXIS_WORDS: Final = frozenset({SET_DATA, *HOMES, *AXIS_OFFSETS})
 
 
 class OffsetInterpreter(OWordInterpreter):
-    """Has the virtual control, its offsets and the places that G28 and G30 go to."""
+    """Executes offsets, and keeps the positions that G28 and G30 go to."""
 
-    def __init__(
-        self,
-        path: Path,
-        machine: Machine,
-        *,
-        subprograms: Sequence[Path] = (),
-        step_limit: int = DEFAULT_STEP_LIMIT,
-        skip: bool = False,
-        shortest: bool | None = None,
-    ) -> None:
-        super().__init__(path, machine, subprograms=subprograms, step_limit=step_limit, skip=skip)
-        self._control = LinuxcncControl(machine, self._note, self._file, shortest=shortest)
+    control: LinuxcncControl
+
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
         self._stored_positions = {code: {axis.name: float(axis.home) for axis in machine.axes} for code in HOMES}
 
-    @property
-    def control(self) -> LinuxcncControl:
-        """The virtual control."""
-        return self._control
+    def _make_control(self) -> LinuxcncControl:
+        return LinuxcncControl(self._machine, self._note, shortest=self._options.shortest)
 
-    def _special(self, code: int, block: Block) -> None:
-        control = self._control
+    def _execute_special(self, code: int, block: Block) -> None:
+        """Execute a G code of ``SPECIAL``."""
+        control = self.control
         if code == DWELL:
             seconds = block.take("P")
             if seconds is None:
                 self._note("G4 without a time P", Severity.ERROR)
             else:
                 control.add_event("dwell", seconds)
-        elif code == SETUP:
-            self._set_up(block)
+        elif code == SET_DATA:
+            self._set_data(block)
         elif code in AXIS_OFFSETS:
             self._axis_offset(code, block)
-        elif code in SHIFTS:
+        elif code in AXIS_OFFSET_SWITCHES:
             if code == 921:
-                control.shift = np.zeros(6)
-            control.shifted = code == 923
-            control.refresh()
+                control.axis_offset = np.zeros(6)
+            control.axis_offset_active = code == 923
+            control.update_frame()
         elif code in HOMES:
             self._go_home(code, block)
-        elif code in HOMES.values():
+        else:
             stored = control.machine_position()
-            kept = next(go for go, keep in HOMES.items() if keep == code)
-            self._stored_positions[kept] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
+            home = next(go for go, store in HOMES.items() if store == code)
+            self._stored_positions[home] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
+
+    # Offsets
 
     def _axis_offset(self, code: int, block: Block) -> None:
-        """G92: the present position gets new numbers; G52: the offset itself is said."""
-        control = self._control
+        """G92: give the present position new coordinates; G52: set the offset itself."""
+        control = self.control
         position = control.position()
-        shift = control.shift.copy()
-        for axis, name in enumerate(ORDER):
-            value = self._scaled(block, name, axis)
+        active = control.axis_offset_active
+        offset = control.axis_offset.copy()
+        for axis, value in enumerate(self._axis_values(block)):
             if value is not None:
-                shift[axis] = value if code == 520 else shift[axis] * control.shifted + position[axis] - value
-            elif not control.shifted:
-                shift[axis] = 0.0
-        if float(np.abs(shift).max()) > MAX_POSITION:
+                offset[axis] = value if code == 520 else offset[axis] * active + position[axis] - value
+            elif not active:
+                offset[axis] = 0.0
+        if float(np.abs(offset).max()) > MAX_POSITION:
             raise BlockError("an offset is larger than any machine")
-        control.shift, control.shifted = shift, True
-        control.refresh()
+        control.axis_offset, control.axis_offset_active = offset, True
+        control.update_frame()
 
-    def _set_up(self, block: Block) -> None:
-        """G10: a work offset, or a tool's data."""
-        control = self._control
+    def _set_data(self, block: Block) -> None:
+        """G10: set a work offset, or data of a tool."""
+        control = self.control
         kind = block.take("L")
         system = block.take("P")
         if kind in (0.0, 1.0, 10.0, 11.0):
@@ -105,64 +98,70 @@ class OffsetInterpreter(OWordInterpreter):
         if kind not in (2.0, 20.0) or system is None or system != int(system) or not 0 <= system <= 9:
             raise BlockError("G10 needs L2 or L20, and P from 0 to 9")
         number = int(system) or control.system
-        old = control.offset_of(number)
-        values, rotation = old.values.copy(), old.rotation
-        turned = block.take("R")
-        if turned is not None and kind == 2.0:
-            rotation = turned
-        elif turned is not None:
+        rotation = block.take("R")
+        if rotation is not None and kind == 20.0:
             raise BlockError("G10 L20 takes no R")
-        point = control.without_length(control.machine_position())
-        shift = control.shift if control.shifted else np.zeros(6)
-        unturned = rotation_matrix(2, -rotation)
-        inside = point - values
-        inside[:3] = unturned @ inside[:3]
-        inside -= shift
-        change = np.zeros(6)
-        for axis, name in enumerate(ORDER):
-            value = self._scaled(block, name, axis)
-            if value is None:
-                continue
-            if kind == 2.0:
-                values[axis] = value
-            else:
-                change[axis] = inside[axis] - value
-        change[:3] = rotation_matrix(2, rotation) @ change[:3]
-        values = values + change
-        if float(np.abs(values).max()) > MAX_POSITION or abs(rotation) > MAX_POSITION:
+        old = control.offset_of(number)
+        offset = Offset(old.values.copy(), old.rotation if rotation is None else rotation)
+        if kind == 2.0:
+            for axis, value in enumerate(self._axis_values(block)):
+                if value is not None:
+                    offset.values[axis] = value
+        else:
+            offset.values += self._offset_change(offset, block)
+        if float(np.abs(offset.values).max()) > MAX_POSITION or abs(offset.rotation) > MAX_POSITION:
             raise BlockError("an offset is larger than any machine")
-        control.set_values(number, Offset(values, rotation))
+        control.set_values(number, offset)
 
-    def _scaled(self, block: Block, name: str, axis: int) -> float | None:
-        """Return the value of an axis word in mm or degrees."""
-        value = block.take(name)
-        if value is None:
-            return None
-        if axis > 2 and name not in self._control.rotary_names:
-            if value:
-                self._note(f"{name}: the machine has no such axis", Severity.ERROR)
-            return None
-        return value * self._control.length_unit if axis < 3 else value
+    def _offset_change(self, offset: Offset, block: Block) -> Floats:
+        """Return by how much an offset must change to give the present position the coordinates of a block, (6,)."""
+        control = self.control
+        position = control.without_length(control.machine_position()) - offset.values
+        position[:3] = rotation_matrix(2, -offset.rotation) @ position[:3]
+        if control.axis_offset_active:
+            position -= control.axis_offset
+        change = np.zeros(6)
+        for axis, value in enumerate(self._axis_values(block)):
+            if value is not None:
+                change[axis] = position[axis] - value
+        change[:3] = rotation_matrix(2, offset.rotation) @ change[:3]
+        return change
+
+    def _axis_values(self, block: Block) -> list[float | None]:
+        """Return the axis words of a block in mm and degrees, in the order X Y Z A B C."""
+        values: list[float | None] = []
+        for axis, name in enumerate(ORDER):
+            value = block.take(name)
+            if value is not None and axis < 3:
+                value *= self.control.length_unit
+            elif value is not None and name not in self.control.rotary_names:
+                if value:
+                    self._note(f"{name}: the machine has no such axis", Severity.ERROR)
+                value = None
+            values.append(value)
+        return values
+
+    # Home
 
     def _go_home(self, code: int, block: Block) -> None:
-        """G28 and G30: over the point that the block says to the stored one, all axes or those of the block."""
-        control = self._control
+        """G28 and G30: through the programmed point to the stored one, with all axes or those of the block."""
+        control = self.control
         axes = self._with_rotary_offsets(self._axis_words(block))
-        kind, control.kind = control.kind, RAPID
-        self._count_blocks(1)
+        motion, control.motion = control.motion, RAPID
+        self._counter.count_blocks(1)
         control.move(axes, None)
         names = axes or dict.fromkeys((*"XYZ", *control.rotary_names))
         stored = self._stored_positions[code]
-        scale = control.length_unit
+        unit = control.length_unit
         goal: dict[str, AxisWord] = {
-            name: (stored.get(name, 0.0) / (scale if name in "XYZ" else 1.0), PositionMode.ABSOLUTE) for name in names
+            name: (stored.get(name, 0.0) / (unit if name in "XYZ" else 1.0), PositionMode.ABSOLUTE) for name in names
         }
         control.machine_move(goal, feed_written=False)
-        control.kind = kind
+        control.motion = motion
 
     def _with_rotary_offsets(self, axes: dict[str, AxisWord]) -> dict[str, AxisWord]:
-        """Axis words with the offsets of rotary axes in them."""
-        if not self._control.absolute:
+        """Return axis words with the offsets of rotary axes added."""
+        if not self.control.absolute:
             return axes
-        turned = self._control.rotary_offsets
-        return {name: (word[0] + turned.get(name, 0.0), word[1]) for name, word in axes.items()}
+        offsets = self.control.rotary_offsets
+        return {name: (word[0] + offsets.get(name, 0.0), word[1]) for name, word in axes.items()}

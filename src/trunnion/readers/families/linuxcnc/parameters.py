@@ -1,58 +1,28 @@
-"""Parameters of a LinuxCNC program, and its arithmetic."""
+"""Parameters and arithmetic of LinuxCNC programs."""
 
 import math
 from collections.abc import Callable
 from typing import Final
 
-from trunnion.readers.rs274.expressions import COMMON, Arithmetic, BlockError, Value
+from trunnion.readers.rs274.expressions import COMMON_FUNCTIONS, COMMON_OPERATORS, Arithmetic, BlockError, Value
 
 #: The highest parameter.
 MAX_NUMBER: Final = 5602
 
-#: Parameters of a subprogram's own.
+#: Number of numbered parameters that each subprogram has for itself.
 LOCAL_COUNT: Final = 30
 
-#: Names that a program may have at most.
+#: Named parameters that a program may have.
 MAX_VARIABLES: Final = 50_000
 
-#: Numbers nearer than this are equal.
+#: Comparisons take numbers that differ by less as equal.
 EQUAL: Final = 1e-4
 
 
-def _operate(name: str, a: float, b: float) -> float:
-    match name:
-        case "+":
-            return a + b
-        case "-":
-            return a - b
-        case "*":
-            return a * b
-        case "/":
-            return a / b
-        case "**":
-            return float(a**b)
-        case "MOD":
-            rest = math.fmod(a, b)
-            return rest + abs(b) if rest < 0.0 else rest
-        case "AND":
-            return float(bool(a) and bool(b))
-        case "OR":
-            return float(bool(a) or bool(b))
-        case "XOR":
-            return float(bool(a) != bool(b))
-        case "EQ":
-            return float(abs(a - b) < EQUAL)
-        case "NE":
-            return float(abs(a - b) > EQUAL)
-        case "GT":
-            return float(a > b)
-        case "GE":
-            return float(a >= b)
-        case "LT":
-            return float(a < b)
-        case _:
-            assert name == "LE"
-            return float(a <= b)
+def _modulo(a: float, b: float) -> float:
+    """Return the remainder, never negative."""
+    remainder = math.fmod(a, b)
+    return remainder + abs(b) if remainder < 0.0 else remainder
 
 
 ARITHMETIC: Final = Arithmetic(
@@ -63,16 +33,25 @@ ARITHMETIC: Final = Arithmetic(
         ("*", "/", "MOD"),
         ("**",),
     ),
-    operate=_operate,
-    functions={**COMMON, "FIX": math.floor, "FUP": math.ceil},
+    operators={
+        **COMMON_OPERATORS,
+        "**": lambda a, b: a**b,
+        "MOD": _modulo,
+        "AND": lambda a, b: float(bool(a) and bool(b)),
+        "OR": lambda a, b: float(bool(a) or bool(b)),
+        "XOR": lambda a, b: float(bool(a) != bool(b)),
+        "EQ": lambda a, b: float(abs(a - b) < EQUAL),
+        "NE": lambda a, b: float(abs(a - b) > EQUAL),
+    },
+    functions={**COMMON_FUNCTIONS, "FIX": math.floor, "FUP": math.ceil},
     pairs={"ATAN": lambda y, x: math.degrees(math.atan2(y, x))},
 )
 
 
 class Parameters:
-    """What ``#`` names: numbers, names of a subprogram's own, names with an underscore, and what the control sets.
+    """The parameters of a running program: numbered, named local, named global (with an underscore), and system ones.
 
-    ``system_value`` returns the value of a parameter that the control itself sets, None for one that it does not.
+    system_value   returns a parameter that the control sets, None for one that is not simulated
     """
 
     def __init__(self, system_value: Callable[[int | str], float | None]) -> None:
@@ -83,7 +62,7 @@ class Parameters:
         self._kept: list[dict[int, float]] = []
 
     def value(self, key: int | str) -> Value:
-        """Return a value; a number that nobody set is 0."""
+        """Return the value of a parameter; an unset numbered one is 0."""
         found = self._find(key)
         if found is not None:
             return found
@@ -96,7 +75,7 @@ class Parameters:
         return 0.0
 
     def is_set(self, key: int | str) -> bool:
-        """Whether EXISTS holds."""
+        """Whether a parameter exists (EXISTS)."""
         return self._find(key) is not None
 
     def _find(self, key: int | str) -> float | None:
@@ -120,7 +99,7 @@ class Parameters:
             raise BlockError(f"a program has more than {MAX_VARIABLES} names")
 
     def enter(self, arguments: list[float]) -> None:
-        """Begin a subprogram: #1 to #30 are its own, and so are names without an underscore."""
+        """Start a subprogram, which has #1 to #30 and names without an underscore for itself."""
         self._kept.append({k: self._numbers[k] for k in range(1, LOCAL_COUNT + 1) if k in self._numbers})
         self._local.append({})
         for k in range(1, LOCAL_COUNT + 1):

@@ -1,4 +1,4 @@
-"""Where the O words of a LinuxCNC program lead: its subprograms, branches and loops."""
+"""Targets of the O words in a LinuxCNC program: subprograms, branches and loops."""
 
 import re
 from dataclasses import dataclass, field
@@ -7,10 +7,10 @@ from typing import Final
 
 from trunnion.readers.program.source_text import SourceText
 
-#: How names of programs end.
+#: Endings of program names.
 SUFFIXES: Final = (".NGC", ".NC", "")
 
-#: How deep control structures may stand inside each other.
+#: How deep control structures may nest.
 MAX_NESTING: Final = 64
 
 _O_WORD = re.compile(
@@ -24,11 +24,11 @@ _LOOPS: Final = ("WHILE", "DO", "REPEAT")
 
 @dataclass(slots=True)
 class Structure:
-    """Lines that belong together.
+    """The lines of a subprogram, branch or loop.
 
+    word         keyword that begins it
     begin, end   first and last line
     branches     lines of ELSEIF and ELSE, and of the end
-    word         what begins it
     """
 
     word: str
@@ -39,31 +39,31 @@ class Structure:
 
 @dataclass(slots=True)
 class _JumpTargets:
-    """Subprograms by label and structures by the lines of their words; None before they are first asked for."""
+    """Subprograms by label, and structures by the lines of their keywords; found on first use."""
 
     found: tuple[dict[str, Structure], dict[int, Structure]] | None = None
 
 
 def label_of(text: str) -> str:
-    """Return a label as names are compared: a number without leading zeros, or a name."""
+    """Return a label in normal form: a number without leading zeros, or a name in capitals without blanks."""
     plain = "".join(text.split()).upper()
     return plain if plain.startswith("<") else str(int(plain))
 
 
 class LinuxcncText(SourceText):
-    """A program file with the places where its O words lead."""
+    """A program file with the targets of its O words."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        # Shared by all that run the same text: see ``restarted``.
+        # Shared by the copies that ``restarted`` makes.
         self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole)
 
     def subprogram(self, label: str) -> Structure | None:
-        """Return the lines of a subprogram, None if this file has none of the name."""
+        """Return a subprogram of this file, or None."""
         return self._structures()[0].get(label)
 
     def structure(self, line: int) -> Structure:
-        """Return what the O word of a line belongs to."""
+        """Return the structure that the O word of a line belongs to."""
         try:
             return self._structures()[1][line]
         except KeyError:
@@ -94,8 +94,8 @@ class LinuxcncText(SourceText):
                 top[1].branches.append(line)
                 by_line[line] = top[1]
             elif word.startswith("END") or (word == "WHILE" and top is not None and top[1].word == "DO"):
-                wanted = word.removeprefix("END") if word.startswith("END") else "DO"
-                if top is None or top[1].word != wanted:
+                opening = word.removeprefix("END") if word.startswith("END") else "DO"
+                if top is None or top[1].word != opening:
                     raise self.problem(line, f"has {word} without its beginning")
                 structure = open_.pop()[1]
                 structure.end = line

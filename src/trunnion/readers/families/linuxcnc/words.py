@@ -1,17 +1,19 @@
-"""Every word of LinuxCNC that the reader knows, by what it does; G codes are in tenths."""
+"""The words of LinuxCNC that the reader knows, by their effect; G codes are in tenths."""
 
 from typing import Final
 
 #: Work offsets, in the order of their numbers in G10 and ``#5220``.
 OFFSETS: Final = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 
-#: G codes for the length of the tool: whether it counts.
+MACHINE: Final = 530
+
+#: G codes of the tool length: whether it counts.
 LENGTHS: Final = {430: True, 490: False}
 
-#: G codes that change how the control drives, or what it does with tool lengths besides.
+#: G codes that the path does not depend on.
 WITHOUT_PATH_EFFECT: Final = frozenset({80, 400, 431, 432, 610, 611, 640, 911, 901, 970})
 
-#: G codes that are known and not simulated: text, and whether the path is wrong without it.
+#: G codes that are not simulated: the message, and whether the path is wrong without them.
 NOT_SIMULATED: Final = {
     50: ("a spline, taken as nothing", True),
     51: ("a spline, taken as nothing", True),
@@ -43,16 +45,16 @@ NOT_SIMULATED: Final = {
     960: ("constant surface speed: only the kind of feed is followed", False),
 }
 
-#: G codes whose motion is a straight line here, in force until another one.
+#: Motions that are taken as straight lines.
 TAKEN_AS_LINES: Final = frozenset({330, 382, 383, 384, 385})
 
-#: Rigid tapping: in by the pitch, and by the spindle's turning back out to where it began.
+#: Rigid tapping: in by the pitch, and out to the start with the spindle reversed.
 RIGID_TAP: Final = 331
 
-#: G codes whose block makes no motion here, and whose words are not positions.
+#: G codes whose axis words are no positions: their block makes no motion.
 NO_MOTION: Final = frozenset({431, 432, 50, 51, 52, 53, 62, 63, 700, 710, 711, 712, 720, 721, 722, 760})
 
-#: Words that belong to a code, and that need no look here.
+#: Words that belong to a G code and have no effect here.
 WORDS_OF_CODE: Final = {
     430: "H",
     431: "XYZABCUVW",
@@ -78,7 +80,7 @@ WORDS_OF_CODE: Final = {
     760: "XZPIJKRQHEL",
 }
 
-#: M codes that change how the control drives, and their words.
+#: M codes that the path does not depend on, and their words.
 WITHOUT_PATH_EFFECT_M: Final = {
     48: "",
     49: "",
@@ -95,7 +97,10 @@ WITHOUT_PATH_EFFECT_M: Final = {
     68: "EQ",
 }
 
-#: M codes that are known and not simulated.
+#: Words that belong to other M codes and have no effect here.
+WORDS_OF_M_CODE: Final = {19: "RQP"}
+
+#: M codes that are not simulated: the message.
 NOT_SIMULATED_M: Final = {
     70: "what is in force is not kept for later",
     71: "what is in force is not kept for later",
@@ -105,10 +110,10 @@ NOT_SIMULATED_M: Final = {
     99: "subprograms by M98 are not simulated; O words are",
 }
 
-#: M codes of the user.
+#: User-defined M codes.
 USERS: Final = range(100, 200)
 
-#: Switchable kinematics as the five-axis examples remap them: TCP on, off, and a third one that nobody defined.
+#: Switchable kinematics as the five-axis examples remap them: TCP on, TCP off, and the user's kinematics.
 TCP_ON: Final = 428
 TCP_OFF: Final = 429
 TCP_USER: Final = 430

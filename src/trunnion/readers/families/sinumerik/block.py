@@ -1,4 +1,4 @@
-"""A block, read: its words by what they address. Reading assigns variables; everything else is for the interpreter."""
+"""Blocks of a Sinumerik program: reading sorts their words and assigns variables; the interpreter does the rest."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -27,21 +27,21 @@ from trunnion.readers.families.sinumerik.words import (
     WITHOUT_PATH_EFFECT_VALUES,
 )
 
-#: Larger feeds, in any unit, are slips of the program.
+#: Higher feeds, in any unit, are mistakes of the program.
 MAX_FEED: Final = 1e9
 
-#: Names that stand alone and are handed to the interpreter.
+#: Words without a value that the interpreter executes.
 _MODES: Final = (
     FRAMES | ORIENTATION | WITHOUT_PATH_EFFECT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "TRAFOOF", "TRAORI"})
 )
 
-#: Names with a value that belong to circles and frames.
+#: Words with a value that belong to circles and frames.
 _PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
 
 
 @dataclass(slots=True)
 class Call:
-    """A cycle, message or subprogram with its arguments; texts of arguments that are single names are kept as names."""
+    """A call of a cycle, message or subprogram: the values of its arguments, and their texts."""
 
     name: str
     arguments: list[Value | None] = field(default_factory=list)
@@ -53,9 +53,10 @@ class Call:
 class Block:
     """The words of a block.
 
-    axes     X, Y, Z and rotary axes with their values and how they were said
+    axes     X, Y, Z and rotary axes by name
     vector   A3, B3, C3 by letter
     params   I, J, K, I1, J1, K1, CR, AR, TURN, RPL
+    words    words without a value
     """
 
     axes: dict[str, AxisWord] = field(default_factory=dict)
@@ -86,7 +87,7 @@ class BlockReader:
         self._note = note
 
     def read(self, tokens: tuple[Token, ...], at: int, variables: Variables) -> Block:
-        """Read from a token on; what is not understood is noted, and the rest of the block is left."""
+        """Read from a token on; at a word that is not understood, report it and ignore the rest of the block."""
         block = Block()
         reader = ExpressionReader(tokens, variables, at)
         while (token := reader.token) is not None:
@@ -124,7 +125,7 @@ class BlockReader:
             self._address(reader, block, letter, extension, value, how)
 
     def _extension(self, reader: ExpressionReader) -> str:
-        """Digits between a letter and an equals sign, as in A3= or S2=."""
+        """Read digits between a letter and an equals sign, as in A3= or S2=; returns them, or nothing."""
         token = reader.token
         if (
             token is not None
@@ -152,7 +153,7 @@ class BlockReader:
         variables.set_parameter(number, reader.number())
 
     def _value(self, reader: ExpressionReader) -> tuple[Value, PositionMode]:
-        """Read what follows an address: a number, or = and an expression, maybe inside AC() or its kin."""
+        """Read the value of a word: a number, or = and an expression, which may be in AC() or a similar function."""
         if reader.accept("="):
             how = reader.peek()
             if how in POSITION_MODES and reader.peek(1) == "(":
@@ -187,7 +188,7 @@ class BlockReader:
             case "G", "":
                 block.g.append(_code(number, "G"))
             case "M", _:
-                # M2=3 speaks to spindle 2; only the master spindle is followed.
+                # M2=3 addresses spindle 2; only the master spindle is simulated.
                 code = _code(number, "M")
                 if extension in ("", "0", "1"):
                     block.m.append(code)
@@ -211,7 +212,7 @@ class BlockReader:
             case (("A" | "B" | "C"), "3"):
                 block.vector[letter] = number
             case (("A" | "B" | "C"), ("4" | "5")):
-                pass  # Surface normals serve the radius compensation, which is not simulated.
+                pass  # Surface normals are for radius compensation, which is not simulated.
             case "L", "":
                 digits = reader.tokens[reader.at - 1].text
                 if not digits.isdigit():
@@ -270,7 +271,7 @@ class BlockReader:
             block.calls.append(read_call(reader, name))
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
-        """Read a word that is known but not simulated, with all that belongs to it."""
+        """Read and report a word that is not simulated, with everything that belongs to it."""
         start = reader.at - 1
         if reader.peek() == "(":
             _skip(reader, "(", ")")
@@ -291,7 +292,7 @@ class BlockReader:
 
 
 def read_call(reader: ExpressionReader, name: str) -> Call:
-    """Read the arguments of a call whose name was just read."""
+    """Read the arguments of a call, after its name."""
     if reader.peek() != "(":
         return Call(name)
     active = Call(name)
@@ -311,7 +312,7 @@ def read_call(reader: ExpressionReader, name: str) -> Call:
 
 
 def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
-    """Step over brackets and all they hold."""
+    """Skip brackets and their contents."""
     reader.expect(opening)
     depth = 1
     while depth:
@@ -334,7 +335,7 @@ def _code(number: float, letter: str) -> int:
 
 
 def _text(tokens: Sequence[Token], start: int, end: int | None = None) -> str:
-    """Return tokens as they might have been written, shortened."""
+    """Return the text of tokens, shortened."""
     parts = [f'"{t.text}"' if t.kind is TokenKind.TEXT else t.text for t in tokens[start:end]]
     text = " ".join(parts) if len(parts) < 20 else " ".join(parts[:20]) + " ..."
     return text[:200]

@@ -1,10 +1,10 @@
-"""The virtual control of a Sinumerik: what only it does with motions, planes and the length of the tool.
+"""The virtual control of a Sinumerik: its circles, frames along the tool, swivelled planes and tool length.
 
-The length, if it is known, is what stands in the control's tool offset. Without TRAORI an edge (D1) adds it to the
-slide that stands on the working plane, wherever the tool points; D0 takes it away.
+The tool length, if it is known, is that of the control's tool offset. Without TRAORI an edge (D1) adds it to the slide
+normal to the working plane, wherever the tool points; D0 removes it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from typing import Final
 
@@ -13,41 +13,39 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
-from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs, tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import HoleMotion
-from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 from trunnion.readers.program.settings import reading_of
 from trunnion.readers.scan.letter_blocks import letter_table
 
-#: Kinds of motion besides rapid and lines: G2, G3 and CIP.
+#: Motions in force besides rapid and lines: G2, G3 and CIP.
 CLOCKWISE: Final = 2
-COUNTER: Final = 3
+COUNTER_CLOCKWISE: Final = 3
 THROUGH: Final = 4
 
 
 class SinumerikControl(VirtualControl):
-    """A Sinumerik at work on a machine."""
+    """A Sinumerik on a machine.
+
+    tool_frame  between TOROT or TOFRAME and the words that end them: Z of the frame is along the tool. Settings of the
+                control decide where X and Y point, and whether it is a frame of its own, which TRANS does not delete.
+    """
 
     no_offset = 500
 
-    def __init__(
-        self, machine: Machine, note: Note, file: StepColumnBuilder[int], *, shortest: bool | None = None
-    ) -> None:
+    def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         self._machine_vectors = False
-        #: From TOROT or TOFRAME to what ends them: Z of the frame lies along the tool. Settings say where X and Y lie,
-        #: and whether it is a frame of its own, that no TRANS takes away.
         self.tool_frame = False
-        super().__init__(machine, note, file, shortest=shortest)
-        self.table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
+        super().__init__(machine, note, shortest=shortest)
+        self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
 
     def takes_shortest_path(self, axis: Axis) -> bool:
-        """With TRAORI, but for axes whose values are written as they wind."""
+        """With TRAORI, except for axes whose output has all turns."""
         return self.tcp and axis.output is not AngleOutput.NONE
 
     def _vector_map(self, frame: AffineMap) -> Floats:
@@ -56,20 +54,20 @@ class SinumerikControl(VirtualControl):
     @property
     def _length_offset(self) -> Floats:
         length = np.zeros(3)
-        if self.edge.current > 0:
+        if self.modal.edge.current > 0:
             length[self.plane_axis] = self.machine.tool_length or 0.0
         return length
 
     def set_edge(self, edge: int) -> None:
-        """D word: the offsets of the tool."""
-        if not self.machine.tool_length or (edge > 0) == (self.edge.current > 0):
-            self.edge.set(self.row, edge)
+        """Select the edge (D word) whose offsets hold."""
+        if not self.machine.tool_length or (edge > 0) == (self.modal.edge.current > 0):
+            self.modal.edge.set(self.row, edge)
             return
         with self.frame_change():
-            self.edge.set(self.row, edge)
+            self.modal.edge.set(self.row, edge)
 
     def set_working_plane(self, plane: int) -> None:
-        """G17, G18, G19, by the axis that stands on the plane."""
+        """Select the working plane (G17, G18, G19) by its normal axis."""
         if not self.machine.tool_length or plane == self.plane_axis:
             self.plane_axis = plane
             return
@@ -77,7 +75,7 @@ class SinumerikControl(VirtualControl):
             self.plane_axis = plane
 
     def set_machine_vectors(self, on: bool) -> None:
-        """ORIMKS or ORIWKS."""
+        """Select whether vectors are in the machine frame (ORIMKS) or the workpiece frame (ORIWKS)."""
         self.resolve_rows()
         self._machine_vectors = on
         self._update_maps()
@@ -85,12 +83,12 @@ class SinumerikControl(VirtualControl):
     # Circles
 
     def circle(self, params: Mapping[str, AxisWord], axes: Mapping[str, AxisWord]) -> Circle | None:
-        """The circle that the motion in force makes of a block; None if it makes lines.
+        """Return the circle of a block in the motion in force; None if that is a line.
 
         params   I, J, K, I1, J1, K1, CR, AR, TURN
         axes     as in ``move``
         """
-        if self.kind <= LINEAR:
+        if self.motion <= LINEAR:
             return None
         in_plane = any(name in axes for axis, name in enumerate("XYZ") if axis != self.plane_axis)
         return partial(self._arc, params, in_plane)
@@ -101,7 +99,7 @@ class SinumerikControl(VirtualControl):
             raise arcs.ArcError(f"TURN={turns} is not from 0 to 999")
         if any(abs(value) * self.length_unit > MAX_POSITION for value, _ in params.values()):
             raise arcs.ArcError("a circle with numbers that no machine has")
-        if self.kind != THROUGH:
+        if self.motion != THROUGH:
             return self._plane_arc(params, in_plane, turns, start, end)
         through = end.copy()
         for axis, name in enumerate(("I1", "J1", "K1")):
@@ -113,7 +111,7 @@ class SinumerikControl(VirtualControl):
     def _plane_arc(
         self, params: Mapping[str, AxisWord], in_plane: bool, turns: int, start: Floats, end: Floats
     ) -> arcs.Arc:
-        clockwise = self.kind == CLOCKWISE
+        clockwise = self.motion == CLOCKWISE
         centre = None
         for axis, name in enumerate("IJK"):
             if name not in params:
@@ -145,7 +143,7 @@ class SinumerikControl(VirtualControl):
 
     @cached_property
     def _cycles_along_tool(self) -> bool:
-        """Whether cycles turn the frame as TOROT does while TCP is on: the machine's own do, Siemens' do not."""
+        """Whether cycles turn the frame as TOROT does while TCP is on: Siemens' do not, the machine's may."""
         table = reading_of(self.machine)
         along = table.flag("cycles_along_tool", False)
         table.report_unread_keys()
@@ -153,7 +151,7 @@ class SinumerikControl(VirtualControl):
         return along
 
     def turn_frame(self, word: str) -> None:
-        """TOROT (the zero stays), TOFRAME (it is that of the work offset), and the words that end them."""
+        """TOROT (the zero stays), TOFRAME (the zero becomes that of the work offset), and the words that end them."""
         program = self.program_frame
         if word.endswith("OF"):
             if self.tool_frame:
@@ -171,7 +169,7 @@ class SinumerikControl(VirtualControl):
         self.add_event("frame", word)
 
     def _along_tool(self, zero: Floats) -> AffineMap:
-        """The frame at a zero whose Z lies along the tool, and X in the plane of X and Z of the work offset."""
+        """Return the frame at a zero with Z along the tool and X in the XZ plane of the work offset."""
         self.resolve_rows()
         z = forward(self.machine, self.current_joints[None])[1][0]
         x = np.array([z[2], 0.0, -z[0]])
@@ -179,26 +177,26 @@ class SinumerikControl(VirtualControl):
         x = np.array([1.0, 0.0, 0.0]) if length < 1e-9 else x / length
         return AffineMap(np.column_stack((x, np.cross(z, x), z)), zero)
 
-    def drill(self, steps: list[HoleMotion]) -> None:
-        """A drilling cycle where the tool is; along the tool where the definition says that cycles do so."""
+    def drill(self, motions: Sequence[HoleMotion]) -> None:
+        """Execute a drilling cycle at the present position; along the tool if the machine's definition says so."""
         turns = self.tcp and not (self.tilted or self.tool_frame) and self._cycles_along_tool
         program = self.program_frame
         if turns:
             self.set_program_frame(self._along_tool(program.shift), keep_base=False)
-        if (turns or self.tool_frame) and any(any(step.lateral) for step in steps):
+        if (turns or self.tool_frame) and any(any(motion.lateral) for motion in motions):
             self.note("the cycle lifts off along X and Y of a frame that the control's settings turn", Severity.ERROR)
-        super().drill(steps)
+        super().drill(motions)
         if turns:
             self.set_program_frame(program, keep_base=False)
 
     # CYCLE800
 
     def swivel(self, frame: AffineMap, *, add: bool, direction: float, direct: tuple[float, float] | None) -> None:
-        """CYCLE800: a swivelled plane, and the rotary axes to it.
+        """CYCLE800: swivel the plane, and move the rotary axes to it.
 
-        add         on top of the plane and frames in force, instead of in their place
+        add         define the plane in the plane and frames in force, instead of replacing them
         direction   -1 or 1: the solution with the lower or higher value of the second rotary axis; 0: do not move
-        direct      rotary values that the cycle gave itself; the plane is then the one they make
+        direct      rotary values given in the cycle, which determine the plane
         """
         self.resolve_rows()
         outer = self.frame if add else AffineMap()
@@ -209,14 +207,11 @@ class SinumerikControl(VirtualControl):
         if rotary is None and direction:
             rotary = self._rotary_solution(total.linear[:, 2], direction)
         if rotary is not None:
-            bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND)
-            self.move_axes(
-                Kind.RAPID, self.current_joints[self._slides].copy(), list(rotary), self.default_turn_rules, bits
-            )
+            self.move_axes(Kind.RAPID, self.current_joints[self._slides].copy(), self.rotary_position(rotary))
         self.set_plane(total)
 
     def _rotary_solution(self, normal: Floats, direction: float) -> tuple[float, float] | None:
-        """Rotary values whose tool axis is ``normal``, with the second axis on the side of ``direction``."""
+        """Return rotary values whose tool axis is ``normal``, with the second axis on the side of ``direction``."""
         pairs = tool_orientation.solutions(self.machine, normal, self.current_joints)
         if not pairs:
             self.note("CYCLE800: no rotary position stands the tool on this plane", Severity.ERROR)
@@ -225,8 +220,8 @@ class SinumerikControl(VirtualControl):
         if not inside:
             self.note("CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
             return None
-        wanted = sorted(pairs, key=lambda pair: pair[1], reverse=direction > 0)[0]
-        if wanted not in inside:
+        chosen = sorted(pairs, key=lambda pair: pair[1], reverse=direction > 0)[0]
+        if chosen not in inside:
             self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
-            wanted = inside[0]
-        return tool_orientation.nearest_in_travel(self.machine, wanted, self.current_joints)
+            chosen = inside[0]
+        return tool_orientation.nearest_in_travel(self.machine, chosen, self.current_joints)

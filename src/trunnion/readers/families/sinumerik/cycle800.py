@@ -1,4 +1,4 @@
-"""CYCLE800: its sixteen values, and the plane that they ask for."""
+"""CYCLE800: the tilted plane of its sixteen values."""
 
 import numpy as np
 
@@ -7,15 +7,15 @@ from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
 
-#: Larger values are none that a machine has.
+#: Larger values are mistakes of the program.
 MAX_ARGUMENT = 1e7
 
 
 def rotation_axes(mode: int) -> list[int] | None:
-    """Axes of the three turns of CYCLE800's ``_MODE``, 0 for X; None if it counts angles in another way.
+    """Return the axes of the three rotations of ``_MODE``, 0 for X; None if its angles mean something else.
 
-    Bits 1 and 0 name the axis of the first turn, 3 and 2 of the second, 5 and 4 of the third (01 X, 10 Y, 11 Z);
-    bits 7 and 6 are 00 for turns one after another.
+    Bits 1 and 0 give the axis of the first rotation, 3 and 2 of the second, 5 and 4 of the third (01 X, 10 Y, 11 Z);
+    bits 7 and 6 are 00 for rotations one after another.
     """
     if mode >> 6:
         return None
@@ -49,7 +49,7 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     direct = None
     axes = rotation_axes(int(mode))
     if int(mode) >> 6 == 3:
-        # Values come in the order of the machine's axes as written in the swivel data: first, second.
+        # The values are those of the first and the second rotary axis of the swivel data.
         direct = angles[0], angles[1]
     elif axes is None:
         note(f"CYCLE800 with _MODE {mode:g} is not simulated", Severity.ERROR)

@@ -1,7 +1,7 @@
-"""Drilling cycles as the motions that they make at one hole.
+"""Drilling cycles of a Sinumerik as the motions that they make at one hole.
 
-Heights are positions along the drilling axis, mm, in the frame of the program. The classic parameter lists are read;
-what newer controls append to them (``_GMODE``, ``_DMODE``, ``_AMODE``) is not needed for the motion.
+Heights are positions along the drilling axis, mm, in the frame of the program. Of the parameter lists the classic part
+is read; the parameters of newer controls (``_GMODE``, ``_DMODE``, ``_AMODE``) are not needed for the motions.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,13 +10,13 @@ from typing import Final
 
 from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion
 
-#: How far a chip-breaking peck backs off where the program does not say it, mm.
+#: How far a chip-breaking peck backs off by default, mm.
 CHIP_BREAK: Final = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class Heights:
-    """What all drilling cycles share: return, reference and start plane, and depth."""
+    """The heights of a drilling cycle: retract, reference and start plane, and depth."""
 
     retract: float
     reference: float
@@ -38,21 +38,21 @@ def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotio
     Parameters
     ----------
     name
-        ``CYCLE81`` and its kin; a key of ``CYCLES``.
+        A key of ``CYCLES``.
     arguments
-        As written, None where left out.
+        As written; None for omitted ones.
     rpm
-        Spindle speed in force, for taps that do not state their own.
+        Spindle speed in force, for taps without one of their own.
     """
     heights = _heights(arguments)
-    made = CYCLES[name](arguments, heights, rpm)
-    if any(step.feed is not None and abs(step.feed) > MAX_FEED for step in made):
+    motions = CYCLES[name](arguments, heights, rpm)
+    if any(step.feed is not None and abs(step.feed) > MAX_FEED for step in motions):
         raise CycleExecutionError("has a feed that no machine has")
-    return [HoleMotion(True, heights.start), *made, HoleMotion(True, heights.retract)]
+    return [HoleMotion(True, heights.start), *motions, HoleMotion(True, heights.retract)]
 
 
 def _get(arguments: Arguments, place: int) -> float | None:
-    """Argument by its place in the list, from 1."""
+    """Return an argument by its position in the list, from 1."""
     return arguments[place - 1] if place <= len(arguments) else None
 
 
@@ -69,7 +69,7 @@ def _heights(arguments: Arguments) -> Heights:
     if depth is None and deep is None:
         raise CycleExecutionError("has no depth")
     down = -1.0 if retract >= reference else 1.0
-    # Where both are given, the one relative to the reference plane counts.
+    # If both are given, the depth relative to the reference plane counts.
     if deep:
         depth = reference + down * abs(deep)
     elif depth is None:
@@ -85,7 +85,7 @@ def _drill(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotio
 
 
 def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
-    """CYCLE83: strokes that get shorter, with full retraction (VARI 1) or chip breaking (0)."""
+    """CYCLE83: deep drilling, with full retracts (VARI 1) or chip breaks (0)."""
     first, deep = _get(arguments, 6), _get(arguments, 7)
     sign = heights.sign
     total = abs(heights.depth - heights.reference)
@@ -99,29 +99,29 @@ def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion
     full = _or(arguments, 12) == 1.0
     back = _or(arguments, 15) or CHIP_BREAK
     entry = _or(arguments, 17) or _entry_gap(total)
-    made: list[HoleMotion] = []
+    motions: list[HoleMotion] = []
     depths = peck_depths(total, stroke, _or(arguments, 8), _or(arguments, 14))
     factor = _or(arguments, 11, 1.0)
     for count, depth in enumerate(depths):
         height = heights.reference + sign * depth
         last = count == len(depths) - 1
         if count and full:
-            made.append(HoleMotion(True, heights.start, dwell=again))
+            motions.append(HoleMotion(True, heights.start, dwell=again))
             above = max(depths[count - 1] - entry, 0.0)
-            made.append(HoleMotion(True, heights.reference + sign * above))
+            motions.append(HoleMotion(True, heights.reference + sign * above))
         elif count:
-            made.append(HoleMotion(False, heights.reference + sign * max(depths[count - 1] - back, 0.0)))
+            motions.append(HoleMotion(False, heights.reference + sign * max(depths[count - 1] - back, 0.0)))
         slow = -factor if count == 0 and 0.0 < factor < 1.0 else None
         wait = (_or(arguments, 16) or dwell) if last else dwell
-        made.append(HoleMotion(False, height, feed=slow, dwell=wait))
-    return made
+        motions.append(HoleMotion(False, height, feed=slow, dwell=wait))
+    return motions
 
 
 def peck_depths(total: float, first: float, less: float, least: float) -> list[float]:
-    """Depths, mm below the reference plane, that CYCLE83 drills to one after another.
+    """Return the depths of the pecks of CYCLE83, mm below the reference plane.
 
-    Each stroke is shorter by ``less`` (a factor if negative) but not shorter than ``less`` or ``least``; the last two
-    share what is left in equal parts if they would otherwise leave a thin rest.
+    Each stroke is shorter by ``less`` (a factor if negative), but not shorter than ``less`` or ``least``. The last two
+    strokes are of equal length if the last one would be short.
     """
     if first <= 0.0:
         raise CycleExecutionError("has a first depth above the reference plane")
@@ -150,7 +150,7 @@ def peck_depths(total: float, first: float, less: float, least: float) -> list[f
 
 
 def _entry_gap(total: float) -> float:
-    """How far above the last depth the control goes back at rapid, where the program does not say it."""
+    """Return how far above the last depth the rapid approach ends by default."""
     return 0.6 if total <= 30.0 else min(total / 50.0, 7.0)
 
 
@@ -173,27 +173,27 @@ def _pitch(size: float | None, pitch: float | None, unit: float) -> float:
 
 
 def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
-    """CYCLE84, without a compensating chuck; pecks if VARI and DAM say so."""
+    """CYCLE84: rigid tapping, in pecks if VARI and DAM ask for them."""
     pitch = _pitch(_get(arguments, 8), _get(arguments, 9), _or(arguments, 14))
     down = (_or(arguments, 11) or rpm) * pitch
     up = (_or(arguments, 12) or _or(arguments, 11) or rpm) * pitch
     variant, stroke = _or(arguments, 16), abs(_or(arguments, 17))
     total = abs(heights.depth - heights.reference)
     depths = peck_depths(total, stroke, 0.0, 0.0) if variant and stroke else [total]
-    made: list[HoleMotion] = []
+    motions: list[HoleMotion] = []
     for count, depth in enumerate(depths):
         if count:
             above = depths[count - 1] - (_or(arguments, 18) or CHIP_BREAK)
             back = heights.start if variant == 2.0 else heights.reference + heights.sign * max(above, 0.0)
-            made.append(HoleMotion(False, back, feed=up))
+            motions.append(HoleMotion(False, back, feed=up))
         last = count == len(depths) - 1
         wait = _or(arguments, 6) if last else 0.0
-        made.append(HoleMotion(False, heights.reference + heights.sign * depth, feed=down, dwell=wait))
-    return [*made, HoleMotion(False, heights.start, feed=up)]
+        motions.append(HoleMotion(False, heights.reference + heights.sign * depth, feed=down, dwell=wait))
+    return [*motions, HoleMotion(False, heights.start, feed=up)]
 
 
 def _tap_chuck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
-    """CYCLE840, with a compensating chuck: the feed follows from pitch and spindle, or is the one in force."""
+    """CYCLE840: tapping with a compensating chuck; the feed follows from the pitch, or is the one in force."""
     size, pitch = _get(arguments, 10), _get(arguments, 11)
     feed = rpm * _pitch(size, pitch, _or(arguments, 13)) if size or pitch else None
     return [
@@ -203,7 +203,7 @@ def _tap_chuck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleM
 
 
 def _ream(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
-    """CYCLE85: in at FFR, out at RFF."""
+    """CYCLE85: reaming, in at FFR, out at RFF."""
     down, up = _get(arguments, 7), _get(arguments, 8)
     return [
         HoleMotion(False, heights.depth, feed=down or None, dwell=_or(arguments, 6)),
@@ -212,7 +212,7 @@ def _ream(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion
 
 
 def _bore(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
-    """CYCLE86: spindle oriented at depth, lift-off by RPA, RPO, RPAP, out at rapid, back over the hole."""
+    """CYCLE86: boring; at depth oriented and lifted off by RPA, RPO, RPAP, out at rapid, back over the hole."""
     lateral = (_or(arguments, 8), _or(arguments, 9))
     lifted = heights.depth + _or(arguments, 10)
     return [
@@ -223,16 +223,16 @@ def _bore(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion
 
 
 def _bore_out(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
-    """CYCLE89: out at the feed that went in."""
+    """CYCLE89: boring, out at the feed in force."""
     return [HoleMotion(False, heights.depth, dwell=_or(arguments, 6)), HoleMotion(False, heights.start)]
 
 
 def _stop_and_out(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
-    """CYCLE87: spindle and program stop at depth; what stands in the dwell's place is the spindle's sense."""
+    """CYCLE87: spindle and program stop at depth; the argument in the place of the dwell is the spindle's sense."""
     return [HoleMotion(False, heights.depth)]
 
 
-#: Cycles by name.
+#: The drilling cycles by name.
 CYCLES: Final[dict[str, Callable[[Arguments, Heights, float], list[HoleMotion]]]] = {
     "CYCLE81": _drill,
     "CYCLE82": _drill,

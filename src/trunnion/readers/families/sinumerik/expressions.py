@@ -1,7 +1,7 @@
-"""Arithmetic of the control: numbers, texts, comparisons, functions, R parameters and variables.
+"""Expressions of a Sinumerik: numbers, texts, comparisons, functions, R parameters and variables.
 
-Expressions are worked out while they are read, by recursive descent. How deep they may nest is limited, so that no
-program can exhaust the stack of its reader. The order of operations is the control's: comparisons bind least of all.
+Expressions are evaluated while they are read, by recursive descent. Their nesting is limited, so that no program can
+exhaust the stack. The precedence of operators is the control's: comparisons come last.
 """
 
 import math
@@ -15,19 +15,19 @@ Value = float | str
 #: How deep parentheses and signs may nest.
 MAX_NESTING: Final = 40
 
-#: The longest text that concatenation may make.
+#: The longest text that a concatenation may give.
 MAX_TEXT_LENGTH: Final = 1000
 
-#: Larger numbers are none that a machine could mean.
+#: Larger numbers are mistakes of the program.
 MAX_VALUE: Final = 1e300
 
 
 class ExpressionError(Exception):
-    """What is wrong with an expression, in words."""
+    """The reason why an expression has no value."""
 
 
 class Names(Protocol):
-    """Where an expression finds its variables."""
+    """Where expressions look up variables."""
 
     def variable(self, name: str, index: tuple[int, ...]) -> Value:
         """Return the value of a variable, or raise ExpressionError."""
@@ -38,7 +38,7 @@ class Names(Protocol):
         ...
 
 
-#: Binary operators by how tightly they bind, loosest first.
+#: Binary operators by precedence, lowest first.
 _LEVELS: Final[tuple[frozenset[str], ...]] = (
     frozenset({"==", "<>", "<", ">", "<=", ">="}),
     frozenset({"<<"}),
@@ -52,12 +52,12 @@ _LEVELS: Final[tuple[frozenset[str], ...]] = (
     frozenset({"*", "/", "DIV", "MOD"}),
 )
 
-#: Names that are operators and so never variables.
+#: Names of operators, which are no variables.
 OPERATORS: Final = frozenset({"DIV", "MOD", "AND", "OR", "XOR", "NOT", "B_AND", "B_OR", "B_XOR", "B_NOT"})
 
 
 def _round(value: float) -> float:
-    """Round halves away from zero, as the control does."""
+    """Round to a whole number; halves away from zero, as the control does."""
     return math.copysign(math.floor(abs(value) + 0.5), value)
 
 
@@ -65,7 +65,7 @@ def _atan2(y: float, x: float) -> float:
     return math.degrees(math.atan2(y, x))
 
 
-#: Functions by name: how many numbers they take, and what they do. Angles in degrees.
+#: Functions by name: the number of arguments, and the function; angles in degrees.
 FUNCTIONS: Final[dict[str, tuple[int, Callable[..., float]]]] = {
     "SIN": (1, lambda a: math.sin(math.radians(a))),
     "COS": (1, lambda a: math.cos(math.radians(a))),
@@ -88,7 +88,7 @@ FUNCTIONS: Final[dict[str, tuple[int, Callable[..., float]]]] = {
 
 
 class ExpressionReader:
-    """A place in a list of tokens, and how to go on from there."""
+    """Reads tokens from a position on, and evaluates expressions."""
 
     def __init__(self, tokens: Sequence[Token], names: Names, at: int = 0) -> None:
         self.tokens = tokens
@@ -98,38 +98,38 @@ class ExpressionReader:
 
     @property
     def token(self) -> Token | None:
-        """The token that comes next, None at the end."""
+        """The next token, None at the end."""
         return self.tokens[self.at] if self.at < len(self.tokens) else None
 
     def peek(self, ahead: int = 0) -> str:
-        """Text of a sign, name or letter ahead; empty for anything else."""
+        """Return the text of a sign, name or letter ahead; empty for anything else."""
         at = self.at + ahead
         if at < len(self.tokens) and self.tokens[at].kind in (TokenKind.SIGN, TokenKind.NAME, TokenKind.LETTER):
             return self.tokens[at].text
         return ""
 
     def accept(self, text: str) -> bool:
-        """Step over a sign or name if it comes next."""
+        """Read a sign or name if it comes next."""
         if self.peek() == text:
             self.at += 1
             return True
         return False
 
     def expect(self, text: str) -> None:
-        """Step over a sign that must come next."""
+        """Read a sign that must come next."""
         if not self.accept(text):
             found = self.token
             raise ExpressionError(f"expected {text}, found {found.text if found else 'the end of the block'}")
 
     def number(self) -> float:
-        """Read an expression that must be a number."""
+        """Read an expression whose value must be a number."""
         value = self.value()
         if isinstance(value, str):
             raise ExpressionError(f'"{value[:40]}" is a text where a number must stand')
         return value
 
     def integer(self) -> int:
-        """Read an expression that must be a whole number of a sensible size."""
+        """Read an expression whose value must be a whole number."""
         return whole(self.number())
 
     def value(self) -> Value:
@@ -137,7 +137,7 @@ class ExpressionReader:
         return self._binary(0)
 
     def arguments(self) -> list[Value | None]:
-        """Read ``(a, , b)``; values left out are None."""
+        """Read arguments as in ``(a, , b)``; omitted ones are None."""
         values: list[Value | None] = []
         self.expect("(")
         if self.accept(")"):
@@ -149,7 +149,7 @@ class ExpressionReader:
             self.expect(",")
 
     def index(self) -> tuple[int, ...]:
-        """Read ``[i]`` or ``[i, j]`` if it comes next."""
+        """Read an index as in ``[i]`` or ``[i, j]`` if it comes next."""
         if not self.accept("["):
             return ()
         found = [self.integer()]
@@ -229,7 +229,7 @@ class ExpressionReader:
 
 
 def whole(value: float) -> int:
-    """Return a number as a whole one, as indices and counters need it."""
+    """Return a number without its decimals, for indices and counters."""
     if not abs(value) < 1e15:
         raise ExpressionError(f"{value:g} is no sensible whole number")
     return int(value)

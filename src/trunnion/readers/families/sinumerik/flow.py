@@ -1,6 +1,6 @@
-"""Where a program goes on: conditions, loops, jumps, and the definitions that stand between them.
+"""Control flow of a Sinumerik program: conditions, loops, jumps, and definitions of variables.
 
-Nothing is kept of a loop but its lines: an end goes back to its beginning, a condition is worked out again each time.
+Of a loop only its lines are known: its end jumps back to its beginning, which evaluates the condition again.
 """
 
 import re
@@ -21,7 +21,7 @@ from trunnion.readers.program.interpreter import ProgramEnd
 
 @dataclass(slots=True)
 class ActiveProgram(interpreter.ActiveProgram):
-    """A program or subprogram being executed, and the cycle that is modal in it."""
+    """A program or subprogram that is being executed, and its modal cycle or subprogram (MCALL)."""
 
     source: SinumerikText
     variables: Variables = field(default_factory=Variables)
@@ -32,7 +32,7 @@ Handler = Callable[[ExpressionReader, ActiveProgram, int], None]
 
 
 class Flow:
-    """Executes the words of flow; each handler stands behind its word, at the line that it is given."""
+    """Executes the keywords of control flow; a handler gets a reader at the token after the keyword, and the line."""
 
     def __init__(self, note: Note) -> None:
         self._note = note
@@ -57,7 +57,7 @@ class Flow:
         }
 
     def _paired(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        """See that the word has its other half, and go on."""
+        """Check that the keyword has its counterpart, and continue."""
         active.source.partner(line)
 
     def _ignore(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
@@ -139,7 +139,7 @@ class Flow:
         active.source.jump(begin + 1 if value <= last else line + 1)
 
     def _loop_head(self, active: ActiveProgram, begin: int) -> ExpressionReader:
-        """Return a reader at the variable of the FOR block at a line."""
+        """Return a reader at the loop variable of the FOR block of a line."""
         here = active.source.line
         active.source.jump(begin)
         statement, _ = split_comment(active.source.next_line())
@@ -181,7 +181,7 @@ class Flow:
         self._goto_from(reader, active, line)
 
     def _goto_from(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        """Jump as the word says that comes next."""
+        """Execute the jump that comes next."""
         word = reader.peek()
         reader.at += 1
         active.source.load()
@@ -256,7 +256,7 @@ class Flow:
         reader.at += 1
         number = reader.token
         if name == "R" and number is not None and number.kind is TokenKind.NUMBER:
-            # Some programs declare R parameters, which need none.
+            # R parameters need no declaration, but some programs have one.
             reader.at += 1
             value = reader.number() if reader.accept("=") else 0.0
             active.variables.set_parameter(int(min(number.value, 1e6)), value)
@@ -279,7 +279,7 @@ class Flow:
                 active.variables.assign(name, (), given)
 
     def _proc(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        """Give the arguments of the call to the names of the PROC line."""
+        """Define the parameters of the PROC line with the arguments of the call."""
         handed = active.variables.arguments
         reader.at += 1
         if not reader.accept("("):

@@ -1,4 +1,4 @@
-"""Frame statements: TRANS, ROT, SCALE and MIRROR, as affine maps."""
+"""Frame statements TRANS, ROT, SCALE and MIRROR as affine maps."""
 
 from collections.abc import Mapping
 
@@ -8,14 +8,14 @@ from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 
 
 def frame_of_statement(word: str, values: Mapping[str, float], plane: int) -> AffineMap:
-    """Return the frame of one statement; ``word`` without its leading A.
+    """Return the frame of a statement; ``word`` without the A of additive statements.
 
     Parameters
     ----------
     values
         Words of the block: X, Y, Z (mm, degrees or factors) and RPL (degrees).
     plane
-        Axis that stands on the working plane: 2 for G17.
+        Axis normal to the working plane: 2 for G17.
     """
     x, y, z = (values.get(letter) for letter in "XYZ")
     match word:
@@ -23,7 +23,7 @@ def frame_of_statement(word: str, values: Mapping[str, float], plane: int) -> Af
             return AffineMap(np.eye(3), np.array([x or 0.0, y or 0.0, z or 0.0]))
         case "ROT":
             linear = np.eye(3)
-            # Several angles in one block: first about Z, then about the new Y, then about the new X.
+            # Several angles in one block rotate first about Z, then about the new Y, then about the new X.
             for axis, angle in ((2, z), (1, y), (0, x)):
                 if angle is not None:
                     linear = linear @ rotation_matrix(axis, angle)

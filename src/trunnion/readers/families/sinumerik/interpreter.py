@@ -1,7 +1,6 @@
-"""Sinumerik programs, block by block: what each one says goes to the virtual control, and where it goes on."""
+"""Interpreter of Sinumerik programs."""
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -12,13 +11,14 @@ from trunnion.readers.control.hole_motion import CycleExecutionError, finite
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.sinumerik import cycles
-from trunnion.readers.families.sinumerik.block import Block, BlockReader, Call, read_call
-from trunnion.readers.families.sinumerik.control import CLOCKWISE, COUNTER, THROUGH, SinumerikControl
+from trunnion.readers.families.sinumerik.block import Block, BlockReader, Call
+from trunnion.readers.families.sinumerik.calls import CallInterpreter
+from trunnion.readers.families.sinumerik.control import CLOCKWISE, COUNTER_CLOCKWISE, THROUGH, SinumerikControl
 from trunnion.readers.families.sinumerik.cycle800 import swivel
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader, Value
-from trunnion.readers.families.sinumerik.flow import ActiveProgram, Flow
+from trunnion.readers.families.sinumerik.flow import ActiveProgram
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement
-from trunnion.readers.families.sinumerik.text import SUFFIXES, SinumerikText
+from trunnion.readers.families.sinumerik.text import SinumerikText
 from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Token, TokenKind, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
@@ -44,122 +44,101 @@ from trunnion.readers.families.sinumerik.words import (
     TOOL_FRAMES,
     WITHOUT_PATH_EFFECT,
 )
-from trunnion.readers.program.interpreter import DEFAULT_STEP_LIMIT, Interpreter, ProgramEnd
-from trunnion.readers.program.source_text import SourceText, Subprograms
-from trunnion.readers.scan.letter_blocks import scan_blocks
+from trunnion.readers.program.interpreter import ProgramEnd
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
+from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.scan.letter_blocks import read_blocks
 
-#: Names with arguments that the interpreter knows; all others are subprograms.
+#: Names with arguments that are no subprograms.
 _BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SETAL"})
 
-#: Whether a line may be plain: a look at its beginning saves starting the kernel in vain.
+#: G words of threads, which are taken as lines, and of the dwell.
+_THREADS: Final = (33, 63, 331, 332)
+_DWELL: Final = 4
+
+#: Beginnings of lines that may be plain blocks, so that a scan is worth starting.
 _PLAIN_START = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
 _PREFIX_LENGTH: Final = 48
 
 
-class SinumerikInterpreter(Interpreter[ActiveProgram]):
+class SinumerikInterpreter(CallInterpreter):
     """Runs one Sinumerik program on one machine."""
 
-    source_type = SinumerikText
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
+        self._block_reader = BlockReader(self.control.rotary_names, self._note)
+        self._flow = self._flow_handlers()
 
-    def __init__(
-        self,
-        path: Path,
-        machine: Machine,
-        *,
-        subprograms: Sequence[Path] = (),
-        step_limit: int = DEFAULT_STEP_LIMIT,
-        skip: bool = False,
-        shortest: bool | None = None,
-    ) -> None:
-        super().__init__(path, machine, Subprograms(subprograms, SUFFIXES, "_N_"), step_limit=step_limit, skip=skip)
-        self._control = SinumerikControl(machine, self._note, self._file, shortest=shortest)
-        self._reader = BlockReader(self._control.rotary_names, self._note)
-        self._flow = {
-            **Flow(self._note).handlers,
-            "RET": self._return,
-            "MCALL": self._mcall,
-            "EXTCALL": self._extcall,
-            "CALL": self._extcall,
-        }
+    def _make_control(self) -> SinumerikControl:
+        return SinumerikControl(self._machine, self._note, shortest=self._options.shortest)
 
-    @property
-    def control(self) -> SinumerikControl:
-        """The virtual control."""
-        return self._control
+    def _main_program(self, source: SourceText) -> ActiveProgram:
+        assert isinstance(source, SinumerikText)
+        return ActiveProgram(source, 0, variables=Variables())
 
-    def _main_program(self, text: SourceText) -> ActiveProgram:
-        assert isinstance(text, SinumerikText)
-        return ActiveProgram(text, 0, variables=Variables())
-
-    def _may_scan(self, text: SourceText) -> bool:
-        active = self._stack[-1]
-        if not self._control.absolute or active.modal is not None or self._control.tool_frame:
+    def _may_scan(self, source: SourceText) -> bool:
+        if not self.control.absolute or self._stack[-1].modal is not None or self.control.tool_frame:
             return False
-        begin = text.buffer[text.position : text.position + _PREFIX_LENGTH].tobytes()
-        return _PLAIN_START.match(begin) is not None
+        beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH]
+        return _PLAIN_START.match(beginning.tobytes()) is not None
 
-    def _scan_blocks(self, text: SourceText) -> None:
-        control = self._control
-        scan_blocks(
-            text.buffer,
-            len(text.buffer),
-            control.table,
+    def _read_blocks(self, source: SourceText, limit: int) -> tuple[int, int]:
+        control = self.control
+        return read_blocks(
+            source.buffer,
+            source.position,
+            limit,
+            control.letter_table,
             control.tip_programmed,
-            control.length_unit,
-            control.feed_unit,
-            control.default_turn_rules,
-            control.position_map,
-            control.vector_map,
-            control.counters,
-            control.commanded,
-            control.scan_target(),
-            control.scan_records,
+            control.motion,
+            control.words,
         )
 
+    # Lines
+
     def _execute_line(self, active: ActiveProgram, line: int, raw: str) -> None:
-        """Execute a line that is not plain."""
-        control = self._control
-        raw = raw.rstrip("\r")
-        words, comment = split_comment(raw)
+        words, comment = split_comment(raw.rstrip("\r"))
         stripped = words.strip()
-        if not stripped or stripped.startswith("%"):
+        skipped = stripped.startswith("/") and self._options.skip
+        if not stripped or stripped.startswith("%") or (skipped and len(words) <= MAX_LENGTH):
             self._record_comment(line, comment)
             return
         if len(words) > MAX_LENGTH:
             self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
             return
         tokens = tokenize(words)
+        at = self._read_line_start(tokens)
+        try:
+            if at < len(tokens):
+                self._execute_statement(active, line, tokens, at)
+        finally:
+            self._record_comment(line, comment)
+
+    def _read_line_start(self, tokens: tuple[Token, ...]) -> int:
+        """Read block skip, block number and labels; returns the index of the token after them."""
         at = 0
-        if stripped.startswith("/"):
-            if self._skip:
-                self._record_comment(line, comment)
-                return
-            at = 1
+        if tokens[0].kind is TokenKind.SIGN and tokens[0].text == "/":
             level = tokens[1] if len(tokens) > 1 else None
-            if (
+            has_level = (
                 level is not None
                 and level.kind is TokenKind.NUMBER
                 and len(level.text) == 1
                 and level.start == tokens[0].end
-            ):
-                at = 2
+            )
+            at = 2 if has_level else 1
         if len(tokens) > at + 1 and tokens[at].text == "N" and tokens[at + 1].text.isdigit():
             number = tokens[at + 1].value
-            control.block_number = int(number) if number < 1e15 else -1
+            self.control.block_number = int(number) if number < 1e15 else -1
             at += 2
         while len(tokens) > at + 1 and tokens[at].kind is TokenKind.NAME and tokens[at + 1].text == ":":
             at += 2
-        try:
-            if at < len(tokens):
-                self._statement(active, line, tokens, at)
-        finally:
-            self._record_comment(line, comment)
+        return at
 
-    def _statement(self, active: ActiveProgram, line: int, tokens: tuple[Token, ...], at: int) -> None:
+    def _execute_statement(self, active: ActiveProgram, line: int, tokens: tuple[Token, ...], at: int) -> None:
         first = tokens[at]
         flow = self._flow.get(first.text) if first.kind is TokenKind.NAME else None
         if flow is None:
-            self._block(active, self._reader.read(tokens, at, active.variables))
+            self._execute_block(active, self._block_reader.read(tokens, at, active.variables))
             return
         reader = ExpressionReader(tokens, active.variables, at + 1)
         try:
@@ -167,75 +146,80 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
         except ExpressionError as error:
             self._note(f"not understood: {first.text}: {error}", Severity.ERROR)
 
-    # Words
+    # Blocks
 
-    def _block(self, active: ActiveProgram, block: Block) -> None:
-        """Carry out the words of a block, in the order in which the control does."""
-        control = self._control
-        machine_frame = "SUPA" in block.words
-        silent = False
-        dwell = False
+    def _execute_block(self, active: ActiveProgram, block: Block) -> None:
+        """Execute the words of a block in the order of the control."""
         for code in block.g:
-            machine_frame |= code in G_MACHINE
-            silent |= code in G_NO_MOTION
-            dwell |= code == 4
             self._g_code(code)
-        frame = [word for word in block.words if word in FRAMES]
         for word in block.words:
             self._word(word, block)
-        if dwell:
+        if _DWELL in block.g:
             self._dwell(block)
             return
+        self._feed_speed_and_tool(block)
+        for code in block.m:
+            if code not in M_AFTER_MOTION:
+                self._m_code(code)
+        for value in block.h:
+            self.control.add_event("h", value)
+        calls = block.calls
+        if self._execute_motion(block) and active.modal is not None:
+            calls = [active.modal, *calls]
+        for call in calls:
+            if call.name in _BUILT_IN:
+                self._call_built_in(call)
+        for code in block.m:
+            if code in M_AFTER_MOTION:
+                self._m_code(code)
+        self._call_one([call for call in calls if call.name not in _BUILT_IN])
+
+    def _feed_speed_and_tool(self, block: Block) -> None:
+        control = self.control
         if block.feed is not None:
-            control.commanded[3] = block.feed * control.feed_unit
+            control.programmed_feed = block.feed * control.feed_unit
         if block.speed is not None and not G_LIMITS.intersection(block.g):
-            control.rpm.set(control.row, abs(block.speed))
+            control.modal.rpm.set(control.row, abs(block.speed))
             control.add_event("speed", abs(block.speed))
         if block.tool is not None:
             control.select_tool(block.tool)
         if block.edge is not None:
             control.set_edge(block.edge)
-        late = [code for code in block.m if code in M_AFTER_MOTION]
-        for code in block.m:
-            if code not in late:
-                self._m_code(code)
-        for value in block.h:
-            control.add_event("h", value)
-        calls = block.calls
-        if frame:
-            self._frame(frame, block)
-        elif silent:
-            pass
-        elif block.axes or block.vector or (block.params and control.kind > LINEAR):
-            if {"I", "J", "K"} & block.params.keys() and control.kind <= LINEAR:
-                self._note("I, J and K have no meaning for a straight line", Severity.WARNING)
-            if block.vector and not control.tip_programmed:
-                self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.WARNING)
-            if control.tool_frame and {"X", "Y"} & block.axes.keys():
-                self._note(
-                    "X and Y before TOROTOF point where the control's settings have them: not known", Severity.ERROR
-                )
-            control.move(
-                block.axes,
-                block.tool_axis,
-                circle=control.circle(block.params, block.axes),
-                machine_frame=machine_frame,
-                feed_written=block.feed is not None,
-            )
-            calls = [*([active.modal] if active.modal else []), *calls]
-        for call in calls:
-            if call.name in _BUILT_IN:
-                self._call(call)
-        for code in late:
-            self._m_code(code)
-        self._enter_one([call for call in calls if call.name not in _BUILT_IN])
+
+    def _execute_motion(self, block: Block) -> bool:
+        """Execute the frame statement or the motion of a block; returns whether it was a motion."""
+        control = self.control
+        frame_words = [word for word in block.words if word in FRAMES]
+        if frame_words:
+            self._frame(frame_words, block)
+            return False
+        has_motion = block.axes or block.vector or (block.params and control.motion > LINEAR)
+        if not has_motion or G_NO_MOTION.intersection(block.g):
+            return False
+        if {"I", "J", "K"} & block.params.keys() and control.motion <= LINEAR:
+            self._note("I, J and K have no meaning for a straight line", Severity.WARNING)
+        if block.vector and not control.tip_programmed:
+            self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.WARNING)
+        if control.tool_frame and {"X", "Y"} & block.axes.keys():
+            text = "X and Y before TOROTOF point where the control's settings have them: not known"
+            self._note(text, Severity.ERROR)
+        control.move(
+            block.axes,
+            block.tool_axis,
+            circle=control.circle(block.params, block.axes),
+            machine_frame="SUPA" in block.words or bool(G_MACHINE.intersection(block.g)),
+            feed_written=block.feed is not None,
+        )
+        return True
+
+    # Words
 
     def _g_code(self, code: int) -> None:
-        control = self._control
+        control = self.control
         if code in G_RADIUS_COMPENSATION:
-            control.compensation.set(control.row, G_RADIUS_COMPENSATION[code])
-        if code in (RAPID, LINEAR, CLOCKWISE, COUNTER):
-            control.kind = code
+            control.modal.compensation.set(control.row, G_RADIUS_COMPENSATION[code])
+        if code in (RAPID, LINEAR, CLOCKWISE, COUNTER_CLOCKWISE):
+            control.motion = code
         elif code in G_PLANES:
             control.set_working_plane("XYZ".index(G_PLANES[code]))
         elif code in G_UNITS:
@@ -243,26 +227,23 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
         elif code in (90, 91):
             control.absolute = code == 90
         elif code in G_FEEDS:
-            control.feed_mode.set(control.row, G_FEEDS[code])
+            control.modal.feed_mode.set(control.row, G_FEEDS[code])
             if code in G_SURFACE:
                 self._note(f"G{code}: constant surface speed: only the kind of feed is followed", Severity.WARNING)
         elif code in G_OFFSETS:
             control.set_offset(code, f"G{code}")
         elif code in G_NOT_SIMULATED:
-            text, grave = G_NOT_SIMULATED[code]
-            self._note(f"G{code}: {text}", Severity.ERROR if grave else Severity.WARNING)
-            if code in (33, 63, 331, 332):
-                control.kind = LINEAR
-        elif (
-            code not in G_WITHOUT_PATH_EFFECT
-            and code not in G_RADIUS_COMPENSATION
-            and code not in G_MACHINE
-            and code != 4
+            text, changes_path = G_NOT_SIMULATED[code]
+            self._note(f"G{code}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
+            if code in _THREADS:
+                control.motion = LINEAR
+        elif not (
+            code in G_WITHOUT_PATH_EFFECT or code in G_RADIUS_COMPENSATION or code in G_MACHINE or code == _DWELL
         ):
             self._note(f"unknown word G{code}", Severity.ERROR)
 
     def _word(self, word: str, block: Block) -> None:
-        control = self._control
+        control = self.control
         match word:
             case "TRAORI":
                 if block.traori not in (1.0, 2.0):
@@ -271,7 +252,7 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             case "TRAFOOF":
                 control.set_tcp(False)
             case "CIP":
-                control.kind = THROUGH
+                control.motion = THROUGH
             case "ORIAXES":
                 control.set_orientation(Orientation.ANGLES)
             case "ORIVECT" | "ORIPLANE":
@@ -283,23 +264,23 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             case "SPOS":
                 control.add_event("spindle", "oriented")
             case _:
-                # Frames come after this, SUPA before; the rest drives, and leaves the path alone.
+                # Frames and SUPA belong to the motion; the path does not depend on the others.
                 assert word in FRAMES or word in WITHOUT_PATH_EFFECT or word == "SUPA" or word.startswith("ORI")
 
     def _dwell(self, block: Block) -> None:
         if block.feed is not None:
-            self._control.add_event("dwell", block.feed)
+            self.control.add_event("dwell", block.feed)
         elif block.speed is not None:
-            self._control.add_event("dwell", -block.speed)
+            self.control.add_event("dwell", -block.speed)
         else:
             self._note("G4 without a time", Severity.WARNING)
         if block.axes:
             self._note("axis words beside G4 are not executed", Severity.ERROR)
 
     def _m_code(self, code: int) -> None:
-        control = self._control
+        control = self.control
         if code in M_SPINDLE:
-            control.spindle.set(control.row, M_SPINDLE[code])
+            control.modal.spindle.set(control.row, M_SPINDLE[code])
         if code in M_EVENTS:
             control.add_event(*M_EVENTS[code])
         elif code == M_CHANGE:
@@ -313,32 +294,32 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             control.add_event("m", float(code))
 
     def _frame(self, words: list[str], block: Block) -> None:
-        control = self._control
+        control = self.control
         if len(words) > 1:
             self._note("several frame words in one block: the last one counts", Severity.ERROR)
         word = words[-1]
-        adds = word.startswith("A")
-        base = word.removeprefix("A")
+        additive = word.startswith("A")
+        statement = word.removeprefix("A")
         values: dict[str, float] = {}
         for name, (value, _) in {**block.axes, **block.params}.items():
             if abs(value) * control.length_unit > MAX_POSITION:
                 self._note(f"{word}: {name} is larger than any machine: the frame is not used", Severity.ERROR)
                 return
             if name in ("X", "Y", "Z"):
-                values[name] = value * control.length_unit if base == "TRANS" else value
+                values[name] = value * control.length_unit if statement == "TRANS" else value
             elif name == "RPL":
                 values[name] = value
             else:
                 self._note(f"{word}: {name} is not simulated", Severity.ERROR)
-        frame = frame_of_statement(base, values, control.plane_axis)
-        control.set_program_frame(control.program_frame.compose(frame) if adds else frame)
-        control.add_event("frame", "" if not adds and not values else word)
+        frame = frame_of_statement(statement, values, control.plane_axis)
+        control.set_program_frame(control.program_frame.compose(frame) if additive else frame)
+        control.add_event("frame", "" if not additive and not values else word)
 
-    # Cycles and calls
+    # Cycles and messages
 
-    def _call(self, call: Call) -> None:
-        """Carry out a cycle or a message."""
-        control = self._control
+    def _call_built_in(self, call: Call) -> None:
+        """Execute a cycle or a message."""
+        control = self.control
         name = call.name
         if name in cycles.CYCLES:
             self._drill(call)
@@ -357,77 +338,18 @@ class SinumerikInterpreter(Interpreter[ActiveProgram]):
             assert name == "SETAL"
             control.add_event("message", f"SETAL({', '.join(call.argument_texts)})")
 
-    def _enter_one(self, calls: Sequence[Call]) -> None:
-        """Call the subprogram of a block, which goes on only after all that the block says."""
-        if len(calls) > 1:
-            self._note("several subprograms in one block: only the first is executed", Severity.ERROR)
-        for call in calls[:1]:
-            self._enter_subprogram(call.name, call)
-
     def _drill(self, call: Call) -> None:
-        control = self._control
         try:
-            numbers = [finite(self._plain_number(value)) for value in call.arguments]
-            steps = cycles.cycle_motions(call.name, numbers, float(control.rpm.current))
+            numbers = [finite(_number(value)) for value in call.arguments]
+            motions = cycles.cycle_motions(call.name, numbers, float(self.control.modal.rpm.current))
         except CycleExecutionError as error:
             self._note(f"{call.name} {error}: it is not executed", Severity.ERROR)
             return
-        self._count_blocks(len(steps))
-        control.drill(steps)
+        self._counter.count_blocks(len(motions))
+        self.control.drill(motions)
 
-    @staticmethod
-    def _plain_number(value: Value | None) -> float | None:
-        if isinstance(value, str):
-            raise CycleExecutionError("has a text where a number must stand")
-        return value
 
-    def _enter_subprogram(self, name: str, call: Call) -> None:
-        """Call a subprogram, one of the files that were named."""
-        path = self._subprograms.find(name)
-        if path is None:
-            self._note(
-                f"unknown word or missing subprogram {name[:80]}: it is not executed; name its file, if it is one",
-                Severity.ERROR,
-            )
-            return
-        if call.repeats < 1:
-            return
-        self._check_depth()
-        variables = Variables(self._stack[-1].variables)
-        text, file = self._open_subprogram(path)
-        assert isinstance(text, SinumerikText)
-        self._stack.append(ActiveProgram(text, file, call.repeats, variables=variables))
-        self._bind(call)
-
-    def _bind(self, call: Call) -> None:
-        """Hand arguments to the PROC line, which reads them when it is executed."""
-        self._stack[-1].variables.pass_arguments(call.arguments)
-
-    def _return(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        self._leave_program()
-
-    def _mcall(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        token = reader.token
-        if token is None:
-            active.modal = None
-            return
-        if token.kind is TokenKind.LETTER and token.text == "L":
-            reader.at += 1
-            number = reader.token
-            if number is None or not number.text.isdigit():
-                raise ExpressionError("a subprogram has a number")
-            active.modal = Call(f"L{number.text}")
-            return
-        if token.kind is not TokenKind.NAME:
-            raise ExpressionError("a name must follow")
-        reader.at += 1
-        active.modal = read_call(reader, token.text)
-
-    def _extcall(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        inside = reader.accept("(")
-        value = reader.value()
-        if inside:
-            reader.expect(")")
-        if not isinstance(value, str):
-            raise ExpressionError("takes the name of a program")
-        self._enter_subprogram(value, Call(value))
+def _number(value: Value | None) -> float | None:
+    if isinstance(value, str):
+        raise CycleExecutionError("has a text where a number must stand")
+    return value

@@ -1,4 +1,4 @@
-"""Where the jumps of a Sinumerik program lead: its labels, block numbers and control structures."""
+"""Targets of the jumps in a Sinumerik program: labels, block numbers and control structures."""
 
 import re
 from bisect import bisect_left, bisect_right
@@ -8,7 +8,7 @@ from typing import Final
 
 from trunnion.readers.program.source_text import SourceText
 
-# Blanks are matched in one place each: two runs of them side by side would take quadratic time on a line of blanks.
+# No two runs of blanks follow each other: matching a line of blanks would take quadratic time.
 _START = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[0-9]+[ \t]*)?"
 _LABEL = re.compile(_START + rb"([A-Z_][A-Z_][A-Z0-9_]*)[ \t]*:(?!=)", re.IGNORECASE | re.MULTILINE)
 _NUMBER = re.compile(rb"^[ \t]*(?:/[0-9]?[ \t]*)?N([0-9]{1,15})", re.IGNORECASE | re.MULTILINE)
@@ -19,20 +19,20 @@ _STRUCTURE = re.compile(
 )
 _JUMPS = re.compile(rb"(?<![A-Z0-9_])GOTO[FBCS]?(?![A-Z0-9_])", re.IGNORECASE)
 
-#: The word that ends what another one began.
+#: The keyword that begins a structure, by the one that ends it.
 _ENDS: Final = {"ENDIF": "IF", "ENDFOR": "FOR", "ENDWHILE": "WHILE", "ENDLOOP": "LOOP", "UNTIL": "REPEAT"}
 
-#: How deep control structures may stand inside each other.
+#: How deep control structures may nest.
 MAX_NESTING: Final = 64
 
 
-#: How names of programs end; a subprogram goes before a main program.
+#: Endings of program names; a subprogram takes precedence over a main program.
 SUFFIXES: Final = (".SPF", "_SPF", ".MPF", "_MPF", "")
 
 
 @dataclass(slots=True)
 class _JumpTargets:
-    """Where the labels, block numbers and control words of a text stand, each found out when it is first asked for."""
+    """Lines of labels and block numbers, and the counterparts of keywords; each found on first use."""
 
     labels: dict[str, list[int]] | None = None
     numbers: dict[int, list[int]] | None = None
@@ -40,15 +40,15 @@ class _JumpTargets:
 
 
 class SinumerikText(SourceText):
-    """A program file with the places where its jumps lead."""
+    """A program file with the targets of its jumps."""
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
-        # Shared by all that run the same text: see ``restarted``.
+        # Shared by the copies that ``restarted`` makes.
         self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole)
 
     def label(self, name: str, here: int, *, forward: bool, backward: bool) -> int | None:
-        """Line of a label: the next one after ``here`` if ``forward``, else the last one before it."""
+        """Return the line of a label: the next one after ``here`` if ``forward``, else the last one before it."""
         labels = self._jump_targets.labels
         if labels is None:
             labels = self._jump_targets.labels = {}
@@ -57,7 +57,7 @@ class SinumerikText(SourceText):
         return _choose_line(labels.get(name, []), here, forward=forward, backward=backward)
 
     def number(self, number: int, here: int, *, forward: bool, backward: bool) -> int | None:
-        """Line of a block number, found like a label."""
+        """Return the line of a block number, found like a label."""
         numbers = self._jump_targets.numbers
         if numbers is None:
             numbers = self._jump_targets.numbers = {}
@@ -66,7 +66,7 @@ class SinumerikText(SourceText):
         return _choose_line(numbers.get(number, []), here, forward=forward, backward=backward)
 
     def partner(self, line: int) -> tuple[int, int]:
-        """Return the lines that belong to a control word: (ELSE or 0, end) of a beginning, (0, beginning) of an end."""
+        """Return the counterparts of a keyword: (ELSE or 0, end) of a beginning, (0, beginning) of an end."""
         if self._jump_targets.partners is None:
             self._jump_targets.partners = self._match_structures()
         try:

@@ -1,4 +1,4 @@
-"""A line of a program cut into tokens: names, single letters, numbers, texts and signs."""
+"""Splits a line of a program into tokens: names, single letters, numbers, texts and signs."""
 
 import math
 import re
@@ -6,18 +6,18 @@ from enum import IntEnum
 from functools import lru_cache
 from typing import Final, NamedTuple
 
-#: The longest statement that is looked at; the control itself stops at 512 characters.
+#: Longer statements are not executed; the control itself allows 512 characters.
 MAX_LENGTH: Final = 4096
 
-#: Only statements as short as most are remembered with their tokens: long ones would fill the memory.
+#: Tokens of longer statements are not cached: they would fill the memory.
 _REMEMBERED: Final = 128
 
-#: More digits than any word has.
+#: Numbers with more digits are mistakes of the program.
 _MOST_DIGITS: Final = 40
 
 
 class TokenKind(IntEnum):
-    """What a token is."""
+    """The kind of a token."""
 
     NAME = 0
     LETTER = 1
@@ -28,7 +28,7 @@ class TokenKind(IntEnum):
 
 
 class Token(NamedTuple):
-    """One token: its text (names and letters in capitals), its number, and where it stands in the line."""
+    """A token: its text (names and letters in capitals), its number, and its position in the line."""
 
     kind: TokenKind
     text: str
@@ -52,7 +52,7 @@ _TOKEN = re.compile(
 
 
 def split_comment(line: str) -> tuple[str, str | None]:
-    """Return a line without its comment, and the comment without its semicolon (None if there is none)."""
+    """Return a line without its comment, and the comment without its semicolon, None for none."""
     if ";" not in line:
         return line, None
     if '"' not in line:
@@ -68,7 +68,7 @@ def split_comment(line: str) -> tuple[str, str | None]:
 
 
 def tokenize(statement: str) -> tuple[Token, ...]:
-    """Cut a statement into tokens; what is no token becomes one of sort BAD and ends the list."""
+    """Split a statement into tokens; something that is no token gives one of kind BAD, which is the last."""
     return _remembered(statement) if len(statement) <= _REMEMBERED else _tokens(statement)
 
 

@@ -1,4 +1,4 @@
-"""Variables of a program: R parameters, DEF variables and names that the control predefines."""
+"""Variables of a Sinumerik program: R parameters, DEF variables and predefined names."""
 
 import math
 from typing import Final
@@ -6,18 +6,21 @@ from typing import Final
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, Value, whole
 from trunnion.readers.families.sinumerik.words import CONSTANTS
 
-#: The elements of a variable by index; one that is no field has the index ().
+#: The elements of a variable by index; () if it is no array.
 Elements = dict[tuple[int, ...], Value]
 
 #: The highest R parameter and array index.
 MAX_NUMBER: Final = 32767
 
-#: Assignments after which variables are counted; half as many a program may have.
+#: Assignments after which variables are counted; a program may have half as many.
 MAX_VARIABLES: Final = 100_000
 
 
 class Variables:
-    """What a running program or subprogram can name; subprograms share R parameters and globals."""
+    """The variables of a running program or subprogram; R parameters and global variables are shared.
+
+    arguments   of the call, for the PROC line
+    """
 
     def __init__(self, shared: "Variables | None" = None) -> None:
         self._local: dict[str, Elements] = {}
@@ -28,11 +31,11 @@ class Variables:
         self.arguments: list[Value | None] = []
 
     def pass_arguments(self, arguments: list[Value | None]) -> None:
-        """Keep the arguments of a call for the PROC line."""
+        """Store the arguments of a call."""
         self.arguments = arguments
 
     def parameter(self, number: int) -> float:
-        """Return an R parameter; one that nobody set is 0."""
+        """Return an R parameter; an unset one is 0."""
         self._check_index(number)
         return self._parameters.get(number, 0.0)
 
@@ -42,7 +45,7 @@ class Variables:
         self._parameters[number] = value
 
     def define(self, kind: str, name: str, value: Value | None = None) -> None:
-        """DEF: a variable of this program."""
+        """DEF: define a variable of this program."""
         self._types[name] = kind
         self._local[name] = {}
         self.assign(name, (), value if value is not None else ("" if kind in ("STRING", "AXIS") else 0.0))
@@ -52,12 +55,12 @@ class Variables:
         return name in self._types
 
     def text(self, name: str) -> str | None:
-        """Return the text of a STRING variable, None if there is none of this name."""
+        """Return the text of a STRING variable, None if there is no such variable."""
         value = self._local.get(name, {}).get(())
         return value if isinstance(value, str) else None
 
     def assign(self, name: str, index: tuple[int, ...], value: Value) -> bool:
-        """Set a variable; False if nobody defined it, and it is now a global one."""
+        """Set a variable; False if it was not defined, and so became a global one."""
         for number in index:
             self._check_index(number)
         kind = self._types.get(name)
@@ -78,7 +81,7 @@ class Variables:
         return known
 
     def _recount(self) -> None:
-        """Count variables exactly, as seldom as assignments can have made many."""
+        """Count variables exactly; called only when there may be too many."""
         held = sum(map(len, self._local.values())) + sum(map(len, self._global.values()))
         if held > MAX_VARIABLES // 2:
             raise ExpressionError(f"the program has more than {MAX_VARIABLES // 2} variables")

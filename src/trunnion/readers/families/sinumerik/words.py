@@ -1,4 +1,4 @@
-"""Every word that the reader knows, by what it does. ``docs/reader.md`` says the same to people."""
+"""The words of a Sinumerik that the reader knows, by their effect; ``docs/reader.md`` describes them."""
 
 from typing import Final
 
@@ -28,10 +28,10 @@ G_SURFACE: Final = frozenset({96, 961, 962})
 G_OFFSETS: Final = frozenset({54, 55, 56, 57, 500, *range(505, 600)})
 G_MACHINE: Final = frozenset({53, 153})
 
-#: Radius compensation: left of the path, right of it, off.
+#: Cutter radius compensation: left of the path, right of it, off.
 G_RADIUS_COMPENSATION: Final = {40: 0, 41: 1, 42: -1}
 
-#: G words that change how the control drives, not where to.
+#: G words that the path does not depend on.
 G_WITHOUT_PATH_EFFECT: Final = {
     9: "exact stop, one block",
     60: "exact stop",
@@ -70,7 +70,7 @@ G_WITHOUT_PATH_EFFECT: Final = {
     824: "reserved for the machine builder",
 }
 
-#: G words that are known and whose effect on the path is not simulated: a finding each time.
+#: G words that are not simulated: the message, and whether the path is wrong without them.
 G_NOT_SIMULATED: Final = {
     33: ("thread cutting is taken as a straight line", False),
     41: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
@@ -96,13 +96,13 @@ G_NOT_SIMULATED: Final = {
     348: ("smooth approach is not simulated", True),
 }
 
-#: G words after whose block the axis words of the same block are no positions.
+#: G words whose axis words are no positions: their block makes no motion.
 G_NO_MOTION: Final = frozenset({25, 26, 58, 59, 74, 75, 110, 111, 112})
 
-#: G words that set limits: a spindle speed in their block is one of them.
+#: G words that set limits, also of the spindle speed.
 G_LIMITS: Final = frozenset({25, 26})
 
-#: Words without a value that change how the control drives, not where to.
+#: Words without a value that the path does not depend on.
 WITHOUT_PATH_EFFECT: Final = _words("""
     NORM KONT KONTC KONTT FNORM FLIN FCUB FPO
     CFC CFTCP CFIN CFCIN
@@ -120,19 +120,19 @@ WITHOUT_PATH_EFFECT: Final = _words("""
     IPOBRKA IPOENDA FINEA COARSEA
     """)
 
-#: Names that take ``=value`` or ``[axis]=value`` and change how the control drives, not where to.
+#: Words with ``=value`` or ``[axis]=value`` that the path does not depend on.
 WITHOUT_PATH_EFFECT_VALUES: Final = _words("""
     ADIS ADISPOS CTOL OTOL ATOL STOL OTOLG CTOLG FGREF FL OVR OVRA OVRRAP ACC VELOLIM JERKLIM ACCLIM SCC LIMS
     TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA SPCON DITS DITE FZ SVC
     """)
 
-#: Names that take arguments and change how the control drives, not where to.
+#: Words with arguments that the path does not depend on.
 WITHOUT_PATH_EFFECT_CALLS: Final = _words("""
     FGROUP WORKPIECE EXTERN SOFTA BRISKA DRIVEA FIFOCTRL SPCOF GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS
     ORISOF ORISON GROUP_BEGIN GROUP_END GROUP_ADDEND TOFFOF
     """)
 
-#: Known words whose effect on the path is not simulated: a finding each time, an error.
+#: Words that are not simulated, and without which the path is wrong.
 NOT_SIMULATED: Final = _words("""
     ROTS AROTS CROTS CROT CTRANS CSCALE CMIRROR TOFRAMEX TOFRAMEY TOROTX TOROTY PAROT
     TRANSMIT TRACYL TRAANG TRACON
@@ -142,16 +142,16 @@ NOT_SIMULATED: Final = _words("""
     REPEATB TOFFON
     """)
 
-#: Words for the control of orientation.
+#: Words that control the orientation.
 ORIENTATION: Final = frozenset({"ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE", "ORIEULER", "ORIRPY", "ORIRPY2"})
 
-#: Words for frames, each in a block of its own.
+#: Frame statements, each in a block of its own.
 FRAMES: Final = frozenset({"TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"})
 
-#: Words that turn the frame so that its Z lies along the tool, and back.
+#: Words that turn the frame so that its Z is along the tool, and back.
 TOOL_FRAMES: Final = frozenset({"TOROT", "TOROTZ", "TOFRAME", "TOFRAMEZ", "TOROTOF", "TOFRAMEOF"})
 
-#: Words for the flow of the program.
+#: Keywords of control flow.
 FLOW: Final = _words("""
     IF ELSE ENDIF FOR TO ENDFOR WHILE ENDWHILE LOOP ENDLOOP REPEAT UNTIL
     GOTO GOTOF GOTOB GOTOC GOTOS CASE OF DEFAULT
@@ -161,13 +161,13 @@ FLOW: Final = _words("""
 #: Types of variables.
 TYPES: Final = frozenset({"REAL", "INT", "BOOL", "CHAR", "STRING", "AXIS", "FRAME"})
 
-#: Ways to say a position.
+#: Functions that say how a position is meant.
 POSITION_MODES: Final = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 
-#: Remaining words with an effect: transformation, machine positions, arcs, cycles, messages.
+#: Other words with an effect: transformation, machine positions, circles, messages.
 ACTIVE: Final = frozenset({"TRAORI", "TRAFOOF", "SUPA", "CIP", "CR", "TURN", "AR", "RPL", "SPOS", "MSG", "SETAL"})
 
-#: Values of names that the control predefines; CYCLE832 modes as the digits of S_TOLM.
+#: Values of predefined names; modes of CYCLE832 as the digits of S_TOLM.
 CONSTANTS: Final = {
     "TRUE": 1,
     "FALSE": 0,
@@ -186,7 +186,7 @@ CONSTANTS: Final = {
     "_TOP_SURFACE_SMOOTH_ON": 2000000,
 }
 
-#: M words that become events as they are: kind and value. Others belong to the machine builder and become events "m".
+#: M codes that make an event: kind and value. Others are the machine builder's, and make events "m".
 M_EVENTS: Final = {
     0: ("stop", None),
     1: ("optional_stop", None),
@@ -198,13 +198,13 @@ M_EVENTS: Final = {
     9: ("coolant", "off"),
 }
 
-#: Sense of rotation of the spindle after an M word.
+#: Sense of rotation of the spindle after an M code.
 M_SPINDLE: Final = {3: 1, 4: -1, 5: 0}
 
-#: M words that end a program, those that end a subprogram, and the one that changes the tool.
+#: M codes that end a program, end a subprogram, and change the tool.
 M_PROGRAM_ENDS: Final = frozenset({2, 30})
 M_RETURN: Final = 17
 M_CHANGE: Final = 6
 
-#: M words that act after the motion of their block.
+#: M codes that act after the motion of their block.
 M_AFTER_MOTION: Final = frozenset({0, 1, 5, 9, M_RETURN}) | M_PROGRAM_ENDS

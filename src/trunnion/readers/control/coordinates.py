@@ -1,0 +1,205 @@
+"""What programmed positions mean: units, work offsets, TCP, tilted planes and programmable frames.
+
+X, Y and Z have two meanings. With TCP, or in a tilted plane, they are the tool tip in the active frame. Otherwise they
+are the positions of the slides, counted from the work offset: with the rotary axes at zero the tip is where the program
+says, with the axes turned it is where the kinematics of the machine put it.
+"""
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import Severity
+from trunnion.machines import Machine, forward
+from trunnion.machines.inverse import kinematic_parameters
+from trunnion.model.axis_positions import joints_from_rows
+from trunnion.model.run import Orientation
+from trunnion.readers.control.affine_map import AffineMap, affine_matrix
+from trunnion.readers.control.arcs import ArcMap
+from trunnion.readers.control.row_recorder import MAX_POSITION, Note, RowRecorder
+
+#: Millimetres of an inch.
+INCH: Final = 25.4
+
+
+class CoordinateControl(RowRecorder):
+    """Knows the coordinate systems in force, and keeps the maps of the rows up to date.
+
+    absolute     G90; else incremental
+    plane_axis   index of the axis normal to the working plane: 2 for G17
+    length_unit  millimetres of a programmed length
+    feed_unit    millimetres of the length in a programmed feed
+    tcp          tool centre point control is on
+    tilted       the working plane is tilted
+    """
+
+    #: The code of suppressed work offsets, when positions count from the machine zero; -1: the control has none.
+    no_offset = -1
+
+    def __init__(self, machine: Machine, note: Note) -> None:
+        super().__init__(machine, note)
+        self._zero_slides, self._zero_tip = self._zero_positions()
+        self.absolute = True
+        self.plane_axis = 2
+        self.length_unit = 1.0
+        self.feed_unit = 1.0
+        self.tcp = False
+        self.tilted = False
+        self._plane = AffineMap()
+        self._program = AffineMap()
+        # Programmed values of axes that incremental words still count from after a frame change, by axis.
+        self._increment_base: dict[int, float] = {}
+        self._offsets: set[int] = set()
+        self._arc_map: tuple[ArcMap, bool] | None = None
+        self._update_maps()
+        self.programmed_position = self._position_of_axes()
+
+    def _zero_positions(self) -> tuple[Floats, Floats]:
+        """Return the slide positions at the zero of the work offset, and the tip with the machine at its zero.
+
+        Both are (3,) mm, with the rotary axes at zero and without a tool.
+        """
+        without_tool = replace(self.machine, tool_length=None)
+        at_zero = np.ones(1, np.bool_), np.zeros((1, 3)), np.zeros((1, 2))
+        joints = joints_from_rows(without_tool, kinematic_parameters(without_tool), *at_zero)[0]
+        tip = forward(without_tool, np.zeros((1, 5)))[0][0]
+        return np.nan_to_num(joints[self._slides]), tip
+
+    # Maps
+
+    @property
+    def frame(self) -> AffineMap:
+        """The map from programmed positions to the work offset."""
+        return self._plane.compose(self._program)
+
+    @property
+    def _length_offset(self) -> Floats:
+        """What the tool length adds to slide positions X, Y, Z, (3,) mm."""
+        return np.zeros(3)
+
+    def _vector_map(self, frame: AffineMap) -> Floats:
+        """Return the map from programmed vectors to the workpiece frame, (3, 3)."""
+        return np.ascontiguousarray(frame.linear)
+
+    def _update_maps(self) -> None:
+        self._arc_map = None
+        self.tip_programmed = self.tcp or self.tilted
+        frame = self.frame
+        suppressed = self.modal.work_offset.current == self.no_offset
+        if self.tip_programmed:
+            origin = self._zero_tip if suppressed else np.zeros(3)
+        else:
+            origin = self._length_offset + (0.0 if suppressed else self._zero_slides)
+        self.position_map = affine_matrix(frame.linear, frame.shift + origin)
+        self.vector_map = self._vector_map(frame)
+
+    def _position_of_axes(self) -> Floats:
+        """Return the programmed position at which the axes stand, (3,) mm; all rows must be resolved."""
+        tip = forward(self.machine, self.current_joints[None])[0][0]
+        return self._to_programmed(tip if self.tip_programmed else self.current_joints[self._slides])
+
+    def _to_programmed(self, point: Floats) -> Floats:
+        return AffineMap(self.position_map[:, :3], self.position_map[:, 3]).solve(point)
+
+    def frame_change(self, *, keep_base: bool = False) -> "_FrameChange":
+        """Return a context in which TCP, offset or frames change: the axes stay, their position gets new coordinates.
+
+        With ``keep_base`` incremental words still count from the values programmed before, as on a control that is
+        set to traverse changed frames; then only frames may change.
+        """
+        return _FrameChange(self, keep_base)
+
+    # Frames and planes
+
+    @property
+    def program_frame(self) -> AffineMap:
+        """The programmable frame in force."""
+        return self._program
+
+    def set_program_frame(self, frame: AffineMap, *, keep_base: bool = True) -> None:
+        """Replace the programmable frame; ``keep_base`` as in ``frame_change``."""
+        total = self._plane.compose(frame)
+        x, y, z = total.linear
+        if not abs(float(np.cross(x, y) @ z)) >= 1e-9:
+            self.note("the frame would flatten space: it is not used", Severity.ERROR)
+            return
+        if float(np.abs(total.linear).max()) > 1e6 or float(np.abs(total.shift).max()) > MAX_POSITION:
+            self.note("the frame is larger than any machine: it is not used", Severity.ERROR)
+            return
+        with self.frame_change(keep_base=keep_base):
+            self._program = frame
+
+    def set_plane(self, plane: AffineMap | None, program: AffineMap | None = None) -> None:
+        """Tilt the working plane, or end the tilt; the axes stay.
+
+        plane    from the plane to the work offset, None for no tilted plane
+        program  the programmable frame from now on, none by default
+        """
+        with self.frame_change():
+            self._plane = plane or AffineMap()
+            self._program = program or AffineMap()
+            self.tilted = plane is not None
+
+    # Modes
+
+    def set_tcp(self, on: bool) -> None:
+        """Switch tool centre point control."""
+        if on != self.tcp:
+            with self.frame_change():
+                self.tcp = on
+            self.modal.tcp.set(self.row, on)
+
+    def set_offset(self, code: int, name: str) -> None:
+        """Select a work offset; ``name`` is for messages."""
+        offset = self.modal.work_offset
+        if code == offset.current:
+            return
+        if code != self.no_offset:
+            self._offsets.add(code)
+            if len(self._offsets) > 1:
+                self.note(f"{name}: work offsets are not known here, all count as the same one", Severity.WARNING)
+        if self.no_offset in (code, offset.current):
+            with self.frame_change():
+                offset.set(self.row, code)
+        else:
+            offset.set(self.row, code)
+
+    def set_orientation(self, orientation: Orientation) -> None:
+        """Set how the tool axis moves within blocks."""
+        self.modal.orientation.set(self.row, int(orientation))
+
+    def set_units(self, inches: bool, feeds_too: bool) -> None:
+        """Set inches or millimetres; positions are kept in mm, so only new words are scaled."""
+        self.length_unit = INCH if inches else 1.0
+        self.feed_unit = INCH if inches and feeds_too else 1.0
+        self.modal.inches.set(self.row, inches)
+
+
+class _FrameChange:
+    """The axes stay while the meaning of programmed positions changes."""
+
+    def __init__(self, control: CoordinateControl, keep_base: bool) -> None:
+        self._control = control
+        self._keep_base = keep_base
+
+    def __enter__(self) -> None:
+        control = self._control
+        self._programmed = control.programmed_position.copy()
+        self._base = dict(control._increment_base)
+        if self._keep_base:
+            # Only the frame changes: the point does not depend on the axes.
+            self._point = control._mapped(self._programmed)
+        else:
+            control.resolve_rows()
+
+    def __exit__(self, *_: object) -> None:
+        control = self._control
+        control._update_maps()
+        if not self._keep_base:
+            control._increment_base.clear()
+            control.programmed_position = control._position_of_axes()
+            return
+        control.programmed_position = control._to_programmed(self._point)
+        control._increment_base = {axis: self._base.get(axis, float(self._programmed[axis])) for axis in range(3)}

@@ -1,0 +1,50 @@
+"""The values of a run that change seldom, while its program runs."""
+
+import math
+
+import numpy as np
+
+from trunnion.model.feed_path import FeedPath
+from trunnion.model.run import ORIENTATION_FROM_WORDS, ModalState
+from trunnion.readers.control.row_buffer import StepColumnBuilder
+
+
+class ModalBuilder:
+    """Builders of the columns of a ``ModalState``; their names and values are those of ``trunnion.model.run.Run``."""
+
+    def __init__(self) -> None:
+        self.file = StepColumnBuilder(0)
+        self.feed = StepColumnBuilder(math.nan)
+        self.feed_mode = StepColumnBuilder(94)
+        self.rpm = StepColumnBuilder(0.0)
+        self.spindle = StepColumnBuilder(0)
+        self.tool = StepColumnBuilder(0)
+        self.edge = StepColumnBuilder(-1)
+        self.compensation = StepColumnBuilder(0)
+        self.work_offset = StepColumnBuilder(0)
+        self.tcp = StepColumnBuilder(False)
+        self.machine_frame = StepColumnBuilder(False)
+        self.inches = StepColumnBuilder(False)
+        self.orientation = StepColumnBuilder(ORIENTATION_FROM_WORDS)
+        self.xyz_is_tip = StepColumnBuilder(False)
+        self.feed_path = StepColumnBuilder(int(FeedPath.SLIDES))
+
+    def state(self, n: int) -> ModalState:
+        """Return the columns with n rows; nothing may be added afterwards."""
+        return ModalState(
+            file=self.file.steps(n, np.uint16),
+            feed=self.feed.steps(n, np.float64),
+            feed_mode=self.feed_mode.steps(n, np.uint8),
+            rpm=self.rpm.steps(n, np.float64),
+            spindle=self.spindle.steps(n, np.int8),
+            tool=self.tool.steps(n, np.int32),
+            edge=self.edge.steps(n, np.int32),
+            compensation=self.compensation.steps(n, np.int8),
+            work_offset=self.work_offset.steps(n, np.uint16),
+            tcp=self.tcp.steps(n, np.bool_),
+            machine_frame=self.machine_frame.steps(n, np.bool_),
+            inches=self.inches.steps(n, np.bool_),
+            orientation=self.orientation.steps(n, np.uint8),
+            xyz_is_tip=self.xyz_is_tip.steps(n, np.bool_),
+            feed_path=self.feed_path.steps(n, np.uint8),
+        )

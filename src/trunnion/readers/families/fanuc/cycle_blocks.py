@@ -1,0 +1,99 @@
+"""Canned cycles of a Fanuc, block by block."""
+
+from pathlib import Path
+from typing import Final
+
+from trunnion.machines import Machine
+from trunnion.readers.control.axis_word import AxisWord
+from trunnion.readers.control.virtual_control import RAPID
+from trunnion.readers.families.fanuc import cycles
+from trunnion.readers.families.fanuc.offsets_and_frames import OffsetInterpreter
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
+from trunnion.readers.rs274.block import Block
+from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
+
+#: More holes of one block are mistakes of the program.
+_MAX_HOLES: Final = 10_000
+
+
+class CycleInterpreter(OffsetInterpreter):
+    """Keeps what holds from block to block: the words of the cycles, and the height before them."""
+
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
+        self._to_initial = True
+        self._initial: float | None = None
+        self._modal_words: dict[str, float] = {}
+
+    def _select_motion(self, code: int) -> None:
+        """Select a motion or a cycle, or cancel the cycle."""
+        control = self.control
+        if code in cycles.CYCLES:
+            if self._initial is None:
+                self._initial = float(control.programmed_position[control.plane_axis])
+                self._modal_words = {}
+            self.motion_code = code
+            return
+        self._initial = None
+        self.motion_code = control.motion * 10 if code == CANCEL else code
+        if code in MOTIONS:
+            control.motion = MOTIONS[code]
+
+    def _cycle(self, block: Block, axes: dict[str, AxisWord]) -> None:
+        """Drill at the position of a block."""
+        control = self.control
+        along = "XYZ"[control.plane_axis]
+        given = {
+            letter: value
+            for letter in cycles.MODAL_WORDS
+            if letter != "Z" and (value := block.take(letter)) is not None
+        }
+        if along in axes:
+            given["Z"] = axes[along][0]
+        self._modal_words |= given
+        repeats = block.take("K")
+        block.take("L")
+        if not axes and not ({"R", "Z"} & given.keys()):
+            return
+        self._report_rotary_words(axes)
+        self._require_words(self._modal_words, "ZR" + "Q" * (self.motion_code in cycles.NEED_Q))
+        holes = 1 if repeats is None else int(repeats)
+        if not 0 <= holes <= _MAX_HOLES:
+            raise BlockError("K of a cycle is how often it drills")
+        self._check_cycle_feed()
+        hole = self._hole()
+        motions = self._cycle_motions(lambda: cycles.cycle_motions(self.motion_code, hole))
+        in_plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
+        motion = control.motion
+        for _ in range(holes):
+            self._counter.count_blocks(len(motions) + 1)
+            control.motion = RAPID
+            control.move(in_plane, None)
+            control.drill(motions)
+        control.motion = motion
+
+    def _hole(self) -> cycles.Hole:
+        control, words = self.control, self._modal_words
+        assert self._initial is not None
+        initial = self._initial / control.length_unit
+        retract, bottom = words["R"], words["Z"]
+        if not control.absolute:
+            retract += initial
+            bottom += retract
+        stroke = abs(words.get("Q", 0.0))
+        lateral = (stroke, 0.0)
+        if "I" in words:
+            lateral = words["I"], words.get("J", 0.0)
+        elif "J" in words:
+            lateral = 0.0, words["J"]
+        return cycles.Hole(
+            retract=retract,
+            bottom=bottom,
+            initial=initial,
+            to_initial=self._to_initial,
+            stroke=stroke,
+            lateral=lateral,
+            dwell=max(words.get("P", 0.0), 0.0) / 1000.0,
+            units=1.0 / control.length_unit,
+        )

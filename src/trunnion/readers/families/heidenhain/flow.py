@@ -1,0 +1,117 @@
+"""Control flow of a Klartext program: labels, calls, and jumps of FN functions."""
+
+import re
+from dataclasses import dataclass, field
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.readers.families.heidenhain.control import HeidenhainControl
+from trunnion.readers.families.heidenhain.fn_functions import execute
+from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
+from trunnion.readers.families.heidenhain.text import SUFFIXES, KlartextText
+from trunnion.readers.program import interpreter
+from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
+
+#: How deep calls of labels may nest.
+MAX_LABEL_DEPTH: Final = 20
+
+_LABEL = re.compile(r"(Q[LR]?[0-9]{1,4})|([0-9]{1,5})")
+_CALL = re.compile(r"[ \t]*(LBL|PGM)(?![A-Z])")
+
+
+@dataclass(slots=True)
+class ActiveProgram(interpreter.ActiveProgram):
+    """A program that is being executed.
+
+    returns       lines after the calls of its labels
+    repeats_left  repeats that are left, by the line of the call
+    """
+
+    source: KlartextText
+    parameters: Parameters = field(default_factory=Parameters)
+    returns: list[int] = field(default_factory=list)
+    repeats_left: dict[int, int] = field(default_factory=dict)
+
+
+class FlowInterpreter(Interpreter[ActiveProgram]):
+    """Executes LBL, CALL and FN."""
+
+    source_type = KlartextText
+    suffixes = SUFFIXES
+
+    control: HeidenhainControl
+
+    def _label(self, active: ActiveProgram, rest: str) -> None:
+        if _label_name(rest, active.parameters) == "0" and active.returns:
+            active.source.jump(active.returns.pop())
+
+    def _call(self, active: ActiveProgram, rest: str) -> None:
+        match = _CALL.match(rest)
+        if match is None:
+            raise KlartextError("CALL needs LBL or PGM")
+        rest = rest[match.end() :].strip()
+        if match[1] == "PGM":
+            self._enter_program(rest.strip('"'))
+            return
+        label, _, repeats = rest.partition("REP")
+        active.source.load()
+        here = active.source.line
+        target = self._line_of(active, label)
+        if repeats:
+            self._repeat(active, here, target, int(_label_name(repeats.split("/")[0], active.parameters)))
+            return
+        if len(active.returns) >= MAX_LABEL_DEPTH:
+            what = f"calls labels deeper than {MAX_LABEL_DEPTH} levels"
+            raise active.source.problem(self.control.line, what, "does one call itself?")
+        active.returns.append(here)
+        active.source.jump(target)
+
+    @staticmethod
+    def _repeat(active: ActiveProgram, here: int, target: int, repeats: int) -> None:
+        left = active.repeats_left.setdefault(here, repeats)
+        if left > 0:
+            active.repeats_left[here] = left - 1
+            active.source.jump(target)
+        else:
+            del active.repeats_left[here]
+
+    def _line_of(self, active: ActiveProgram, label: str) -> int:
+        """Return the line of a label; a missing one ends the program."""
+        name = _label_name(label, active.parameters)
+        found = active.source.label(name)
+        if found is None:
+            self._note(f"the label {name[:60]} is missing: the program ends here", Severity.ERROR)
+            raise ProgramEnd
+        return found
+
+    def _enter_program(self, name: str) -> None:
+        """Call a program, one of the files given by the user."""
+        path = self._subprograms.find(name)
+        if path is None:
+            self._note(f"missing program {name[:80]}: it is not executed; name its file", Severity.ERROR)
+            return
+        self._check_depth()
+        parameters = Parameters(self._stack[-1].parameters)
+        source, file = self._open_subprogram(path)
+        assert isinstance(source, KlartextText)
+        self._stack.append(ActiveProgram(source, file, parameters=parameters))
+
+    def _fn(self, active: ActiveProgram, rest: str) -> None:
+        label = execute(rest, active.parameters, self._note)
+        if label is not None:
+            active.source.load()
+            active.source.jump(self._line_of(active, label))
+
+
+def _label_name(text: str, parameters: Parameters) -> str:
+    """Return the name of a label: its number, or its name in capitals."""
+    text = text.strip()
+    if text[:1] == '"':
+        return text.strip('"').upper()
+    match = _LABEL.fullmatch(text)
+    if match is None:
+        raise KlartextError("a label has a number or a name in quotes")
+    number = parameters[canonical(match[1])] if match[1] else float(match[2])
+    if number != int(number) or number < 0.0:
+        raise KlartextError(f"{number:g} is no label")
+    return str(int(number))

@@ -1,0 +1,92 @@
+"""Subprograms of a Sinumerik program: calls, modal calls and returns."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.readers.families.sinumerik.block import Call, read_call
+from trunnion.readers.families.sinumerik.control import SinumerikControl
+from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
+from trunnion.readers.families.sinumerik.flow import ActiveProgram, Flow, Handler
+from trunnion.readers.families.sinumerik.text import SUFFIXES, SinumerikText
+from trunnion.readers.families.sinumerik.tokens import TokenKind
+from trunnion.readers.families.sinumerik.variables import Variables
+from trunnion.readers.program.interpreter import Interpreter
+
+#: What the control may put before the name of a program.
+_PREFIX: Final = "_N_"
+
+
+class CallInterpreter(Interpreter[ActiveProgram]):
+    """Executes calls of subprograms, and the keywords of control flow."""
+
+    source_type = SinumerikText
+    suffixes = SUFFIXES
+    prefix = _PREFIX
+
+    control: SinumerikControl
+
+    def _flow_handlers(self) -> dict[str, Handler]:
+        """Return what executes each keyword of control flow."""
+        return {
+            **Flow(self._note).handlers,
+            "RET": self._return,
+            "MCALL": self._modal_call,
+            "EXTCALL": self._external_call,
+            "CALL": self._external_call,
+        }
+
+    def _call_one(self, calls: Sequence[Call]) -> None:
+        """Call the subprogram of a block, after everything else in the block is executed."""
+        if len(calls) > 1:
+            self._note("several subprograms in one block: only the first is executed", Severity.ERROR)
+        for call in calls[:1]:
+            self._enter_subprogram(call)
+
+    def _enter_subprogram(self, call: Call) -> None:
+        """Start a subprogram, one of the files given by the user."""
+        path = self._subprograms.find(call.name)
+        if path is None:
+            self._note(
+                f"unknown word or missing subprogram {call.name[:80]}: it is not executed; name its file, if it is one",
+                Severity.ERROR,
+            )
+            return
+        if call.repeats < 1:
+            return
+        self._check_depth()
+        variables = Variables(self._stack[-1].variables)
+        # The PROC line reads the arguments when it is executed.
+        variables.pass_arguments(call.arguments)
+        source, file = self._open_subprogram(path)
+        assert isinstance(source, SinumerikText)
+        self._stack.append(ActiveProgram(source, file, call.repeats, variables=variables))
+
+    def _return(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        self._leave_program()
+
+    def _modal_call(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        token = reader.token
+        if token is None:
+            active.modal = None
+            return
+        if token.kind is TokenKind.LETTER and token.text == "L":
+            reader.at += 1
+            number = reader.token
+            if number is None or not number.text.isdigit():
+                raise ExpressionError("a subprogram has a number")
+            active.modal = Call(f"L{number.text}")
+            return
+        if token.kind is not TokenKind.NAME:
+            raise ExpressionError("a name must follow")
+        reader.at += 1
+        active.modal = read_call(reader, token.text)
+
+    def _external_call(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        in_parentheses = reader.accept("(")
+        value = reader.value()
+        if in_parentheses:
+            reader.expect(")")
+        if not isinstance(value, str):
+            raise ExpressionError("takes the name of a program")
+        self._enter_subprogram(Call(value))

@@ -1,0 +1,66 @@
+"""Limits of what a program may do, so that every one of them comes to an end."""
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from trunnion.errors import InputError
+from trunnion.model.run import RunEvent
+from trunnion.readers.program.source_text import SourceText
+
+#: Diagnostics that are listed; further ones are counted.
+MAX_DIAGNOSTICS: Final = 10_000
+
+#: Longer blocks and texts count once more for every so many characters; real ones are shorter.
+CHARACTERS_PER_STEP: Final = 128
+
+#: Subprograms that one program may call.
+MAX_SUBPROGRAMS: Final = 1000
+
+#: How deep subprograms may nest.
+MAX_CALL_DEPTH: Final = 16
+
+
+class StepCounter:
+    """Counts the blocks that a program executes, and the comments and events that it makes.
+
+    Going once through each file is free, and so is everything that a file contains once.
+
+    sources   returns the files that are in use, the program first
+    fail      returns the error of a program that does too much
+    """
+
+    def __init__(
+        self, limit: int, sources: Callable[[], Sequence[SourceText]], fail: Callable[[str], InputError]
+    ) -> None:
+        self._limit = limit
+        self._sources = sources
+        self._fail = fail
+        self._blocks = 0
+        self._records = 0
+        self._events = 0
+
+    def count_blocks(self, blocks: int, characters: int = 0) -> None:
+        """Count executed blocks with so many characters."""
+        self._blocks += blocks + max(characters, 0) // CHARACTERS_PER_STEP
+        if self._blocks <= self._limit:
+            return
+        sources = self._sources()
+        allowed = self._limit + sum(source.known_lines for source in sources)
+        allowed += sum(source.size // CHARACTERS_PER_STEP for source in sources)
+        if self._blocks > allowed:
+            raise self._fail(f"executes more than {self._limit} blocks")
+
+    def count_records(self, records: int, characters: int) -> None:
+        """Count comments or events with so many characters."""
+        self._records += records + characters // CHARACTERS_PER_STEP
+        if self._records <= self._limit:
+            return
+        if self._records > self._limit + sum(source.size for source in self._sources()):
+            raise self._fail(f"makes more than {self._limit} comments and events")
+
+    def count_events(self, events: Sequence[RunEvent]) -> None:
+        """Count the events that are new since the last call."""
+        new = events[self._events :]
+        if new:
+            self._events += len(new)
+            self.count_records(len(new), sum(len(event.value) for event in new if isinstance(event.value, str | tuple)))

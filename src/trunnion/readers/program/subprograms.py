@@ -1,0 +1,65 @@
+"""The subprograms that a program may call."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from trunnion.errors import InputError, Problem
+
+
+class Subprograms:
+    """The files that a program may call, by name: those given by the user, and no others.
+
+    suffixes   endings of program names on this control, in order of precedence; "" for none
+    prefix     what the control may put before a name
+    """
+
+    def __init__(self, files: Sequence[Path], suffixes: Sequence[str], prefix: str = "") -> None:
+        self._suffixes = tuple(suffixes)
+        self._prefix = prefix
+        self._files: dict[str, Path] = {}
+        problems = []
+        found: dict[tuple[str, int], Path] = {}
+        for path in files:
+            rank = self._rank(path.name.upper())
+            if not _is_file(path):
+                problems.append(Problem(str(path), 0, "is no file"))
+            elif rank is None:
+                endings = ", ".join(suffix for suffix in self._suffixes if suffix)
+                problems.append(Problem(str(path), 0, "is no name of a subprogram", f"let it end in one of {endings}"))
+            elif (first := found.setdefault((self._stem(path.name), rank), path)) is not path:
+                problems.append(Problem(str(path), 0, f"is called as {first} is", "name one of them"))
+        if problems:
+            raise InputError(problems)
+        for (stem, _), path in sorted(found.items(), key=lambda each: each[0][1]):
+            self._files.setdefault(stem, path)
+
+    def find(self, name: str) -> Path | None:
+        """Return the file of a subprogram, or None; case, ending and prefix of the name do not matter.
+
+        Folders of the control are not those of this computer: only the last part of a path counts.
+        """
+        parts = [part for part in re.split(r"[/\\:]", name.strip()) if part]
+        if not parts or ".." in parts or len(name) > 200:
+            return None
+        return self._files.get(self._stem(parts[-1]))
+
+    def _rank(self, upper: str) -> int | None:
+        """Return the index of the suffix of a name."""
+        for k, suffix in enumerate(self._suffixes):
+            if upper.endswith(suffix) if suffix else "." not in upper:
+                return k
+        return None
+
+    def _stem(self, name: str) -> str:
+        stem = name.upper()
+        for suffix in self._suffixes:
+            stem = stem.removesuffix(suffix)
+        return stem.removeprefix(self._prefix)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError, RuntimeError):  # circular links, names that no system allows
+        return False
