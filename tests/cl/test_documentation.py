@@ -3,7 +3,8 @@
 import re
 from pathlib import Path
 
-from trunnion.cl.assemble import COLOUR_PHASES, RADIUS_TOLERANCE
+from trunnion.cl.arcs import RADIUS_TOLERANCE
+from trunnion.cl.phases import COLOUR_PHASES
 from trunnion.cl.statements import HANDLERS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "cl.md").read_text(encoding="utf-8")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.cl.conftest import Body, Read
-from trunnion.cl.assemble import fill_phases
+from trunnion.cl.phases import fill_phases
 from trunnion.model.toolpath import Phase
 
 Q, R, A, E, C, S, X, D, T = (

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.cl import naive
 from trunnion.arrays import Floats, Lines
 from trunnion.cl.read import read_cl, read_in_chunks
-from trunnion.cl.scan import MAKES_ROW, SPAN_COLUMNS, UNFINISHED, fill_modal_axes, scan
+from trunnion.cl.scan import MAKES_ROW, SPAN_COLUMNS, UNFINISHED, PointColumns, fill_modal_axes, scan
 from trunnion.errors import InputError
 from trunnion.model.toolpath import Toolpath
 
@@ -29,7 +29,7 @@ def scan_all(data: bytes, spans: int = 64) -> tuple[Floats, Floats, Lines, list[
     at, number, rows = 0, 1, 0
     found = []
     while at < len(data):
-        at, number, rows, count = scan(array, at, len(data), True, number, rows, tip, axis, line, room)
+        at, number, rows, count = scan(array, at, len(data), True, number, rows, PointColumns(tip, axis, line), room)
         for begin, length, where, row, mark in room[:count].tolist():
             found.append((naive.blank(data[begin : begin + length].decode("latin-1")), where, row, mark))
     return tip[:rows], axis[:rows], line[:rows], found

@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from trunnion.arrays import Codes, Floats
-from trunnion.cl.assemble import COLOUR_PHASES, fill_phases
+from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.model.toolpath import (
     Arcs,
     BlockSkip,

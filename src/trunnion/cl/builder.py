@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Lines
+from trunnion.cl.scan import PointColumns
 from trunnion.model.toolpath import Event, Frame, Sense, Tool
 
 
@@ -28,6 +29,10 @@ class MoveColumns:
     feed: Floats
     per_rev: Flags
     line: Lines
+
+    def points(self) -> PointColumns:
+        """The columns that the scan writes."""
+        return PointColumns(self.tip, self.axis, self.line)
 
     def grow(self) -> None:
         """Add half as many rows again."""

@@ -1,4 +1,4 @@
-"""What was found wrong or odd while reading a file, collected until the end."""
+"""Errors and remarks about a file, collected while it is read."""
 
 from trunnion.errors import InputError, Problem, Severity
 
@@ -7,7 +7,7 @@ MAX_LISTED = 100
 
 
 class StatementError(Exception):
-    """A statement that cannot be used; the line is added by the one who knows it."""
+    """A statement that cannot be used; the interpreter of the file adds its line."""
 
     def __init__(self, what: str, cure: str) -> None:
         super().__init__(what)
@@ -16,7 +16,7 @@ class StatementError(Exception):
 
 
 class Diagnostics:
-    """Errors and remarks of one file, of each at most ``MAX_LISTED`` and a count of the rest."""
+    """Errors and remarks of one file: at most ``MAX_LISTED`` of each, and the number of the others."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -24,20 +24,26 @@ class Diagnostics:
         self._more = dict.fromkeys(Severity, 0)
 
     def error(self, line: int, what: str, cure: str = "") -> None:
-        """Note something that makes the file unusable."""
+        """Note a problem that makes the file unusable."""
         self._add(Problem(self.file, line, what, cure, Severity.ERROR))
 
     def remark(self, line: int, what: str, cure: str = "") -> None:
-        """Note something that the user should know of."""
+        """Note something that the user should know."""
         self._add(Problem(self.file, line, what, cure, Severity.WARNING))
 
     def fatal(self, line: int, what: str, cure: str = "") -> InputError:
-        """Return all errors so far with this one as an exception: nothing more can be read."""
+        """Return this error with all earlier ones as an exception: the file cannot be read any further."""
         self.error(line, what, cure)
         return InputError(self._listed(Severity.ERROR))
 
     def raise_errors(self) -> None:
-        """Raise the errors, if there are any."""
+        """Raise the errors, if there are any.
+
+        Raises
+        ------
+        InputError
+            With all of them.
+        """
         if self._lists[Severity.ERROR]:
             raise InputError(self._listed(Severity.ERROR))
 

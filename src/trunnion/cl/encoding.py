@@ -1,13 +1,13 @@
-"""Which encoding the names in a CL file have: UTF-8, the Chinese GB18030 (with GBK in it), or Latin-1.
+"""The encoding of the names in a CL file: UTF-8, the Chinese GB18030 (which contains GBK), or Latin-1.
 
-CL files do not say. Numbers and words are ASCII in all of them; only names and texts of people are not.
+CL files do not declare it. Numbers and words are ASCII in all three encodings; only names and texts are not.
 """
 
 import codecs
 import re
 from unicodedata import category
 
-_RUN = re.compile(rb"([A-Za-z]?)([\x80-\xff]+)([\x40-\x7e]?)")
+_NON_ASCII = re.compile(rb"([A-Za-z]?)([\x80-\xff]+)([\x40-\x7e]?)")
 _LETTER = re.compile(rb"[A-Za-z]")
 
 #: So many stretches of non-ASCII bytes are evidence enough.
@@ -15,12 +15,12 @@ _MAX_STRETCHES = 4096
 
 
 class EncodingDetector:
-    """Takes the file piece by piece and says in the end which encoding it is."""
+    """Takes a file piece by piece, and names its encoding at the end."""
 
     def __init__(self) -> None:
         self._utf8: codecs.IncrementalDecoder | None = codecs.getincrementaldecoder("utf-8")("strict")
-        self._is_unlikely_utf8 = True
-        self._seen = 0
+        self._unlikely_utf8 = True
+        self._stretches = 0
         self._hanzi = 0
         self._others = 0
 
@@ -34,27 +34,28 @@ class EncodingDetector:
                 self._utf8.decode(piece)
             except UnicodeDecodeError:
                 self._utf8 = None
-        for run in _RUN.finditer(piece):
-            if self._seen >= _MAX_STRETCHES:
+        for stretch in _NON_ASCII.finditer(piece):
+            if self._stretches >= _MAX_STRETCHES:
                 break
-            self._seen += 1
-            self._is_unlikely_utf8 = self._is_unlikely_utf8 and _unlikely_in_utf8(run[2])
-            hanzi, others = _count_characters(*run.groups())
+            self._stretches += 1
+            self._unlikely_utf8 = self._unlikely_utf8 and _is_unlikely_utf8(stretch[2])
+            hanzi, others = _count_characters(*stretch.groups())
             self._hanzi += hanzi
             self._others += others
 
     def encoding(self) -> str:
         """Python's name of the encoding."""
         chinese = self._hanzi > self._others
-        if self._utf8 is not None and self._utf8.getstate()[0] == b"" and not (chinese and self._is_unlikely_utf8):
+        if self._utf8 is not None and self._utf8.getstate()[0] == b"" and not (chinese and self._unlikely_utf8):
             return "utf-8"
         return "gb18030" if chinese else "latin-1"
 
 
-def _unlikely_in_utf8(high: bytes) -> bool:
-    """Whether bytes are no UTF-8 that anybody writes in a name, though the rules may let them pass.
+def _is_unlikely_utf8(high: bytes) -> bool:
+    """Whether bytes that may be valid UTF-8 stand for letters that no name has.
 
-    A single Chinese character of GBK can look like a two-byte one of UTF-8: of a phonetic alphabet, or of none.
+    A single Chinese character in GBK can look like a two-byte character of UTF-8: a phonetic sign, a letter of a rare
+    alphabet, or one that is not assigned.
     """
     text = high.decode("utf-8", "replace")
     return all(
@@ -63,11 +64,11 @@ def _unlikely_in_utf8(high: bytes) -> bool:
 
 
 def _count_characters(before: bytes, high: bytes, after: bytes) -> tuple[int, int]:
-    """Count common Chinese characters, and other things, in a stretch of high bytes and its neighbours.
+    """Count common Chinese characters, and other things, in a stretch of high bytes between its neighbours.
 
-    The everyday characters (GB 2312 level 1) and the full-width signs have both bytes above 0xA0 and the first
-    in a narrow range. A letter with an accent in a European word stands between ASCII letters, mostly alone;
-    two of them that happen to make a Chinese character, as in ``GRÖßE``, are told by the letters on both sides.
+    The everyday characters (GB 2312 level 1) and the full-width signs have both bytes above 0xA0, and the first one in
+    a narrow range. An accented letter of a European word stands between ASCII letters, mostly alone; two of them that
+    happen to make a Chinese character, as in ``GRÖßE``, are recognized by the letters on both sides.
     """
     hanzi = others = 0
     for first, second in zip(high[::2], high[1::2], strict=False):

@@ -1,7 +1,7 @@
 """Reads an NX CLSF into a ``Toolpath``.
 
-The file goes by twice, a piece at a time: once to see what it is written in and how long its lines are, which sizes the
-columns; once to be read. Points never become Python objects.
+The file is read twice, in pieces: first for its encoding and the length of its lines, from which the columns are
+sized; then for its content. Points never become Python objects.
 """
 
 import stat
@@ -12,6 +12,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from trunnion.arrays import Ints
 from trunnion.cl.assemble import assemble_operation
 from trunnion.cl.builder import MoveColumns
 from trunnion.cl.diagnostics import Diagnostics
@@ -22,9 +23,9 @@ from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time.
 CHUNK = 4 << 20
-#: Statements that one walk of the scan writes down before it hands over.
-_MAX_SPANS = 1 << 15
 _SURVEY_CHUNK = CHUNK
+#: Statements that one call of the scan writes down at most.
+_MAX_SPANS = 1 << 15
 #: No statement that makes a row is shorter.
 _MIN_ROW_BYTES = len("GOTO/\n")
 _BOM = b"\xef\xbb\xbf"
@@ -34,7 +35,13 @@ _PLAIN_TEXT = "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)"
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """What the first pass found: bytes to skip, about how many rows, encoding, whether the last line ends."""
+    """What the first pass finds.
+
+    bom_bytes  length of the byte order mark
+    rows       estimated number of rows
+    encoding   Python's name of it
+    complete   whether the last line has a line end
+    """
 
     bom_bytes: int
     rows: int
@@ -56,11 +63,11 @@ def read_cl(
     path
         The file.
     units
-        Length unit of the file, ``"mm"`` or ``"inch"``; without it the file decides.
+        Length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says.
     strict
-        Make a statement that is not known an error instead of a remark.
+        Make an unknown statement an error instead of a remark.
     progress
-        Is told from time to time how many bytes are done.
+        Called from time to time with the number of bytes read.
 
     Returns
     -------
@@ -70,7 +77,7 @@ def read_cl(
     Raises
     ------
     InputError
-        With every problem found, if the file cannot be used.
+        If the file cannot be used, with every problem found.
     """
     return read_in_chunks(path, CHUNK, units=units, strict=strict, progress=progress)
 
@@ -83,7 +90,7 @@ def read_in_chunks(
     strict: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
-    """Do what ``read_cl`` says, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
+    """Do what ``read_cl`` does, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
     diagnostics = Diagnostics(str(path))
     if units is not None and units.lower() not in ("mm", "inch"):
         raise diagnostics.fatal(0, f"units are {units!r}", "units are mm or inch")
@@ -96,23 +103,24 @@ def read_in_chunks(
             columns = MoveColumns.allocate(survey.rows)
             interpreter = ClsfInterpreter(columns, diagnostics, survey.encoding, strict)
             file.seek(survey.bom_bytes)
-            rows, line = _scan_file(file, survey, chunk, columns, interpreter, diagnostics, progress)
+            scanner = _Scanner(columns, interpreter, diagnostics)
+            scanner.read(file, chunk, survey.bom_bytes, progress)
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
         raise diagnostics.fatal(0, what, "give the name of a file that you may read") from error
     except ValueError as error:  # a NUL in the name
         raise diagnostics.fatal(0, f"cannot be read: {error}", "give the name of a CL file") from error
-    interpreter.finish(rows, survey.complete, line)
+    interpreter.finish(scanner.rows, survey.complete, scanner.line - 1)
     unit = interpreter.unit(units)
     if unit != 1.0:
-        columns.tip[:rows] *= unit
+        columns.tip[: scanner.rows] *= unit
     operations = tuple(assemble_operation(builder, columns, unit, diagnostics) for builder in interpreter.builders)
     diagnostics.raise_errors()
     return Toolpath(str(path), operations, interpreter.part, diagnostics.remarks, unit)
 
 
 def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:
-    """Look through the whole file, and refuse what is no text."""
+    """Read the whole file once, and refuse what is no text."""
     detector = EncodingDetector()
     bom_bytes = size = 0
     per_byte = 1.0
@@ -141,7 +149,7 @@ def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:
 
 
 def _line_at(file: BinaryIO, offset: int) -> int:
-    """Line, from 1, in which a byte of the file lies."""
+    """The line, from 1, that a byte of the file belongs to."""
     file.seek(0)
     line, left = 1, offset
     while left and (piece := file.read(min(left, _SURVEY_CHUNK))):
@@ -150,62 +158,72 @@ def _line_at(file: BinaryIO, offset: int) -> int:
     return line
 
 
-def _scan_file(
-    file: BinaryIO,
-    survey: Survey,
-    chunk: int,
-    columns: MoveColumns,
-    interpreter: ClsfInterpreter,
-    diagnostics: Diagnostics,
-    progress: Callable[[int], None] | None,
-) -> tuple[int, int]:
-    """Read the file to its end; return the number of rows and of the last line.
+class _Scanner:
+    """Reads a file to its end: points into the columns, all other statements to the interpreter.
 
-    What is not yet a whole statement at the end of a piece is carried over to the next. It is never longer than
-    ``MAX_STATEMENT_BYTES``, and that bounds the buffer.
+    rows   rows written so far
+    line   line that comes next
     """
-    data = bytearray(MAX_STATEMENT_BYTES + chunk + 2)
-    view = memoryview(data)
-    array = np.frombuffer(data, np.uint8)
-    spans = np.empty((_MAX_SPANS, SPAN_COLUMNS), np.int64)
-    filled = rows = 0
-    line = 1
-    done = survey.bom_bytes
-    last = False
-    while not last:
-        got = file.readinto(view[filled : filled + chunk]) or 0  # type: ignore[attr-defined]
-        last = got == 0
-        done += got
-        filled += got
-        if last and filled and data[filled - 1] != ord("\n"):
-            data[filled] = ord("\n")
-            filled += 1
-        stop = data.rfind(b"\n", 0, filled) + 1
+
+    def __init__(self, columns: MoveColumns, interpreter: ClsfInterpreter, diagnostics: Diagnostics) -> None:
+        self.rows = 0
+        self.line = 1
+        self._columns = columns
+        self._interpreter = interpreter
+        self._diagnostics = diagnostics
+        self._spans = np.empty((_MAX_SPANS, SPAN_COLUMNS), np.int64)
+
+    def read(self, file: BinaryIO, chunk: int, done: int, progress: Callable[[int], None] | None) -> None:
+        """Read the rest of a file, of which ``done`` bytes are read.
+
+        An unfinished statement at the end of a piece is carried over to the next piece. It is never longer than
+        ``MAX_STATEMENT_BYTES``, which bounds the buffer.
+        """
+        data = bytearray(MAX_STATEMENT_BYTES + chunk + 2)
+        view = memoryview(data)
+        filled = 0
+        last = False
+        while not last:
+            count = file.readinto(view[filled : filled + chunk]) or 0  # type: ignore[attr-defined]
+            last = count == 0
+            done += count
+            filled += count
+            if last and filled and data[filled - 1] != ord("\n"):
+                data[filled] = ord("\n")
+                filled += 1
+            at = self._scan_lines(data, data.rfind(b"\n", 0, filled) + 1, last)
+            if filled - at > MAX_STATEMENT_BYTES:
+                raise self._too_long(self.line)
+            data[: filled - at] = view[at:filled]
+            filled -= at
+            if progress:
+                progress(done)
+
+    def _scan_lines(self, data: bytearray, stop: int, last: bool) -> int:
+        """Read the whole lines before ``stop``; return where an unfinished statement begins, else ``stop``."""
+        array = np.frombuffer(data, np.uint8)
         at = 0
         while at < stop:
             before = at
-            at, line, rows, count = scan(
-                array, at, stop, last, line, rows, columns.tip, columns.axis, columns.line, spans
+            at, self.line, self.rows, count = scan(
+                array, at, stop, last, self.line, self.rows, self._columns.points(), self._spans
             )
-            for begin, length, number, row, mark in zip(*spans[:count].T.tolist(), strict=True):
-                if mark & TOO_LONG:
-                    raise _too_long(number, diagnostics)
-                if mark & UNFINISHED:
-                    diagnostics.error(number, "the file ends after a continuation sign $", "write the rest of it")
-                interpreter.interpret(bytes(view[begin : begin + length]), number, row, mark)
-            if rows == len(columns.line):
-                columns.grow()
+            self._interpret(data, self._spans[:count])
+            if self.rows == len(self._columns.line):
+                self._columns.grow()
             elif at == before:
                 break
-        if filled - at > MAX_STATEMENT_BYTES:
-            raise _too_long(line, diagnostics)
-        data[: filled - at] = view[at:filled]
-        filled -= at
-        if progress:
-            progress(done)
-    return rows, line - 1
+        return at
 
+    def _interpret(self, data: bytearray, spans: Ints) -> None:
+        for begin, length, line, row, mark in zip(*spans.T.tolist(), strict=True):
+            if mark & TOO_LONG:
+                raise self._too_long(line)
+            if mark & UNFINISHED:
+                cure = "write the rest of the statement"
+                self._diagnostics.error(line, "the file ends after a continuation sign $", cure)
+            self._interpreter.interpret(bytes(data[begin : begin + length]), line, row, mark)
 
-def _too_long(line: int, diagnostics: Diagnostics) -> Exception:
-    what = f"a statement longer than {MAX_STATEMENT_BYTES} bytes"
-    return diagnostics.fatal(line, what, "no CL statement is that long: look whether line ends are missing")
+    def _too_long(self, line: int) -> Exception:
+        what = f"a statement longer than {MAX_STATEMENT_BYTES} bytes"
+        return self._diagnostics.fatal(line, what, "no CL statement is that long: check whether line ends are missing")

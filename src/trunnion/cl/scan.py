@@ -1,11 +1,13 @@
-"""The compiled walk over the bytes of a CL file: points into columns, everything else into spans.
+"""The compiled scan over the bytes of a CL file: points into columns, spans of bytes for everything else.
 
 In:     a buffer of whole lines.
-Out:    tip and axis of each plain ``GOTO`` as numbers of the file, and the place of every other statement.
+Out:    tip and axis of each plain ``GOTO`` as numbers of the file, and the span of every other statement.
 Units:  those of the file; nothing is scaled here.
 
-The kernels check nothing but syntax: what a statement means is the business of ``trunnion.cl.nx``.
+The kernels know only the syntax; the meaning of a statement is in ``trunnion.cl.statements``.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,15 +15,14 @@ from trunnion.arrays import Bytes, Floats, Floats2, Ints, Ints2, Lines
 from trunnion.decimal_bytes import MAX_DIGITS, MAX_EXACT, POWERS_OF_TEN, parse_decimal
 from trunnion.jit import ONE, inlined, inner, kernel, signed, unsigned
 
-#: A statement longer than this is no CL statement; it bounds the memory that one statement can take.
+#: No CL statement is longer; it bounds the memory that a statement can take.
 MAX_STATEMENT_BYTES = 1 << 20
 
-#: Columns of a span: offset in the buffer, bytes, line, row before which it stands, marks.
+#: Number of columns of a span: offset in the buffer, bytes, line, row before which it stands, marks.
 SPAN_COLUMNS = 5
 
-
-#: Marks of a span, which may come together. Plain integers: they are tested for every statement.
-#: The statement is a motion, and a row is kept free for it.
+# Marks of a span, which may be combined. Plain integers, since every statement is tested for them.
+#: The statement is a motion, and a row is reserved for it.
 MAKES_ROW = 1
 #: The file ended after a continuation sign.
 UNFINISHED = 2
@@ -35,7 +36,7 @@ _DOLLAR, _PLUS, _COMMA, _MINUS, _POINT, _SLASH, _ZERO, _NINE = 36, 43, 44, 45, 4
 _GOTO = np.frombuffer(b"GOTO", np.uint8)
 _GODLTA = np.frombuffer(b"GODLTA", np.uint8)
 _GOHOME = np.frombuffer(b"GOHOME", np.uint8)
-#: Majors whose text is taken as it stands, dollar signs and all.
+#: Major words whose text is taken as it stands, dollar signs included.
 _TEXT_MAJORS = (
     np.frombuffer(b"PPRINT", np.uint8),
     np.frombuffer(b"INSERT", np.uint8),
@@ -48,75 +49,86 @@ _TEXT_MAJORS = (
 )
 
 
-@kernel(writes="tip axis line spans")
+class PointColumns(NamedTuple):
+    """The columns that the scan writes.
+
+    tip   (n, 3) float64   NaN in the rows of spans marked ``MAKES_ROW``
+    axis  (n, 3) float64   NaN where the GOTO gives no vector
+    line  (n,)   int32     line of the file
+    """
+
+    tip: Floats2
+    axis: Floats2
+    line: Lines
+
+
+@kernel(writes="columns spans")
 def scan(
-    data: Bytes,
-    start: int,
-    stop: int,
-    last: bool,
-    line_no: int,
-    row: int,
-    tip: Floats2,
-    axis: Floats2,
-    line: Lines,
-    spans: Ints2,
+    data: Bytes, start: int, stop: int, last: bool, line: int, row: int, columns: PointColumns, spans: Ints2
 ) -> tuple[int, int, int, int]:
-    """Read the lines of ``data[start:stop]`` until they, the rows or the spans are used up.
+    """Read the lines of ``data[start:stop]`` until these, the rows or the spans are used up.
 
     data     (b,)   uint8      whole lines: ``data[stop - 1]`` is a newline
-    last     nothing of the file follows, so a statement that wants to go on cannot
-    line_no  line of the file that begins at ``start``
-    row      first free row of the columns
-    tip      (n, 3) float64    written from ``row`` on; NaN in the rows of spans marked ROW
-    axis     (n, 3) float64    NaN where the GOTO gives no vector
-    line     (n,)   int32      line of the file
+    last     the file ends at ``stop``
+    line     line of the file that begins at ``start``
+    row      first row of ``columns`` to write
     spans    (s, 5) int64      written from 0 on, see ``SPAN_COLUMNS``
-    returns  where to go on in ``data``, the line there, the next free row, number of spans written
+    returns  where to go on in ``data``, the line there, the next row, number of spans written
 
-    A statement whose continuation lies behind ``stop`` is not touched: the walk ends before it.
+    Before the end of the file, a statement whose continuation lies behind ``stop`` is left for the next call.
     """
+    # Unpacked once: every access to a field would count references, which takes a quarter of the time.
+    tip, axis, lines = columns.tip, columns.axis, columns.line
     count = 0
     at = start
-    while at < stop and count < spans.shape[0] and row < tip.shape[0]:
+    while at < stop and count < spans.shape[0] and row < lines.shape[0]:
         following = _parse_goto(data, at, tip, axis, row)
         if following > 0 and following - at <= MAX_STATEMENT_BYTES:
-            line[row] = line_no
+            lines[row] = line
             row += 1
-            line_no += 1
+            line += 1
             at = following
             continue
-        begin, end, lines, mark = _find_statement(data, at, stop)
+        begin, end, line_count, mark = _find_statement(data, at, stop)
         if mark & UNFINISHED and not last:
             break
         following = _next_line(data, end)
         if following - at > MAX_STATEMENT_BYTES:
             mark = TOO_LONG
         if end > begin or mark:
-            spans[count, 0] = begin
-            spans[count, 1] = end - begin
-            spans[count, 2] = line_no
-            spans[count, 3] = row
             if _makes_row(data, begin, end):
                 mark |= MAKES_ROW
-                line[row] = line_no
-                for k in range(3):
-                    tip[row, k] = axis[row, k] = np.nan
-                row += 1
-            spans[count, 4] = mark
+            _write_span(spans[count], begin, end, line, row, mark)
             count += 1
+            if mark & MAKES_ROW:
+                _reserve_row(columns, row, line)
+                row += 1
             if mark & TOO_LONG:
                 break
-        line_no += lines
+        line += line_count
         at = following
-    return at, line_no, row, count
+    return at, line, row, count
+
+
+@inner
+def _write_span(span: Ints, begin: int, end: int, line: int, row: int, mark: int) -> None:
+    span[0], span[1], span[2], span[3], span[4] = begin, end - begin, line, row, mark
+
+
+@inner
+def _reserve_row(columns: PointColumns, row: int, line: int) -> None:
+    """Leave a row for the interpreter to write: NaN in tip and axis."""
+    columns.line[row] = line
+    for k in range(3):
+        columns.tip[row, k] = columns.axis[row, k] = np.nan
 
 
 @inlined
-def _parse_goto(data: Bytes, begin: int, tip: Floats, axis: Floats, row: int) -> int:
+def _parse_goto(data: Bytes, begin: int, tip: Floats2, axis: Floats2, row: int) -> int:
     """Parse a plain ``GOTO/x,y,z[,i,j,k]`` line into a row; return the start of the next line, or 0 if it is not plain.
 
-    Blanks may stand around the numbers and a ``$$`` comment behind them. No bound is checked on the way:
-    the newline at the end of the buffer stops every loop.
+    Blanks may stand around the numbers, and a ``$$`` comment behind them. No bounds are checked: the newline at the
+    end of the buffer stops every loop.
     """
     at = unsigned(begin)
     for letter in _GOTO:
@@ -172,34 +184,29 @@ def _next_line_after_comment(data: Bytes, at: int) -> int:
 
 @inner
 def _find_statement(data: Bytes, at: int, stop: int) -> tuple[int, int, int, int]:
-    """Begin, end, lines and mark of the statement at ``at``, bare of blanks and comment; empty if nothing is left."""
+    """Begin, end, lines and mark of the statement at ``at``, without blanks and comment around it; it may be empty."""
     while _is_blank(data[at]) and data[at] != _NEWLINE:
         at += 1
     begin = at
+    content, end = _find_content_end(data, at, False)
+    dollars = data[end] == _DOLLAR or (content > at and data[content - 1] == _DOLLAR)
+    if dollars and content > begin and _is_text_statement(data, begin, content):
+        content, end = _find_content_end(data, at, True)
+        return begin, content, 1, 0
     lines = 1
-    while True:
-        content, end = _find_content_end(data, at, False)
-        signed = content > at and data[content - 1] == _DOLLAR
-        if (
-            (signed or data[end] == _DOLLAR)
-            and lines == 1
-            and content > begin
-            and _is_text_statement(data, begin, content)
-        ):
-            content, end = _find_content_end(data, at, True)
-            signed = False
-        if not signed:
-            return begin, max(content, begin), lines, 0
-        # What stands between the sign and the end of its line is a comment.
+    while content > at and data[content - 1] == _DOLLAR:
+        # The rest of the line after a continuation sign is a comment.
         at = _next_line(data, end)
         if at >= stop:
             return begin, content, lines, UNFINISHED
         lines += 1
+        content, end = _find_content_end(data, at, False)
+    return begin, max(content, begin), lines, 0
 
 
 @inner
 def _find_content_end(data: Bytes, at: int, text: bool) -> tuple[int, int]:
-    """End of what counts in the line at ``at``, and where its ``$$`` comment or newline is; text has no comments."""
+    """End of the content of the line at ``at``, and the place of its ``$$`` comment (not in text) or newline."""
     content = at
     while data[at] != _NEWLINE and (text or data[at] != _DOLLAR or data[at + 1] != _DOLLAR):
         if not _is_blank(data[at]):
@@ -210,7 +217,7 @@ def _find_content_end(data: Bytes, at: int, text: bool) -> tuple[int, int]:
 
 @inner
 def _next_line(data: Bytes, at: int) -> int:
-    """Start of the line after the one in which ``at`` lies."""
+    """Start of the next line."""
     while data[at] != _NEWLINE:
         at += 1
     return at + 1
@@ -223,7 +230,7 @@ def _is_blank(byte: int) -> bool:
 
 @inner
 def _skip_word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
-    """Where ``word`` ends if it stands at ``at``, in any case and with blanks anywhere; else 0."""
+    """The end of ``word`` if it stands at ``at``, in any case and with blanks anywhere; else 0."""
     for letter in word:
         while at < stop and (_is_blank(data[at]) or data[at] == _DOLLAR):
             at += 1
@@ -264,12 +271,12 @@ def _is_text_statement(data: Bytes, begin: int, end: int) -> bool:
 
 @kernel(writes="axis modal_axis bad")
 def fill_modal_axes(axis: Floats2, start: int, stop: int, modal_axis: Floats, bad: Ints) -> int:
-    """Give the rows without a vector the one before them, and every vector the length 1.
+    """Give rows without a vector the one before them, and every vector the length 1.
 
-    axis     (n, 3) float64   rows ``start:stop`` are settled in place
-    seed     (3,)   float64   the vector in force before ``start``; the one in force at ``stop`` on return
-    bad      (b,)   int64     the first rows whose vector is zero, or more than 1 % off length 1
-    returns  how many such rows there are
+    axis        (n, 3) float64   rows ``start:stop`` are changed in place
+    modal_axis  (3,)   float64   the vector before ``start``; on return the one of the last row
+    bad         (b,)   int64     written: the first rows whose vector is zero, or more than 1 % off length 1
+    returns     how many such rows there are
     """
     bad_count = 0
     i, j, k = modal_axis[0], modal_axis[1], modal_axis[2]

@@ -1,14 +1,14 @@
-"""Where the tool touches the surface: points that NX writes behind its GOTOs, and the surface's normals there.
+"""Surface normals from the contact points that NX writes behind its GOTOs.
 
     $$ centerline and contact point
     GOTO/5.6280,6.3548,-18.1120 $$ 5.0000,7.6184,-18.3545
 
-In:     a toolpath that was read, and its file, which goes by once more; only who wants normals asks for them.
+In:     a toolpath that has been read, and its file, which is read once more.
 Out:    the same toolpath with the column ``Moves.normal``.
 
-A tool with a round corner touches whatever it touches along the surface's normal: that is the direction from the
-contact point to the nearest point of the tool's core, which is the cylinder that the corner's centre circle bounds.
-Stock left on the part lies along the same direction.
+A tool with a round corner touches a surface along the normal of the surface: the direction from the contact point to
+the nearest point of the tool's core, which is the cylinder bounded by the circle of the corner's centre. Stock left on
+the part lies along the same direction.
 """
 
 from dataclasses import replace
@@ -26,10 +26,10 @@ from trunnion.model.toolpath import Moves, Operation, Tool, Toolpath
 #: Bytes read at a time.
 _CHUNK: Final = 4 << 20
 
-#: A contact point nearer to the tool's core than this, mm, names no direction.
+#: A contact point nearer to the tool's core than this, mm, gives no direction.
 _MIN_DISTANCE: Final = 1e-3
 
-#: So much of the corner's radius may its centre circle lie beyond the tool's axis: diameters are rounded.
+#: How far the corner radius may exceed half the diameter, as a part of the diameter: diameters are rounded.
 _RADIUS_ROUNDING: Final = 1e-4
 
 _NEWLINE, _RETURN, _BLANK, _DOLLAR, _PLUS, _COMMA, _MINUS = 10, 13, 32, 36, 43, 44, 45
@@ -38,12 +38,12 @@ _TOOL_PATH = np.frombuffer(b"TOOL PATH", np.uint8)
 
 
 def with_normals(toolpath: Toolpath) -> Toolpath:
-    """The toolpath with the surface's normals; what has none is said in its remarks.
+    """The toolpath with surface normals; remarks name the operations that have none.
 
     Raises
     ------
     InputError
-        When the file cannot be read any more.
+        If the file can no longer be read.
     """
     moving = [operation for operation in toolpath.operations if len(operation.moves)]
     if not moving:
@@ -69,11 +69,11 @@ def with_normals(toolpath: Toolpath) -> Toolpath:
 
 
 def _why_no_normals(tool: Tool, contact: Floats) -> str:
-    """Why an operation has no normals; empty where it has."""
+    """Why an operation has no normals; empty if it has."""
     if not np.isfinite(contact).any():
         return "has no contact points, and so no surface normals"
     if tool.kind != "MILL" or tool.taper_angle or tool.tip_angle:
-        return "has a tool whose form does not say the surface's normal: only ball and toroidal mills do"
+        return "has a tool whose form does not give the surface's normal: only ball and toroidal mills do"
     if tool.corner_radius <= 0.0 or tool.corner_radius > (0.5 + _RADIUS_ROUNDING) * tool.diameter:
         return "has a tool without a round corner, whose edge touches surfaces of any direction: no surface normals"
     return ""
@@ -85,7 +85,7 @@ def _remark(file: str, operation: Operation, why: str) -> Problem:
 
 
 def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:
-    """Unit vectors out of the surface, NaN where no contact point says one.
+    """Unit vectors out of the surface, (n, 3) float64, NaN where no contact point gives one.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:
     contact : (n, 3) float64
         Contact points, mm, NaN where there is none.
     tool
-        A mill with a round corner, be it a ball.
+        A ball or toroidal mill.
     """
     to_contact = contact - moves.tip
     axial = np.einsum("ij,ij->i", to_contact, moves.axis)
@@ -112,9 +112,12 @@ def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:
 
 
 def contact_points(file: Path, line: Lines) -> Floats:
-    """(n, 3) float64: the points behind the GOTOs in these lines (n,), growing; NaN where there is none.
+    """Contact points behind the GOTOs of a file, (n, 3) float64, in units of the file; NaN where there is none.
 
-    They count where a comment before says that there are contact points, until the next operation.
+    They count from a comment that announces contact points up to the next operation.
+
+    file  the CL file
+    line  (n,) int32, lines of the GOTOs, increasing
     """
     found = np.full((len(line), 3), np.nan)
     state = np.array([1, 0, 0], np.int64)
@@ -133,7 +136,7 @@ def contact_points(file: Path, line: Lines) -> Floats:
 
 @kernel(writes="found state")
 def _scan_contact_points(data: Bytes, stop: int, line: Lines, found: Floats2, state: Ints) -> None:
-    """Go over whole lines; ``state``: the line that comes, the row that comes, whether contact points are said."""
+    """Scan whole lines up to ``stop``; ``state``: next line, next row, and whether contact points are announced."""
     at = 0
     number, row, announced = state[0], state[1], state[2]
     while at < stop:
@@ -159,7 +162,7 @@ def _scan_contact_points(data: Bytes, stop: int, line: Lines, found: Floats2, st
 
 @inner
 def _contains(data: Bytes, begin: int, end: int, word: Bytes) -> bool:
-    """Whether a word of capitals stands between two places, in any case."""
+    """Whether bytes contain a word, in any case; ``word`` is in capitals."""
     for first in range(begin, end - word.shape[0] + 1):
         same = 0
         while same < word.shape[0]:

@@ -100,17 +100,17 @@ LINES = st.lists(
 def naive(text: str) -> list[tuple[float, ...] | None]:
     """What stands behind each GOTO, by a plain look at the lines."""
     found: list[tuple[float, ...] | None] = []
-    said = False
+    announced = False
     number = r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*"
     for line in text.splitlines():
         _, there, comment = line.partition("$$")
         if line.startswith("GOTO"):
             match = re.fullmatch(f"{number},{number},{number}", comment)
-            found.append(tuple(map(float, match.groups())) if said and match else None)
+            found.append(tuple(map(float, match.groups())) if announced and match else None)
         elif line.startswith("TOOL PATH"):
-            said = False
+            announced = False
         elif there and "contact point" in comment.lower():
-            said = True
+            announced = True
     return found
 
 
@@ -138,10 +138,10 @@ GOTO = "GOTO/0,0,0 $$ 1,2,-0.5\n"
     ("text", "why"),
     [
         (HEAD.format(d=10, r=0, taper=0) + GOTO, "without a round corner"),
-        (HEAD.format(d=10, r=1, taper=5) + GOTO, "whose form does not say"),
+        (HEAD.format(d=10, r=1, taper=5) + GOTO, "whose form does not give"),
         (HEAD.format(d=10, r=1, taper=0) + "GOTO/0,0,0\n", "has no contact points"),
         (HEAD.format(d=10, r=1, taper=0).replace(" and contact point", "") + GOTO, "has no contact points"),
-        (HEAD.format(d=10, r=1, taper=0).replace("MILL", "DRILL") + GOTO, "whose form does not say"),
+        (HEAD.format(d=10, r=1, taper=0).replace("MILL", "DRILL") + GOTO, "whose form does not give"),
     ],
 )
 def test_an_operation_without_normals_says_why(text: str, why: str, tmp_path: Path) -> None:

@@ -1,0 +1,101 @@
+"""CIRCLE statements become arcs, checked against their start and end points."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from trunnion.arrays import Codes, Flags, Floats
+from trunnion.cl.builder import CircleStatement
+from trunnion.cl.diagnostics import Diagnostics
+from trunnion.model.toolpath import Arcs, From, Kind
+
+#: How far start and end of an arc may be off its radius, mm: coordinates are printed with three or four decimals.
+RADIUS_TOLERANCE = 0.02
+
+#: How far the normal of a CIRCLE may be off unit length.
+_NORMAL_TOLERANCE = 0.01
+
+
+def complete_circles(circles: list[CircleStatement], kind: Codes, diagnostics: Diagnostics) -> list[CircleStatement]:
+    """Return the circles that have an end point; ``kind`` (n,) tells which rows are rapids."""
+    if circles and circles[-1].row >= len(kind):
+        cure = "write GOTO/ with the end point of the arc"
+        diagnostics.error(circles[-1].line, "CIRCLE without a GOTO after it", cure)
+        circles = circles[:-1]
+    rapid = kind[[circle.row for circle in circles]] == Kind.RAPID
+    for index in np.flatnonzero(rapid).tolist():
+        what = "RAPID before an arc; the arc is made at the feed rate"
+        diagnostics.remark(circles[index].line, what, "remove the RAPID")
+    return circles
+
+
+def arcs_of(
+    circles: Sequence[CircleStatement], starts: Iterable[From], tip: Floats, unit: float, diagnostics: Diagnostics
+) -> Arcs:
+    """Return the arcs of an operation.
+
+    circles      the CIRCLE statements, each with its end point
+    starts       the FROM events, whose points may begin an arc
+    tip          (n, 3) float64, mm
+    unit         length unit of the file, mm
+    diagnostics  takes arcs that do not fit their points
+    """
+    from_tips = {start.row: start.tip for start in starts}
+    usable = [circle for circle in circles if circle.row > 0 or circle.row in from_tips]
+    for circle in circles:
+        if circle.row == 0 and 0 not in from_tips:
+            diagnostics.error(circle.line, "CIRCLE has no start point", "write FROM/ or GOTO/ before the first arc")
+    if not usable:
+        return Arcs.empty()
+    row = np.array([circle.row for circle in usable], np.int64)
+    numbers = np.array([circle.numbers for circle in usable])
+    # TIMES,n counts the turns that the helix begins, the arc from start to end being the last of them: TIMES,2
+    # is one whole turn and that arc. A full circle, start = end, is one turn: TIMES,1, or no TIMES.
+    full_turns = np.array([circle.turns - 1 for circle in usable], np.int64)
+    length = np.sqrt(np.sum(numbers[:, 3:6] * numbers[:, 3:6], axis=1))
+    normal = numbers[:, 3:6] / np.where(length > 0, length, 1.0)[:, None]
+    arcs = Arcs(row, numbers[:, 0:3] * unit, normal, numbers[:, 6] * unit, full_turns)
+    start = tip[np.maximum(row - 1, 0)]
+    for index, circle in enumerate(usable):
+        if circle.row in from_tips:
+            start[index] = from_tips[circle.row]
+    has_unit_normal = np.abs(length - 1) <= _NORMAL_TOLERANCE
+    _check(arcs, usable, has_unit_normal, start, tip[row], diagnostics)
+    return arcs
+
+
+def _check(
+    arcs: Arcs,
+    circles: Sequence[CircleStatement],
+    has_unit_normal: Flags,
+    start: Floats,
+    end: Floats,
+    diagnostics: Diagnostics,
+) -> None:
+    """Report normals that are no unit vectors, radii that are not positive, and points off the radius.
+
+    start, end  (m, 3) float64, mm
+    """
+    radius = arcs.radius
+    off_start = np.abs(distance_from_line(start - arcs.centre, arcs.normal) - radius)
+    off_end = np.abs(distance_from_line(end - arcs.centre, arcs.normal) - radius)
+    for index in np.flatnonzero(~has_unit_normal).tolist():
+        what = "the normal of CIRCLE is not a unit vector"
+        diagnostics.error(circles[index].line, what, "write i, j, k with length 1")
+    for index in np.flatnonzero(radius <= 0).tolist():
+        diagnostics.error(circles[index].line, "the radius of CIRCLE is not positive", "write a radius above 0")
+    sound = has_unit_normal & (radius > 0)
+    for index in np.flatnonzero(sound & (np.maximum(off_start, off_end) > RADIUS_TOLERANCE)).tolist():
+        which, off = ("start", off_start[index]) if off_start[index] > RADIUS_TOLERANCE else ("end", off_end[index])
+        diagnostics.error(
+            circles[index].line,
+            f"the {which} point of the arc lies {off:.3f} mm off its radius {radius[index]:.4f}",
+            "write centre, radius and points of one and the same circle",
+        )
+
+
+def distance_from_line(offset: Floats, normal: Floats) -> Floats:
+    """(m,) float64: distance from the line through the origin along ``normal``, for (m, 3) offsets."""
+    along = np.sum(offset * normal, axis=1)
+    across = offset - along[:, None] * normal
+    return np.asarray(np.sqrt(np.sum(across * across, axis=1)), np.float64)

@@ -1,0 +1,83 @@
+"""What a CL file cannot hold of a toolpath."""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from trunnion.cl.arcs import RADIUS_TOLERANCE, distance_from_line
+from trunnion.cl.encoding import EncodingDetector
+from trunnion.errors import Problem
+from trunnion.model.toolpath import (
+    CycleOn,
+    From,
+    Insert,
+    Message,
+    Operation,
+    SetMode,
+    Stop,
+    Toolpath,
+    UnknownStatement,
+)
+
+
+def problems_of(toolpath: Toolpath, comments: Iterable[str]) -> list[Problem]:
+    """Everything that keeps a toolpath from being written."""
+    found = [problem for operation in toolpath.operations for problem in _operation_problems(toolpath.file, operation)]
+    texts = {"part name": toolpath.part, **{f"comment {text!r}": text for text in comments}}
+    found += [_bad_text(toolpath.file, 0, what) for what, text in texts.items() if not _is_one_line(text)]
+    if not toolpath.operations:
+        found.append(Problem(toolpath.file, 0, "there is no operation in it", "give a toolpath with motion"))
+    return found
+
+
+def is_detected_as_utf8(toolpath: Toolpath, comments: Iterable[str]) -> bool:
+    """Whether a reader detects the texts as UTF-8; a few letters of some alphabets look like Chinese in GBK."""
+    texts = [toolpath.part, *comments]
+    texts += [text for operation in toolpath.operations for _, _, text in _texts(operation)]
+    detector = EncodingDetector()
+    detector.add("\n".join(texts).encode())
+    return detector.encoding() == "utf-8"
+
+
+def _operation_problems(file: str, operation: Operation) -> Iterator[Problem]:
+    yield from (_bad_text(file, line, what) for line, what, text in _texts(operation) if not _is_one_line(text))
+    if ",TOOL," in operation.name:
+        what = f"operation name {operation.name!r} has ',TOOL,' in it, which ends the name in a CL file"
+        yield Problem(file, operation.line, what, "rename the operation")
+    yield from _arc_problems(file, operation)
+
+
+def _arc_problems(file: str, operation: Operation) -> Iterator[Problem]:
+    arcs, moves = operation.arcs, operation.moves
+    starts = {event.row: event.tip for event in operation.events if isinstance(event, From)}
+    for index, row in enumerate(arcs.row.tolist()):
+        start = starts.get(row) or (tuple(moves.tip[row - 1].tolist()) if row else None)
+        if start is None:
+            what = f"operation {operation.name} begins with an arc, which has no start"
+            yield Problem(file, int(moves.line[row]), what, "put a point before it")
+            continue
+        offsets = np.array([start, moves.tip[row]]) - arcs.centre[index]
+        off = float(np.max(np.abs(distance_from_line(offsets, arcs.normal[index]) - arcs.radius[index])))
+        if off > RADIUS_TOLERANCE:
+            what = f"an end of the arc lies {off:.3f} mm off its radius; a CL file allows {RADIUS_TOLERANCE} mm"
+            yield Problem(file, int(moves.line[row]), what, "make it a line, or correct its centre")
+
+
+def _texts(operation: Operation) -> Iterator[tuple[int, str, str]]:
+    """Line, meaning and content of each text of an operation."""
+    yield operation.line, "operation name", operation.name
+    yield operation.line, "tool name", operation.tool.name
+    for event in operation.events:
+        if isinstance(event, Stop | Message | Insert | UnknownStatement):
+            yield event.line, f"text of {type(event).__name__}", event.text
+        elif isinstance(event, SetMode | CycleOn):
+            for word in event.words if isinstance(event, SetMode) else event.mode:
+                yield event.line, "word", word
+
+
+def _is_one_line(text: str) -> bool:
+    return not any(ord(character) < 32 or ord(character) == 127 for character in text.replace("\t", " "))
+
+
+def _bad_text(file: str, line: int, what: str) -> Problem:
+    return Problem(file, line, f"{what} has a line break or a control character in it", "write it in one line")
