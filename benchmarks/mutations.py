@@ -1,9 +1,9 @@
 """What share of the faults in programs is caught: ``python -m benchmarks.mutations``, from the project's folder.
 
-Puts every fault of ``tests/verify/mutations.py`` into every golden program, at every place where it can be and one at a
-time, and each digit becomes each of the nine others. Prints the table of ``docs/checks.md`` and, by reason, what is not
-caught. ``--digits N`` changes N digits of each program instead of all. Exit code 1 if a fault that changes the work is
-not reported, or is reported at another block.
+Puts every fault of ``tests/support/mutations.py`` into every golden program, at every place where it can be and one at
+a time, and each digit becomes each of the nine others. Prints the table of ``docs/checks.md`` and, by reason, what is
+not caught. ``--digits N`` changes N digits of each program instead of all. Exit code 1 if a fault that changes the work
+is not reported, or is reported at another block.
 """
 
 import argparse
@@ -13,7 +13,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from tests.verify.mutations import CASES, REASONS, Tally, mutations, sweep
+from tests.support.mutations import CASES, REASONS, Tally, mutations, sweep
 
 #: Examples that are shown of each reason.
 SHOWN = 6

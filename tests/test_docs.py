@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.paths import TESTS
+from tests.support.locations import TESTS
 
 ROOT = TESTS.parent
 

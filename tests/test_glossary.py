@@ -5,7 +5,7 @@ from importlib import import_module
 
 import pytest
 
-from tests.paths import TESTS
+from tests.support.locations import TESTS
 
 PAGE = TESTS.parent / "docs" / "glossary.md"
 

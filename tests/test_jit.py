@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.locations import ROOT
 from trunnion import jit
 
 INNER = """
@@ -69,7 +70,7 @@ def folder(tmp_path: Path) -> Path:
 
 def run(folder: Path, script: str = RUN, **environment: str) -> list[str]:
     """What a fresh process prints that keeps its kernels in a folder."""
-    path = os.pathsep.join((str(folder), str(Path(__file__).parents[1] / "src")))
+    path = os.pathsep.join((str(folder), str(ROOT / "src")))
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "kept"), "PYTHONPATH": path, **environment}
     done = subprocess.run(
         [sys.executable, "-c", SHOW_LOG + script], env=environment, capture_output=True, text=True, check=True
@@ -179,7 +180,7 @@ compile_ahead([k.double, k.fold, k.fold_again])
 
 
 def test_processes_that_need_the_same_kernel_wait_for_the_one_that_compiles_it(folder: Path) -> None:
-    path = os.pathsep.join((str(folder), str(Path(__file__).parents[1] / "src")))
+    path = os.pathsep.join((str(folder), str(ROOT / "src")))
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "kept"), "PYTHONPATH": path}
     started = [
         subprocess.Popen([sys.executable, "-c", RUN], env=environment, stdout=subprocess.PIPE, text=True)

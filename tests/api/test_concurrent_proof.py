@@ -6,9 +6,9 @@ from typing import Any, BinaryIO, cast
 
 import pytest
 
-from tests.jobs import post_job
-from tests.paths import GOLDEN, YL569
-from tests.reader.test_growing import facts
+from tests.support.jobs import post_job
+from tests.support.locations import GOLDEN, YL569
+from tests.support.run_comparison import facts
 from trunnion.api.job import PostJob
 from trunnion.api.observer import SILENT
 from trunnion.api.planning import plan_program

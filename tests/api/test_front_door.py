@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.paths import YL569
+from tests.support.locations import YL569
 
 FUNCTIONS = [name for name in trunnion.__all__ if inspect.isfunction(getattr(trunnion, name))]
 

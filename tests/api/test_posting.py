@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import trunnion
-from tests.cli.test_verify import machine_without_tcp
-from tests.paths import GOLDEN, HEADS, YL569
+from tests.support.locations import GOLDEN, HEADS, YL569
+from tests.support.machines import machine_without_tcp
 
 CL = YL569 / "3_blade_finish.cls"
 HUB = YL569 / "2_hub_rough.cls"

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.control.test_golden_controls import CASES as CONTROL_CASES
-from tests.paths import FIDIA, FIDIA_HEAD, GOLDEN, HEADS, YL569
+from tests.support.golden_controls import CASES as CONTROL_CASES
+from tests.support.locations import FIDIA, FIDIA_HEAD, GOLDEN, HEADS, YL569
 from trunnion.cli import main
 from trunnion.verification import check_lines, place_lines, time_lines
 

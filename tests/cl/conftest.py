@@ -1,17 +1,13 @@
-"""Small CL files for the tests of this room."""
+"""Small CL files as texts."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from tests.support.cl_reading import Body, Fail, Read
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Problem
 from trunnion.model.toolpath import Operation, Toolpath
-
-Read = Callable[..., Toolpath]
-Body = Callable[..., Operation]
-Fail = Callable[..., tuple[Problem, ...]]
 
 HEAD = "TOOL PATH/OP,TOOL,T1\nTLDATA/MILL,10.0,1.0,50.0,0.0,0.0\n"
 FOOT = "\nEND-OF-PATH\n"

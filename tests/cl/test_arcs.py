@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.cl.conftest import Body, Fail, Read
+from tests.support.cl_reading import Body, Fail, Read
 from trunnion.model.toolpath import Kind
 
 

@@ -1,13 +1,13 @@
 """The page about CL files and the reader do not drift apart."""
 
 import re
-from pathlib import Path
 
+from tests.support.locations import DOCS
 from trunnion.cl.arcs import RADIUS_TOLERANCE
 from trunnion.cl.phases import COLOUR_PHASES
 from trunnion.cl.statements import HANDLERS
 
-PAGE = (Path(__file__).parents[2] / "docs" / "cl.md").read_text(encoding="utf-8")
+PAGE = (DOCS / "cl.md").read_text(encoding="utf-8")
 
 
 def test_every_statement_that_is_read_is_in_the_page() -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.cl.conftest import Read
+from tests.support.cl_reading import Read
 from trunnion.model.toolpath import Message
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cl.conftest import Fail
+from tests.support.cl_reading import Fail
 from trunnion.cl import read_cl
 from trunnion.errors import InputError
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.cl.conftest import Body, Read
+from tests.support.cl_reading import Body, Read
 from trunnion.cl.phases import fill_phases
 from trunnion.model.toolpath import Phase
 

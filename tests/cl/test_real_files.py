@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.locations import SHARED
 from trunnion.cl import read_cl
 from trunnion.model.toolpath import Kind, Phase
 
-SHARED = Path(__file__).parents[3] / "shared"
 FILES = sorted([*SHARED.glob("golden/*/*.cls"), *SHARED.glob("data/nx/*.cls")])
 
 pytestmark = pytest.mark.skipif(not FILES, reason="the files of others are not beside the project")

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from tests.cl import naive
+from tests.support.naive import cl_scan as naive
 from trunnion.arrays import Floats, Lines
 from trunnion.cl.read import read_cl, read_in_chunks
 from trunnion.cl.scan import MAKES_ROW, SPAN_COLUMNS, UNFINISHED, PointColumns, fill_modal_axes, scan

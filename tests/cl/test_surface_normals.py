@@ -8,7 +8,7 @@ import pytest
 from hypothesis import event, given
 from hypothesis import strategies as st
 
-from tests.paths import SHARED
+from tests.support.locations import SHARED
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl, surface_normals
 from trunnion.cl.surface_normals import contact_points, with_normals

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.cl.conftest import Body, Read
-from tests.convert.toolpaths import OTHERS, SAYABLE, toolpaths
-from tests.paths import YL569
+from tests.support.cl_reading import Body, Read
+from tests.support.locations import YL569
+from tests.support.toolpath_strategies import OTHERS, SAYABLE, toolpaths
 from trunnion.cl import read_cl
 from trunnion.cl.write import write_cl
 from trunnion.errors import InputError

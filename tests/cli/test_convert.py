@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.control.test_golden import motion_part
-from tests.paths import HEADS, YL569
-from tests.verify.proven import unproven
+from tests.support.locations import HEADS, YL569
+from tests.support.program_text import motion_part
+from tests.support.proof import unproven
 from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.machines import load_machine

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.locations import YL569
 from trunnion.cli import main
 from trunnion.machines import shipped_machines
 
@@ -60,7 +61,7 @@ def test_a_machine_of_ones_own_extends_a_shipped_one_and_changes_its_texts(
     )
     assert main(["check", str(file)]) == 0
     capfd.readouterr()
-    golden = Path(__file__).parents[1] / "golden" / "yl569" / "2_hub_rough.cls"
+    golden = YL569 / "2_hub_rough.cls"
     assert main(["post", str(golden), "--machine", str(file), "--output", "-"]) == 0
     lines = capfd.readouterr().out.splitlines()
     assert lines[-2:] == ["; the end of Ours", "M2"]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.paths import YL569
+from tests.support.locations import YL569
 from trunnion.cli import main
 
 PROGRAM = YL569 / "3_blade_finish.expected.mpf"

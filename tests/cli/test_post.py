@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.paths import YL569
-from tests.verify.proven import unproven
+from tests.support.locations import YL569
+from tests.support.proof import unproven
 from trunnion.cli import main
 
 GOOD = (YL569 / "2_hub_rough.cls").read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.paths import GOLDEN, YL569
+from tests.support.locations import GOLDEN, YL569
 from trunnion.cli import main
 from trunnion.cli.cl_files import read_toolpaths
 from trunnion.errors import InputError

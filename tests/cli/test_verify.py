@@ -10,7 +10,8 @@ from typing import BinaryIO
 
 import pytest
 
-from tests.paths import YL569
+from tests.support.locations import YL569
+from tests.support.machines import machine_without_tcp
 from trunnion.cli import main
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
@@ -134,18 +135,6 @@ def assert_reported(report: Path, lines: list[str]) -> None:
 
 
 # The end of ``trunnion post``
-
-
-def machine_without_tcp(folder: Path) -> Path:
-    """The YL569 with an approach that forgets TRAORI."""
-    file = folder / "forgetful.toml"
-    file.write_text(
-        'extends = "yl569"\n[control.templates]\napproach_five_axis = """\n'
-        ";Initial Move\nG0 {primary_word} {secondary_word}\n{work_offset}\nORIWKS\nORIAXES\n"
-        '"""\n',
-        encoding="utf-8",
-    )
-    return file
 
 
 CHECKS = [

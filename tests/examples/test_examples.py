@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+from tests.support.locations import ROOT
+
+EXAMPLES = ROOT / "examples"
 
 #: Name of a script -> what its output contains, and the files that it leaves.
 SCRIPTS = {

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.paths import YL569
+from tests.support.locations import YL569
 from trunnion.cli import main
 from trunnion.machines import load_machine
 from trunnion.model.toolpath import Kind

@@ -18,8 +18,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import NoReturn
 
-from tests.fuzz import klartext, oracle, pieces, rs274, seeds
-from tests.fuzz.mangle import mangle
+from tests.support.fuzz import klartext, oracle, pieces, rs274, seeds
+from tests.support.fuzz.mangle import mangle
 
 
 class Hang(BaseException):

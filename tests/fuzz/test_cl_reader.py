@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.fuzz import oracle, pieces, seeds
-from tests.fuzz.mangle import mangle
+from tests.support.fuzz import oracle, pieces, seeds
+from tests.support.fuzz.mangle import mangle
 
 HEAD = b"TOOL PATH/A,TOOL,B\nTLDATA/MILL,10,1,50,0,0\nGOTO/0,0,9,0,0,1\n"
 FOOT = b"END-OF-PATH\n"

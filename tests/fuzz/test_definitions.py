@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.fuzz import oracle
-from tests.fuzz.mangle import mangle
+from tests.support.fuzz import oracle
+from tests.support.fuzz.mangle import mangle
 
 LIBRARY = tuple(
     entry.read_bytes()

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.fuzz import pieces
+from tests.support.fuzz import pieces
 
 #: Runs the programs of a folder and prints what was opened, listed or started meanwhile. The first run is not watched:
 #: it loads what is needed once.

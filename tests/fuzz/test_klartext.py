@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.fuzz import klartext
-from tests.fuzz.mangle import mangle
+from tests.support.fuzz import klartext
+from tests.support.fuzz.mangle import mangle
 from trunnion.errors import InputError
 from trunnion.machines import load_machine
 from trunnion.readers import run_program

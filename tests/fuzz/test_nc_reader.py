@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.fuzz import oracle, pieces, seeds
-from tests.fuzz.mangle import mangle
+from tests.support.fuzz import oracle, pieces, seeds
+from tests.support.fuzz.mangle import mangle
 from trunnion.errors import InputError
 from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.fuzz.mangle import mangle
-from tests.fuzz.rs274 import FANUC, LANGUAGES, LINUXCNC, Language
+from tests.support.fuzz.mangle import mangle
+from tests.support.fuzz.rs274 import FANUC, LANGUAGES, LINUXCNC, Language
 
 languages = pytest.mark.parametrize("language", LANGUAGES, ids=lambda language: str(language.family))
 

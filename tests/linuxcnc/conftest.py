@@ -4,7 +4,7 @@ import ctypes
 
 import pytest
 
-from tests.linuxcnc.kinematics import hal
+from tests.support.linuxcnc.kinematics import hal
 
 
 @pytest.fixture(scope="session")

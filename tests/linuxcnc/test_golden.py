@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.linuxcnc.interpreter import interpret, needs_linuxcnc
-from tests.paths import GOLDEN
+from tests.support.linuxcnc.interpreter import interpret, needs_linuxcnc
+from tests.support.locations import GOLDEN
 
 NAMES = sorted(path.name for path in (GOLDEN / "linuxcnc").glob("*.expected.ngc"))
 

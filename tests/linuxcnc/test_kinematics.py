@@ -1,50 +1,21 @@
 """Our chains, and the joints that our plans come to, against LinuxCNC's own kinematics."""
 
-import ctypes
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.convert.toolpaths import SAYABLE, operations
-from tests.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
-from trunnion.arrays import Floats
+from tests.support.linuxcnc.joints import MODULES, theirs
+from tests.support.linuxcnc.joints import kinematics as kinematics
+from tests.support.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
+from tests.support.toolpath_strategies import SAYABLE, operations
 from trunnion.errors import RefusedError
-from trunnion.machines import Machine, forward, load_machine, slide_positions
+from trunnion.machines import forward, load_machine, slide_positions
 from trunnion.model.toolpath import Toolpath
 from trunnion.planning import PlanOptions, plan
 
 pytestmark = [needs_modules, needs_compiler]
-
-#: Of each machine its module, the pins with the numbers of its definition, and the joints in their order.
-MODULES: dict[str, tuple[str, dict[str, float], str]] = {
-    "xyzac_trt": ("xyzac-trt-kins", {"y-offset": 20.0, "z-offset": 10.0}, "XYZAC"),
-    "xyzbc_trt": ("xyzbc-trt-kins", {"x-offset": -20.0, "z-offset": -15.0}, "XYZBC"),
-    "linuxcnc_5axis": ("5axiskins", {"pivot-length": 250.0}, "XYZBC"),
-}
-
-#: The two ways to lengthen the tool: the tables' modules have a pin, the head's pivot gets longer.
-TOOL_PINS = {"xyzac_trt": "tool-offset", "xyzbc_trt": "tool-offset", "linuxcnc_5axis": "pivot-length"}
-
-
-@pytest.fixture(scope="module")
-def kinematics(stub: ctypes.CDLL) -> dict[str, Kinematics]:
-    return {name: Kinematics(stub, module, pins) for name, (module, pins, _) in MODULES.items()}
-
-
-def theirs(kinematics: dict[str, Kinematics], machine: Machine, tip: Floats, rotary: Floats, length: float) -> Floats:
-    """Joints in the order of our chain, of tips as programs have them."""
-    _, pins, letters = MODULES[machine.key]
-    tool = TOOL_PINS[machine.key]
-    kinematics[machine.key].set(tool, pins.get(tool, 0.0) + length)
-    poses = np.zeros((len(tip), 9))
-    poses[:, :3] = tip + np.array(machine.workpiece_zero) + [0.0, 0.0, length]  # G54, and G43 along Z
-    for k, column in enumerate(machine.rotary):
-        poses[:, 3 + "ABC".index(machine.axes[column].name)] = rotary[:, k]
-    joints = kinematics[machine.key].joints(poses, len(letters))
-    return joints[:, [letters.index(axis.name) for axis in machine.axes]]
 
 
 places = st.tuples(*[st.floats(-300, 300)] * 3)

@@ -14,11 +14,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.convert.test_pairs import Site, converted, paths, posted, roomy
-from tests.linuxcnc.interpreter import interpret, needs_linuxcnc
-from tests.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
-from tests.linuxcnc.test_kinematics import MODULES, theirs
-from tests.linuxcnc.test_kinematics import kinematics as kinematics
+from tests.support.conversion import Site, converted, paths, posted, roomy
+from tests.support.linuxcnc.interpreter import interpret, needs_linuxcnc
+from tests.support.linuxcnc.joints import MODULES, theirs
+from tests.support.linuxcnc.joints import kinematics as kinematics
+from tests.support.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.machines import Machine, load_machine, slide_positions

@@ -9,8 +9,15 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from tests.convert.toolpaths import SAYABLE, operations
-from tests.linuxcnc.interpreter import SUBROUTINES, Canon, Move, RefusedByLinuxcncError, interpret, needs_linuxcnc
+from tests.support.linuxcnc.interpreter import (
+    SUBROUTINES,
+    Canon,
+    Move,
+    RefusedByLinuxcncError,
+    interpret,
+    needs_linuxcnc,
+)
+from tests.support.toolpath_strategies import SAYABLE, operations
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError, Severity
 from trunnion.machines import Machine, load_machine

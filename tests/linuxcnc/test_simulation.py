@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.linuxcnc.simulator import Bench, needs_simulator, rests, with_rests
+from tests.support.linuxcnc.simulator import Bench, needs_simulator, rests, with_rests
 from trunnion.cli import main
 from trunnion.machines import load_machine, slide_positions
 

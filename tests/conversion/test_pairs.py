@@ -1,0 +1,212 @@
+"""From every control to every other, and back: the tool goes the same way within what the programs print."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from tests.support.conversion import Site, converted, made, paths, posted, roomy, same
+from trunnion.arrays import Floats
+from trunnion.controls import load_control
+from trunnion.conversion import convert, transfer_settings
+from trunnion.errors import InputError
+from trunnion.machines import load_machine, shipped_machines
+from trunnion.model.motion import MachiningMode
+from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.toolpath import (
+    Arcs,
+    CycleOff,
+    CycleOn,
+    Frame,
+    Kind,
+    LoadTool,
+    Moves,
+    Operation,
+    Phase,
+    Sense,
+    SpindleOn,
+    Tool,
+    Toolpath,
+)
+from trunnion.readers.program.settings import family_of
+from trunnion.verification import Tolerances, failures, verify
+
+
+def sites() -> Iterator[tuple[str, Site]]:
+    """The first shipped machine of each family of controls that can be written and holds the tip."""
+    for name in shipped_machines():
+        machine = roomy(load_machine(name))
+        try:
+            control = load_control(machine.control.unread_copy())
+        except InputError:
+            continue
+        if control.tcp and "approach_five_axis" in control.templates:
+            formats = control.number_formats(three_axis=False)
+            digits = (0.5 * 10.0 ** -formats[key].decimals for key in ("coordinate", "angle"))
+            yield family_of(machine), Site(machine, control, *digits)
+
+
+SITES: dict[str, Site] = {}
+for _family, _site in sites():
+    SITES.setdefault(_family, _site)
+
+
+@pytest.mark.parametrize("source", sorted(SITES))
+@settings(max_examples=6)
+@given(path=paths())
+def test_every_other_control_makes_the_tool_go_the_same_way_and_back_again(
+    tmp_path_factory: pytest.TempPathFactory, source: str, path: Toolpath
+) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    one = SITES[source]
+    run = posted(path, one, {}, folder / f"one{one.control.extension}")
+    for two in SITES.values():
+        there = converted(run, one, two, folder / f"two{two.control.extension}")
+        same(run, one, there, two)
+        back = converted(there, two, one, folder / f"back{one.control.extension}")
+        same(there, two, back, one)
+
+
+def circle(tip: Floats, plane: Floats, random: np.random.Generator) -> tuple[Floats, Floats, Floats, float]:
+    """End, centre, normal and radius of an arc from a tip in a plane, whose Z is the last column; flat or rising."""
+    radius, start, sweep = random.uniform(1.0, 30.0), *random.uniform(0.3, 5.8, 2)
+    sense, rise = random.choice([-1.0, 1.0]), random.choice([0.0, 0.0, 3.0])
+    arm = plane @ [np.cos(start), np.sin(start), 0.0]
+    end = plane @ [np.cos(start + sense * sweep), np.sin(start + sense * sweep), 0.0]
+    centre = tip - radius * arm
+    return centre + radius * end + rise * plane[:, 2], centre, sense * plane[:, 2], radius
+
+
+def upright_or_tilted(draw: st.DrawFn) -> Floats:
+    """(3, 3): a plane that every machine can stand on; X of the part is along it."""
+    lean = np.radians(draw(st.sampled_from([0.0, draw(st.floats(8.0, 40.0))])))
+    turn = np.radians(draw(st.floats(5.0, 80.0)))
+    z = np.array([np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)])
+    y = np.cross(z, [1.0, 0.0, 0.0])
+    y /= np.linalg.norm(y)
+    return np.column_stack((np.cross(y, z), y, z))
+
+
+@st.composite
+def level_paths(draw: st.DrawFn) -> Toolpath:
+    """Operations with the tool standing still, upright or tilted: lines and arcs about it, or holes."""
+    made = []
+    for number in range(draw(st.integers(1, 2))):
+        plane = upright_or_tilted(draw)
+        random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+        holes = draw(st.booleans())
+        first = plane @ np.append(random.uniform(-30.0, 30.0, 2), 60.0)
+        tips, kinds, arcs = [first], [Kind.RAPID], []
+        for row in range(1, draw(st.integers(3, 8))):
+            if holes:
+                tips.append(plane @ np.append(random.uniform(-30.0, 30.0, 2), 0.0))
+                kinds.append(Kind.LINEAR)
+            elif random.uniform() < 0.5 and row > 1:
+                end, *arc = circle(tips[-1], plane, random)
+                tips.append(end)
+                kinds.append(Kind.ARC)
+                arcs.append((row, *arc))
+            else:
+                tips.append(tips[-1] + plane @ random.uniform(-15.0, 15.0, 3))
+                kinds.append(Kind.LINEAR)
+        tips.append(plane @ np.append((plane.T @ tips[-1])[:2], 70.0))
+        kinds.append(Kind.RAPID)
+        n = len(tips)
+        kind = np.array(kinds, np.uint8)
+        moves = Moves(
+            tip=np.array(tips),
+            axis=np.tile(plane[:, 2], (n, 1)),
+            kind=kind,
+            phase=np.where(kind == Kind.RAPID, np.uint8(Phase.RAPID), np.uint8(Phase.CUT)),
+            feed=np.where(np.arange(n) > 0, 400.0, np.nan),
+            per_rev=np.zeros(n, bool),
+            line=np.arange(1, n + 1, dtype=np.int32),
+        )
+        events = [LoadTool(0, 1, 3), SpindleOn(0, 1, 2000.0, Sense.CLW)]
+        if holes:
+            heights = (("RAPTO", (3.0,)), ("FEDTO", (-12.0,)), ("RTRCTO", (30.0,)), ("MMPM", (90.0,)))
+            events += [CycleOn(1, 1, ("DRILL",), heights), CycleOff(n - 1, 1)]
+        rows, centres, normals, radii = zip(*arcs, strict=True) if arcs else ([], [], [], [])
+        columns = np.array(rows, np.int64), np.array(centres), np.array(normals), np.array(radii)
+        curves = Arcs(*columns, np.zeros(len(arcs), np.int64)) if arcs else Arcs.empty()
+        tool = Tool("MILL", "D10", 10.0, 5.0, 80.0)
+        made.append(Operation(f"OP{number}", tool, Frame(), moves, curves, tuple(events), 1, 0.01, 0.01))
+    return Toolpath("made.cls", tuple(made))
+
+
+@pytest.mark.parametrize("source", sorted(SITES))
+@settings(max_examples=5)
+@given(path=level_paths())
+def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_file_asks_for(
+    tmp_path_factory: pytest.TempPathFactory, source: str, path: Toolpath
+) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    one = SITES[source]
+    try:
+        run, expected = made(path, one, {}, folder / f"level{one.control.extension}")
+    except InputError:
+        assume(False)  # no room, or no words
+    curved = any(operation.moves.axis[0, 2] < 1.0 and len(operation.arcs.row) for operation in path.operations)
+    for two in SITES.values():
+        if curved and MachiningMode.TILTED not in two.control.modes({}):
+            continue  # lines for circles that are rounded already: the proof may find their ends beyond the tolerance
+        found = convert(run, one.control)
+        assert [str(remark) for remark in found.warnings] == []
+        carried = transfer_settings(found.settings, one.control, two.control)
+        there, other = made(found.toolpath, two, carried, folder / f"two{two.control.extension}")
+        both = [added(*pair) for pair in zip(expected.tolerances, other.tolerances, strict=True)]
+        milled = [(k, each) for k, each in enumerate(path.operations) if not drills(each)]
+        if len(milled) == len(path.operations):
+            checks = failures(verify(there, [path], tolerances=both, settings=other.settings))
+            assert not checks, [(check.key, check.summary) for check in checks]
+        for k, operation in enumerate(path.operations):
+            if drills(operation):
+                drilled(there, operation, both[k].tip)
+
+
+def drills(operation: Operation) -> bool:
+    return any(isinstance(event, CycleOn) for event in operation.events)
+
+
+def drilled(run: Run, operation: Operation, allowed: float) -> None:
+    """The tool is at the depth of each hole, where it begins to feed, and as high as it is drawn back."""
+    tips = run.tip
+    for tip, axis in zip(operation.moves.tip[1:-1], operation.moves.axis[1:-1], strict=True):
+        for height in (-12.0, 3.0, 30.0):
+            assert np.abs(tips - tip - height * axis).max(axis=1).min() <= 2.0 * allowed + 1e-6
+
+
+def added(one: Tolerances, other: Tolerances) -> Tolerances:
+    """What a program may be off that was made from another one."""
+    return Tolerances(one.tip + other.tip, one.angle + other.angle, one.chord + other.chord, one.feed + other.feed)
+
+
+VECTORS = sorted(key for key, site in SITES.items() if "orientation" in site.control.settings)
+
+
+@pytest.mark.parametrize("key", VECTORS)
+@settings(max_examples=8)
+@given(path=paths())
+def test_orientations_by_vectors_stay_vectors_on_the_same_family(
+    tmp_path_factory: pytest.TempPathFactory, key: str, path: Toolpath
+) -> None:
+    folder, site = tmp_path_factory.getbasetemp(), SITES[key]
+    try:
+        run = posted(path, site, {"orientation": "vector"}, folder / "vector.nc")
+    except InputError:
+        assume(False)  # vectors that lead elsewhere
+    again = converted(run, site, site, folder / "again.nc")
+    said = [run.programmed & int(ProgrammedWord.VECTOR) != 0 for run in (run, again)]
+    assert said[0].any()
+    assert said[0].tolist() == said[1].tolist()
+    same(run, site, again, site)
+
+
+def test_vectors_are_known_to_more_than_one_family() -> None:
+    assert {"sinumerik_840d", "heidenhain_tnc640"} <= set(VECTORS)
+
+
+def test_every_family_that_can_be_written_is_among_them() -> None:
+    assert {"sinumerik_840d", "heidenhain_itnc530", "heidenhain_tnc640", "fidia_nc15", "linuxcnc"} <= SITES.keys()

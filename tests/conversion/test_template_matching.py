@@ -1,0 +1,63 @@
+"""Lines of templates that are nothing but a word of the family: read backwards they are that word, and no other."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.support.klartext import CONTROLS, SIMULTANEOUS, Post
+from trunnion.cli import main
+from trunnion.controls import load_control
+from trunnion.conversion.template_matching import family_value_expressions, line_patterns, match_lines
+from trunnion.machines import load_machine, shipped_machines
+
+
+@pytest.fixture
+def post(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> Post:
+    return Post(tmp_path, capfd)
+
+
+POSITION_MODES = [
+    (),
+    ("tcpm=function",),
+    ("tcpm=function", "orientation=vector"),
+    ("retract=m140", "retract_distance=12.5"),
+]
+
+
+@pytest.mark.parametrize("strange", ["M107", "M103 F20", "CALL LBL 99"])
+@pytest.mark.parametrize("way", POSITION_MODES)
+def test_a_block_that_no_template_says_is_none_of_a_template(way: tuple[str, ...], strange: str, post: Post) -> None:
+    """In the place of a line that is nothing but ``{tcp_on}``, and beside it."""
+    given = [word for setting in way for word in ("--set", setting)]
+    lines = [(k, line) for k, line in enumerate(post(SIMULTANEOUS, *given), 1)]
+    control = CONTROLS["dmu65"]
+    kind = [control.templates["approach_five_axis"]]
+    expected = line_patterns(
+        kind, {"primary": "A", "secondary": "C"}, control.settings, family_value_expressions(control)
+    )
+    values: dict[str, str] = {}
+    known = match_lines(lines, expected, values)
+    on = next(number for number, line in lines if line.startswith(("M128", "FUNCTION TCPM")))
+    assert on in known
+    assert values["tcp_on"] == lines[on - 1][1]
+    at = lines.index((on, values["tcp_on"]))
+    for changed in ([*lines[:at], (0, strange), *lines[at:]], [*lines[:at], (0, strange), *lines[at + 1 :]]):
+        assert 0 not in match_lines(changed, expected, {})
+
+
+def test_a_word_beside_tcp_is_remarked_upon(post: Post, capfd: pytest.CaptureFixture[str]) -> None:
+    _, out, _ = post.all(SIMULTANEOUS)
+    program = post.folder / "part.h"
+    program.write_text(re.sub(r"\n(\d+ M128\n)", r"\nM107\n\1", out), encoding="utf-8")
+    assert main(["convert", str(program), "--machine", "dmu65", "--to-cl", "--output", "-"]) == 0
+    assert "M107 is not carried over" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("name", sorted(shipped_machines()))
+def test_what_a_family_says_now_is_one_of_its_spellings(name: str) -> None:
+    control = load_control(load_machine(name).control)
+    spoken = family_value_expressions(control)
+    for field, value in control.family.template_values(dict(control.settings), None).items():
+        if isinstance(value, str):
+            assert re.fullmatch(spoken[field], value)

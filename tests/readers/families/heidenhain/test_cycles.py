@@ -1,0 +1,258 @@
+"""Drilling cycles, as the motions at one hole that the manuals describe."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.support.reading import Runner, close
+from trunnion.errors import Severity
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.readers.control.hole_motion import CycleExecutionError
+from trunnion.readers.families.heidenhain.cycles import peck_depths
+
+BEFORE = "TOOL CALL 1 Z S1000\nL X+3 Y+4 Z+100 R0 FMAX M3\n"
+
+
+def motions(run: Run) -> list[tuple[str, float, float]]:
+    """Rows after the first: R or F, height, and feed where it is one."""
+    rapid = (run.kind == Kind.RAPID).tolist()
+    rows = zip(rapid[1:], run.tip[1:, 2].tolist(), run.feed[1:].tolist(), strict=True)
+    return [("R" if r else "F", round(z, 6), 0.0 if r else f) for r, z, f in rows]
+
+
+def define(number: int, **values: float) -> str:
+    """A definition, one parameter a line."""
+    return f"CYCL DEF {number} NAME ~\n" + " ~\n".join(f"{name}={value:+g}" for name, value in values.items()) + "\n"
+
+
+DRILL = {"Q200": 2, "Q201": -15, "Q206": 150, "Q202": 6, "Q210": 0, "Q203": 10, "Q204": 50, "Q211": 0}
+
+
+@pytest.mark.parametrize(
+    ("number", "values", "expected"),
+    [
+        (200, {}, "R12 F4 R12 R6 F-2 R12 R0 F-5 R12 R60"),
+        (200, {"Q202": 15}, "R12 F-5 R12 R60"),
+        (200, {"Q202": 20, "Q204": 0}, "R12 F-5 R12"),
+        (201, {"Q208": 0}, "R12 F-5 F12 R60"),
+        (202, {"Q208": 300, "Q214": 0}, "R12 F-5 F12 R60"),
+        (202, {"Q208": 300, "Q214": 1, "Q336": 0}, "R12 F-5 F-5 F12 R12 R60"),
+        (203, {"Q212": 0, "Q213": 0, "Q205": 0, "Q208": 500, "Q256": 1}, "R12 F4 F12 R6 F-2 F12 R0 F-5 F12 R60"),
+        (203, {"Q212": 1, "Q213": 1, "Q205": 2, "Q208": 500, "Q256": 1}, "R12 F4 F5 F-1 F12 R1 F-5 F12 R60"),
+        (204, {"Q249": 5, "Q250": 20, "Q251": 15, "Q252": 3.5, "Q253": 750, "Q254": 200, "Q255": 0, "Q214": 1},
+         "R12 R12 F-27 F-27 F-20 F-27 F-27 F12 R12 R60"),
+        (205, {"Q212": 0, "Q205": 0, "Q258": 1, "Q259": 1, "Q257": 0}, "R12 F4 R12 R5 F-2 R12 R-1 F-5 R12 R60"),
+        (205, {"Q202": 15, "Q212": 0, "Q205": 0, "Q257": 5, "Q256": 1}, "R12 F5 F6 F0 F1 F-5 R12 R60"),
+        (205, {"Q202": 15, "Q379": 8, "Q253": 700}, "R12 F2 F-5 R12 R60"),
+        (206, {}, "R12 F-5 F12 R60"),
+        (207, {"Q239": 1.5}, "R12 F-5 F12 R60"),
+        (209, {"Q239": 1, "Q257": 10, "Q256": 2}, "R12 F0 F2 F-5 F12 R60"),
+        (209, {"Q239": -1, "Q257": 10, "Q256": 0}, "R12 F0 F12 F-5 F12 R60"),
+        (240, {"Q343": 0}, "R12 F-5 R12 R60"),
+        (241, {"Q379": 0, "Q208": 900}, "R12 F-5 F12 R60"),
+        (241, {"Q379": 6, "Q253": 700, "Q208": 900}, "R12 F6 F-5 F12 R60"),
+    ],
+)  # fmt: skip
+def test_cycles_of_the_200_series(number: int, values: dict[str, float], expected: str, run: Runner) -> None:
+    found = run(BEFORE + define(number, **{**DRILL, **values}) + "CYCL CALL")
+    assert found.diagnostics == ()
+    assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
+    close(found.tip[-1, :2], [3, 4])
+
+
+@pytest.mark.parametrize("word", ["MAX", "FMAX"])
+@pytest.mark.parametrize(
+    ("number", "values", "expected"),
+    [
+        (202, {"Q214": 0}, "R12 F-5 R12 R60"),
+        (202, {"Q214": 1, "Q336": 0}, "R12 F-5 R-5 R12 R12 R60"),
+        (203, {"Q212": 0, "Q213": 9, "Q205": 0, "Q256": 1}, "R12 F4 R5 F-2 R-1 F-5 R12 R60"),
+    ],
+)
+def test_out_of_the_hole_at_rapid(number: int, values: dict[str, float], expected: str, word: str, run: Runner) -> None:
+    text = define(number, **{**DRILL, **values}).rstrip("\n") + f" ~\nQ208={word}\n"
+    found = run(BEFORE + text + "CYCL CALL")
+    assert found.diagnostics == ()
+    assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
+    assert run(BEFORE + text.replace("Q208", "Q206") + "CYCL CALL").diagnostics
+
+
+def test_feeds_of_cycles(run: Runner) -> None:
+    def feeds(number: int, **values: float) -> list[float]:
+        found = run(BEFORE + "L Z+90 F888\n" + define(number, **{**DRILL, "Q202": 15, **values}) + "CYCL CALL\nL Z+1")
+        assert found.diagnostics == ()
+        # What was in force before is in force again.
+        assert found.feed[-1] == 888
+        return [feed for kind, _, feed in motions(found)[1:-1] if kind == "F"]
+
+    assert feeds(200) == [150]
+    assert feeds(201, Q208=0) == [150, 150]
+    assert feeds(201, Q208=400) == [150, 400]
+    assert feeds(206) == [150, 150]
+    assert feeds(207, Q239=1.5) == [1500, 1500]
+
+
+def test_dwells(run: Runner) -> None:
+    found = run(BEFORE + define(200, **{**DRILL, "Q210": 0.25, "Q211": 0.5}) + "CYCL CALL")
+    assert [(e.value, e.before_row) for e in found.events if e.kind == "dwell"] == [(0.25, 4), (0.25, 7), (0.5, 9)]
+
+
+def test_a_bored_hole_is_left_beside_its_wall(run: Runner) -> None:
+    found = run(BEFORE + define(202, **{**DRILL, "Q208": 300, "Q214": 2, "Q336": 0}) + "CYCL CALL")
+    close(found.tip[2:6, 1], [4, 3.8, 3.8, 4])
+
+
+@pytest.mark.parametrize("call", ["CYCL CALL", "CYCL CALL M8", "L FMAX M99", "M99"])
+def test_ways_to_call(call: str, run: Runner) -> None:
+    found = run(BEFORE + define(200, **DRILL) + call)
+    assert found.diagnostics == ()
+    assert len(found) == 11
+
+
+def test_m99_calls_after_the_motion_and_m89_until_m99(run: Runner) -> None:
+    short = define(200, **{**DRILL, "Q202": 15, "Q204": 0})
+    text = BEFORE + short + "L X+1 FMAX M99\nL X+2 FMAX\nL X+3 FMAX M89\nL X+4 FMAX\nL X+5 FMAX M99\nL X+6 FMAX"
+    found = run(text)
+    assert found.diagnostics == ()
+    deep = found.tip[found.tip[:, 2] == -5.0]
+    assert deep[:, 0].tolist() == [1, 3, 4, 5]
+    assert found.tip[-1, 0] == 6
+
+
+def test_a_call_at_a_position(run: Runner) -> None:
+    found = run(BEFORE + define(200, **{**DRILL, "Q202": 15}) + "CYCL CALL POS X+30 Y+40 Z+70 FMAX")
+    assert found.diagnostics == ()
+    close(found.tip[1], [30, 40, 70])
+    close(found.tip[3], [30, 40, -5])
+
+
+def test_parameters_of_cycles_are_parameters(run: Runner) -> None:
+    text = (
+        "Q1 = 4\n"
+        + define(200, **{**DRILL, "Q202": 15})
+        + "Q2 = Q201 + Q1\nCYCL DEF 200 Q201=Q2 Q203=-Q1 Q200=1 Q206=9 Q202=50\n"
+    )
+    found = run(BEFORE + text + "CYCL CALL")
+    assert found.diagnostics == ()
+    assert found.tip[:, 2].min() == -15.0
+
+
+PECK = """CYCL DEF 1.0 PECKING
+CYCL DEF 1.1 DIST{}
+CYCL DEF 1.2 DEPTH{}
+CYCL DEF 1.3 PLNGNG{}
+CYCL DEF 1.4 DWELL0
+CYCL DEF 1.5 F364
+"""
+
+
+@pytest.mark.parametrize(
+    ("distance", "depth", "peck", "expected"),
+    [
+        ("27.500", "-5.400", "3.0", "F69.5 R100 R70.1 F67.1 R100"),
+        ("+2", "-60", "+30", "F68 R100 R69.2 F38 R100"),
+        ("2", "-3", "3", "F95 R100"),
+    ],
+)
+def test_pecking_from_where_the_tool_stands(distance: str, depth: str, peck: str, expected: str, run: Runner) -> None:
+    found = run(BEFORE + PECK.format(distance, depth, peck) + "L FMAX M99")
+    assert found.diagnostics == ()
+    assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
+    assert {feed for kind, _, feed in motions(found) if kind == "F"} == {364.0}
+
+
+def test_other_cycles_from_where_the_tool_stands(run: Runner) -> None:
+    tap = "CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 SET UP+2\nCYCL DEF 2.2 DEPTH-20\nCYCL DEF 2.3 DWELL0\nCYCL DEF 2.4 F100\n"
+    rigid = "CYCL DEF 17.0 RIGID\nCYCL DEF 17.1 SET UP2\nCYCL DEF 17.2 DEPTH-10\nCYCL DEF 17.3 PITCH+1\n"
+    assert motions(run(BEFORE + tap + "CYCL CALL")) == [("F", 78.0, 100.0), ("F", 100.0, 100.0)]
+    assert motions(run(BEFORE + rigid + "CYCL CALL")) == [("F", 88.0, 1000.0), ("F", 100.0, 1000.0)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        define(200, Q200=2, Q201=0, Q206=1, Q202=1, Q203=0), define(200, Q200=2, Q201=-5),
+        define(207, **{**DRILL, "Q239": 0}), define(202, **{**DRILL, "Q214": 7}), define(251, **DRILL),
+        define(240, **{**DRILL, "Q343": 1}), define(205, **{**DRILL, "Q379": 20, "Q253": 1}),
+        "CYCL DEF 1.0 PECKING\n", PECK.format(2, 0, 1), define(256, **DRILL),
+    ],
+)  # fmt: skip
+def test_cycles_that_make_no_sense_are_named_and_not_executed(text: str, run: Runner) -> None:
+    found = run(BEFORE + text + "CYCL CALL")
+    assert len(found) == 1
+    assert [f.severity for f in found.diagnostics] == ["error"]
+
+
+def test_a_cycle_beside_the_tool_axis_is_named(run: Runner) -> None:
+    text = "PLANE SPATIAL SPA-45 SPB+0 SPC+0 STAY\n" + BEFORE + define(200, **DRILL) + "CYCL CALL"
+    assert any("not the tool axis" in f.text for f in run(text).diagnostics)
+
+
+def test_cycles_drill_along_a_tilted_tool(run: Runner) -> None:
+    text = (
+        "PLANE SPATIAL SPA-45 SPB+0 SPC+0 TURN FMAX SEQ-\n"
+        + BEFORE
+        + define(200, **{**DRILL, "Q202": 15})
+        + "CYCL CALL"
+    )
+    found = run(text)
+    assert found.diagnostics == ()
+    drilled = found.tip[-3] - found.tip[-4]
+    close(drilled, -17.0 * found.axis[-1], atol=1e-9)
+
+
+@settings(max_examples=100)
+@given(
+    total=st.integers(1, 500).map(float),
+    first=st.integers(1, 100).map(float),
+    less=st.integers(0, 20).map(float),
+    least=st.integers(1, 50).map(float),
+)
+def test_infeeds_shrink_to_the_least_and_end_at_the_depth(
+    total: float, first: float, less: float, least: float
+) -> None:
+    depths = peck_depths(total, first, less, least)
+    assert depths[-1] == total
+    strokes = [b - a for a, b in zip([0.0, *depths], depths, strict=False)]
+    assert all(stroke > 0.0 for stroke in strokes)
+    expected = first
+    for stroke in strokes[:-1]:
+        assert stroke == pytest.approx(expected)
+        expected = max(expected - less, least)
+    assert strokes[-1] <= (expected if len(strokes) > 1 else total) + 1e-9
+
+
+def test_pecks_without_end_are_refused() -> None:
+    with pytest.raises(CycleExecutionError, match="more than"):
+        peck_depths(100.0, 0.01, 0.0, 0.01)
+
+
+# Bore milling, whose tool goes round: what is simulated is the wall
+
+
+@pytest.mark.parametrize(
+    ("values", "turns", "sense"),
+    [({}, 6, 1.0), ({"Q334": 17}, 1, 1.0), ({"Q334": 8.5, "Q351": 1}, 2, 1.0), ({"Q334": 4, "Q351": -1}, 5, -1.0)],
+)
+def test_a_bore_is_milled_in_helices_and_once_round_at_its_bottom(
+    values: dict[str, float], turns: int, sense: float, run: Runner
+) -> None:
+    found = run(BEFORE + define(208, **{**DRILL, "Q334": 3, "Q335": 20, "Q342": 0, **values}) + "CYCL CALL")
+    assert [finding.severity for finding in found.diagnostics] == [Severity.WARNING]
+    place = [[3, 4, 12], [13, 4, 12], [13, 4, -5], [13, 4, -5], [3, 4, -5], [3, 4, 12], [3, 4, 60]]
+    close(found.tip[1:], place)
+    kinds = [Kind.RAPID, Kind.LINEAR, Kind.ARC, Kind.ARC, Kind.LINEAR, Kind.RAPID, Kind.RAPID]
+    assert found.kind[1:].tolist() == kinds
+    assert found.arcs.full_turns.tolist() == [turns - 1, 0]  # besides the turn that comes back to its start
+    close(found.arcs.centre[:, :2], [[3, 4], [3, 4]])
+    close(found.arcs.normal, [[0, 0, sense]] * 2)
+    close(found.arcs.radius, [10, 10])
+    assert set(found.feed[1:].tolist()) >= {150.0}
+
+
+@pytest.mark.parametrize("values", [{"Q334": 0}, {"Q335": 0}, {"Q334": 1e-4}, {"Q335": -5}])
+def test_a_bore_that_cannot_be_milled_is_named(values: dict[str, float], run: Runner) -> None:
+    found = run(BEFORE + define(208, **{**DRILL, "Q334": 3, "Q335": 20, **values}) + "CYCL CALL")
+    assert len(found) == 1
+    assert Severity.ERROR in [finding.severity for finding in found.diagnostics]

@@ -1,0 +1,33 @@
+"""The golden programs for Fanuc and LinuxCNC, and what they are posted from."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a golden program is made from; the CL file and a machine's file stand in ``GOLDEN``.
+
+    ``warned``: words of every line that is said besides the checks'.
+    """
+
+    cl: str
+    machine: str
+    settings: tuple[str, ...] = ()
+    warned: str = ""
+
+
+_BLADE = "yl569/3_blade_finish.cls"
+CASES = {
+    "fanuc/flange.expected.nc": Case(
+        "fanuc/flange.cls", "matsuura_mx330", ("program=7118", "title=Flange 7-1182 Rev B", "work_offset=G54.1 P3")
+    ),
+    "fanuc/blade.expected.nc": Case(_BLADE, "matsuura_mx330", ("contour=G05",)),
+    "fanuc/blade_by_vectors.expected.nc": Case(_BLADE, "matsuura_mx330", ("orientation=vector",)),
+    "fanuc/blade_without_options.expected.nc": Case(
+        _BLADE, "fanuc/without_options.toml", ("zero=0,0,120", "tool_length=120", "numbers=off")
+    ),
+    "linuxcnc/blade.expected.ngc": Case(_BLADE, "xyzac_trt"),
+    "linuxcnc/blade_without_tcp.expected.ngc": Case(_BLADE, "xyzac_trt", ("tcp=off", "zero=0,0,0")),
+    "linuxcnc/contour.expected.ngc": Case("yl569/1_contour_rough.cls", "xyzac_trt"),
+    "linuxcnc/plate.expected.ngc": Case("linuxcnc/plate.cls", "xyzac_trt", ("title=plate",), warned=" made as motion"),
+}

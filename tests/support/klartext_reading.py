@@ -1,0 +1,33 @@
+"""Klartext programs as texts, run on a machine."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.machines import at_zero
+from tests.support.reading import Runner
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.readers import run_program
+
+
+@pytest.fixture(scope="session")
+def dmu65() -> Machine:
+    """A table-table mill whose programs are Klartext: A from -90 to 0 carries the endless C."""
+    return at_zero("dmu65")
+
+
+@pytest.fixture
+def run(tmp_path: Path, dmu65: Machine) -> Runner:
+    """Run a text as a program; the files that it may call by name."""
+
+    def runner(text: str, machine: Machine = dmu65, files: dict[str, str] | None = None, **settings: object) -> Run:
+        for name, content in (files or {}).items():
+            (tmp_path / name).write_text(content, encoding="utf-8")
+        program = tmp_path / "MAIN.H"
+        program.write_text(text, encoding="utf-8")
+        family = None if machine is dmu65 else "heidenhain_itnc530"
+        named = [tmp_path / name for name in files or {}]
+        return run_program(program, machine, subprograms=named, family=family, **settings)  # type: ignore[arg-type]
+
+    return runner

@@ -1,0 +1,25 @@
+"""Shipped machines as tests want them."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from trunnion.machines import Machine, load_machine
+
+
+def at_zero(name: str) -> Machine:
+    """A shipped machine whose slides begin at zero, and are at home there."""
+    machine = load_machine(name)
+    axes = tuple(axis if axis.is_rotary else replace(axis, home=0.0) for axis in machine.axes)
+    return replace(machine, axes=axes)
+
+
+def machine_without_tcp(folder: Path) -> Path:
+    """The YL569 with an approach that forgets TRAORI."""
+    file = folder / "forgetful.toml"
+    file.write_text(
+        'extends = "yl569"\n[control.templates]\napproach_five_axis = """\n'
+        ";Initial Move\nG0 {primary_word} {secondary_word}\n{work_offset}\nORIWKS\nORIAXES\n"
+        '"""\n',
+        encoding="utf-8",
+    )
+    return file

@@ -1,0 +1,40 @@
+"""The tests are laid out as the sources are, and what several of them use is in ``tests.support``."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support.locations import ROOT, TESTS
+
+SOURCES = ROOT / "src" / "trunnion"
+
+#: Folders that test more than one part, hold files of the tests, or serve them.
+OTHERS = {"data", "examples", "fuzz", "golden", "linuxcnc", "matrix", "support"}
+
+MODULES = sorted(path.relative_to(ROOT) for path in TESTS.rglob("*.py"))
+
+
+def imports(module: Path) -> Iterator[str]:
+    """Yield the modules of the tests that a module imports."""
+    for node in ast.walk(ast.parse((ROOT / module).read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names if name.name.split(".")[0] == "tests")
+        elif isinstance(node, ast.ImportFrom) and (node.level or (node.module or "").split(".")[0] == "tests"):
+            yield "." * node.level + (node.module or "")
+
+
+@pytest.mark.parametrize("module", MODULES, ids=str)
+def test_tests_share_nothing_but_the_support(module: Path) -> None:
+    assert [name for name in imports(module) if not name.startswith("tests.support")] == []
+
+
+def test_each_folder_tests_a_part_of_the_sources_of_its_name() -> None:
+    folders = {path.name for path in TESTS.iterdir() if path.is_dir() and path.name != "__pycache__"} - OTHERS
+    sources = {path.stem for path in SOURCES.iterdir()}
+    assert sorted(folders - sources) == []
+
+
+def test_support_has_no_tests() -> None:
+    assert not list((TESTS / "support").rglob("test_*.py"))

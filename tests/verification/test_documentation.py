@@ -1,0 +1,27 @@
+"""The page about the checks agrees with the checks."""
+
+import re
+
+from tests.support import mutations
+from tests.support.locations import DOCS
+from tests.support.verifying import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier
+
+PAGE = (DOCS / "checks.md").read_text(encoding="utf-8")
+
+
+def test_every_check_has_a_section_and_every_name_in_the_table_is_a_check(verified: Verifier) -> None:
+    program = HEAD + "G0 X0 Y0 Z50\n" + FOOT
+    keys = [check.key for check in verified(program, CL_HEAD + CL_FOOT).checks]
+    assert {check.key for check in verified(program).checks} <= set(keys)
+    sections = re.findall(r"^## (.*)$", PAGE, re.MULTILINE)
+    assert [key for key in keys if key not in sections] == []
+    table = "".join(line for line in PAGE.splitlines() if line.startswith("| ["))
+    linked = re.findall(r"\[([a-z]+)\]\(#\1\)", table)
+    assert sorted(linked) == sorted(keys)
+
+
+def test_every_reason_why_a_fault_is_not_caught_is_in_the_page() -> None:
+    plain = PAGE.replace("`", "")
+    for what, why in mutations.REASONS.items():
+        assert f"| {what} |" in plain
+        assert why in PAGE
