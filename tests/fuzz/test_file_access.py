@@ -38,7 +38,7 @@ def run(path):
     try:
         named = [folder / "L10.SPF"]
         run = run_program(path, machine, subprograms=named, family="sinumerik_840d", step_limit=2000)
-        return len(run.findings)
+        return len(run.diagnostics)
     except InputError:
         return -1
 

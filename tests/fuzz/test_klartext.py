@@ -159,5 +159,5 @@ def test_a_program_runs_twice_alike(folder: Path, seed: int) -> None:
     if one is not None and two is not None:
         assert one.diagnostics == two.diagnostics
         assert one.events == two.events
-        for name in ("block", "kind", "tip", "axis", "joints", "feed", "tool", "programmed"):
+        for name in ("line", "kind", "tip", "axis", "joints", "feed", "tool", "programmed"):
             np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
