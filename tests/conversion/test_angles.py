@@ -1,4 +1,4 @@
-"""Angles of a program, as tool axes in a CL file: they print as they did."""
+"""Angles of a program survive as tool axes in a CL file: they print the same again."""
 
 import io
 from pathlib import Path
@@ -28,7 +28,7 @@ def axes(b: Floats, c: Floats) -> Floats:
 
 
 def angles_off(axis: Floats, b: Floats, c: Floats) -> float:
-    """Largest difference of the angles that make a tool axis from those given, degrees."""
+    """Largest difference between the angles of the tool axes and those given, degrees."""
     joints = inverse(MACHINE, np.zeros((len(axis), 3)), np.ascontiguousarray(axis)).joints[0]
     round_c = np.abs((joints[:, C] - c + 180) % 360 - 180)
     return float(np.maximum(np.abs(joints[:, B] - b), round_c).max())

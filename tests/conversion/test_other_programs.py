@@ -1,4 +1,4 @@
-"""Programs that we did not write: what becomes of their words."""
+"""Programs of other posts: what their words are converted to."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ CONTROL = load_control(MACHINE.control)
 
 
 class Programs:
-    """Converts text."""
+    """Converts the text of programs."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -52,7 +52,7 @@ class Programs:
 
 @pytest.fixture
 def programs(tmp_path: Path) -> Programs:
-    """For the text of programs."""
+    """A converter in a folder of its own."""
     return Programs(tmp_path)
 
 
@@ -183,7 +183,7 @@ def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> No
 
 
 def warnings_for(programs: Programs, *lines: str) -> list[tuple[int, str]]:
-    """Line and text of what is remarked upon."""
+    """Line and text of the warnings."""
     return [(remark.line, remark.what) for remark in programs.all(*lines).warnings]
 
 

@@ -1,4 +1,4 @@
-"""From every control to every other, and back: the tool goes the same way within what the programs print."""
+"""From every control to every other and back: the tool follows the same path, as far as the programs' digits go."""
 
 from collections.abc import Iterator
 
@@ -35,7 +35,7 @@ from trunnion.verification import Tolerances, failures, verify
 
 
 def sites() -> Iterator[tuple[str, Site]]:
-    """The first shipped machine of each family of controls that can be written and holds the tip."""
+    """The first shipped machine of each family of controls that has a writer and TCP."""
     for name in shipped_machines():
         machine = roomy(load_machine(name))
         try:
@@ -70,7 +70,7 @@ def test_every_other_control_makes_the_tool_go_the_same_way_and_back_again(
 
 
 def circle(tip: Floats, plane: Floats, random: np.random.Generator) -> tuple[Floats, Floats, Floats, float]:
-    """End, centre, normal and radius of an arc from a tip in a plane, whose Z is the last column; flat or rising."""
+    """End, centre, normal and radius of an arc or helix from a tip in a plane, whose Z is the last column."""
     radius, start, sweep = random.uniform(1.0, 30.0), *random.uniform(0.3, 5.8, 2)
     sense, rise = random.choice([-1.0, 1.0]), random.choice([0.0, 0.0, 3.0])
     arm = plane @ [np.cos(start), np.sin(start), 0.0]
@@ -80,7 +80,7 @@ def circle(tip: Floats, plane: Floats, random: np.random.Generator) -> tuple[Flo
 
 
 def upright_or_tilted(draw: st.DrawFn) -> Floats:
-    """(3, 3): a plane that every machine can stand on; X of the part is along it."""
+    """(3, 3): a plane that every machine reaches, with X of the part in it."""
     lean = np.radians(draw(st.sampled_from([0.0, draw(st.floats(8.0, 40.0))])))
     turn = np.radians(draw(st.floats(5.0, 80.0)))
     z = np.array([np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)])
@@ -91,7 +91,7 @@ def upright_or_tilted(draw: st.DrawFn) -> Floats:
 
 @st.composite
 def level_paths(draw: st.DrawFn) -> Toolpath:
-    """Operations with the tool standing still, upright or tilted: lines and arcs about it, or holes."""
+    """Operations with a constant tool axis, upright or tilted: lines and arcs about it, or holes."""
     made = []
     for number in range(draw(st.integers(1, 2))):
         plane = upright_or_tilted(draw)
@@ -171,7 +171,7 @@ def drills(operation: Operation) -> bool:
 
 
 def drilled(run: Run, operation: Operation, allowed: float) -> None:
-    """The tool is at the depth of each hole, where it begins to feed, and as high as it is drawn back."""
+    """The tool reaches the depth of each hole, its clearance height and its retract height."""
     tips = run.tip
     for tip, axis in zip(operation.moves.tip[1:-1], operation.moves.axis[1:-1], strict=True):
         for height in (-12.0, 3.0, 30.0):
@@ -179,7 +179,7 @@ def drilled(run: Run, operation: Operation, allowed: float) -> None:
 
 
 def added(one: Tolerances, other: Tolerances) -> Tolerances:
-    """What a program may be off that was made from another one."""
+    """The tolerances of a program that was posted from another one."""
     return Tolerances(one.tip + other.tip, one.angle + other.angle, one.chord + other.chord, one.feed + other.feed)
 
 

@@ -1,4 +1,4 @@
-"""Programs of ours turned into CL files, and posted again: the same bytes."""
+"""Programs of ours converted to CL files and posted again: the same bytes."""
 
 import io
 from pathlib import Path
@@ -26,8 +26,8 @@ from trunnion.verification import compare
 MACHINE = load_machine("yl569")
 CONTROL = load_control(MACHINE.control)
 
-#: Tool axes that the YL569 reaches, upright ones among them. Others stand clear of its pole: nearer to it the angles of
-#: a tilted plane, as they are printed, leave C open.
+#: Tool axes that the YL569 reaches: upright, or clear of its pole. Nearer to it, the printed angles of a tilted plane
+#: leave C open.
 AXES = st.one_of(
     st.just((0.0, 0.0, 1.0)),
     st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.01, 1)).filter(
@@ -37,7 +37,7 @@ AXES = st.one_of(
 
 
 def posted(toolpath: Toolpath, given: dict[str, str], planes: bool = True) -> bytes | None:
-    """The program; None where there can be none. Without ``planes`` one that would have tilted planes goes with TCP."""
+    """The program; None if it is refused. Without ``planes``, one with tilted planes is posted with TCP instead."""
     planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance)
     if not planes and any(motion.plane is not None for motion in planned.motions):
         planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance, PlanOptions(mode=MachiningMode.TCP))
@@ -50,7 +50,7 @@ def posted(toolpath: Toolpath, given: dict[str, str], planes: bool = True) -> by
 
 
 def there_and_back(program: bytes, folder: Path, planes: bool = True) -> bytes | None:
-    """Program to CL file to program."""
+    """The program converted to a CL file and posted again."""
     (folder / "a.mpf").write_bytes(program)
     run = run_program(folder / "a.mpf", MACHINE)
     assert run.errors == ()
@@ -89,12 +89,12 @@ def with_tool(given: dict[str, str]) -> dict[str, str]:
 def test_a_program_of_ours_comes_back_with_the_same_bytes(
     tmp_path_factory: pytest.TempPathFactory, toolpath: Toolpath, given: dict[str, str]
 ) -> None:
-    """If points print elsewhere than those before, and between two of them no kind of event happens twice.
+    """If points differ as printed from those before them, and no kind of event happens twice between two of them.
 
-    Besides, block skip goes on and off in turn, and cutter radius compensation changes on a motion. Heaps of events at
-    one place, and feeds or phases of a tool that rests, print blocks that nothing but the program's text tells apart
-    from others; what they do is held on to by the test below. So are tilted planes: near the pole their printed angles
-    leave the last digit of a rotary axis open.
+    Besides, block skip goes on and off in turn, and cutter radius compensation changes on a motion. Several events at
+    one place, and feeds or phases of a tool at rest, print blocks that only the program's text tells apart; the test
+    below covers what they do. It covers tilted planes too: near the pole their printed angles leave the last digit of a
+    rotary axis open.
     """
     first = posted(toolpath, with_tool(given), planes=False)
     assume(first is not None)

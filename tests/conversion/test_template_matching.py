@@ -1,4 +1,4 @@
-"""Lines of templates that are nothing but a word of the family: read backwards they are that word, and no other."""
+"""Template lines that are only a word of the family match that word, and no other."""
 
 import re
 from pathlib import Path
@@ -28,7 +28,7 @@ POSITION_MODES = [
 @pytest.mark.parametrize("strange", ["M107", "M103 F20", "CALL LBL 99"])
 @pytest.mark.parametrize("way", POSITION_MODES)
 def test_a_block_that_no_template_says_is_none_of_a_template(way: tuple[str, ...], strange: str, post: Post) -> None:
-    """In the place of a line that is nothing but ``{tcp_on}``, and beside it."""
+    """Neither instead of a line that is only ``{tcp_on}`` nor next to it."""
     given = [word for setting in way for word in ("--set", setting)]
     lines = [(k, line) for k, line in enumerate(post(SIMULTANEOUS, *given), 1)]
     control = CONTROLS["dmu65"]

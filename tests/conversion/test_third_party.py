@@ -1,4 +1,4 @@
-"""Five-axis programs of others, on other machines; the files are not part of the project."""
+"""Five-axis programs of other posts, converted for other machines; the files are not part of the project."""
 
 import re
 from pathlib import Path
@@ -45,11 +45,11 @@ def test_the_impeller_goes_to_another_machine_and_control_and_back(
 
 
 def test_the_boat_is_one_path_on_two_machines_but_for_what_its_generator_does() -> None:
-    """One path for A and C tables and for B and C; either may have motions more, none has another place or tool axis.
+    """One path for A and C tables and for B and C: either has additional motions, none another position or tool axis.
 
-    The first file has a roughing operation, of 303 points, before the one that is in both. The second draws back at
-    five stepovers where the first does not, and eight times it goes round an end of the hull in finer steps, or draws
-    back to wind there. Feeds are inverse times of each machine's own axes.
+    The first file has a roughing operation of 303 points before the one in both. The second retracts at five stepovers
+    where the first does not, and eight times it rounds an end of the hull in finer steps, or retracts there to rewind.
+    Feeds are inverse times of each machine's own axes.
     """
     one, two = (FOLDER / f"boat-{name}.ngc" for name in ("xyzac", "xyzbc"))
     runs = run_program(one, load_machine("xyzac_trt")), run_program(two, load_machine("xyzbc_trt"))

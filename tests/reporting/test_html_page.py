@@ -1,3 +1,5 @@
+"""The HTML page: its content, its plots, and that text from outside cannot become code."""
+
 import base64
 import hashlib
 import json

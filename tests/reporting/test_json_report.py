@@ -1,3 +1,5 @@
+"""The report as JSON, and its schema in the documentation."""
+
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Operations with their times, and what was decided in planning: in the page, the data and from ``trunnion post``."""
+"""Times of operations and decisions of the planner: in the page, in JSON, and from ``trunnion post``."""
 
 import json
 from dataclasses import replace

@@ -1,3 +1,5 @@
+"""The columns of the plots, their levels of detail, and their encoding."""
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,7 +22,7 @@ SINGLES = st.floats(-1e6, 1e6, width=32)
 
 
 def extreme_rows_naive(columns: list[NDArray[np.float32]], bucket: list[int]) -> list[int]:
-    """Say what ``extreme_rows`` says, bucket by bucket."""
+    """The naive twin of ``extreme_rows``, bucket by bucket."""
     keep: set[int] = set()
     for name in sorted(set(bucket)):
         rows = [row for row, at in enumerate(bucket) if at == name]

@@ -1,3 +1,5 @@
+"""Reports as files: formats, failures, size and memory."""
+
 import hashlib
 import re
 import tracemalloc

@@ -37,7 +37,7 @@ from trunnion.verification import compare, failures, restore_rapids, verify
 
 @dataclass(frozen=True)
 class Site:
-    """A machine with its control, and half of the last digits that it prints, mm and degrees."""
+    """A machine with its control, and half of the last digits it prints, mm and degrees."""
 
     machine: Machine
     control: Control
@@ -52,20 +52,20 @@ class Site:
 
 
 def roomy(machine: Machine) -> Machine:
-    """The machine with slides that have room for everything."""
+    """The machine with long slides."""
     axes = tuple(axis if axis.is_rotary else replace(axis, low=-5e3, high=5e3) for axis in machine.axes)
     return replace(machine, axes=axes)
 
 
 @st.composite
 def paths(draw: st.DrawFn) -> Toolpath:
-    """One or two operations of cuts and rapids, with the tool axis turning slowly, as every machine can follow it."""
+    """One or two operations of cuts and rapids, the tool axis turning slowly enough for every machine."""
     return Toolpath("made.cls", tuple(draw(operations(k)) for k in range(draw(st.integers(1, 2)))))
 
 
 @st.composite
 def operations(draw: st.DrawFn, number: int) -> Operation:
-    """Numbers come from a seed: many of them are wanted, and none is special."""
+    """One operation. Its numbers come from a seed: there are many of them, and none is special."""
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     n = draw(st.integers(4, 30))
     tip = np.round(random.uniform(-60.0, 60.0, (n, 3)), draw(st.integers(2, 6)))
@@ -98,12 +98,12 @@ def operations(draw: st.DrawFn, number: int) -> Operation:
 
 
 def posted(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> Run:
-    """The proven program as its control runs it."""
+    """The run of the proven program of a toolpath."""
     return made(path, site, given, target)[0]
 
 
 def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tuple[Run, Expectation]:
-    """The same, and what the program says of itself."""
+    """The run of a proven program, and what is expected of it."""
     options = parse_plan_options({}, site.control)
     program = plan_program([path], post_job(site.machine, site.control, options, given))[0]
     with target.open("wb") as sink:
@@ -116,14 +116,14 @@ def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tup
 
 
 def converted(run: Run, one: Site, two: Site, target: Path) -> Run:
-    """A program of one control, posted for another; nothing of it is lost."""
+    """The run of a program of one control that is posted for another, without losing anything."""
     found = convert(run, one.control)
     assert [str(remark) for remark in found.warnings] == []
     return posted(found.toolpath, two, transfer_settings(found.settings, one.control, two.control), target)
 
 
 def same(one: Run, first: Site, two: Run, second: Site) -> None:
-    """The same way: tips within half of both last digits, tool axes within what both rotary axes are rounded by."""
+    """Two runs follow one path: tips within half of both last digits, tool axes within the rounding of the angles."""
     found = compare(restore_rapids(one, first.rapid_feed), restore_rapids(two, second.rapid_feed), 0.01)
     assert found.same, "\n".join(found.lines())
     assert found.tip <= first.tip + second.tip + 1e-8

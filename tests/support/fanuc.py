@@ -1,4 +1,4 @@
-"""Fanuc programs, written, read back and proven."""
+"""Fanuc programs that are written, read back and proven."""
 
 import re
 from dataclasses import replace
@@ -32,7 +32,7 @@ MACHINES = [
 ]
 SLOW = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture, HealthCheck.filter_too_much]
 
-#: A word of a block that a whole number would make a thousand times smaller.
+#: A word without a decimal point, which a Fanuc may take to be a thousand times smaller.
 POINTLESS = re.compile(r"(?<![A-Z])[XYZABCIJKRF]-?\d+(?![\d.])")
 
 
@@ -57,7 +57,7 @@ def posted(toolpath: Toolpath, folder: Path, model: Machine, **asked: str) -> tu
 
 
 def proven(toolpath: Toolpath, folder: Path, model: Machine, **asked: str) -> str:
-    """The text of a program that is proven, and has the form that a Fanuc takes."""
+    """The text of a program that is proven and well-formed for a Fanuc."""
     found, text = posted(toolpath, folder, model, **asked)
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
     lines = text.splitlines()
@@ -66,7 +66,7 @@ def proven(toolpath: Toolpath, folder: Path, model: Machine, **asked: str) -> st
     assert all(re.match(r"N[1-9]\d{1,4} ", line) for line in blocks)
     assert not [line for line in blocks if POINTLESS.search(line)]
     assert not [line for line in blocks if len(re.findall(r"M\d", line)) > 1], "one M word a block"
-    # The length goes on and off with a motion to a place of its own, before any plane goes off.
+    # The tool length goes on and off with a motion of its own, before any plane is cancelled.
     assert all(" Z" in line for line in blocks if re.search(r"G43|G49", line))
     state = ""
     for line in blocks:

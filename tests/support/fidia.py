@@ -13,7 +13,7 @@ PLACE = st.floats(-80.0, 80.0)
 
 @st.composite
 def circles(draw: st.DrawFn, axis: Floats) -> str:
-    """Lines and circles about a tool axis, and some that are not about it or that rise."""
+    """Lines and circles about a tool axis, and some that are not about it or are helices."""
     across = np.cross(axis, [1.0, 0.3, 0.1])
     x = across / np.linalg.norm(across)
     y = np.cross(axis, x)
@@ -54,7 +54,7 @@ CYCLES = {
 
 @st.composite
 def holes_in(draw: st.DrawFn, axes: list[Floats]) -> str:
-    """Holes of one cycle each, under one tool axis after the other, some right behind each other."""
+    """Holes of one cycle for each tool axis, some without a rapid between them."""
     lines = []
     for axis in axes:
         head = ",".join(f"{v:.12f}" for v in axis)

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Case:
-    """What a golden program is made from; the CL file and a machine's file stand in ``GOLDEN``.
+    """What a golden program is posted from; the CL file and a machine's file are in ``GOLDEN``.
 
-    ``warned``: words of every line that is said besides the checks'.
+    ``warned``: text in every line of stderr other than those of the checks.
     """
 
     cl: str

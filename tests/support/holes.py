@@ -23,7 +23,7 @@ MODES = st.sampled_from(
 
 @st.composite
 def statements(draw: st.DrawFn) -> str:
-    """A cycle with any heights."""
+    """The statement of a cycle with random heights."""
     above, depth = draw(st.floats(0.5, 10.0)), draw(st.floats(1.0, 40.0))
     retract = draw(st.sampled_from(["", "RTRCTO,12.5,", "RTRCTO,AUTO,"]))
     heights = f"RAPTO,{above:.3f},FEDTO,-{depth:.3f},{retract}"

@@ -1,4 +1,4 @@
-"""Jobs of tests that plan a program by hand."""
+"""Jobs for tests that plan a program step by step."""
 
 from collections.abc import Mapping
 
@@ -17,7 +17,7 @@ def post_job(
     *,
     force: bool = False,
 ) -> PostJob:
-    """A job with the capabilities that the control has with these settings."""
+    """A job with the capabilities of the control under these settings."""
     given = settings or {}
     capabilities = control_capabilities(control, given)
     return PostJob(machine, control, capabilities, options or PlanOptions(), given, force=force)

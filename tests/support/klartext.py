@@ -1,4 +1,4 @@
-"""Klartext as its tests want it: posts, and proofs of what toolpaths become."""
+"""Klartext programs that are posted, read back and proven."""
 
 import re
 from dataclasses import replace
@@ -41,7 +41,7 @@ class Post:
         self.folder, self._capfd = folder, capfd
 
     def __call__(self, text: str, *arguments: str, machine: str = "dmu65") -> list[str]:
-        """The blocks of the program without their numbers, which must go on by one from 0."""
+        """The blocks of the program without their numbers, which must count from 0."""
         code, out, err = self.all(text, *arguments, machine=machine)
         assert (code, unproven(err)) == (0, "")
         blocks = re.split(r"\n(?! )", out.rstrip("\n"))
@@ -81,7 +81,7 @@ def toolpath_of(moves: Moves, arcs: Arcs | None = None) -> Toolpath:
 
 
 def proven(toolpath: Toolpath, machine: Machine, control: Control, folder: Path, **given: str) -> Verification:
-    """The proof of a toolpath's program; fails if the program does not make the toolpath.
+    """The verification of a toolpath's program; fails if a check does.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def proven(toolpath: Toolpath, machine: Machine, control: Control, folder: Path,
 PATHS = smooth_paths(25.0) | smooth_paths(100.0) | smooth_paths(3.0) | short_paths(12)
 
 
-#: Of the travel of the rotary axes; right at a limit the last digit of a plane's angles may lie beyond it.
+#: Shares of the travel of the rotary axes. Right at a limit the last digit of a plane's angles may be beyond it.
 SHARES = st.tuples(st.floats(0.001, 0.999), st.floats(0.001, 0.999))
 
 

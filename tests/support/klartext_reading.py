@@ -19,7 +19,7 @@ def dmu65() -> Machine:
 
 @pytest.fixture
 def run(tmp_path: Path, dmu65: Machine) -> Runner:
-    """Run a text as a program; the files that it may call by name."""
+    """Return a function that runs a text as a program, with the ``files`` it may call."""
 
     def runner(text: str, machine: Machine = dmu65, files: dict[str, str] | None = None, **settings: object) -> Run:
         for name, content in (files or {}).items():

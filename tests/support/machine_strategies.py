@@ -1,4 +1,4 @@
-"""Machines that nobody has built: any order of slides and rotary axes, any directions, offsets, sides and senses."""
+"""Random machines: any order of slides and rotary axes, any directions, offsets, sides and senses."""
 
 import math
 
@@ -20,7 +20,7 @@ points = st.tuples(lengths, lengths, lengths)
 
 @st.composite
 def directions(draw: st.DrawFn) -> Vector:
-    """Unit vectors, often the usual ones."""
+    """Unit vectors, often along X, Y or Z."""
     if draw(st.booleans()):
         return draw(st.sampled_from(USUAL))
     vector = np.array(draw(st.tuples(coordinates, coordinates, coordinates)))
@@ -61,7 +61,7 @@ def machines(draw: st.DrawFn) -> Machine:
     return Machine("any", "Any machine", axes, spindle, draw(points), draw(st.none() | points))
 
 
-#: Five displayed values, for slides and rotary axes alike; whole and right angles on purpose.
+#: Five displayed values, for slides and rotary axes alike, with whole and right angles among them.
 joints = st.lists(
     st.sampled_from([0.0, 45.0, 90.0, -90.0, 180.0]) | st.floats(-180.0, 180.0, allow_subnormal=False),
     min_size=5,

@@ -1,4 +1,4 @@
-"""Shipped machines as tests want them."""
+"""Shipped machines, changed as tests need them."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,14 +7,14 @@ from trunnion.machines import Machine, load_machine
 
 
 def at_zero(name: str) -> Machine:
-    """A shipped machine whose slides begin at zero, and are at home there."""
+    """A shipped machine whose slides have their home at zero."""
     machine = load_machine(name)
     axes = tuple(axis if axis.is_rotary else replace(axis, home=0.0) for axis in machine.axes)
     return replace(machine, axes=axes)
 
 
 def machine_without_tcp(folder: Path) -> Path:
-    """The YL569 with an approach that forgets TRAORI."""
+    """The file of a YL569 whose approach lacks TRAORI."""
     file = folder / "forgetful.toml"
     file.write_text(
         'extends = "yl569"\n[control.templates]\napproach_five_axis = """\n'

@@ -1,4 +1,4 @@
-"""Operations from columns."""
+"""Moves and operations built from a few columns."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ def moves_of(tip: Floats, axis: Floats, kind: Kind = Kind.LINEAR, phase: Phase =
 
 
 def rapids_at(moves: Moves, rows: list[int]) -> Moves:
-    """The moves with rapids into some rows."""
+    """The moves with rapids in these rows."""
     kind, phase = moves.kind.copy(), moves.phase.copy()
     kind[rows], phase[rows] = Kind.RAPID, Phase.RAPID
     return replace(moves, kind=kind, phase=phase)

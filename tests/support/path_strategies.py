@@ -39,7 +39,7 @@ CA = load_machine("generic_head_head_ca")
 
 @st.composite
 def short_paths(draw: st.DrawFn, rows: int = 6) -> Moves:
-    """A few rows, smooth or rough, often near the pole or in it, some of them rapids."""
+    """A few rows, smooth or rough, often near the pole or at it, some of them rapids."""
     n = draw(st.integers(1, rows))
     rough = draw(st.booleans())
     tilts = st.sampled_from([0.0, 0.3, 3.0, 12.0]) | st.floats(0.0, 80.0)
@@ -55,7 +55,7 @@ def short_paths(draw: st.DrawFn, rows: int = 6) -> Moves:
 
 @st.composite
 def smooth_paths(draw: st.DrawFn, most: float = 80.0) -> Moves:
-    """A tool axis that turns evenly through a few directions, with some rapids."""
+    """A path whose tool axis turns evenly through a few directions, with some rapids."""
     corners = draw(st.integers(1, 4))
     n = draw(st.integers(2, 80))
     at = np.linspace(0.0, corners, n)

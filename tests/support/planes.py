@@ -42,7 +42,7 @@ def reachable(machine: Machine, share: tuple[float, float]) -> Floats:
 
 
 def text_of(axes: list[Floats], tips: list[tuple[float, float, float]]) -> str:
-    """A CL file: an upright operation, then one with each of the tool axes."""
+    """CL text of an upright operation, then of one with each of the tool axes."""
     lines = [HEAD + FOOT]
     for n, axis in enumerate(axes):
         head = HEAD.replace("OP1", f"OP{n + 2}").replace("0.0,0.0,1.0\n", ",".join(f"{v:.12f}" for v in axis) + "\n")
@@ -54,7 +54,7 @@ SHARES = st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0))
 
 
 def proven(lines: list[str], cl: Path, folder: Path) -> list[str]:
-    """Keys of the checks that fail."""
+    """The keys of the checks that a program fails."""
     nc = folder / "changed.mpf"
     nc.write_text("\n".join(lines) + "\n", encoding="utf-8")
     run = run_program(nc, load_machine("yl569"))

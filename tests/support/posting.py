@@ -21,10 +21,10 @@ GOTO/10.0,0.0,5.0
 """
 FOOT = "END-OF-PATH\n"
 
-#: The same with a leaning tool.
+#: The beginning of an operation with a tilted tool.
 LEANING = HEAD.replace("50.0,0.0,0.0,1.0", "50.0,0.0,0.5,0.8660254").replace("10.0,0.0,5.0", "10.0,0.0,5.0,0.0,0.6,0.8")
 
-#: The same without its cut.
+#: The beginning of an operation without its cut.
 CLEAR = HEAD.replace("FEDRAT/MMPM,500.0\nGOTO/10.0,0.0,5.0\n", "")
 
 
@@ -40,7 +40,7 @@ class Post:
         self._folder, self._capfd = folder, capfd
 
     def __call__(self, text: str, *arguments: str, machine: str = "yl569") -> list[str]:
-        """The lines of the program without block numbers; stderr must hold nothing but checks that were passed."""
+        """The lines of the program without block numbers; stderr may hold only passed checks."""
         code, out, err = self.all(text, *arguments, machine=machine)
         assert (code, unproven(err)) == (0, "")
         return out

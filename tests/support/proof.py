@@ -6,7 +6,7 @@ _PASSED = re.compile(r"^[a-z]+ +ok +.*\n", re.MULTILINE)
 
 
 def unproven(err: str) -> str:
-    """The rest of stderr without the lines of passed checks, of which there must be some."""
+    """The stderr of ``trunnion post`` without the lines of passed checks, of which there must be some."""
     left, count = _PASSED.subn("", err)
     assert count >= 10, err
     return left

@@ -16,7 +16,7 @@ Runner = Callable[..., Run]
 
 
 def close(got: Any, wanted: Any, atol: float = 0.0, rtol: float = 1e-7) -> None:
-    """Two arrays, or lists like them, are the same but for rounding."""
+    """Two arrays, or lists, are equal except for rounding."""
     np.testing.assert_allclose(np.asarray(got), np.asarray(wanted), rtol=rtol, atol=atol)
 
 
@@ -38,7 +38,7 @@ def yl569() -> Machine:
 
 @pytest.fixture
 def run(tmp_path: Path, yl569: Machine) -> Runner:
-    """Run a text as a program; the files that it may call by name."""
+    """Return a function that runs a text as a program, with the ``files`` it may call."""
 
     def runner(
         text: str | bytes, machine: Machine = yl569, files: dict[str, str] | None = None, **settings: object

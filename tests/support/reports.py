@@ -1,4 +1,4 @@
-"""Verifications to report on: a golden program with checks made by hand, and one that is as long as one likes."""
+"""Verifications to report on: a golden program with handmade checks, and one of any length."""
 
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -45,7 +45,7 @@ def blade(name: str = "3_blade_finish.mpf", checks: tuple[Check, ...] = CHECKS) 
 
 
 def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = None) -> Verification:
-    """Return a verification of n motions that swing in all axes, the last tool in the spindle."""
+    """Return a verification of n motions that swing in all axes, with the last of the ``tools``."""
     machine = machine or load_machine("yl569")
     along = np.linspace(0.0, 200.0, n)
     joints = np.stack([along, 40 + 40 * np.sin(along), 90 * np.cos(along), along / 2, -along / 3], axis=1)
@@ -94,14 +94,14 @@ def with_seconds(verification: Verification, seconds: Floats) -> Verification:
 
 
 def with_columns(verification: Verification, **columns: NDArray[Any]) -> Verification:
-    """Return the verification with other whole columns than its run would work out."""
+    """Return the verification with other columns in its run."""
     run = replace(verification.run)
     vars(run).update(columns)
     return replace(verification, run=run)
 
 
 class Page(HTMLParser):
-    """A page, read as a browser would: its elements with attributes, its scripts, and the text outside of them."""
+    """A page as a browser reads it: its elements with attributes, its scripts, and the text outside them."""
 
     def __init__(self, source: str) -> None:
         super().__init__(convert_charrefs=True)
@@ -139,5 +139,5 @@ class Page(HTMLParser):
 
     @property
     def running(self) -> list[str]:
-        """Scripts that a browser would run."""
+        """The scripts that a browser would run."""
         return [source for attributes, source in self.scripts if "type" not in attributes]

@@ -11,7 +11,7 @@ from trunnion.model.run import Run
 
 
 def facts(value: Any) -> Iterator[Any]:
-    """All that a run holds, so that it can be compared."""
+    """Everything in a run, so that it can be compared."""
     for field in fields(value):
         one = getattr(value, field.name)
         if isinstance(one, np.ndarray):
@@ -39,7 +39,7 @@ COLUMNS = (
 
 
 def same(one: Run, two: Run) -> None:
-    """Two runs are the same; in the last bits of places, how many rows were worked out together may show."""
+    """Two runs are the same, except in last bits of positions, which depend on how many rows are computed together."""
     for name in COLUMNS:
         a, b = getattr(one, name), getattr(two, name)
         if a.dtype == np.float64:

@@ -1,4 +1,4 @@
-"""Toolpaths with everything in them, for Hypothesis."""
+"""Hypothesis strategies for toolpaths with every kind of event."""
 
 from dataclasses import replace
 from typing import Any
@@ -53,7 +53,7 @@ def _unit(vector: tuple[float, float, float]) -> tuple[float, float, float]:
     return i, j, k
 
 
-#: Events that a program of ours can carry: what is said of them comes back from it.
+#: Events that survive in a program of ours: conversion finds them again.
 SAYABLE: dict[str, st.SearchStrategy[Any]] = {
     "spindle": st.builds(
         lambda rpm, sense: SpindleOn(0, 0, float(rpm), sense), st.integers(1, 99999), st.sampled_from(Sense)
@@ -99,14 +99,14 @@ OTHERS: dict[str, st.SearchStrategy[Any]] = {
 def events(draw: st.DrawFn, rows: int, kinds: dict[str, st.SearchStrategy[Any]]) -> tuple[Event, ...]:
     """A few events in the order of their rows."""
     found = draw(st.lists(st.tuples(st.integers(0, rows), st.one_of(*kinds.values())), max_size=8))
-    # a start anywhere but at the beginning would tear arcs apart
+    # a FROM anywhere but at the beginning would separate arcs from their start
     placed = [(0 if isinstance(event, From) else row, event) for row, event in found]
     return tuple(replace(event, row=row) for row, event in sorted(placed, key=lambda pair: pair[0]))
 
 
 @st.composite
 def phases(draw: st.DrawFn, rows: int, rapids: list[int]) -> Codes:
-    """Phases that colours can say, by the colours that say them."""
+    """Phases as colours give them, from random colours."""
     colours = draw(st.lists(st.tuples(st.integers(0, rows - 1), st.sampled_from(list(COLOUR_PHASES))), max_size=6))
     phase = np.empty(rows, np.uint8)
     fill_phases(phase, np.array(rapids, np.int64), sorted(colours, key=lambda pair: pair[0]))
@@ -115,7 +115,7 @@ def phases(draw: st.DrawFn, rows: int, rapids: list[int]) -> Codes:
 
 @st.composite
 def feeds(draw: st.DrawFn, rows: int, first: int) -> tuple[Floats, np.ndarray[Any, Any]]:
-    """A modal feed from row ``first`` on, now and then changed."""
+    """A modal feed from row ``first`` on, with a few changes."""
     feed, per_rev = np.full(rows, np.nan), np.zeros(rows, bool)
     for row in sorted({first, *draw(st.lists(st.integers(first, max(rows - 1, first)), max_size=3))}):
         feed[row:], per_rev[row:] = draw(st.integers(1, 10**6)) / 100, draw(st.booleans())
@@ -164,11 +164,11 @@ def operations(draw: st.DrawFn, kinds: dict[str, st.SearchStrategy[Any]], axes: 
 
 
 def _is_sensible(operation: Operation) -> bool:
-    """Whether a program says everything of an operation at a point of its own, and nothing twice.
+    """Whether everything in an operation has a point of its own in the program, and nothing occurs twice there.
 
-    Points print elsewhere than those before, events of a kind stand apart, cutter radius compensation changes on a
-    motion, and coolant is switched off where nothing else happens: if it is off already, the program has no word of it,
-    but what came before it at the same place has a block of its own.
+    Points differ as printed from those before them, no two events of a kind share a row, cutter radius compensation
+    changes on a motion, and coolant is switched off where nothing else happens: if it is off already, the program has
+    no word for it, but an event before it at the same place gets a block of its own.
     """
     moved = (np.abs(np.diff(np.round(operation.moves.tip, 3), axis=0)) > 0.0015).any(axis=1)
     places = [(event.row, type(event)) for event in operation.events]
@@ -179,7 +179,7 @@ def _is_sensible(operation: Operation) -> bool:
 
 
 def sensible(paths: st.SearchStrategy[Toolpath]) -> st.SearchStrategy[Toolpath]:
-    """Those of sensible operations, in which block skip goes on and off in turn."""
+    """The paths of sensible operations in which block skip goes on and off in turn."""
     return paths.filter(lambda path: all(map(_is_sensible, path.operations)) and _skips_alternate(path))
 
 

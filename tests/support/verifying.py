@@ -1,4 +1,4 @@
-"""Frames for tiny programs and their CL files, and what verification finds in them."""
+"""The beginnings and ends of tiny programs and their CL files, and the checks of a verification."""
 
 from collections.abc import Callable
 
@@ -6,7 +6,7 @@ from trunnion.verification import Check, Verification
 
 Verifier = Callable[..., Verification]
 
-#: Up to the first motion, and from the last one on.
+#: A program up to its first motion, and after its last.
 HEAD = "G17 G710 G90 G94\nSUPA G0 Z0 D0\nSUPA G0 X0 Y0 B0 C0 D1\nT1\nM6\nG54\nS1000 M3\n"
 FOOT = "SUPA G0 Z0 D0\nSUPA G0 X0 Y0 B0 C0 D1\nM5\nM30\n"
 CL_HEAD = """TOOL PATH/OP1,TOOL,D10
@@ -24,5 +24,5 @@ CL_FOOT = "END-OF-PATH\n"
 
 
 def check(found: Verification, key: str) -> Check:
-    """The check of this key."""
+    """The check with this key."""
     return next(check for check in found.checks if check.key == key)

@@ -1,4 +1,4 @@
-"""Klartext programs for the fuzz tests: pieces to grow them from, and sound ones to mangle."""
+"""Klartext programs for the fuzz tests: pieces to build them from, and valid ones to mangle."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -147,5 +147,5 @@ def prepare(folder: Path) -> None:
 
 
 def program(lines: int, pick: pieces.Pick) -> str:
-    """Return a program of about so many blocks."""
+    """Return a program of about this many blocks."""
     return "\n".join(pieces.fill("<line>", PIECES, pick) for _ in range(lines)) + "\n"

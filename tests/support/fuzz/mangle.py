@@ -1,6 +1,6 @@
-"""Bytes that nobody should write: changes to the bytes of a file, each drawn from a seeded generator of random numbers.
+"""Mangled files: changes to the bytes of a file, each drawn from a seeded random number generator.
 
-A mangled file keeps most of what made it a program, so that faults hide behind blocks that are sound.
+A mangled file keeps most of its contents, so that faults hide behind valid blocks.
 """
 
 import random
@@ -62,7 +62,7 @@ def _insert(data: bytes, new: bytes, rng: random.Random) -> bytes:
 
 
 def flip_a_bit(data: bytes, rng: random.Random) -> bytes:
-    """One bit of one byte."""
+    """Flip one bit of one byte."""
     if not data:
         return data
     at = rng.randrange(len(data))
@@ -76,7 +76,7 @@ def cut(data: bytes, rng: random.Random) -> bytes:
 
 
 def truncate(data: bytes, rng: random.Random) -> bytes:
-    """End somewhere."""
+    """Cut the file off somewhere."""
     return data[: rng.randint(0, len(data))]
 
 
@@ -86,14 +86,14 @@ def insert_token(data: bytes, rng: random.Random) -> bytes:
 
 
 def begin_line(data: bytes, rng: random.Random) -> bytes:
-    """Put a nasty token where a line begins, which is where control words count."""
+    """Put a nasty token at the beginning of a line, where control words count."""
     starts = [0, *(match.end() for match in re.finditer(rb"\n", data))]
     at = rng.choice(starts)
     return data[:at] + rng.choice(TOKENS) + data[at:]
 
 
 def change_number(data: bytes, rng: random.Random) -> bytes:
-    """Put a nasty number in the place of one."""
+    """Replace a number with a nasty one."""
     found = list(_NUMBER.finditer(data))
     if not found:
         return _insert(data, rng.choice(NUMBERS), rng)
@@ -102,20 +102,20 @@ def change_number(data: bytes, rng: random.Random) -> bytes:
 
 
 def nest(data: bytes, rng: random.Random) -> bytes:
-    """Nest parentheses, brackets, signs or functions deeper than anybody can follow."""
+    """Nest parentheses, brackets, signs or functions very deeply."""
     depth = rng.choice((5, 39, 41, 300, 3000))
     opening, closing = rng.choice(((b"(", b")"), (b"[", b"]"), (b"-", b""), (b"SIN(", b")"), (b"R[", b"]")))
     return _insert(data, b"X=" + opening * depth + b"1" + closing * depth + b"\n", rng)
 
 
 def lengthen(data: bytes, rng: random.Random) -> bytes:
-    """Say a piece again and again in one line, which makes long lines, words and numbers."""
+    """Repeat a piece many times in one line, for long lines, words and numbers."""
     piece = _piece(data, rng, 12).replace(b"\n", b"") or b"1"
     return _insert(data, piece * (rng.choice((50, 600, 5000, LARGEST)) // len(piece)), rng)
 
 
 def repeat_lines(data: bytes, rng: random.Random) -> bytes:
-    """Say a few lines many times."""
+    """Repeat a few lines many times."""
     lines = data.splitlines(keepends=True) or [b"\n"]
     at = rng.randrange(len(lines))
     some = lines[at : at + rng.randint(1, 3)]
@@ -123,7 +123,7 @@ def repeat_lines(data: bytes, rng: random.Random) -> bytes:
 
 
 def shuffle_lines(data: bytes, rng: random.Random) -> bytes:
-    """Bring a few lines into another order."""
+    """Change the order of a few lines."""
     lines = data.splitlines(keepends=True)
     for _ in range(min(len(lines) // 2, 3)):
         one, two = rng.randrange(len(lines)), rng.randrange(len(lines))

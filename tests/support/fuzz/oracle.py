@@ -1,4 +1,4 @@
-"""What every reader owes to every file: a result that is sound and bounded, or a refusal that names file and line."""
+"""What every reader must do with every file: give a sound and bounded result, or refuse it with file and line."""
 
 import warnings
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ LIMIT: Final = 1500
 
 MACHINES: Final = ("yl569", "mikron_600u", "generic_head_head_ca")
 
-#: Columns that hold numbers wherever nothing is said against it; the feed may be missing (NaN) but never endless.
+#: Columns that hold finite numbers; the feed may be missing (NaN) but never infinite.
 _FINITE: Final = ("tip", "axis", "joints", "rpm", "start")
 
 
@@ -41,13 +41,13 @@ def prepare(folder: Path) -> None:
 
 @contextmanager
 def no_warnings() -> Iterator[None]:
-    """Make a warning of NumPy an error: where it warns, a number went wrong that nobody looked at."""
+    """Turn warnings of NumPy into errors: they mean a wrong number that was not checked."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         yield
 
 
-#: How subprograms are called in the tests, by what their control is called.
+#: Names of the subprograms in the tests, by family of control.
 _SUBPROGRAMS: Final = {"sinumerik": "*.[SM]PF", "heidenhain": "*.H", "linuxcnc": "*.ngc", "fanuc": "*.nc"}
 
 
@@ -60,7 +60,7 @@ def beside(program: Path, family: str) -> list[Path]:
 def judge_program(
     data: bytes, folder: Path, key: str = "yl569", limit: int = LIMIT, family: str = "sinumerik_840d"
 ) -> Run | None:
-    """Run bytes as a program of a folder that is prepared; None if it is refused."""
+    """Run bytes as a program in a prepared folder; None if it is refused."""
     path = folder / ("MAIN.MPF" if family == "sinumerik_840d" else "MAIN.H")
     path.write_bytes(data)
     try:

@@ -1,7 +1,7 @@
-"""Pieces of the two languages, and programs and CL files grown from them.
+"""Pieces of the two languages, and programs and CL files built from them.
 
-A template is text with holes, ``<n>`` for a number and so on. Whoever fills the holes says how to choose: Hypothesis
-does in the tests, a seeded generator of random numbers in the campaign.
+A template is text with holes, ``<n>`` for a number and so on. The caller chooses what fills them: Hypothesis in the
+tests, a seeded random number generator in the campaign.
 """
 
 import re
@@ -145,7 +145,7 @@ def fill(template: str, table: Mapping[str, Sequence[str]], pick: Pick, depth: i
 
 
 def program(lines: int, pick: Pick) -> str:
-    """Return an NC program of about so many lines, with control structures around some of them."""
+    """Return an NC program of about this many lines, with control structures around some of them."""
     made: list[str] = []
     open_: list[str] = []
     for _ in range(lines):
@@ -163,6 +163,6 @@ def program(lines: int, pick: Pick) -> str:
 
 
 def cl_file(lines: int, pick: Pick) -> str:
-    """Return a CL file of one operation with about so many statements, sound around them."""
+    """Return a CL file of one operation with about this many statements between valid ones."""
     made = [fill("<line>", CL, pick) for _ in range(lines)]
     return "\n".join(("TOOL PATH/OP,TOOL,T1", "TLDATA/MILL,10,1,50,0,0", "GOTO/0,0,9,0,0,1", *made, "END-OF-PATH", ""))

@@ -1,4 +1,4 @@
-"""Programs of LinuxCNC, Fanuc and Fidia for the fuzz tests: pieces to grow them from, and sound ones to mangle."""
+"""Programs for LinuxCNC, Fanuc and Fidia for the fuzz tests: pieces to build them from, and valid ones to mangle."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ _SHARED: Final = (
 
 @dataclass(frozen=True)
 class Language:
-    """What a language's programs are made of, and the machines that they run on."""
+    """The pieces of a language's programs, and the machines they run on."""
 
     family: str
     machines: tuple[str, ...]
@@ -40,7 +40,7 @@ class Language:
         return oracle.judge_program(data, folder, key or self.machines[0], limit, self.family)
 
     def program(self, lines: int, pick: Callable[[Sequence[str]], str]) -> bytes:
-        """A program of sound pieces, put together without sense."""
+        """A program of valid pieces, put together at random."""
         return "\n".join(pieces.fill("<line>", self.pieces, pick) for _ in range(lines)).encode()
 
 

@@ -1,11 +1,11 @@
-"""Files that are mangled: the golden ones, and short ones that use every feature of the two languages."""
+"""The files to mangle: the golden ones, and short ones with every feature of the two languages."""
 
 from functools import cache
 from typing import Final
 
 from tests.support.locations import YL569
 
-#: Subprograms that lie beside every program.
+#: Subprograms in the folder of every program.
 SUBPROGRAMS: Final[dict[str, bytes]] = {
     "L10.SPF": b"X=IC(1)\nRET\n",
     "SUB.SPF": b"PROC SUB\nR5=R5+1\nIF R5<3\nX=R5\nELSE\nG1 Z=IC(-1)\nENDIF\nM17\n",

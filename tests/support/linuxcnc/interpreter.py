@@ -1,4 +1,4 @@
-"""LinuxCNC's stand-alone interpreter as the judge of programs: what it makes of each block, as it prints it."""
+"""LinuxCNC's stand-alone interpreter as the judge of programs: the motions it prints for each block."""
 
 import os
 import re
@@ -31,7 +31,7 @@ _PLANES = {"XY": (0, 1, 2), "YZ": (1, 2, 0), "XZ": (2, 0, 1)}
 
 @dataclass(frozen=True)
 class Move:
-    """One motion with what was in force.
+    """One motion with its modal state.
 
     end      X Y Z A B C in the program's coordinates and units, and degrees
     unit     mm of the program's unit
@@ -64,7 +64,7 @@ class Move:
 
 @dataclass
 class Canon:
-    """Everything that a program made happen; ``notes`` are dwells, stops and messages, with the moves before them."""
+    """Everything a program did; ``notes`` are dwells, stops and messages, each with the moves before it."""
 
     moves: list[Move] = field(default_factory=list)
     notes: list[tuple[int, str, str]] = field(default_factory=list)
@@ -76,7 +76,7 @@ class Canon:
 
 
 class RefusedByLinuxcncError(Exception):
-    """What the interpreter says of a program that it does not take."""
+    """The interpreter refuses a program; the message is its own."""
 
 
 def interpret(text: str, folder: Path, coordinates: str = "XYZABC") -> Canon:
@@ -96,18 +96,18 @@ def interpret(text: str, folder: Path, coordinates: str = "XYZABC") -> Canon:
         "REMAP = M428 modalgroup=10 ngc=m428\nREMAP = M429 modalgroup=10 ngc=m429\n"
         f"[TRAJ]\nCOORDINATES = {' '.join(coordinates)}\nLINEAR_UNITS = mm\n"
     )
-    # the stand-alone interpreter takes the table's lengths for inches
+    # the stand-alone interpreter takes the lengths in the table to be inches
     table = "".join(f"T{k} P{k} Z{LENGTH / 25.4} D0.2\n" for k in range(1, 100))
     return _read(_judged(program, table, "-i", str(ini)))
 
 
 def canonical(program: Path) -> Canon:
-    """Run a program by itself; its tools 1 to 9 have no length."""
+    """Run a program without a machine; its tools 1 to 9 have no length."""
     return _read(_judged(program, "".join(f"T{k} P{k} Z0 D{k}\n" for k in range(1, 10))))
 
 
 def _judged(program: Path, tools: str, *arguments: str) -> str:
-    """What the interpreter prints of a program, with a table of tools."""
+    """The output of the interpreter for a program, with a tool table."""
     folder = program.parent
     table, variables = folder / "judge.tbl", folder / "judge.var"
     table.write_text(tools)

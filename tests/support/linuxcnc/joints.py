@@ -9,14 +9,14 @@ from tests.support.linuxcnc.kinematics import Kinematics
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
 
-#: Of each machine its module, the pins with the numbers of its definition, and the joints in their order.
+#: For each machine its module, the pins with the numbers of its definition, and the order of its joints.
 MODULES: dict[str, tuple[str, dict[str, float], str]] = {
     "xyzac_trt": ("xyzac-trt-kins", {"y-offset": 20.0, "z-offset": 10.0}, "XYZAC"),
     "xyzbc_trt": ("xyzbc-trt-kins", {"x-offset": -20.0, "z-offset": -15.0}, "XYZBC"),
     "linuxcnc_5axis": ("5axiskins", {"pivot-length": 250.0}, "XYZBC"),
 }
 
-#: The two ways to lengthen the tool: the tables' modules have a pin, the head's pivot gets longer.
+#: How the tool length is set: the modules for tables have a pin for it, that for a head has a longer pivot.
 TOOL_PINS = {"xyzac_trt": "tool-offset", "xyzbc_trt": "tool-offset", "linuxcnc_5axis": "pivot-length"}
 
 
@@ -26,7 +26,7 @@ def kinematics(stub: ctypes.CDLL) -> dict[str, Kinematics]:
 
 
 def theirs(kinematics: dict[str, Kinematics], machine: Machine, tip: Floats, rotary: Floats, length: float) -> Floats:
-    """Joints in the order of our chain, of tips as programs have them."""
+    """Joints in the order of our chain, for tips in the program's coordinates."""
     _, pins, letters = MODULES[machine.key]
     tool = TOOL_PINS[machine.key]
     kinematics[machine.key].set(tool, pins.get(tool, 0.0) + length)

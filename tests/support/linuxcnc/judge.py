@@ -1,4 +1,4 @@
-"""Whether LinuxCNC and the reader make the same of a program."""
+"""Whether LinuxCNC and the reader run a program alike."""
 
 import math
 
@@ -15,7 +15,7 @@ KINDS = {"rapid": Kind.RAPID, "line": Kind.LINEAR, "arc": Kind.ARC}
 
 
 def agree(run: Run, canon: Canon) -> None:
-    """The reader's rows are the judge's motions; LinuxCNC says motions that go nowhere where a G word stands alone."""
+    """The reader's rows are the motions of LinuxCNC, which also prints motions of no length for a G word alone."""
     assert [str(f) for f in run.errors] == []
     wanted = np.array([move.machine for move in canon.moves]).reshape(-1, 6)[:, [0, 1, 2, 3, 5]]
     kinds = np.array([KINDS[move.kind] for move in canon.moves])
@@ -39,7 +39,7 @@ def agree(run: Run, canon: Canon) -> None:
 
 
 def circles(run: Run, canon: Canon) -> None:
-    """Centres and senses of circles are the judge's; only where the tip is where the slides are."""
+    """Centres and senses of circles are those of LinuxCNC; compared only where the tip is where the slides are."""
     for k, move in enumerate(move for move in canon.moves if move.kind == "arc"):
         normal = run.arcs.normal[k]
         plane = int(np.argmax(np.abs(normal)))
@@ -49,6 +49,6 @@ def circles(run: Run, canon: Canon) -> None:
 
 
 def moves(kind: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Rows that go somewhere, circles always."""
+    """Rows that move, and all circles."""
     before = np.vstack((np.zeros((1, ends.shape[1])), ends[:-1]))
     return np.asarray((np.abs(ends - before).max(axis=1) > 2e-3) | (kind == int(Kind.ARC)))

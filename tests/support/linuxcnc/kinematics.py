@@ -1,6 +1,6 @@
 """LinuxCNC's own kinematics, called from its own compiled modules.
 
-A module wants a HAL to hang its pins on; a few functions stand in for it, compiled where the test runs.
+A module needs a HAL for its pins; a few functions, compiled when the test runs, replace it.
 """
 
 import ctypes
@@ -78,7 +78,7 @@ class _Pose(ctypes.Structure):
 
 
 def hal(folder: Path) -> ctypes.CDLL:
-    """What stands in for HAL; it has to be there before a module is loaded."""
+    """The functions that replace HAL. They must be loaded before a module."""
     source, library = folder / "hal.c", folder / "libjudgehal.so"
     source.write_text(_HAL)
     subprocess.run(["gcc", "-O2", "-shared", "-fPIC", "-o", str(library), str(source)], check=True)
@@ -86,7 +86,7 @@ def hal(folder: Path) -> ctypes.CDLL:
 
 
 class Kinematics:
-    """One module; ``pins`` are its numbers by their names without the module's."""
+    """One module; ``pins`` are its numbers, by pin name without that of the module."""
 
     def __init__(self, hal: ctypes.CDLL, module: str, pins: dict[str, float]) -> None:
         self._module = ctypes.CDLL(str(MODULES / f"{module}.so"), mode=os.RTLD_NOW | os.RTLD_LOCAL)

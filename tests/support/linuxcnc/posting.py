@@ -25,7 +25,7 @@ class Post:
         return code, [line.split(" ", 1)[1] for line in out.splitlines()], err.replace(str(file), "part.cls")
 
     def __call__(self, text: str, *arguments: str) -> list[str]:
-        """The lines of a program that was proven without a message."""
+        """The lines of a program that was proven without a message on stderr."""
         code, lines, err = self.all(text, *arguments)
         assert (code, unproven(err)) == (0, "")
         return lines

@@ -1,8 +1,7 @@
-"""A whole LinuxCNC with simulated joints and no screen: what its joints do when programs run on it.
+"""A complete LinuxCNC with simulated joints and no screen: the motion of its joints while it runs programs.
 
-LinuxCNC is started on a machine made up for the test; its display is a small client that homes the machine, sets the
-work offset and runs the programs one after the other, while HAL's sampler writes down the joint commands, one line each
-millisecond.
+LinuxCNC is started on a machine made for the test. Its display is a small client that homes the machine, sets the work
+offset and runs the programs one after the other, while HAL's sampler records the joints, one line a millisecond.
 """
 
 import fcntl
@@ -31,7 +30,7 @@ needs_simulator = pytest.mark.skipif(
 #: A joint that moves by less than this in a millisecond rests, mm or degrees.
 _RESTS = 1e-9
 
-#: How many samples the machine has to rest; a dwell after each block makes it.
+#: How many samples the machine must rest; a dwell after each block provides them.
 _SAMPLES = 8
 
 _CLIENT = r"""#!/usr/bin/python3
@@ -173,7 +172,7 @@ class Bench:
 
 
 class SimulatorError(Exception):
-    """What LinuxCNC says of a program that it does not run to its end."""
+    """LinuxCNC does not run a program to its end; the message is its own."""
 
 
 def with_rests(program: str) -> str:
@@ -187,7 +186,7 @@ def with_rests(program: str) -> str:
 
 
 def rests(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[Floats]:
-    """Where the joints rest one after the other, (n, 5) mm and degrees, of each program.
+    """The positions where the joints rest in each program, (n, 5) mm and degrees.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The forward map as a textbook would write it: a product of 4x4 matrices, in plain NumPy."""
+"""The forward map by the textbook: a product of 4x4 matrices, in plain NumPy."""
 
 import numpy as np
 
@@ -7,14 +7,14 @@ from trunnion.machines import Machine
 
 
 def translation(offset: Floats) -> Floats:
-    """4x4 of a shift."""
+    """The 4x4 matrix of a shift."""
     matrix = np.eye(4)
     matrix[:3, 3] = offset
     return matrix
 
 
 def rotation(direction: Floats, degrees: float) -> Floats:
-    """4x4 of a right-handed turn about a line through the origin."""
+    """The 4x4 matrix of a right-handed rotation about a line through the origin."""
     x, y, z = direction
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     angle = np.radians(degrees)
@@ -40,7 +40,7 @@ def naive_forward(machine: Machine, joints: Floats, tool_length: float) -> tuple
 
 
 def turned(axis: int, angle: float) -> Floats:
-    """Right-handed about X, Y or Z, degrees, as a textbook has it."""
+    """The matrix of a right-handed rotation about X, Y or Z, degrees."""
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     if axis == 0:
         return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])

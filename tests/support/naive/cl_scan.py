@@ -1,4 +1,4 @@
-"""Slow twins of the kernels in ``trunnion.cl.scan``: the same in the way of a textbook."""
+"""Naive twins of the kernels in ``trunnion.cl.scan``."""
 
 import math
 import re

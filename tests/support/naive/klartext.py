@@ -1,4 +1,4 @@
-"""A naive twin: draws a Klartext program, and says beside every block where a textbook puts the tool."""
+"""A naive twin: draws a Klartext program, and works out by the textbook where each block puts the tool."""
 
 import math
 from dataclasses import dataclass, field
@@ -24,7 +24,7 @@ microns = st.integers(-90_000, 90_000)
 
 @dataclass
 class Program:
-    """Blocks written so far, and the rows that they make: X Y Z in the workpiece frame, feed, rapid or not."""
+    """The blocks written so far, and their rows: X Y Z in the workpiece frame, feed, rapid or not."""
 
     lines: list[str] = field(default_factory=list)
     rows: list[tuple[float, float, float, float, bool]] = field(default_factory=list)
@@ -33,13 +33,13 @@ class Program:
     feed: float = math.nan
 
     def row(self, place: list[float], rapid: bool) -> None:
-        """Note where a block leads to, in the program's coordinates, um."""
+        """Record the end of a block, in the program's coordinates, um."""
         x, y, z = ((p + s) / 1000.0 for p, s in zip(place, self.shift, strict=True))
         self.rows.append((x, y, z, self.feed, rapid))
 
 
 def number(draw: st.DrawFn, value: int) -> str:
-    """One of the ways to write so many micrometres."""
+    """One of the ways to write a number of micrometres."""
     text = f"{abs(value) / 1000.0:.3f}"
     if draw(st.booleans()):
         text = text.rstrip("0")
@@ -78,7 +78,7 @@ def line(draw: st.DrawFn, program: Program) -> None:
 
 
 def shift(draw: st.DrawFn, program: Program) -> None:
-    """Cycle 7: the axes stand still, and what they are called changes."""
+    """Cycle 7: the axes rest, and the numbers of their positions change."""
     program.lines.append("CYCL DEF 7.0 DATUM SHIFT")
     for axis in draw(st.lists(st.sampled_from([0, 1, 2]), min_size=1, max_size=3, unique=True)):
         value = draw(microns)
@@ -90,7 +90,7 @@ def shift(draw: st.DrawFn, program: Program) -> None:
 
 
 def arc(draw: st.DrawFn, program: Program) -> None:
-    """CC and a half circle by C, or whole turns of a helix by CP; both end where whole micrometres are."""
+    """CC and a half circle by C, or full turns of a helix by CP; both end at whole micrometres."""
     radius = draw(st.integers(1000, 50_000))
     x, y, _ = program.place
     sense = draw(st.sampled_from(["+", "-"]))
@@ -109,7 +109,7 @@ def arc(draw: st.DrawFn, program: Program) -> None:
 
 
 def repeat(draw: st.DrawFn, program: Program) -> None:
-    """A labelled part that runs several times."""
+    """A labelled part that is repeated."""
     label = len(program.lines) + 1
     step = draw(st.integers(-999, 999))
     times = draw(st.integers(1, 4))
@@ -120,7 +120,7 @@ def repeat(draw: st.DrawFn, program: Program) -> None:
 
 
 def jump(draw: st.DrawFn, program: Program) -> None:
-    """A block that is jumped over if a condition holds."""
+    """A block that a conditional jump may skip."""
     label = len(program.lines) + 1
     first, second = draw(st.integers(-5, 5)), draw(st.integers(-5, 5))
     number_, word, holds = draw(

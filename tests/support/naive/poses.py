@@ -1,4 +1,4 @@
-"""Slow twins of the planner: the nearest neighbour, and every possible path through the states."""
+"""Naive twins of the planner: the nearest neighbour, and every possible path through the states."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Slow twins: the same meaning, said the way a textbook would."""
+"""Naive twins of the readers' kernels."""
 
 import numpy as np
 
@@ -23,7 +23,7 @@ def angle_reached(held: float, value: float | None, turn_rule: str, lowest: floa
 
 
 def point_on_circle(start: Floats, end: Floats, centre: Floats, normal: Floats, turns: int, fraction: float) -> Floats:
-    """Point of a circle or helix, in a frame that stands on the centre."""
+    """A point of a circle or helix, in a frame at its centre."""
     x = start - centre - np.dot(start - centre, normal) * normal
     first = np.linalg.norm(x)
     x = x / first
