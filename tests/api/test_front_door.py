@@ -1,5 +1,6 @@
 """``import trunnion``: quick, complete, and without a trace in the process."""
 
+import doctest
 import inspect
 import subprocess
 import sys
@@ -46,6 +47,18 @@ def test_every_argument_is_typed_and_documented(name: str) -> None:
         assert parameter.annotation is not inspect.Parameter.empty, parameter.name
         assert parameter.name in described, f"{name}: {parameter.name}"
     assert "Raises\n------\nInputError" in doc
+    assert ("Returns\n-------\n" in doc) is (signature.return_annotation is not None)
+
+
+@pytest.mark.parametrize("name", ["trunnion", *FUNCTIONS])
+def test_the_examples_of_the_documentation_give_what_they_show(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(Path(__file__).resolve().parents[2])
+    documented = trunnion if name == "trunnion" else getattr(trunnion, name)
+    examples = [found for found in doctest.DocTestFinder(recurse=False).find(documented, name) if found.examples]
+    assert examples or name == "write_report"
+    for example in examples:
+        result = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(example)
+        assert result.failed == 0
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

@@ -129,6 +129,18 @@ def test_a_result_writes_its_report_afterwards(tmp_path: Path) -> None:
         result.write_report(tmp_path / "page.pdf")
 
 
+def test_a_report_needs_the_columns(tmp_path: Path) -> None:
+    result = trunnion.post(CL, machine="yl569", columns=False)
+    with pytest.raises(trunnion.InputError, match="no columns"):
+        result.write_report(tmp_path / "r.html")
+
+
+def test_no_cl_file_at_all_is_an_input_error() -> None:
+    for call in (trunnion.post, trunnion.plan):
+        with pytest.raises(trunnion.InputError, match="there is no CL file"):
+            call([], machine="yl569")
+
+
 def test_a_program_that_nothing_can_read_is_forced_without_a_proof(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

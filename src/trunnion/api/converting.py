@@ -94,6 +94,11 @@ def convert(
     observer
         Hears of the progress, of warnings and of the proof.
 
+    Returns
+    -------
+    ConvertResult
+        ``toolpath``; ``settings`` that make the same head again; ``text``; ``posted`` with the proof.
+
     Raises
     ------
     InputError
@@ -128,15 +133,10 @@ def convert(
             reader.report(write_cl(converted.toolpath, target.files.main, comments=comments))
             posted = None
         else:
-            posting = replace(job, settings={**job.settings, **carried})
-            posted = post_toolpaths(
-                [converted.toolpath],
-                posting,
-                target,
-                observer,
-            )
-    result_problems = (*reader.problems, *(posted.problems if posted else ()))
-    return ConvertResult(converted.toolpath, carried, result_problems, posted, target.path, target.memory)
+            job = replace(job, settings={**job.settings, **carried})
+            posted = post_toolpaths([converted.toolpath], job, target, observer)
+    problems = (*reader.problems, *(posted.problems if posted else ()))
+    return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
 
 
 def _check_settings(job: PostJob, to_cl: bool) -> None:
@@ -149,7 +149,7 @@ def _check_settings(job: PostJob, to_cl: bool) -> None:
 
 def _checked_output(output: OutputLike, nc: FilePath) -> OutputLike:
     """The place of the result, unless it is the program itself."""
-    if isinstance(output, (str, os.PathLike)):
+    if isinstance(output, str | os.PathLike):
         place, source = Path(output), Path(nc)
         if place.exists() and source.exists() and place.samefile(source):
             raise InputError(Problem(str(output), 0, "is the program itself", "name another --output"))
@@ -157,14 +157,14 @@ def _checked_output(output: OutputLike, nc: FilePath) -> OutputLike:
 
 
 class _Reader:
-    """Makes a toolpath of a program, and gathers what is lost on the way."""
+    """Makes a toolpath of a program, and collects the warnings about what is lost."""
 
     def __init__(self, file: str, observer: Observer, force: bool) -> None:
         self.problems: list[Problem] = []
         self._file, self._observer, self._force = file, observer, force
 
     def report(self, problems: Sequence[Problem]) -> None:
-        """Keep problems, and tell them."""
+        """Keep problems and report them."""
         self.problems += problems
         self._observer.problems(problems)
 
@@ -185,22 +185,21 @@ class _Reader:
         return converted
 
     def warn_of_one_program(self, files: int) -> None:
-        """Tell that a program with subprograms becomes one without."""
+        """Warn that a program with subprograms becomes one without."""
         cure = "--set programs=operations writes several"
         self.report([Problem(self._file, 0, f"{files} files become one program", cure, Severity.WARNING)])
 
     def carry(self, stated: Mapping[str, str], control: Control, job: PostJob) -> dict[str, str]:
-        """The settings that the program states and that mean the same on the other control, under those of the job.
+        """The settings of the new program: those that the old one states, as far as they mean the same, and the job's.
 
-        What is not carried over is told.
+        Warns of each that is not carried over.
         """
         target = job.control
         carried = conversion.transfer_settings(stated, control, target)
         for key in sorted(stated.keys() - carried.keys()):
             what = f"{key} is {stated[key]!r}, which is not carried over"
-            cure = (
-                f"{target.name} has no such setting" if key not in target.settings else f"say it as {target.name} does"
-            )
+            known = key in target.settings
+            cure = f"say it as {target.name} does" if known else f"{target.name} has no such setting"
             self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
         carried |= job.printed
         if "tool" in job.printed and "tool_call" not in job.printed:

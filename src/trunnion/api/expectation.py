@@ -5,12 +5,11 @@ Out:    tolerances and settings for ``trunnion.verification.verify``.
 """
 
 import math
-import re
 from dataclasses import dataclass
 
+from trunnion.api.settings import work_offset_number
 from trunnion.api.tolerances import program_tolerances
 from trunnion.model.motion import MachiningMode
-from trunnion.model.run import EXTENDED_OFFSET_BASE
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
 from trunnion.verification import Settings, Tolerances
@@ -41,7 +40,7 @@ def _expected_settings(program: Program, options: PlanOptions) -> Settings:
     inverse_time = program.control.formats.get("inverse_time")
     return Settings(
         tool=values["tool"].strip('"'),
-        work_offset=_work_offset(values["work_offset"]),
+        work_offset=work_offset_number(values["work_offset"]),
         edge=int(values["edge"]) if "edge" in values else None,
         span=axis_tolerance if without_tcp or math.isfinite(axis_tolerance) else None,
         span_tip=options.tip_tolerance if without_tcp else None,
@@ -50,12 +49,3 @@ def _expected_settings(program: Program, options: PlanOptions) -> Settings:
         max_feed=program.control.formats["feed"].five_axis.greatest,
         rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
     )
-
-
-def _work_offset(setting: str) -> int | None:
-    """The number of a work offset: 54 for ``G54``, 603 for ``G54.1 P3``; None where it has another name."""
-    code = setting.strip().upper().removeprefix("G")
-    extended = re.fullmatch(r"54\.1 *P0*(\d{1,3})", code)
-    if extended:
-        return EXTENDED_OFFSET_BASE + int(extended[1])
-    return int(code) if code.isdigit() else None

@@ -76,6 +76,8 @@ def load_toolpaths(
 ) -> list[Toolpath]:
     """The toolpaths of a post, with surface normals if the program has them; their remarks are reported."""
     toolpaths = as_toolpaths(cl, job.settings.get("units"), strict, observer)
+    if not toolpaths:
+        raise InputError(Problem("post", 0, "there is no CL file", "give at least one"))
     if job.has_normals:
         from trunnion.cl.surface_normals import with_normals
 

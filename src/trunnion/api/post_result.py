@@ -77,7 +77,8 @@ class PostResult:
         Raises
         ------
         InputError
-            When the name ends otherwise, the file cannot be written, or nothing was proven.
+            When the name ends otherwise, nothing was proven, the program was posted without columns, or the file cannot
+            be written.
         """
         if self.verification is None:
             raise InputError(Problem(str(file), 0, "nothing was proven", "post for a control that has a reader"))

@@ -5,8 +5,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TypeAlias
 
-from trunnion import cl, machines, readers
+from trunnion import machines, readers
 from trunnion.api.observer import SILENT, Observer
+from trunnion.cl import read_cl as read_cl_file
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -63,7 +64,7 @@ def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, o
             advance(total - done)
             done = total
 
-        return cl.read_cl(path, units=units, strict=strict, progress=read)
+        return read_cl_file(path, units=units, strict=strict, progress=read)
 
 
 def load_machine(machine: FilePath) -> Machine:
@@ -75,6 +76,11 @@ def load_machine(machine: FilePath) -> Machine:
         The name of a shipped machine, such as ``"yl569"`` (``trunnion machines`` lists them), or the path of a
         ``.toml`` file.
 
+    Returns
+    -------
+    Machine
+        Its axes from the workpiece to the tool, with their limits in mm and degrees.
+
     Raises
     ------
     InputError
@@ -84,7 +90,7 @@ def load_machine(machine: FilePath) -> Machine:
     --------
     >>> import trunnion
     >>> [axis.name for axis in trunnion.load_machine("yl569").axes]
-    ['X', 'Y', 'Z', 'B', 'C']
+    ['C', 'B', 'X', 'Y', 'Z']
     """
     return machines.load_machine(os.fspath(machine))
 
@@ -106,7 +112,7 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     Run
         One row a motion, in columns: ``tip`` (n, 3) mm and ``axis`` (n, 3) unit vectors in the workpiece frame,
         ``joints`` (n, 5) mm and degrees, ``feed``, ``tool``, ``spindle`` and more; ``events`` between the rows, and
-        ``findings``: words that are unknown or not acted upon.
+        ``diagnostics``: words that are unknown or not acted upon.
 
     Raises
     ------
@@ -116,6 +122,13 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     Notes
     -----
     The readers are written from the manuals of the controls and share no code with the writers.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> run = trunnion.read_program("tests/golden/yl569/2_hub_rough.expected.mpf", machine="yl569")
+    >>> run.tip.shape, run.diagnostics
+    ((30, 3), ())
     """
     return readers.run_program(Path(nc), as_machine(machine), subprograms=as_paths(subprograms))
 
@@ -131,12 +144,12 @@ def as_paths(files: Sequence[FilePath]) -> list[Path]:
 
 
 def as_toolpaths(
-    cl_files: ToolpathLike | Iterable[ToolpathLike], units: str | None, strict: bool, observer: Observer
+    cl: ToolpathLike | Iterable[ToolpathLike], units: str | None, strict: bool, observer: Observer
 ) -> list[Toolpath]:
     """Toolpaths in their order, read if they are named; ``units`` and ``strict`` as ``read_cl`` has them."""
-    if isinstance(cl_files, (str, os.PathLike, Toolpath)):
-        cl_files = [cl_files]
+    if isinstance(cl, str | os.PathLike | Toolpath):
+        cl = [cl]
     return [
         each if isinstance(each, Toolpath) else read_cl(each, units=units, strict=strict, observer=observer)
-        for each in cl_files
+        for each in cl
     ]

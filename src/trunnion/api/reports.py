@@ -26,7 +26,7 @@ def write_report(verification: Verification, file: FilePath, *, decisions: Seque
     Parameters
     ----------
     verification
-        With its columns.
+        Of ``trunnion.verify`` or ``trunnion.post``, with its columns.
     file
         An older file is replaced when the new one is complete.
     decisions
@@ -35,7 +35,9 @@ def write_report(verification: Verification, file: FilePath, *, decisions: Seque
     Raises
     ------
     InputError
-        When the name ends otherwise, or the file cannot be written.
+        When the name ends otherwise, the verification has no columns, or the file cannot be written.
     """
     check_report_name(file)
+    if len(verification.seconds) != len(verification.run):
+        raise InputError(Problem(str(file), 0, "the verification has no columns", "ask for it with columns=True"))
     reporting.write_report(verification, Path(file), decisions=decisions)

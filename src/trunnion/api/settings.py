@@ -5,6 +5,7 @@ Out:    text that is checked; numbers, points, and the machine as it is set up.
 """
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Final, TypeAlias
@@ -13,6 +14,7 @@ from trunnion.controls import Control
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.motion import PoleStrategy
+from trunnion.model.run import EXTENDED_OFFSET_BASE
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
 
 #: A setting as text, as a number, or as several numbers (``zero``).
@@ -132,6 +134,15 @@ def check_tolerance(option: str, value: float | None) -> None:
     """Raise ``InputError`` for a tolerance that is not above 0."""
     if value is not None and not 0.0 < value < _GREATEST_TOLERANCE:
         raise InputError(Problem(option, 0, f"is {value!r}", "give a number above 0, such as 0.001"))
+
+
+def work_offset_number(text: str) -> int | None:
+    """The number of a work offset: 54 for ``G54``, 603 for ``G54.1 P3``; None where it has another name."""
+    code = text.strip().upper().removeprefix("G")
+    extended = re.fullmatch(r"54\.1 *P0*(\d{1,3})", code)
+    if extended:
+        return EXTENDED_OFFSET_BASE + int(extended[1])
+    return int(code) if code.isdigit() else None
 
 
 def _point_setting(text: str) -> tuple[float, float, float]:

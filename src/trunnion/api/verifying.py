@@ -6,7 +6,7 @@ from typing import Literal
 from trunnion import readers, verification
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths, read_program
-from trunnion.api.settings import check_tolerance, set_up_machine
+from trunnion.api.settings import check_tolerance, set_up_machine, work_offset_number
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
@@ -140,11 +140,10 @@ def rapid_feed_of(machine: Machine) -> float | None:
 
 
 def _work_offset(text: str | None, default: str, with_cl: bool) -> int | None:
-    """The number of a work offset; None: any, the same throughout."""
+    """The number of the work offset that a program must have; None: any, the same throughout."""
     if text is None:
-        code = default.removeprefix("G")
-        return int(code) if with_cl and code.isdigit() else None
-    code = text.strip().upper().removeprefix("G")
-    if not code.isdigit():
+        return work_offset_number(default) if with_cl else None
+    code = work_offset_number(text)
+    if code is None:
         raise InputError(Problem("--offset", 0, f"is {text!r}", "write it as the program does, such as G54"))
-    return int(code)
+    return code
