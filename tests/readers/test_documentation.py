@@ -5,6 +5,7 @@ import re
 import pytest
 
 from tests.support.locations import DOCS
+from trunnion.readers.control import iso_m_codes
 from trunnion.readers.families.sinumerik import cycles, expressions, flow, words
 from trunnion.readers.families.sinumerik.text import MAX_NESTING
 from trunnion.readers.program import limits, options, source_text
@@ -57,9 +58,9 @@ def test_every_name_is_in_the_page(name: str) -> None:
 
 
 def test_every_m_word_and_event_is_in_the_page() -> None:
-    codes = {*words.M_EVENTS, *words.M_SPINDLE, *words.M_PROGRAM_ENDS, words.M_RETURN, words.M_CHANGE}
+    codes = {*iso_m_codes.EVENTS, *iso_m_codes.PROGRAM_ENDS, words.M_RETURN, iso_m_codes.TOOL_CHANGE}
     assert {f"M{code}" for code in codes} <= NOT_SIMULATED
-    assert {kind for kind, _ in words.M_EVENTS.values()} <= NOT_SIMULATED
+    assert {kind for kind, _ in iso_m_codes.EVENTS.values()} <= NOT_SIMULATED
 
 
 def test_limits_are_those_of_the_page() -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.model.run import ProgrammedWord
+from trunnion.readers.control import iso_m_codes
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.row_recorder import ScannedRows
@@ -35,20 +36,7 @@ RADIUS_COMPENSATION: Final = {400: 0, 410: 1, 411: 1, 412: 1, 420: -1, 421: -1, 
 CANCEL: Final = 800
 
 #: M codes that make an event: kind and value.
-EVENTS: Final = {
-    0: ("stop", None),
-    1: ("optional_stop", None),
-    3: ("spindle", "clockwise"),
-    4: ("spindle", "counter-clockwise"),
-    5: ("spindle", "off"),
-    7: ("coolant", "mist"),
-    8: ("coolant", "flood"),
-    9: ("coolant", "off"),
-    19: ("spindle", "oriented"),
-}
-SPINDLE: Final = {3: 1, 4: -1, 5: 0}
-CHANGE: Final = 6
-PROGRAM_ENDS: Final = frozenset({2, 30})
+EVENTS: Final = {**iso_m_codes.EVENTS, 19: ("spindle", "oriented")}
 
 #: Letters of axes; a machine has five of them.
 AXES: Final = "XYZABCUVW"
@@ -238,13 +226,13 @@ class Rs274Interpreter(Interpreter[A]):
     def _common_m_code(self, code: int) -> bool:
         """Execute an M code that all these languages share; False if it is another one."""
         control = self.control
-        if code in SPINDLE:
-            control.modal.spindle.set(control.row, SPINDLE[code])
+        if code in iso_m_codes.SPINDLE:
+            control.modal.spindle.set(control.row, iso_m_codes.SPINDLE[code])
         if code in EVENTS:
             control.add_event(*EVENTS[code])
-        elif code == CHANGE:
+        elif code == iso_m_codes.TOOL_CHANGE:
             control.change_tool()
-        elif code in PROGRAM_ENDS:
+        elif code in iso_m_codes.PROGRAM_ENDS:
             control.add_event("end", f"M{code}")
             raise ProgramEnd
         else:

@@ -39,6 +39,10 @@ _MODES: Final = (
 _PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
 
 
+#: The value of a word and its mode.
+_Word = tuple[Value, PositionMode]
+
+
 @dataclass(slots=True)
 class Call:
     """A call of a cycle, message or subprogram: the values of its arguments, and their texts."""
@@ -116,13 +120,13 @@ class BlockReader:
             self._parameter(reader, variables)
             return
         name = letter + extension
-        value, how = self._value(reader)
+        value, mode = self._value(reader)
         if name in self._axes:
-            self._axis(block, name, _number(value), how)
+            self._axis(block, name, _number(value), mode)
         elif isinstance(value, str) and name != "T":
             raise ExpressionError(f"{name} takes a number, not a text")
         else:
-            self._address(reader, block, letter, extension, value, how)
+            self._address(reader, block, (letter, extension), (value, mode))
 
     def _extension(self, reader: ExpressionReader) -> str:
         """Read digits between a letter and an equals sign, as in A3= or S2=; returns them, or nothing."""
@@ -152,15 +156,15 @@ class BlockReader:
         reader.expect("=")
         variables.set_parameter(number, reader.number())
 
-    def _value(self, reader: ExpressionReader) -> tuple[Value, PositionMode]:
+    def _value(self, reader: ExpressionReader) -> _Word:
         """Read the value of a word: a number, or = and an expression, which may be in AC() or a similar function."""
         if reader.accept("="):
-            how = reader.peek()
-            if how in POSITION_MODES and reader.peek(1) == "(":
+            mode = reader.peek()
+            if mode in POSITION_MODES and reader.peek(1) == "(":
                 reader.at += 2
                 value = reader.number()
                 reader.expect(")")
-                return value, PositionMode(how)
+                return value, PositionMode(mode)
             return reader.value(), PositionMode.MODAL
         sign = 1.0
         if reader.peek() in ("+", "-"):
@@ -172,33 +176,31 @@ class BlockReader:
         reader.at += 1
         return sign * token.value, PositionMode.MODAL
 
-    def _axis(self, block: Block, name: str, value: float, how: PositionMode) -> None:
+    def _axis(self, block: Block, name: str, value: float, mode: PositionMode) -> None:
         if name in block.axes:
             self._note(f"{name} is written twice: the last one counts", Severity.WARNING)
-        block.axes[name] = value, how
+        block.axes[name] = value, mode
 
-    def _address(
-        self, reader: ExpressionReader, block: Block, letter: str, extension: str, value: Value, how: PositionMode
-    ) -> None:
-        if letter == "T" and extension in ("", "0", "1"):
+    def _address(self, reader: ExpressionReader, block: Block, address: tuple[str, str], word: _Word) -> None:
+        """Execute a word that is no axis; ``address`` is its letter and the digits after it."""
+        letter, extension = address
+        value, mode = word
+        master_spindle = extension in ("", "0", "1")
+        if letter == "T" and master_spindle:
             block.tool = value if isinstance(value, str) else f"{value:.10g}"
             return
         number = _number(value)
-        match letter, extension:
+        match address:
+            case (("M" | "S"), _) if not master_spindle:
+                # M2=3 and S2=100 address spindle 2; only the master spindle is simulated.
+                text = f"M{extension}={_code(number, 'M')}" if letter == "M" else f"S{extension}="
+                self._note(f"{text} speaks to another spindle: not followed", Severity.WARNING)
             case "G", "":
                 block.g.append(_code(number, "G"))
             case "M", _:
-                # M2=3 addresses spindle 2; only the master spindle is simulated.
-                code = _code(number, "M")
-                if extension in ("", "0", "1"):
-                    block.m.append(code)
-                else:
-                    self._note(f"M{extension}={code} speaks to another spindle: not followed", Severity.WARNING)
+                block.m.append(_code(number, "M"))
             case "S", _:
-                if extension in ("", "0", "1"):
-                    block.speed = number
-                else:
-                    self._note(f"S{extension}= speaks to another spindle: not followed", Severity.WARNING)
+                block.speed = number
             case "F", "":
                 if not 0.0 <= number <= MAX_FEED:
                     raise ExpressionError(f"a feed is not from 0 to {MAX_FEED:g}")
@@ -208,24 +210,30 @@ class BlockReader:
             case "H", _:
                 block.h.append(number)
             case (("I" | "J" | "K"), ("" | "1")):
-                block.params[letter + extension] = number, how
+                block.params[letter + extension] = number, mode
             case (("A" | "B" | "C"), "3"):
                 block.vector[letter] = number
             case (("A" | "B" | "C"), ("4" | "5")):
                 pass  # Surface normals are for radius compensation, which is not simulated.
-            case "L", "":
-                digits = reader.tokens[reader.at - 1].text
-                if not digits.isdigit():
-                    raise ExpressionError("a subprogram has a whole number")
-                block.calls.append(Call(f"L{digits}"))
-            case "P", "":
-                if not block.calls:
-                    raise ExpressionError("P counts nothing here")
-                block.calls[-1].repeats = _code(number, "P")
+            case (("L" | "P"), ""):
+                self._subprogram_word(reader, block, letter, number)
             case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), ""):
                 self._note(f"the machine has no axis {letter}: {letter}{number:g} is not executed", Severity.ERROR)
             case _:
                 self._note(f"unknown word {letter}{extension}={number:g}", Severity.ERROR)
+
+    @staticmethod
+    def _subprogram_word(reader: ExpressionReader, block: Block, letter: str, number: float) -> None:
+        """Execute L, the number of a subprogram, or P, its repeats."""
+        if letter == "L":
+            digits = reader.tokens[reader.at - 1].text
+            if not digits.isdigit():
+                raise ExpressionError("a subprogram has a whole number")
+            block.calls.append(Call(f"L{digits}"))
+            return
+        if not block.calls:
+            raise ExpressionError("P counts nothing here")
+        block.calls[-1].repeats = _code(number, "P")
 
     # Names
 
@@ -234,11 +242,11 @@ class BlockReader:
         follows = reader.peek(1)
         reader.at += 1
         if name in self._axes and follows == "=":
-            value, how = self._value(reader)
-            self._axis(block, name, _number(value), how)
+            value, mode = self._value(reader)
+            self._axis(block, name, _number(value), mode)
         elif name in _PARAMS and follows == "=":
-            value, how = self._value(reader)
-            block.params[name] = _number(value), how
+            value, mode = self._value(reader)
+            block.params[name] = _number(value), mode
         elif name in WITHOUT_PATH_EFFECT_VALUES and follows in ("=", "["):
             if follows == "[":
                 _skip(reader, "[", "]")

@@ -8,6 +8,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.run import Orientation
 from trunnion.readers.control.hole_motion import CycleExecutionError, finite
+from trunnion.readers.control.iso_m_codes import EVENTS, PROGRAM_ENDS, SPINDLE, TOOL_CHANGE
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.sinumerik import cycles
@@ -36,11 +37,7 @@ from trunnion.readers.families.sinumerik.words import (
     G_UNITS,
     G_WITHOUT_PATH_EFFECT,
     M_AFTER_MOTION,
-    M_CHANGE,
-    M_EVENTS,
-    M_PROGRAM_ENDS,
     M_RETURN,
-    M_SPINDLE,
     TOOL_FRAMES,
     WITHOUT_PATH_EFFECT,
 )
@@ -279,13 +276,13 @@ class SinumerikInterpreter(CallInterpreter):
 
     def _m_code(self, code: int) -> None:
         control = self.control
-        if code in M_SPINDLE:
-            control.modal.spindle.set(control.row, M_SPINDLE[code])
-        if code in M_EVENTS:
-            control.add_event(*M_EVENTS[code])
-        elif code == M_CHANGE:
+        if code in SPINDLE:
+            control.modal.spindle.set(control.row, SPINDLE[code])
+        if code in EVENTS:
+            control.add_event(*EVENTS[code])
+        elif code == TOOL_CHANGE:
             control.change_tool()
-        elif code in M_PROGRAM_ENDS:
+        elif code in PROGRAM_ENDS:
             control.add_event("end", f"M{code}")
             raise ProgramEnd
         elif code == M_RETURN:

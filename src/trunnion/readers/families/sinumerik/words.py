@@ -2,6 +2,8 @@
 
 from typing import Final
 
+from trunnion.readers.control.iso_m_codes import PROGRAM_ENDS
+
 
 def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
@@ -186,25 +188,8 @@ CONSTANTS: Final = {
     "_TOP_SURFACE_SMOOTH_ON": 2000000,
 }
 
-#: M codes that make an event: kind and value. Others are the machine builder's, and make events "m".
-M_EVENTS: Final = {
-    0: ("stop", None),
-    1: ("optional_stop", None),
-    3: ("spindle", "clockwise"),
-    4: ("spindle", "counter-clockwise"),
-    5: ("spindle", "off"),
-    7: ("coolant", "mist"),
-    8: ("coolant", "flood"),
-    9: ("coolant", "off"),
-}
-
-#: Sense of rotation of the spindle after an M code.
-M_SPINDLE: Final = {3: 1, 4: -1, 5: 0}
-
-#: M codes that end a program, end a subprogram, and change the tool.
-M_PROGRAM_ENDS: Final = frozenset({2, 30})
+#: The M code that ends a subprogram. Those that are not in ``iso_m_codes`` are the machine builder's: events "m".
 M_RETURN: Final = 17
-M_CHANGE: Final = 6
 
 #: M codes that act after the motion of their block.
-M_AFTER_MOTION: Final = frozenset({0, 1, 5, 9, M_RETURN}) | M_PROGRAM_ENDS
+M_AFTER_MOTION: Final = frozenset({0, 1, 5, 9, M_RETURN}) | PROGRAM_ENDS
