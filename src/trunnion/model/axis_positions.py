@@ -4,8 +4,8 @@ In:     per row the tip or the slide positions, and a vector or rotary words, or
 Out:    rotary positions with all their turns, and with them five joints per row.
 Units:  mm and degrees.
 
-The turn rule of a row says in which turn its rotary words end: the rule of the first rotary axis in the low four bits,
-that of the second in the high four.
+The turn rule of a row determines in which turn its rotary words end: the rule of the first rotary axis
+in the low four bits, that of the second in the high four.
 """
 
 import math

@@ -7,7 +7,7 @@ from typing import Final
 
 
 class PositionMode(StrEnum):
-    """How a position is meant: as the control is set (G90, G91), or as the word itself says.
+    """How a position is meant: as the control is set (G90, G91), or as the word itself states.
 
     The last three are for endless rotary axes: the shorter way, in positive and in negative direction.
     """

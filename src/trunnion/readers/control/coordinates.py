@@ -1,8 +1,8 @@
 """What programmed positions mean: units, work offsets, TCP, tilted planes and programmable frames.
 
 X, Y and Z have two meanings. With TCP, or in a tilted plane, they are the tool tip in the active frame. Otherwise they
-are the positions of the slides, counted from the work offset: with the rotary axes at zero the tip is where the program
-says, with the axes turned it is where the kinematics of the machine put it.
+are the positions of the slides, counted from the work offset: with the rotary axes at zero the tip is at the
+programmed position, with the axes turned the kinematics of the machine determine where it is.
 """
 
 from dataclasses import replace

@@ -178,7 +178,7 @@ class Interpreter(ABC, Generic[A]):
     def _reserve_rows(self, source: SourceText) -> None:
         columns = self.control.columns
         if columns.capacity - columns.n < _MIN_FREE_ROWS:
-            # Once it shows how the program goes on: a little more than there will be if it continues like that.
+            # After the first rows, a little more than the program will have if it continues as it began.
             begun = columns.n > _RESERVED_ROWS // 2
             columns.reserve(_RESERVED_ROWS, int(1.02 * source.expected_rows(columns.n)) if begun else 0)
 

@@ -1,4 +1,4 @@
-"""Limits of what a program may do, so that every one of them comes to an end."""
+"""Limits of what a program may do, so that every program ends."""
 
 from collections.abc import Callable, Sequence
 from typing import Final

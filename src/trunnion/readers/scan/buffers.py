@@ -10,7 +10,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Floats, Floats2, Ints, Ints2
 
-#: Blocks that a scan reads at most, so that what is recorded of them besides rows always has room.
+#: Blocks that a scan reads at most. The buffers of everything that is recorded of blocks besides rows have this length.
 MAX_BLOCKS: Final = 4096
 
 #: Slots of the words of a block, that is columns of ``BlockWords.values`` and bits of ``BlockWords.seen``. Slots below

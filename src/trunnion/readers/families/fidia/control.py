@@ -17,7 +17,7 @@ from trunnion.readers.scan.letter_blocks import letter_table
 
 
 def feed_path_of(machine: Machine) -> FeedPath:
-    """Return what F refers to where rotary axes turn without TCP: unconfirmed, but the machine's definition may say."""
+    """Return what F refers to where rotary axes turn without TCP: a setting of the definition, slides by default."""
     table = reading_of(machine)
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
     table.report_unread_keys()

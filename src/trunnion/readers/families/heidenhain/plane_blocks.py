@@ -54,8 +54,8 @@ def _axial(
     if unknown or not values:
         raise KlartextError(f"PLANE AXIAL takes {' and '.join(control.rotary_names)}")
     control.resolve_rows()
-    held = [float(control.current_joints[column]) for column in control.machine.rotary]
-    first, second = (values.get(name, was) for name, was in zip(control.rotary_names, held, strict=True))
+    current = [float(control.current_joints[column]) for column in control.machine.rotary]
+    first, second = (values.get(name, now) for name, now in zip(control.rotary_names, current, strict=True))
     control.tilt_axial((first, second), positioning)
     store_rotary_angles(parameters, control, (first, second))
 

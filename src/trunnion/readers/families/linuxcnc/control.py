@@ -18,7 +18,7 @@ from trunnion.readers.scan.letter_blocks import letter_table
 #: Axes in the order of LinuxCNC's tables.
 ORDER: Final = "XYZABC"
 
-#: How much the radii at start and end may differ: always, mm, in ratio of the radius, and at most, mm.
+#: How much the radii at start and end may differ: in any case, mm; as a ratio of the radius; and at most, mm.
 _FINE: Final = 0.005
 _RATIO: Final = 0.001
 _COARSE: Final = 0.5

@@ -178,7 +178,7 @@ class SinumerikControl(VirtualControl):
         return AffineMap(np.column_stack((x, np.cross(z, x), z)), zero)
 
     def drill(self, motions: Sequence[HoleMotion]) -> None:
-        """Execute a drilling cycle at the present position; along the tool if the machine's definition says so."""
+        """Execute a drilling cycle at the present position; along the tool if the machine's definition sets that."""
         turns = self.tcp and not (self.tilted or self.tool_frame) and self._cycles_along_tool
         program = self.program_frame
         if turns:

@@ -27,7 +27,7 @@ class Variables:
         self._types: dict[str, str] = {}
         self._parameters: dict[int, float] = {} if shared is None else shared._parameters
         self._global: dict[str, Elements] = {} if shared is None else shared._global
-        self._count_blocks: list[int] = [0] if shared is None else shared._count_blocks
+        self._assignment_count: list[int] = [0] if shared is None else shared._assignment_count
         self.arguments: list[Value | None] = []
 
     def pass_arguments(self, arguments: list[Value | None]) -> None:
@@ -70,8 +70,8 @@ class Variables:
             value = float(whole(math.copysign(math.floor(abs(value) + 0.5), value)))
         if kind == "BOOL" and isinstance(value, float):
             value = float(bool(value))
-        self._count_blocks[0] += 1
-        if self._count_blocks[0] > MAX_VARIABLES:
+        self._assignment_count[0] += 1
+        if self._assignment_count[0] > MAX_VARIABLES:
             self._recount()
         if kind is not None:
             self._local[name][index] = value
@@ -82,10 +82,10 @@ class Variables:
 
     def _recount(self) -> None:
         """Count variables exactly; called only when there may be too many."""
-        held = sum(map(len, self._local.values())) + sum(map(len, self._global.values()))
-        if held > MAX_VARIABLES // 2:
+        count = sum(map(len, self._local.values())) + sum(map(len, self._global.values()))
+        if count > MAX_VARIABLES // 2:
             raise ExpressionError(f"the program has more than {MAX_VARIABLES // 2} variables")
-        self._count_blocks[0] = held
+        self._assignment_count[0] = count
 
     def variable(self, name: str, index: tuple[int, ...]) -> Value:
         """Return the value of a variable or predefined name."""

@@ -163,7 +163,7 @@ FLOW: Final = _words("""
 #: Types of variables.
 TYPES: Final = frozenset({"REAL", "INT", "BOOL", "CHAR", "STRING", "AXIS", "FRAME"})
 
-#: Functions that say how a position is meant.
+#: Functions that give the mode of a position.
 POSITION_MODES: Final = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 
 #: Other words with an effect: transformation, machine positions, circles, messages.
