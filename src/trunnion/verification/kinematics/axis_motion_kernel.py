@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Floats2, Floats3, Ints, Ints2
-from trunnion.jit import inner, kernel
+from trunnion.jit import inlined, inner, kernel
 from trunnion.machines import Machine
 from trunnion.model.feed_path import NO_ROTATION
 
@@ -101,39 +101,51 @@ def axis_motion_rows(
     shares     (2, 5, k) float64 written: shares of rapid speed and, where stated, of acceleration; 0 for rapids
     deviation  (k,) float64      written: how far the tool axis is off half-way in rows at feed, degrees
     """
+    # Arrays are taken out of their tuples once: in the loop that would count references for every row.
+    joints, tip, axis, half_way, kind, programmed, tcp, machine_frame, feed, feed_mode, rpm, angles, feed_lengths = rows
+    rotary, rapid, acceleration = limits
     velocity = carry[2:]
     minutes_before = carry[0]
     arc = int(carry[1])
-    for at in range(rows.kind.shape[0]):
+    for at in range(kind.shape[0]):
         row = first + at
-        slides, turned = _axis_steps(rows, at, row, limits.rotary, extremes, extreme_rows)
+        slides_count = not machine_frame[at] and (tcp[at] or programmed[at] & 7 != 0)
+        slides, turned = _axis_steps(joints, at, row, rotary, slides_count, extremes, extreme_rows)
         while arc < arc_row.shape[0] and arc_row[arc] < row:
             arc += 1
         on_arc = arc < arc_row.shape[0] and arc_row[arc] == row
-        travel = arc_length[arc] if on_arc else _tip_travel(rows.tip, at)
-        length, counts = _feed_length(rows, at, on_arc, travel, slides, turned)
-        feed, minutes = _feed_and_minutes(rows, at, length)
-        times[0, at], times[1, at], times[2, at], times[3, at] = length, feed, travel, counts
+        travel = arc_length[arc] if on_arc else _tip_travel(tip, at)
+        length, counts = (travel, 0.0) if tcp[at] or on_arc else (slides, 1.0)
+        if feed_lengths.shape[0] and not on_arc and feed_lengths[at] == feed_lengths[at]:
+            length = feed_lengths[at]
+        if length < 1e-9:
+            length, counts = turned, 2.0
+        rate, minutes = math.inf, 0.0
+        if kind[at] != 0:
+            rate, minutes = _rate_and_minutes(feed[at], feed_mode[at], rpm[at], length)
+        times[0, at], times[1, at], times[2, at], times[3, at] = length, rate, travel, counts
         deviation[at] = 0.0
-        at_feed = rows.kind[at] != 0 and not rows.machine_frame[at]
-        if turned > NO_ROTATION and at_feed and (rows.angles[at] or not rows.tcp[at]):
-            deviation[at] = half_way_deviation(rows.axis, rows.half_way, at)
-        _axis_shares(rows.joints, at, limits, minutes, minutes_before, velocity, shares)
+        at_feed = kind[at] != 0 and not machine_frame[at]
+        if turned > NO_ROTATION and at_feed and (angles[at] or not tcp[at]):
+            deviation[at] = half_way_deviation(axis, half_way, at)
+        _axis_shares(joints, at, rapid, acceleration, minutes, minutes_before, velocity, shares)
         minutes_before = minutes
     carry[0] = minutes_before
     carry[1] = arc
 
 
-@inner
+@inlined
 def _axis_steps(
-    rows: ChunkRows, at: int, row: int, rotary: Flags, extremes: Floats, extreme_rows: Ints
+    joints: Floats, at: int, row: int, rotary: Flags, slides_count: bool, extremes: Floats, extreme_rows: Ints
 ) -> tuple[float, float]:
-    """How far the slides go, mm, and the rotary axis that turns farthest, degrees; extremes are updated."""
+    """How far the slides go, mm, and the rotary axis that turns farthest, degrees.
+
+    Extremes are updated; those of slides if ``slides_count``.
+    """
     squares, turned = 0.0, 0.0
-    slides_count = not rows.machine_frame[at] and (rows.tcp[at] or rows.programmed[at] & 7)
     for k in range(5):
-        value = rows.joints[at + 1, k]
-        moved = abs(value - rows.joints[at, k])
+        value = joints[at + 1, k]
+        moved = abs(value - joints[at, k])
         if rotary[k]:
             turned = max(turned, moved)
         else:
@@ -148,47 +160,32 @@ def _axis_steps(
     return math.sqrt(squares), turned
 
 
-@inner
+@inlined
 def _tip_travel(tip: Floats, at: int) -> float:
     """Straight distance of the tip in a row, mm."""
     dx, dy, dz = tip[at + 1, 0] - tip[at, 0], tip[at + 1, 1] - tip[at, 1], tip[at + 1, 2] - tip[at, 2]
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
-@inner
-def _feed_length(
-    rows: ChunkRows, at: int, on_arc: bool, travel: float, slides: float, turned: float
-) -> tuple[float, float]:
-    """The length that the feed counts, and whether it is that of the tip (0), of the slides (1) or in degrees (2)."""
-    by_tip = rows.tcp[at] or on_arc
-    length, counts = (travel, 0.0) if by_tip else (slides, 1.0)
-    if rows.feed_lengths.shape[0] and not on_arc and rows.feed_lengths[at] == rows.feed_lengths[at]:
-        length = rows.feed_lengths[at]
-    if length < 1e-9:
-        length, counts = turned, 2.0
-    return length, counts
-
-
-@inner
-def _feed_and_minutes(rows: ChunkRows, at: int, length: float) -> tuple[float, float]:
-    """Feed along a length, per minute, and the minutes it takes; infinite and 0 for rapids and without a feed."""
-    if rows.kind[at] == 0:
+@inlined
+def _rate_and_minutes(feed: float, mode: int, rpm: float, length: float) -> tuple[float, float]:
+    """Speed along a length, per minute, and the minutes it takes; infinite and 0 without a feed."""
+    rate = feed
+    if mode == 95:
+        rate = feed * rpm
+    elif mode == 93:
+        rate = feed * length
+    if not rate > 0.0:
         return math.inf, 0.0
-    feed = rows.feed[at]
-    if rows.feed_mode[at] == 95:
-        feed *= rows.rpm[at]
-    elif rows.feed_mode[at] == 93:
-        feed *= length
-    if not feed > 0.0:
-        return math.inf, 0.0
-    return feed, length / feed
+    return rate, length / rate
 
 
-@inner
+@inlined
 def _axis_shares(
     joints: Floats,
     at: int,
-    limits: AxisLimits,
+    rapid: Floats,
+    acceleration: Floats,
     minutes: float,
     minutes_before: float,
     velocity: Floats,
@@ -196,15 +193,15 @@ def _axis_shares(
 ) -> None:
     """Write the shares of a row; ``velocity`` (5,) holds the speeds in the row before and is updated."""
     for k in range(5):
-        stated = limits.acceleration[k] < math.inf
+        stated = acceleration[k] < math.inf
         shares[0, k, at] = 0.0
         if stated:
             shares[1, k, at] = 0.0
         if minutes <= 0.0:
             continue
         now = (joints[at + 1, k] - joints[at, k]) / minutes
-        shares[0, k, at] = abs(now) / limits.rapid[k]
+        shares[0, k, at] = abs(now) / rapid[k]
         if stated and minutes_before > 0.0:
             change = 2.0 * abs(now - velocity[k]) / (minutes + minutes_before)
-            shares[1, k, at] = change / 3600.0 / limits.acceleration[k]
+            shares[1, k, at] = change / 3600.0 / acceleration[k]
         velocity[k] = now
