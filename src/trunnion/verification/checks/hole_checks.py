@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from trunnion.model.run import Run
 from trunnion.verification.checks.drill_motions import HoleFault
 from trunnion.verification.checks.hole_faults import hole_faults
-from trunnion.verification.checks.tool_checks import allowed_length_numbers, length_fault
+from trunnion.verification.checks.tool_checks import allowed_length_numbers, length_fault, tool_fault
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.expected.holes import Hole
 from trunnion.verification.expected.spindle_and_tool import names_tool
@@ -83,7 +83,7 @@ def _faults_around(context: ComparedContext, drilled: _Drilled) -> Iterator[Hole
     names = (settings.tool,) if settings.tool else hole.tool_names
     has = run.tools[run.state.tool[row]]
     if names and not names_tool(has, names):
-        yield HoleFault(row, 0.0, f"tool {has or 'none'} is in the spindle; the CL file wants {names[0]}")
+        yield HoleFault(row, 0.0, tool_fault(has, names))
     numbers = allowed_length_numbers(settings.tool, hole.length_numbers) if run.uses_length_numbers else ()
     if numbers and (number := int(run.state.edge[row])) not in numbers:
         yield HoleFault(row, 0.0, length_fault(number, numbers))

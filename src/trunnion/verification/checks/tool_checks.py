@@ -45,8 +45,7 @@ def _holds_other_tool(run: Run, names: tuple[str, ...], nc: Ints) -> Flags:
 def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, ...]) -> Iterator[Place]:
     """The row with a wrong tool, and the last word that called it."""
     run = context.run
-    has = run.tools[run.state.tool[row]] or "no tool"
-    text = f"tool {has} is in the spindle; the CL file wants {names[0]}"
+    text = tool_fault(run.tools[run.state.tool[row]], names)
     yield context.place_with_cl(row, 0.0, text, cl)
     calls = [event for event in run.events if event.kind in ("tool", "tool_change") and event.before_row <= row]
     if calls:
@@ -61,6 +60,11 @@ def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]]) -> 
             if tool and tool != "0" and not any(names_tool(tool, names) for names in asked):
                 text = f"changes to tool {tool}, which the CL file never asks for"
                 yield context.place_of_event(event, 0.0, text)
+
+
+def tool_fault(has: str, names: tuple[str, ...]) -> str:
+    """What is wrong with the tool in the spindle, empty for none, where one of some names is expected."""
+    return f"{f'tool {has}' if has else 'no tool'} is in the spindle; the CL file wants {names[0]}"
 
 
 def _wrong_edges(context: ComparedContext, edge: int) -> Iterator[Place]:
