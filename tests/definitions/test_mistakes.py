@@ -259,7 +259,7 @@ def test_extends_in_a_circle_is_told_the_circle(tmp_path: Path) -> None:
     (problem,) = told(tmp_path, 'name = "s"\n\nextends = "a.toml"\n')
     assert (problem.file, problem.line) == (str(tmp_path / "b.toml"), 2)
     assert problem.what == "extends goes in a circle: shop.toml extends a.toml extends b.toml extends shop.toml"
-    assert problem.cure == "take one extends out"
+    assert problem.cure == "remove one extends"
 
 
 def test_a_file_that_extends_itself_is_a_circle_too(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Values that know where they stand, and the lines of the keys of a TOML text."""
+"""Values with the file and line that they come from, and the lines of the keys of a TOML text."""
 
 import re
 import tomllib
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-#: Deeper keys are refused unread: the TOML parser takes time that grows with the cube of their depth.
+#: Deeper keys are refused unread: the time of the TOML parser grows with the cube of their depth.
 MAX_KEY_DEPTH: Final = 32
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -16,7 +16,10 @@ KeyPath: TypeAlias = tuple[str | int, ...]
 
 @dataclass(slots=True)
 class LocatedValue:
-    """A value and its place. ``value`` is a scalar, a list, a dict of entries (table) or a list of table entries."""
+    """A value of a definition, with its file and line.
+
+    value  a scalar, a list of scalars or of lists, a dict of located values (a table), or a list of located tables
+    """
 
     value: object
     file: str
@@ -24,14 +27,20 @@ class LocatedValue:
 
 
 def _is_tables(value: object) -> bool:
-    """Say whether a raw TOML value is an array of tables."""
+    """Whether a raw TOML value is an array of tables."""
     return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
 
 
 def locate_values(
     value: object, file: str, lines: Mapping[KeyPath, int], path: KeyPath = (), parent_line: int = 0
 ) -> LocatedValue:
-    """Give a raw TOML value, and all that it holds, its place."""
+    """Attach file and lines to a raw TOML value and everything in it.
+
+    value        as ``tomllib`` gives it
+    lines        from ``key_lines``
+    path         path of the value
+    parent_line  line of values that have none of their own
+    """
     line = lines.get(path, parent_line)
     if isinstance(value, dict):
         table = {str(key): locate_values(item, file, lines, (*path, key), line) for key, item in value.items()}
@@ -44,9 +53,9 @@ def locate_values(
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:
-    """Line of every key of a TOML text, from 1; tables in arrays are told apart by their index.
+    """Line of every key of a TOML text, from 1; the path of a table in an array has its index.
 
-    ``tomllib`` keeps no lines. Nothing is checked here: of a text that is not TOML, any lines or none may come out.
+    ``tomllib`` keeps no lines. Nothing is checked here: for a text that is not TOML, the lines mean nothing.
 
     Raises
     ------
@@ -60,7 +69,7 @@ def key_lines(text: str) -> dict[KeyPath, int]:
 
 
 class _KeyLineScanner:
-    """One walk over a TOML text that notes where keys stand, and skips what values hold."""
+    """Goes over a TOML text once, notes the lines of keys, and skips values."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -87,7 +96,7 @@ class _KeyLineScanner:
         self.found.setdefault(path, self.line)
 
     def _skip_blanks(self, *, newlines: bool) -> bool:
-        """Skip blanks (with newlines: also lines and comments); say whether text is left."""
+        """Skip blanks (with newlines: also lines and comments); return whether text is left."""
         blanks = " \t\r\n" if newlines else " \t"
         while self.at < len(self.text):
             letter = self.text[self.at]
@@ -104,14 +113,14 @@ class _KeyLineScanner:
         self.at = len(self.text) if end < 0 else end
 
     def _key(self) -> list[str]:
-        """Read a dotted key and leave the cursor on what follows it."""
+        """Read a dotted key, up to what follows it."""
         parts: list[str] = []
         while True:
             self._skip_blanks(newlines=False)
             start = self.at
             if self.text[start] in "\"'":
                 self._string()
-                # The parser itself undoes the escapes of a quoted key.
+                # The TOML parser resolves the escapes of a quoted key.
                 parts.append(tomllib.loads(f"key = {self.text[start : self.at]}")["key"])
             else:
                 bare = _BARE_KEY.match(self.text, start)
@@ -165,7 +174,7 @@ class _KeyLineScanner:
         count = 0
         while self._skip_blanks(newlines=True) and self.text[self.at] != close:
             if self.text[self.at] in ",]}":
-                self.at += 1  # also a bracket that closes nothing: the parser complains of it
+                self.at += 1  # also a bracket that closes nothing, which the TOML parser reports
             elif array:
                 self._note_line((*path, count))
                 self._value((*path, count))

@@ -1,82 +1,51 @@
-"""A table of a definition, with a typed getter for each kind of value, and account of the keys that were asked for."""
+"""A table of a definition: a typed getter for each kind of value, and account of the keys that have been read."""
 
-import difflib
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Final, overload
+from typing import Final, TypedDict, Unpack, overload
 
+from trunnion.definitions.messages import a_number, as_written, bounds, did_you_mean, in_unit, unquoted
 from trunnion.definitions.source_lines import LocatedValue
+from trunnion.definitions.units import unit_of, without_unit
 from trunnion.errors import InputError, Problem
-
-#: The end of a key says its unit; the longest one that fits counts.
-UNITS: Final[Mapping[str, str]] = {
-    "_mm_min": "millimetres per minute",
-    "_deg_min": "degrees per minute",
-    "_mm_s2": "millimetres per second squared",
-    "_deg_s2": "degrees per second squared",
-    "_mm_s": "millimetres per second",
-    "_deg_s": "degrees per second",
-    "_mm": "millimetres",
-    "_deg": "degrees",
-    "_s": "seconds",
-    "_rpm": "revolutions per minute",
-    "_kw": "kilowatts",
-    "_nm": "newton metres",
-    "_kg": "kilograms",
-}
-
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
 
 
 class Required:
-    """The type of ``REQUIRED``: there is no default, a missing key is a mistake."""
+    """The type of ``REQUIRED``: there is no default, and a missing key is a mistake."""
 
 
 REQUIRED: Final = Required()
 
 
-def unit_of(key: str) -> str:
-    """Unit that the end of a key names, in words; empty if it names none.
+class Bounds(TypedDict, total=False):
+    """What a number may be; a key that is absent or None sets no bound."""
 
-    >>> unit_of("rapid_deg_min")
-    'degrees per minute'
-    """
-    return next((unit for end, unit in UNITS.items() if key.endswith(end)), "")
-
-
-def _stem(key: str) -> str:
-    return next((key.removesuffix(end) for end in UNITS if key.endswith(end)), key)
+    above: float | None
+    at_least: float | None
+    at_most: float | None
 
 
-def as_written(value: object) -> str:
-    """Show a value as it could stand in the file, cut short."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        text = '"' + value + '"'
-    elif isinstance(value, dict):
-        return "a table"
-    elif isinstance(value, list):
-        text = "an array of tables" if value and isinstance(value[0], LocatedValue) else str(value).replace("'", '"')
-    else:
-        text = str(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+class WholeBounds(TypedDict, total=False):
+    """What a whole number may be; a key that is absent or None sets no bound."""
 
-
-def did_you_mean(word: str, known: Iterator[str] | Sequence[str]) -> str:
-    """Ask whether the known word next to an unknown one was meant; empty where none is near."""
-    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
-    return f'did you mean "{near[0]}"?' if near else ""
+    at_least: int | None
+    at_most: int | None
 
 
 @dataclass(eq=False)
 class Table:
-    """A TOML table that keeps account of the keys that were asked for.
+    """A TOML table that keeps account of the keys that have been read.
 
     A getter that finds a mistake adds a ``Problem`` to the shared list and returns the default, or an empty value of
     its type, so that reading goes on to the next mistake. ``raise_problems`` raises them all.
+
+    content    the table with the origin of each value
+    path       its path from the root of the definition, such as ``axis[1]``
+    problems   shared with all tables of the definition
+    read_keys  keys that a getter has been called for
+    children   tables that getters have returned
     """
 
     content: LocatedValue
@@ -85,7 +54,7 @@ class Table:
     read_keys: dict[str, None] = field(default_factory=dict)
     children: list["Table"] = field(default_factory=list)
 
-    # Where things stand
+    # Locations
 
     @property
     def file(self) -> str:
@@ -98,13 +67,15 @@ class Table:
         return self.content.line
 
     def location(self, key: str) -> tuple[str, int]:
-        """File and line of a key; those of the table if the key is not there."""
+        """File and line of a key; those of the table if the key is missing."""
         content = self._values.get(key, self.content)
         return content.file, content.line
 
     def key_path(self, key: str) -> str:
         """Path of a key from the root of the definition, such as ``axis[1].limits_deg``."""
         return f"{self.path}.{key}" if self.path else key
+
+    # Contents as a whole
 
     def keys(self) -> list[str]:
         """Every key of the table, in order, read or not."""
@@ -114,17 +85,17 @@ class Table:
         return key in self._values
 
     def to_dict(self) -> dict[str, object]:
-        """Everything the table holds, as plain dicts, lists and scalars. Counts as reading nothing."""
+        """The whole table as plain dicts, lists and scalars. Does not count as reading."""
         plain = _plain(self.content)
         assert isinstance(plain, dict)
         return plain
 
     def unread_copy(self) -> "Table":
-        """The same table with nothing read yet and no problems noted."""
+        """The same table with no key read and no problem noted."""
         return Table(self.content, self.path)
 
     def files(self) -> list[str]:
-        """Every file that a value of this table came from, sorted."""
+        """Every file that a value of this table comes from, sorted."""
         return sorted(set(_files(self.content)))
 
     @property
@@ -134,27 +105,34 @@ class Table:
     # Problems
 
     def add_problem(self, key: str, what: str, cure: str = "") -> None:
-        """Note that the value of a key will not do; an empty key means the table itself."""
+        """Note a mistake in the value of a key; an empty key means the table itself."""
         file, line = self.location(key)
         name = self.key_path(key) if key else self.path or "definition"
         self.problems.append(Problem(file, line, f"{name} {what}", cure))
 
     def raise_problems(self) -> None:
-        """Raise every problem noted so far, in the order of files and lines, if there is one."""
+        """Raise every problem noted so far.
+
+        Raises
+        ------
+        InputError
+            If there is one, with all of them in the order of files and lines.
+        """
         if self.problems:
             unique = dict.fromkeys(self.problems)
             raise InputError(sorted(unique, key=lambda problem: (problem.file, problem.line)))
 
     def report_unread_keys(self) -> None:
-        """Note each key that nobody asked for; call it when the table has been read."""
+        """Note each key that has not been read; call it when the table has been read."""
         for key in self._values:
             if key in self.read_keys:
                 continue
-            kin = next((known for known in self.read_keys if _stem(known) == _stem(key) and unit_of(known)), "")
+            same_stem = (known for known in self.read_keys if without_unit(known) == without_unit(key))
+            kin = next((known for known in same_stem if unit_of(known)), "")
             if kin and unit_of(key) != unit_of(kin):
                 self.add_problem(key, "has a unit that does not fit here", f"write {kin}, in {unit_of(kin)}")
             else:
-                cure = did_you_mean(key, list(self.read_keys)) or "known here: " + ", ".join(sorted(self.read_keys))
+                cure = did_you_mean(key, self.read_keys) or "known here: " + ", ".join(sorted(self.read_keys))
                 self.add_problem(key, "is not a key that is known here", cure)
 
     def mark_read(self, *keys: str) -> None:
@@ -162,7 +140,7 @@ class Table:
         self.read_keys.update(dict.fromkeys(keys))
 
     def all_read_keys(self) -> set[str]:
-        """Every key that was asked for here and below, with indices left out: ``axis.limits_deg``."""
+        """Every key that was read here and below, without indices: ``axis.limits_deg``."""
         found = {re.sub(r"\[\d+\]", "", self.key_path(key)) for key in self.read_keys}
         return found.union(*(table.all_read_keys() for table in self.children))
 
@@ -178,9 +156,7 @@ class Table:
         return content.value
 
     @overload
-    def text(self, key: str, default: Required = ..., *, one_of: Sequence[str] = ...) -> str: ...
-    @overload
-    def text(self, key: str, default: str, *, one_of: Sequence[str] = ...) -> str: ...
+    def text(self, key: str, default: str | Required = ..., *, one_of: Sequence[str] = ...) -> str: ...
     @overload
     def text(self, key: str, default: None, *, one_of: Sequence[str] = ...) -> str | None: ...
     def text(self, key: str, default: str | Required | None = REQUIRED, *, one_of: Sequence[str] = ()) -> str | None:
@@ -192,59 +168,26 @@ class Table:
         if value is None:
             return fallback
         if not isinstance(value, str) or (one_of and value not in one_of):
-            near = did_you_mean(value, list(one_of)) if isinstance(value, str) else ""
+            near = did_you_mean(value, one_of) if isinstance(value, str) else ""
             self.add_problem(key, f"is {as_written(value)}", near + " " + cure if near else cure)
             return fallback
         return value
 
     @overload
-    def number(
-        self,
-        key: str,
-        default: Required = ...,
-        *,
-        above: float | None = ...,
-        at_least: float | None = ...,
-        at_most: float | None = ...,
-    ) -> float: ...
+    def number(self, key: str, default: float | Required = ..., **limits: Unpack[Bounds]) -> float: ...
     @overload
-    def number(
-        self,
-        key: str,
-        default: float,
-        *,
-        above: float | None = ...,
-        at_least: float | None = ...,
-        at_most: float | None = ...,
-    ) -> float: ...
-    @overload
-    def number(
-        self,
-        key: str,
-        default: None,
-        *,
-        above: float | None = ...,
-        at_least: float | None = ...,
-        at_most: float | None = ...,
-    ) -> float | None: ...
-    def number(
-        self,
-        key: str,
-        default: float | Required | None = REQUIRED,
-        *,
-        above: float | None = None,
-        at_least: float | None = None,
-        at_most: float | None = None,
-    ) -> float | None:
+    def number(self, key: str, default: None, **limits: Unpack[Bounds]) -> float | None: ...
+    def number(self, key: str, default: float | Required | None = REQUIRED, **limits: Unpack[Bounds]) -> float | None:
         """Return a finite number, in the unit that the key names."""
         fallback = 0.0 if isinstance(default, Required) else default
-        cure = f"write {_a_number(key)}{_bounds(above, at_least, at_most)}"
+        above, at_least, at_most = limits.get("above"), limits.get("at_least"), limits.get("at_most")
+        cure = f"write {a_number(key)}{bounds(above, at_least, at_most)}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
             return fallback
         number = _finite(value)
         if number is None:
-            self.add_problem(key, f"is {as_written(value)}", cure + _hint(key, value))
+            self.add_problem(key, f"is {as_written(value)}", cure + unquoted(key, value))
             return fallback
         if not _within(number, above, at_least, at_most):
             self.add_problem(key, f"is {as_written(value)}", cure)
@@ -252,26 +195,14 @@ class Table:
         return number
 
     @overload
-    def integer(
-        self, key: str, default: Required = ..., *, at_least: int | None = ..., at_most: int | None = ...
-    ) -> int: ...
+    def integer(self, key: str, default: int | Required = ..., **limits: Unpack[WholeBounds]) -> int: ...
     @overload
-    def integer(self, key: str, default: int, *, at_least: int | None = ..., at_most: int | None = ...) -> int: ...
-    @overload
-    def integer(
-        self, key: str, default: None, *, at_least: int | None = ..., at_most: int | None = ...
-    ) -> int | None: ...
-    def integer(
-        self,
-        key: str,
-        default: int | Required | None = REQUIRED,
-        *,
-        at_least: int | None = None,
-        at_most: int | None = None,
-    ) -> int | None:
+    def integer(self, key: str, default: None, **limits: Unpack[WholeBounds]) -> int | None: ...
+    def integer(self, key: str, default: int | Required | None = REQUIRED, **limits: Unpack[WholeBounds]) -> int | None:
         """Return a whole number."""
         fallback = 0 if isinstance(default, Required) else default
-        cure = f"write a whole number{_bounds(None, at_least, at_most)}"
+        at_least, at_most = limits.get("at_least"), limits.get("at_most")
+        cure = f"write a whole number{bounds(None, at_least, at_most)}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
             return fallback
@@ -304,17 +235,15 @@ class Table:
     ) -> tuple[float, ...] | None:
         """Return n finite numbers, in the unit that the key names."""
         fallback = (0.0,) * n if isinstance(default, Required) else None if default is None else tuple(default)
-        unit = f" in {unit_of(key)}" if unit_of(key) else ""
-        cure = f"write [{', '.join('abcdefgh'[:n])}] with {n} numbers{unit}"
+        cure = f"write [{', '.join('abcdefgh'[:n])}] with {n} numbers{in_unit(key, ' ')}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
             return fallback
-        numbers = [_finite(item) for item in value] if isinstance(value, list) else []
-        good = [number for number in numbers if number is not None]
-        if len(numbers) != n or len(good) != n:
+        numbers = _finite_numbers(value)
+        if numbers is None or len(numbers) != n:
             self.add_problem(key, f"is {as_written(value)}", cure)
             return fallback
-        return tuple(good)
+        return numbers
 
     @overload
     def interval(self, key: str, default: tuple[float, float] | Required = ...) -> tuple[float, float]: ...
@@ -325,20 +254,20 @@ class Table:
     ) -> tuple[float, float] | None:
         """Return [low, high] with low < high, in the unit that the key names."""
         fallback = (-math.inf, math.inf) if isinstance(default, Required) else default
-        unit = f", in {unit_of(key)}" if unit_of(key) else ""
-        cure = f"write [low, high] with low < high{unit}"
+        cure = f"write [low, high] with low < high{in_unit(key, ', ')}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
             return fallback
-        numbers = [_finite(item) for item in value] if isinstance(value, list) else []
-        if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
+        numbers = _finite_numbers(value)
+        if numbers is None or len(numbers) != 2:
             self.add_problem(key, f"is {as_written(value)}", cure)
             return fallback
-        if numbers[0] >= numbers[1]:
-            swapped = f": [{numbers[1]:g}, {numbers[0]:g}]?" if numbers[0] > numbers[1] else ""
+        low, high = numbers
+        if low >= high:
+            swapped = f": [{high:g}, {low:g}]?" if low > high else ""
             self.add_problem(key, f"is {as_written(value)}", cure + swapped)
             return fallback
-        return numbers[0], numbers[1]
+        return low, high
 
     @overload
     def texts(self, key: str, default: Sequence[str] | Required = ...) -> tuple[str, ...]: ...
@@ -358,23 +287,25 @@ class Table:
 
     def table(self, key: str, *, required: bool = False) -> "Table":
         """Return the table under a key; an empty one if there is none."""
-        value = self._get(key, required, f"write a table [{self.key_path(key)}]")
+        cure = f"write a table [{self.key_path(key)}]"
+        value = self._get(key, required, cure)
         if isinstance(value, dict):
             child = Table(self._values[key], self.key_path(key), self.problems)
         else:
             if value is not None:
-                self.add_problem(key, f"is {as_written(value)}", f"write a table [{self.key_path(key)}]")
+                self.add_problem(key, f"is {as_written(value)}", cure)
             child = Table(LocatedValue({}, self.file, self.line), self.key_path(key), self.problems)
         self.children.append(child)
         return child
 
     def tables(self, key: str, *, required: bool = False) -> "list[Table]":
         """Return the array of tables under a key; an empty list if there is none."""
-        value = self._get(key, required, f"write tables [[{self.key_path(key)}]]")
+        cure = f"write tables [[{self.key_path(key)}]]"
+        value = self._get(key, required, cure)
         if value is None or value == []:
             return []
         if not isinstance(value, list) or not isinstance(value[0], LocatedValue):
-            self.add_problem(key, f"is {as_written(value)}", f"write tables [[{self.key_path(key)}]]")
+            self.add_problem(key, f"is {as_written(value)}", cure)
             return []
         children = [Table(item, f"{self.key_path(key)}[{i}]", self.problems) for i, item in enumerate(value)]
         self.children.extend(children)
@@ -401,7 +332,7 @@ def _files(content: LocatedValue) -> Iterator[str]:
 
 
 def _finite(value: object) -> float | None:
-    """Return the number that a TOML value is, or None; true and false are no numbers here."""
+    """The finite number that a TOML value is, or None; true and false are no numbers here."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     try:
@@ -411,30 +342,16 @@ def _finite(value: object) -> float | None:
     return number if math.isfinite(number) else None
 
 
+def _finite_numbers(value: object) -> tuple[float, ...] | None:
+    """The finite numbers in a TOML array; None if it holds anything else, or is no array."""
+    numbers = [_finite(item) for item in value] if isinstance(value, list) else [None]
+    found = tuple(number for number in numbers if number is not None)
+    return found if len(found) == len(numbers) else None
+
+
 def _within(number: float, above: float | None, at_least: float | None, at_most: float | None) -> bool:
     return (
         (above is None or number > above)
         and (at_least is None or number >= at_least)
         and (at_most is None or number <= at_most)
     )
-
-
-def _a_number(key: str) -> str:
-    unit = unit_of(key)
-    return f"a number in {unit}" if unit else "a number"
-
-
-def _bounds(above: float | None, at_least: float | None, at_most: float | None) -> str:
-    parts = [
-        f"above {above:g}" if above is not None else "",
-        f"of at least {at_least:g}" if at_least is not None else "",
-        f"of at most {at_most:g}" if at_most is not None else "",
-    ]
-    text = " and ".join(part for part in parts if part)
-    return f" {text}" if text else ""
-
-
-def _hint(key: str, value: object) -> str:
-    """Say what a number in quotes would look like without them."""
-    found = _NUMBER.match(value.strip()) if isinstance(value, str) else None
-    return f", without quotes and unit: {key} = {found.group()}" if found else ""
