@@ -1,4 +1,7 @@
-"""Names for the array types that the rooms hand to each other."""
+"""Names of the array types in signatures.
+
+Lines are line numbers, codes are members of an ``IntEnum``.
+"""
 
 from typing import Annotated, TypeAlias
 

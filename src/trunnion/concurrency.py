@@ -1,6 +1,6 @@
-"""Work on both sides of a hand-over: while one part is looked at, the next one is worked out on another core.
+"""Prefetching: while one result is used, the next one is computed in a second thread.
 
-Only for work that is mostly machine code or NumPy: the interpreter itself runs in one thread at a time.
+This helps only work that is mostly compiled code or NumPy, because Python itself runs in one thread at a time.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -11,14 +11,24 @@ from typing import TypeVar
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-#: Parts from which on a second thread is worth its start.
+#: With fewer items, a second thread is not worth its start.
 _MIN_ITEMS = 2
 
 
 def prefetch(work: Callable[[Item], Result], items: Sequence[Item]) -> Iterator[Result]:
-    """Results of ``work`` for all parts, in their order; ``work`` is never more than one part ahead.
+    """Yield the results of ``work`` for all items in order, computing at most one item ahead.
 
-    An error in ``work`` is raised where its result is asked for.
+    Parameters
+    ----------
+    work
+        Computes the result of an item, in a second thread.
+    items
+        None of them is None.
+
+    Raises
+    ------
+    Exception
+        Whatever ``work`` raises, when its result is due.
     """
     if len(items) < _MIN_ITEMS:
         yield from map(work, items)

@@ -1,11 +1,11 @@
-"""What can be wrong, as values first and as text last.
+"""Problems, and the exceptions that carry them.
 
     TrunnionError            carries every Problem found, never only the first
-    ├── InputError           a file, a definition or a command that cannot be used      (exit 2)
-    └── RefusedError         understood, but the program must not run as it is           (exit 1)
+    ├── InputError           a file, a definition or a command cannot be used           (exit 2)
+    └── RefusedError         the input is understood, but its program must not run      (exit 1)
 
-A Problem prints as ``file:line: error: what is wrong; what puts it right``, the form that
-editors and CI systems know how to jump to.
+A Problem prints as ``file:line: error: what is wrong; how to correct it``, from which editors and
+CI systems jump to the line.
 """
 
 from collections.abc import Iterable
@@ -14,7 +14,7 @@ from enum import StrEnum
 
 
 class Severity(StrEnum):
-    """How much a problem weighs."""
+    """Whether a problem stops the work."""
 
     WARNING = "warning"
     ERROR = "error"
@@ -22,9 +22,11 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong, where it is, and what would put it right.
+    """One thing that is wrong, its location, and how to correct it.
 
-    ``line`` counts from 1; 0 means that the problem belongs to the file as a whole.
+    line  counts from 1; 0 if the problem concerns the file as a whole
+    what  the fault
+    cure  how to correct it; may be empty
     """
 
     file: str
@@ -41,7 +43,10 @@ class Problem:
 
 
 class TrunnionError(Exception):
-    """Base of every error that Trunnion raises on purpose."""
+    """Base of all errors that Trunnion raises on purpose.
+
+    problems  everything that is wrong
+    """
 
     def __init__(self, problems: Problem | Iterable[Problem]) -> None:
         self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
@@ -49,8 +54,8 @@ class TrunnionError(Exception):
 
 
 class InputError(TrunnionError):
-    """A file, a definition or a command that cannot be used."""
+    """A file, a definition or a command cannot be used."""
 
 
 class RefusedError(TrunnionError):
-    """The input was understood, but the program that it asks for must not run."""
+    """The input is understood, but the program that it asks for must not run."""

@@ -1,11 +1,11 @@
-"""Files that appear whole or not at all, alone or several together."""
+"""Output files that appear complete or not at all, alone or several together."""
 
 import os
 import shutil
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from threading import Condition
 from typing import BinaryIO
@@ -14,7 +14,7 @@ from trunnion.errors import InputError, Problem
 
 
 class WriteProgress:
-    """How far the writing of a file has come, for whoever reads it at the same time."""
+    """How much of a file has been written, for a thread that reads it at the same time."""
 
     def __init__(self) -> None:
         self._changed = Condition()
@@ -22,19 +22,19 @@ class WriteProgress:
         self._finished = False
 
     def advance(self, size: int, expected_size: int = 0) -> None:
-        """Say that ``size`` bytes can be read, and how many there will be if the file goes on as it began."""
+        """Report that ``size`` bytes can be read, and how many there will be at the end by extrapolation."""
         with self._changed:
             self._size, self._expected_size = size, expected_size
             self._changed.notify_all()
 
     def finish(self) -> None:
-        """Say that nothing more will be written."""
+        """Report that nothing more will be written."""
         with self._changed:
             self._finished = True
             self._changed.notify_all()
 
     def wait_for(self, size: int) -> bool:
-        """Wait until so many bytes can be read, or nothing more is written: then False, be they there or not."""
+        """Wait until ``size`` bytes can be read; return False if writing has finished, with whatever size."""
         with self._changed:
             self._changed.wait_for(lambda: self._finished or self._size >= size)
             return not self._finished
@@ -46,16 +46,16 @@ class WriteProgress:
 
     @property
     def expected_size(self) -> int:
-        """About how many bytes there will be, and no fewer than there are."""
+        """Expected number of bytes at the end, at least the present one."""
         with self._changed:
             return max(self._size, self._expected_size)
 
 
 class OutputFiles:
-    """A file that is being written, and others beside it; nobody sees them before all of them are complete.
+    """A file being written, and further files beside it, in a hidden folder until all of them are complete.
 
-    main   sink of the file itself
-    path   under which it can be read back, once it is flushed
+    main   sink of the first file
+    path   path at which it can be read back after ``flush``
     """
 
     def __init__(self, folder: Path, name: str) -> None:
@@ -65,7 +65,7 @@ class OutputFiles:
         self._sync_thread: ThreadPoolExecutor | None = None
 
     def add_file(self, name: str) -> BinaryIO:
-        """Begin another file of the same folder."""
+        """Begin a further file in the same folder, and return its sink."""
         path = self.path.parent / name
         assert path not in (self.path, *self._other_files), f"{name} is begun twice"
         self._other_files[path] = path.open("w+b")
@@ -73,28 +73,28 @@ class OutputFiles:
 
     @property
     def other_paths(self) -> list[Path]:
-        """The files beside the first, in the order in which they were begun."""
+        """Paths of the further files, in the order in which they were begun."""
         return list(self._other_files)
 
     def flush(self) -> None:
-        """See that all can be read back."""
-        for sink in (self.main, *self._other_files.values()):
+        """Make everything written readable at the paths."""
+        for sink in self._sinks():
             sink.flush()
 
     def start_sync(self) -> None:
-        """Begin to bring what is written to the disk, beside whatever comes next: ``sync`` has less to wait for."""
+        """Begin to bring the first file to the disk in a thread, so that ``sync`` has less to wait for."""
         self.flush()
         self._sync_thread = self._sync_thread or ThreadPoolExecutor(1)
         self._sync_thread.submit(os.fsync, self.main.fileno())
 
     def sync(self) -> None:
-        """See that all is on the disk for good, so that no power failure leaves half a file under its new name."""
+        """Bring all files to the disk, so that a power failure cannot leave half a file under its final name."""
         self.flush()
-        for sink in (self.main, *self._other_files.values()):
+        for sink in self._sinks():
             os.fsync(sink.fileno())
 
     def restart(self) -> None:
-        """Forget all that was written."""
+        """Discard everything written."""
         self.main.seek(0)
         self.main.truncate()
         for path, sink in self._other_files.items():
@@ -103,42 +103,64 @@ class OutputFiles:
         self._other_files.clear()
 
     def close(self) -> None:
-        """Write no more."""
+        """Close all files."""
         if self._sync_thread is not None:
             self._sync_thread.shutdown()
-        for sink in (self.main, *self._other_files.values()):
+        for sink in self._sinks():
             sink.close()
 
+    def _sinks(self) -> list[BinaryIO]:
+        return [self.main, *self._other_files.values()]
 
-@contextmanager
-def atomic_output(target: str | BinaryIO) -> Iterator[OutputFiles]:
-    """A file, and others beside it, that reach ``target`` (a path or a stream) when the block ends without an error.
 
-    Others go into the folder of the first; a stream takes none.
+def atomic_output(target: str | BinaryIO) -> AbstractContextManager[OutputFiles]:
+    """Files that reach ``target`` together when the block ends, or not at all if it raises.
+
+    Parameters
+    ----------
+    target
+        Path of the first file, whose folder takes the others, or a stream, which takes one file only.
 
     Raises
     ------
     InputError
-        When they cannot be written; for the first file this is found out before anything is computed. Files that were
-        there before are then as they were.
+        If a file cannot be written. For the first file this is known when the block begins. Earlier files of the same
+        names stay as they were.
     """
-    if not isinstance(target, str):
-        with tempfile.TemporaryDirectory(prefix="trunnion-") as folder:
-            files = OutputFiles(Path(folder), "stream")
-            try:
-                yield files
-                assert not files.other_paths, "a stream is one file"
-                files.main.seek(0)
-                shutil.copyfileobj(files.main, target)
-                target.flush()
-            finally:
-                files.close()
-        return
+    return _output_to_path(target) if isinstance(target, str) else _output_to_stream(target)
+
+
+@contextmanager
+def atomic_file(target: str) -> Iterator[BinaryIO]:
+    """The sink of a single file, as ``atomic_output`` makes it.
+
+    Its ``name`` is the path at which the file can be read back after a flush.
+    """
+    with atomic_output(target) as files:
+        yield files.main
+
+
+@contextmanager
+def _output_to_stream(target: BinaryIO) -> Iterator[OutputFiles]:
+    with tempfile.TemporaryDirectory(prefix="trunnion-") as folder:
+        files = OutputFiles(Path(folder), "stream")
+        try:
+            yield files
+            assert not files.other_paths, "a stream is one file"
+            files.main.seek(0)
+            shutil.copyfileobj(files.main, target)
+            target.flush()
+        finally:
+            files.close()
+
+
+@contextmanager
+def _output_to_path(target: str) -> Iterator[OutputFiles]:
     path = Path(target)
     try:
         if path.exists() and not os.access(path, os.W_OK):
             raise PermissionError(13, "Permission denied")
-        # Beside the target, so that a file gets there by a new name and not by a copy.
+        # Beside the target, so that files are renamed into place and not copied.
         hidden = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
     except OSError as error:
         raise _cannot_write(target, error) from None
@@ -156,18 +178,8 @@ def atomic_output(target: str | BinaryIO) -> Iterator[OutputFiles]:
         shutil.rmtree(hidden, ignore_errors=True)
 
 
-@contextmanager
-def atomic_file(target: str) -> Iterator[BinaryIO]:
-    """A sink whose bytes reach ``target`` as the one file of ``atomic_output``.
-
-    Its ``name`` is the path under which it can be read back before that, once it is flushed.
-    """
-    with atomic_output(target) as files:
-        yield files.main
-
-
 def _move_all(files: list[Path], folder: Path) -> None:
-    """Take files to a folder, all or none: what was there before comes back where one cannot be taken there."""
+    """Move files to a folder, all or none: if one of them fails, the earlier files of those names are restored."""
     targets = [folder / file.name for file in files]
     for target in targets:
         if target.is_dir():
@@ -188,12 +200,12 @@ def _move_all(files: list[Path], folder: Path) -> None:
 
 
 def _backup(file: Path, under: Path) -> Path | None:
-    """Another name for a file, if there is one, under which it lives on when it is replaced."""
+    """Give a file, if it exists, a second name under which it survives being replaced."""
     if not file.exists():
         return None
     try:
         os.link(file, under)
-    except OSError:  # some systems have no second names
+    except OSError:  # some file systems have no hard links
         shutil.copy2(file, under)
     return under
 

@@ -194,7 +194,7 @@ def test_a_part_axis_after_a_tool_axis_is_out_of_order(tmp_path: Path) -> None:
 def test_limits_of_an_endless_axis_contradict_it(tmp_path: Path) -> None:
     line, what, cure = told_once(tmp_path, "endless = true", "endless = true\nlimits_deg = [0, 360]")
     assert (line, what) == (11, "axis[0].limits_deg is given for an endless axis")
-    assert cure == "take out limits_deg, or write endless = false"
+    assert cure == "remove limits_deg, or write endless = false"
 
 
 def test_an_axis_with_limits_is_not_folded_into_one_turn(tmp_path: Path) -> None:

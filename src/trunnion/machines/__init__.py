@@ -1,7 +1,7 @@
-"""Machines: the chain of axes from the workpiece to the tool, as data, and its mathematics, which is one for all.
+"""Machines: the chain of axes from the workpiece to the tool as data, and the same kinematics for all of them.
 
-``load_machine`` reads a definition, ``forward`` says where the tool is, ``inverse`` where the axes must be. Kernels of
-other rooms use ``trunnion.machines.inverse.kinematic_parameters`` with ``solve_point`` and ``solve_slides``.
+``load_machine`` reads a definition. ``forward`` gives the tool for axis values, ``inverse`` the axis values for a tool.
+Kernels of other packages use ``kinematic_parameters`` with the kernels of ``trunnion.machines.inverse``.
 """
 
 from trunnion.machines.forward import forward, tool_axes

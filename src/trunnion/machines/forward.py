@@ -1,11 +1,11 @@
-"""Where the tool is when the axes are somewhere: the forward map of a chain.
+"""The forward map: tool tip and tool axis for axis values.
 
-In:     a ``Machine`` and displayed axis values, one column an axis, in chain order.
+In:     a ``Machine`` and displayed axis values, one column for each axis, in chain order.
 Out:    tool tip and tool axis in workpiece coordinates.
 Units:  mm and degrees.
 
-The joints are applied one by one, from the tool back to the workpiece. ``trunnion.machines.inverse`` goes the other way
-by another derivation, and neither imports the other: that they agree says something.
+The joints are applied one by one, from the tool back to the workpiece. ``trunnion.machines.inverse`` is derived in
+another way, and neither imports the other, so that their agreement proves both.
 """
 
 import math
@@ -26,7 +26,7 @@ def forward(machine: Machine, joints: Floats, tool_length: float | None = None) 
     machine
         The chain, from the workpiece to the tool.
     joints : (n, 5) float64, mm or deg
-        Displayed axis values, one column an axis in the order of ``machine.axes``. Windings may be large.
+        Displayed axis values in the order of ``machine.axes``. Rotary axes may be wound up by many turns.
     tool_length
         From the gauge point to the tip, mm; None: that of ``machine.tool_length``.
 
@@ -52,14 +52,21 @@ def forward(machine: Machine, joints: Floats, tool_length: float | None = None) 
 
 
 def tool_axes(machine: Machine, joints: Floats) -> tuple[Floats, Floats]:
-    """Tool axes of consecutive rows (n, 5) as ``forward`` gives them, and those half-way between each two rows.
+    """Tool axes of consecutive rows, and half-way between each two of them.
+
+    Parameters
+    ----------
+    machine
+        The chain, from the workpiece to the tool.
+    joints : (n, 5) float64, mm or deg
+        Displayed axis values in the order of ``machine.axes``.
 
     Returns
     -------
     axis : (n, 3) float64
         Unit vectors from tip to holder, in workpiece coordinates.
     half_way : (n - 1, 3) float64
-        The same where every joint is half-way from a row to the next; a rotary axis goes as its values say.
+        The same with every joint half-way from one row to the next; rotary axes turn as their values say.
     """
     axis, half_way = np.empty((len(joints), 3)), np.empty((max(len(joints) - 1, 0), 3))
     tool_axis_rows(kinematic_chain(machine), machine.rotary, joints, axis, half_way)
@@ -67,10 +74,10 @@ def tool_axes(machine: Machine, joints: Floats) -> tuple[Floats, Floats]:
 
 
 class KinematicChain(NamedTuple):
-    """A chain as kernels take it.
+    """The axes of a machine with a tool, for kernels.
 
     rotary       (5,) bool      the joint turns
-    direction    (5, 3) float64 the way that growing values move the tool, machine frame, all axes at zero
+    direction    (5, 3) float64 in which growing values move the tool, machine frame, all axes at zero
     point        (5, 3) float64 a point on each rotary axis, mm
     tip_at_zero  (3,) float64   tool tip, mm, machine frame, all axes at zero
     spindle      (3,) float64   tool axis, machine frame, all axes at zero
@@ -86,7 +93,10 @@ class KinematicChain(NamedTuple):
 
 
 def kinematic_chain(machine: Machine, tool_length: float | None = None) -> KinematicChain:
-    """A machine's chain for kernels; tool length from the gauge point to the tip, mm, None: the machine's."""
+    """The chain of a machine.
+
+    tool_length  from the gauge point to the tip, mm; None: that of ``machine.tool_length``
+    """
     spindle = np.array(machine.spindle_direction)
     length = (machine.tool_length or 0.0) if tool_length is None else tool_length
     return KinematicChain(
@@ -117,7 +127,7 @@ def forward_row(chain: KinematicChain, joints: Floats, tip: Floats, axis: Floats
         if not chain.rotary[joint]:
             x, y, z = x + a * q, y + b * q, z + c * q
             continue
-        # Whole turns drop out exactly, so that a wound-up axis costs no digits.
+        # Whole turns drop out exactly, so that a wound-up axis loses no digits.
         angle = math.radians(q - 360.0 * math.floor(q / 360.0 + 0.5))
         cos, sin = math.cos(angle), math.sin(angle)
         ox, oy, oz = chain.point[joint, 0], chain.point[joint, 1], chain.point[joint, 2]
@@ -143,9 +153,12 @@ def forward_row(chain: KinematicChain, joints: Floats, tip: Floats, axis: Floats
 def tool_axis_rows(
     chain: KinematicChain, rotary_columns: tuple[int, int], joints: Floats2, axis: Floats2, half_way: Floats2
 ) -> None:
-    """Write the tool axis (n, 3) of rows of ``joints`` (n, 5), and ``half_way`` (n - 1, 3) between each two rows.
+    """Write the tool axis of each row, and of the middle between each two rows.
 
-    Half-way are the middles of both axis positions. The rotary axes are the columns ``rotary_columns``.
+    rotary_columns  columns of the two rotary axes
+    joints          (n, 5) float64
+    axis            (n, 3) float64, written
+    half_way        (n - 1, 3) float64, written
     """
     one, two = rotary_columns
     cos_1, sin_1, cos_2, sin_2 = 1.0, 0.0, 1.0, 0.0
@@ -166,7 +179,7 @@ def tool_axis_rows(
 
 @inner
 def _cos_sin(q: float) -> tuple[float, float]:
-    """Cosine and sine of degrees; whole turns drop out exactly."""
+    """Cosine and sine of an angle in degrees; whole turns drop out exactly."""
     angle = math.radians(q - 360.0 * math.floor(q / 360.0 + 0.5))
     return math.cos(angle), math.sin(angle)
 
@@ -175,7 +188,7 @@ def _cos_sin(q: float) -> tuple[float, float]:
 def _cos_sin_half_way(
     a: float, b: float, cos_a: float, sin_a: float, cos_b: float, sin_b: float
 ) -> tuple[float, float]:
-    """Cosine and sine of the middle of two angles, degrees, whose own are known: along the sum of both directions."""
+    """Cosine and sine of the mean of two angles in degrees, from theirs: the sum of both unit vectors points there."""
     if abs(b - a) > 90.0:
         return _cos_sin(0.5 * (a + b))
     cos, sin = cos_a + cos_b, sin_a + sin_b

@@ -1,7 +1,7 @@
-"""From a definition file to a ``Machine``, with every mistake reported at once.
+"""Reads a machine from its definition file, and reports every mistake at once.
 
-The functions that read a table are lists of its keys; ``docs/definitions.md`` says the same in words, and a test holds
-the two together. Keys carry their units, because the unit of ``rapid`` or ``limits`` depends on how the axis moves.
+The functions that read a table are lists of its keys. ``docs/definitions.md`` describes the same keys, and a test
+compares the two. Keys contain their unit, because that of ``rapid`` or ``limits`` depends on how the axis moves.
 """
 
 import math
@@ -10,12 +10,10 @@ from collections.abc import Mapping
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path, PurePath
-from typing import Final
+from typing import Final, NamedTuple
 
-import numpy as np
-
-from trunnion.arrays import Floats
 from trunnion.definitions import Table, definition_names, load_table
+from trunnion.machines.chain_checks import check_chain
 from trunnion.machines.machine import (
     AngleOutput,
     Axis,
@@ -28,11 +26,8 @@ from trunnion.machines.machine import (
     Vector,
 )
 
-#: The version of the schema of machine definitions; it changes when old files need changing.
+#: Version of the schema of machine definitions; a new one makes changes to old files necessary.
 SCHEMA: Final = 1
-
-#: Two directions nearer than this count as parallel, rad (0.06 degrees): a machine built so could not orient a tool.
-PARALLEL_TOLERANCE: Final = 1e-3
 
 _AXIS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,7}")
 
@@ -70,7 +65,7 @@ def load_machine(name_or_path: str | Path, overrides: Mapping[str, object] | Non
 
 
 def read_machine(table: Table, key: str) -> Machine:
-    """Turn the table of a definition into a machine; the ``[control]`` table is handed on unread."""
+    """Turn the table of a definition into a machine; the ``[control]`` table is passed on unread."""
     table.integer("schema", at_least=SCHEMA, at_most=SCHEMA)
     name = table.text("name")
     description = table.text("description", "")
@@ -86,7 +81,7 @@ def read_machine(table: Table, key: str) -> Machine:
     before = len(table.problems)
     axes = tuple(_axis(entry) for entry in axis_tables)
     if "axis" in table and axis_tables:
-        _check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
+        check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
     for part in (spindle, workpiece, table):
         part.report_unread_keys()
     table.raise_problems()
@@ -110,60 +105,75 @@ def _axis(entry: Table) -> Axis:
     if name and not _AXIS_NAME.fullmatch(name):
         entry.add_problem("name", f'is "{name}"', "write a letter, then up to seven letters and digits")
     word = entry.text("kind", one_of=tuple(AxisKind))
-    mount = entry.text("carries", one_of=tuple(Mount))
+    mount = Mount(entry.text("carries", one_of=tuple(Mount)) or Mount.PART)
     direction = _direction(entry, "direction", None)
     positive = entry.text("positive", PositiveDirection.STANDARD, one_of=tuple(PositiveDirection))
     if not word:
-        # Which units the other keys should have is not known: guessing would only add noise.
+        # The units of the other keys are not known, and guessing them would only report more mistakes.
         entry.mark_read(*entry.keys())
-        return Axis(name, AxisKind.LINEAR, Mount(mount or Mount.PART), direction)
+        return Axis(name, AxisKind.LINEAR, mount, direction)
     kind = AxisKind(word)
     unit = "mm" if kind is AxisKind.LINEAR else "deg"
-    endless, output, point, prefer = False, AngleOutput.NONE, (0.0, 0.0, 0.0), PreferredSign.EITHER
-    limits = entry.interval(f"limits_{unit}", None)
-    if kind is AxisKind.ROTARY:
-        point = _vector(entry.vector("point_mm", 3))
-        endless = entry.flag("endless", False)
-        output = AngleOutput(entry.text("output", AngleOutput.NONE, one_of=tuple(AngleOutput)))
-        prefer = PreferredSign(entry.text("prefer", PreferredSign.EITHER, one_of=tuple(PreferredSign)))
-        _check_winding(entry, endless, output)
-    low, high = limits or (-math.inf, math.inf)
-    home = entry.number(f"home_{unit}", 0.0)
-    if not low <= home <= high:
-        explicit = f"home_{unit}" in entry
-        what = f"is {home:g}, outside of the limits {low:g} to {high:g}"
-        entry.add_problem(
-            f"home_{unit}", what if explicit else f"{what} (it is 0 unless stated)", "write a home inside them"
-        )
+    low, high = entry.interval(f"limits_{unit}", None) or (-math.inf, math.inf)
+    rotary = _rotary_keys(entry) if kind is AxisKind.ROTARY else _RotaryKeys()
+    home = _home(entry, f"home_{unit}", low, high)
     rapid = entry.number(f"rapid_{unit}_min", None, above=0)
     acceleration = entry.number(f"acceleration_{unit}_s2", None, above=0)
     entry.report_unread_keys()
     return Axis(
         name=name,
         kind=kind,
-        mount=Mount(mount or Mount.PART),
+        mount=mount,
         direction=direction,
-        point=point,
+        point=rotary.point,
         low=low,
         high=high,
-        endless=endless,
-        output=output,
+        endless=rotary.endless,
+        output=rotary.output,
         rapid=rapid,
         acceleration=acceleration,
         home=home,
         positive=PositiveDirection(positive),
-        prefer=prefer,
+        prefer=rotary.prefer,
     )
+
+
+class _RotaryKeys(NamedTuple):
+    """The keys that only rotary axes have."""
+
+    point: Vector = (0.0, 0.0, 0.0)
+    endless: bool = False
+    output: AngleOutput = AngleOutput.NONE
+    prefer: PreferredSign = PreferredSign.EITHER
+
+
+def _rotary_keys(entry: Table) -> _RotaryKeys:
+    keys = _RotaryKeys(
+        point=_vector(entry.vector("point_mm", 3)),
+        endless=entry.flag("endless", False),
+        output=AngleOutput(entry.text("output", AngleOutput.NONE, one_of=tuple(AngleOutput))),
+        prefer=PreferredSign(entry.text("prefer", PreferredSign.EITHER, one_of=tuple(PreferredSign))),
+    )
+    _check_winding(entry, keys.endless, keys.output)
+    return keys
+
+
+def _home(entry: Table, key: str, low: float, high: float) -> float:
+    home = entry.number(key, 0.0)
+    if not low <= home <= high:
+        what = f"is {home:g}, outside of the limits {low:g} to {high:g}"
+        entry.add_problem(key, what if key in entry else f"{what} (it is 0 unless stated)", "write a home inside them")
+    return home
 
 
 def _check_winding(entry: Table, endless: bool, output: AngleOutput) -> None:
     if endless and "limits_deg" in entry:
-        entry.add_problem("limits_deg", "is given for an endless axis", "take out limits_deg, or write endless = false")
+        entry.add_problem("limits_deg", "is given for an endless axis", "remove limits_deg, or write endless = false")
     if not endless and "limits_deg" not in entry:
         cure = "write [low, high] with low < high, in degrees, or endless = true"
         entry.add_problem("limits_deg", "is missing", cure)
     if not endless and output is not AngleOutput.NONE:
-        cure = "take out output, or write endless = true: values of a limited axis are written as they are"
+        cure = "remove output, or write endless = true: values of a limited axis are written as they are"
         entry.add_problem("output", f'is "{output}" for an axis with limits', cure)
 
 
@@ -189,7 +199,7 @@ def _vector(numbers: tuple[float, ...]) -> Vector:
 
 
 def _direction(table: Table, key: str, default: Vector | None) -> Vector:
-    """Return a unit vector along the one that is written; a mistake gives Z."""
+    """Return a unit vector along the given one; a mistake gives Z."""
     before = len(table.problems)
     numbers = table.vector(key, 3) if default is None else table.vector(key, 3, default)
     largest = max(map(abs, numbers))
@@ -201,55 +211,3 @@ def _direction(table: Table, key: str, default: Vector | None) -> Vector:
     x, y, z = (number / largest for number in numbers)
     length = math.sqrt(x * x + y * y + z * z)
     return x / length, y / length, z / length
-
-
-def _check_chain(
-    table: Table, axis_tables: list[Table], axes: tuple[Axis, ...], spindle: Vector, *, sound: bool
-) -> None:
-    """Note what is wrong with the axes taken together; the geometry only if each axis is sound by itself."""
-    rotary = [k for k, axis in enumerate(axes) if axis.is_rotary]
-    slides = [k for k, axis in enumerate(axes) if not axis.is_rotary]
-    _check_names(axis_tables, axes)
-    if sound and (len(rotary) != 2 or len(slides) != 3):
-        what = f"has {len(slides)} linear and {len(rotary)} rotary axes"
-        table.add_problem("axis", what, "write three linear and two rotary axes, from the workpiece to the tool")
-    for k in range(1, len(axes)):
-        if axes[k].mount is Mount.PART and axes[k - 1].mount is Mount.TOOL:
-            what = f'is "part", but {axes[k - 1].name} before it carries the tool'
-            cure = "order the axes from the workpiece to the tool: all that carry the part come first"
-            axis_tables[k].add_problem("carries", what, cure)
-    if not sound or len(rotary) != 2 or len(slides) != 3:
-        return
-    first, second = (np.array(axes[k].direction) for k in rotary)
-    names = [axes[k].name for k in rotary]
-    if _sine(first, second) < PARALLEL_TOLERANCE:
-        what = f"is parallel to that of {names[0]}: the machine could not orient a tool"
-        axis_tables[rotary[1]].add_problem(
-            "direction", what, "write the directions of the two rotary axes as they are built"
-        )
-    elif _sine(second, np.array(spindle)) < PARALLEL_TOLERANCE:
-        what = f"is parallel to the spindle: {names[1]} turns the tool about itself, and {names[0]} alone tilts it"
-        cure = "the rotary axis further from the workpiece must tilt the tool: check the order of the axes"
-        axis_tables[rotary[1]].add_problem("direction", what, cure)
-    box = np.array([axes[k].direction for k in slides])
-    if abs(float(np.linalg.det(box))) < PARALLEL_TOLERANCE:
-        what = "do not reach every point: the directions lie in one plane"
-        listed = ", ".join(axes[k].name for k in slides)
-        axis_tables[slides[2]].add_problem(
-            "direction", f"and those of the other linear axes ({listed}) {what}", "write three"
-        )
-
-
-def _check_names(axis_tables: list[Table], axes: tuple[Axis, ...]) -> None:
-    seen: dict[str, int] = {}
-    for k, axis in enumerate(axes):
-        letter = axis.name.casefold()
-        if letter and letter in seen:
-            file, line = axis_tables[seen[letter]].location("name")
-            what = f'is "{axis.name}", the name of {axis_tables[seen[letter]].path} too ({file}:{line})'
-            axis_tables[k].add_problem("name", what, "give every axis its own name")
-        seen.setdefault(letter, k)
-
-
-def _sine(a: Floats, b: Floats) -> float:
-    return float(np.linalg.norm(np.cross(a, b)))

@@ -1,8 +1,8 @@
-"""A machine tool as data: five axes in the order in which they stand on each other, and a spindle.
+"""A machine tool as data: five axes in the order in which they carry each other, and a spindle.
 
-Everything is expressed in ONE machine frame, with all axes at zero. Order: from the workpiece to the tool.
+Everything is given in ONE machine frame, with all axes at zero. Order: from the workpiece to the tool.
 Units: mm and degrees; rapids in mm/min and deg/min, accelerations in mm/s^2 and deg/s^2, as the definition keys say.
-Limits, home and every axis value are what the control displays and the program says.
+Limits, home and all axis values are those that the control displays and the program contains.
 """
 
 from dataclasses import dataclass, field
@@ -24,14 +24,14 @@ class AxisKind(StrEnum):
 
 
 class Mount(StrEnum):
-    """What a joint moves: the part (a table) or the tool (a head, a ram)."""
+    """What an axis carries: the part (a table) or the tool (a head, a ram)."""
 
     PART = "part"
     TOOL = "tool"
 
 
 class PositiveDirection(StrEnum):
-    """Which way a displayed value grows.
+    """The direction in which a displayed value grows.
 
     STANDARD is ISO 841: growing values move the TOOL, as seen from the workpiece, along or right-handed about
     ``direction``, no matter which of the two really moves. REVERSED is the other way.
@@ -50,7 +50,7 @@ class PreferredSign(StrEnum):
 
 
 class AngleOutput(StrEnum):
-    """How the values of an endless axis are written: folded into one turn, or as they wind (NONE)."""
+    """The range in which the values of an endless axis are written: one turn, or none (NONE), so that turns add up."""
 
     POSITIVE = "0..360"
     SYMMETRIC = "-180..180"
@@ -59,8 +59,9 @@ class AngleOutput(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One joint.
+    """One joint of the chain.
 
+    mount           whether it carries the part or the tool
     direction       unit vector, machine frame, all axes at zero
     point           a point on the axis of a rotary joint, mm, machine frame, all axes at zero; unused for slides
     low, high       travel in displayed values, mm or deg; -inf and inf where endless or not stated
@@ -91,7 +92,7 @@ class Axis:
 
     @property
     def sense(self) -> float:
-        """1.0 for standard, -1.0 for reversed."""
+        """1.0 if growing values move the tool along or about ``direction``, -1.0 if they move it the other way."""
         return 1.0 if self.positive is PositiveDirection.STANDARD else -1.0
 
     @property
@@ -101,13 +102,13 @@ class Axis:
 
     @property
     def display_low(self) -> float:
-        """Lower end of the 360 degrees that the axis displays; NaN where it displays its turns."""
+        """Lower end of the turn in which the axis is displayed, deg; NaN if its turns add up."""
         return {AngleOutput.POSITIVE: 0.0, AngleOutput.SYMMETRIC: -180.0, AngleOutput.NONE: np.nan}[self.output]
 
 
 @dataclass(frozen=True, slots=True)
 class MachineFacts:
-    """What is known of a machine besides its motion; None where not stated."""
+    """What a definition states about a machine besides its motion; None where it does not."""
 
     spindle_min_rpm: float | None = None
     spindle_power_kw: float | None = None
@@ -129,10 +130,10 @@ class Machine:
 
     spindle_direction   unit vector from tool tip to holder, all axes at zero
     spindle_point       gauge point (where tool lengths begin), mm, all axes at zero
-    workpiece_zero      workpiece zero in the machine frame, all axes at zero, mm; None where nobody said it
-    tool_length         of the tool in the spindle, gauge point to tip, mm; None where nobody said it: it counts as 0
+    workpiece_zero      workpiece zero in the machine frame, all axes at zero, mm; None if it is not known
+    tool_length         of the tool in the spindle, gauge point to tip, mm; None if it is not known, and counts as 0
     control             the ``[control]`` table of the definition, unread
-    files               definition files that the machine came from
+    files               definition files that the machine comes from
     """
 
     key: str
@@ -181,7 +182,7 @@ class Machine:
 
     @property
     def has_rotary_head(self) -> bool:
-        """Whether a rotary axis stands between the bed and the tool: then lengths of tools move the tip aside."""
+        """Whether a rotary axis carries the tool, so that the direction of the tool length changes with it."""
         return any(axis.is_rotary and axis.mount is Mount.TOOL for axis in self.axes)
 
     @property

@@ -1,4 +1,4 @@
-"""Operations carried over from one coordinate system to another."""
+"""Operations and coordinate systems expressed in another coordinate system."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from trunnion.model.toolpath import Frame, From, Operation
 
 
 def into_frame(operation: Operation, frame: Frame) -> Operation:
-    """The operation as seen from another coordinate system; itself when it is the same one.
+    """The operation in another coordinate system; the same object if it is the same one.
 
     With M the matrix and o the origin of a frame in the CAM's absolute system, a point is
     M_to^T (M_from p + o_from - o_to) and a direction M_to^T M_from u.
@@ -22,26 +22,26 @@ def into_frame(operation: Operation, frame: Frame) -> Operation:
 
 
 def into_plane(operation: Operation, plane: Frame) -> Operation:
-    """The operation as seen from a plane that is itself given in the operation's frame; its ``frame`` stays."""
+    """The operation in the coordinates of a plane, which is given in the operation's frame; its ``frame`` stays."""
     turn = plane.matrix().T
     return _transformed(operation, turn, -turn @ np.array(plane.origin))
 
 
 def relative_frame(own: Frame, frame: Frame) -> Frame:
-    """``own`` as seen from ``frame``, both given in the CAM's absolute system."""
+    """``own`` expressed in ``frame``; both are given in the CAM's absolute system."""
     turn = frame.matrix().T
     origin = turn @ (np.array(own.origin) - np.array(frame.origin))
     return frame_from_vectors(origin, turn @ np.array(own.x), turn @ np.array(own.y))
 
 
 def frame_from_vectors(origin: Floats, x: Floats, y: Floats) -> Frame:
-    """A frame from arrays of three numbers."""
+    """A frame from origin, X and Y, (3,) float64 each."""
     columns = [(float(v[0]), float(v[1]), float(v[2])) for v in (origin, x, y)]
     return Frame(*columns)
 
 
 def _transformed(operation: Operation, turn: Floats, shift: Floats) -> Operation:
-    """All places p of an operation become turn p + shift, all directions u turn u."""
+    """Transform the points p of an operation to turn p + shift, and its directions u to turn u."""
     moves, arcs = operation.moves, operation.arcs
     normal = None if moves.normal is None else moves.normal @ turn.T
     return replace(

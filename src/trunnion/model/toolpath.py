@@ -1,9 +1,9 @@
 """A toolpath: what the cutter does, in workpiece coordinates.
 
-Dense motion is columns, one row a CL point; sparse happenings are small frozen events, each with the row
-before which it takes place and the line of the CL file that it came from.
+Dense motion is in columns, one row for each CL point. Sparse events are small frozen records, each with the row before
+which it happens and its line in the CL file.
 
-Units: mm, degrees where an angle is meant, unit vectors for directions, mm/min or mm/rev for feeds.
+Units: mm, degrees, unit vectors for directions, mm/min or mm/rev for feeds.
 Frame: the operation's own coordinate system (``Operation.frame``, MSYS in a CLSF).
 """
 
@@ -17,7 +17,7 @@ from trunnion.errors import Problem
 
 
 class Kind(IntEnum):
-    """How the tip gets to a row from the row before it."""
+    """How the tip moves to a row from the row before it."""
 
     RAPID = 0
     LINEAR = 1
@@ -25,7 +25,7 @@ class Kind(IntEnum):
 
 
 class Phase(IntEnum):
-    """The part that a motion plays in its operation; the CAM system says it by colour."""
+    """The role of a move in its operation, which CAM systems write as a colour."""
 
     INITIAL = 0
     RAPID = 1
@@ -46,11 +46,11 @@ class Moves:
     axis     (n, 3) float64   tool axis at the end point, unit vector from tip to holder
     kind     (n,)   uint8     a ``Kind``
     phase    (n,)   uint8     a ``Phase``
-    feed     (n,)   float64   mm/min, or mm/rev where ``per_rev``; NaN before the first FEDRAT; rapids carry it on
+    feed     (n,)   float64   mm/min, or mm/rev where ``per_rev``; NaN before the first FEDRAT; rapids keep the last one
     per_rev  (n,)   bool      feed is per spindle revolution
     line     (n,)   int32     line of the CL file, from 1
-    normal   (n, 3) float64   unit vector out of the surface where the tool touches it, NaN where nobody knows; None:
-                              nobody asked for it
+    normal   (n, 3) float64   unit vector out of the surface where the tool touches it, NaN if not known; None if the
+                              normals were not read
     """
 
     tip: Floats
@@ -71,7 +71,7 @@ class Moves:
         return len(self.tip)
 
     def select(self, rows: slice | Ints | Flags) -> "Moves":
-        """Some of the rows."""
+        """The given rows; ``rows`` is a slice, row numbers or flags."""
         return Moves(
             self.tip[rows], self.axis[rows], self.kind[rows], self.phase[rows], self.feed[rows], self.per_rev[rows],
             self.line[rows], None if self.normal is None else self.normal[rows],
@@ -80,13 +80,13 @@ class Moves:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arcs:
-    """The circles of one operation, one entry for each row of ``Moves`` whose kind is ARC, in row order.
+    """The arcs of one operation, one entry for each row of ``Moves`` whose kind is ARC, in row order.
 
-    row      (m,)   int64     row of the end point
-    centre   (m, 3) float64   mm
-    normal   (m, 3) float64   unit vector; the tip turns about it by the right-hand rule
-    radius   (m,)   float64   mm
-    full_turns (m,) int64     whole turns besides the arc from start to end; a full circle (start = end) has 0
+    row         (m,)   int64     row of the end point
+    centre      (m, 3) float64   mm
+    normal      (m, 3) float64   unit vector; the tip turns about it by the right-hand rule
+    radius      (m,)   float64   mm
+    full_turns  (m,)   int64     whole turns in addition to the arc from start to end; 0 for a full circle (start = end)
     """
 
     row: Ints
@@ -101,20 +101,20 @@ class Arcs:
 
     @staticmethod
     def empty() -> "Arcs":
-        """No arcs at all."""
+        """No arcs."""
         return Arcs(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happens before row ``row`` (``row == n``: after the last one)."""
+    """Something that happens before row ``row``; after the last row if ``row == n``."""
 
     row: int
     line: int
 
 
 class Sense(StrEnum):
-    """Which way the spindle turns."""
+    """Direction of rotation of the spindle, by its CL word."""
 
     CLW = "CLW"
     CCLW = "CCLW"
@@ -122,7 +122,7 @@ class Sense(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class LoadTool(Event):
-    """Put a tool into the spindle. ``adjust`` is the length register, 0 if none was named."""
+    """Load a tool into the spindle. ``adjust`` is the length register, 0 if none is given."""
 
     number: int
     adjust: int = 0
@@ -130,14 +130,14 @@ class LoadTool(Event):
 
 @dataclass(frozen=True, slots=True)
 class SelectTool(Event):
-    """Bring the tool after next to the changer."""
+    """Bring a tool to the changer, to be loaded next."""
 
     number: int
 
 
 @dataclass(frozen=True, slots=True)
 class SpindleOn(Event):
-    """Spindle speed in rev/min and sense; surface speeds are already turned into rev/min."""
+    """Turn the spindle on, rev/min; surface speeds are converted."""
 
     rpm: float
     sense: Sense = Sense.CLW
@@ -159,7 +159,9 @@ class Coolant(Event):
 class CutterComp(Event):
     """Cutter radius compensation.
 
-    side is LEFT, RIGHT, ON or OFF; plane XYPLAN, ZXPLAN, YZPLAN or empty; register 0 if none was named.
+    side      LEFT, RIGHT, ON or OFF
+    plane     XYPLAN, ZXPLAN, YZPLAN or empty
+    register  0 if none is given
     """
 
     side: str
@@ -169,7 +171,7 @@ class CutterComp(Event):
 
 @dataclass(frozen=True, slots=True)
 class Dwell(Event):
-    """Wait, in seconds or in spindle revolutions."""
+    """Wait for ``amount`` seconds or spindle revolutions."""
 
     amount: float
     revolutions: bool = False
@@ -177,7 +179,7 @@ class Dwell(Event):
 
 @dataclass(frozen=True, slots=True)
 class Stop(Event):
-    """Program stop; optional stops depend on the switch at the control."""
+    """Program stop; an optional one only if the operator has switched it on."""
 
     optional: bool
     text: str = ""
@@ -185,7 +187,7 @@ class Stop(Event):
 
 @dataclass(frozen=True, slots=True)
 class Message(Event):
-    """Text for the operator or for the reader of the program (PPRINT, DISPLY)."""
+    """Text in the program (PPRINT), or on the display of the control (DISPLY)."""
 
     text: str
     display: bool = False
@@ -193,7 +195,7 @@ class Message(Event):
 
 @dataclass(frozen=True, slots=True)
 class Insert(Event):
-    """Text that goes into the NC program as it stands."""
+    """Text for the NC program, letter by letter."""
 
     text: str
 
@@ -207,11 +209,11 @@ class BlockSkip(Event):
 
 @dataclass(frozen=True, slots=True)
 class CycleOn(Event):
-    """A hole-making cycle becomes modal; each following row is a hole until ``CycleOff``.
+    """Begin a modal hole-making cycle; each following row is a hole until ``CycleOff``.
 
     mode     minor words before the first couplet, such as ("DRILL", "DEEP")
-    values   couplets word -> numbers in CL units turned to mm, such as {"RAPTO": (3.0,)}
-    words    minor words that carry no number, such as ("AUTO",) after RTRCTO as {"RTRCTO": "AUTO"}
+    values   couplets of a word and its numbers, lengths in mm, such as ("RAPTO", (3.0,))
+    words    words without numbers, with the word that follows or "", such as ("RTRCTO", "AUTO")
     """
 
     mode: tuple[str, ...]
@@ -221,12 +223,12 @@ class CycleOn(Event):
 
 @dataclass(frozen=True, slots=True)
 class CycleOff(Event):
-    """The modal cycle ends."""
+    """End the modal cycle."""
 
 
 @dataclass(frozen=True, slots=True)
 class From(Event):
-    """The position from which the path starts; not a motion."""
+    """Position in which the path begins; not a motion."""
 
     tip: tuple[float, float, float]
     axis: tuple[float, float, float]
@@ -234,19 +236,19 @@ class From(Event):
 
 @dataclass(frozen=True, slots=True)
 class GoHome(Event):
-    """Go to the machine's home (GOHOME without a point; with a point it is a rapid row)."""
+    """Move to the machine's home (GOHOME without a point; with a point it is a rapid row)."""
 
 
 @dataclass(frozen=True, slots=True)
 class SetMode(Event):
-    """SET/MODE and its kin, kept with the words that it carried."""
+    """SET, MODE or MULTAX, with its words."""
 
     words: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class UnknownStatement(Event):
-    """A statement that nobody knows, kept as it stood."""
+    """An unknown statement, as it stands in the CL file."""
 
     text: str
 
@@ -255,7 +257,7 @@ class UnknownStatement(Event):
 class Tool:
     """The cutter, mm and degrees.
 
-    kind is the CL form: MILL (corner radius, maybe taper), TCUTTER, BARREL, DRILL or UNKNOWN.
+    kind  its form in TLDATA: MILL, TCUTTER, BARREL, DRILL or UNKNOWN
     """
 
     kind: str = "UNKNOWN"
@@ -285,7 +287,7 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operation:
-    """One tool path: its tool, its frame, its motion and what happens on the way."""
+    """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH."""
 
     name: str
     tool: Tool
@@ -300,7 +302,14 @@ class Operation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Toolpath:
-    """A CL file, read: its operations in order, and what was noticed while reading. ``unit``: of its lengths, mm."""
+    """The content of a CL file.
+
+    file        path of the file
+    operations  in the order of the file
+    part        name of the part
+    remarks     warnings of the reader
+    unit        length unit of the file, mm
+    """
 
     file: str
     operations: tuple[Operation, ...]
