@@ -16,7 +16,7 @@ from trunnion.machines import Machine, forward, inverse, kinematic_parameters, l
 from trunnion.model.motion import DecisionTopic, Plan, PoleStrategy
 from trunnion.model.toolpath import Moves, Operation, Toolpath
 from trunnion.planning import PlanOptions, plan
-from trunnion.planning.pole.lean_limits import closest_second_angles, degrees_off_pole, least_lean
+from trunnion.planning.pole.lean_limits import StepLimits, closest_second_angles, degrees_off_pole, least_lean
 from trunnion.planning.pole.lean_task import LeanedMoves, LeanTask
 from trunnion.planning.pole.tool_axis_lean import lean_tool_axis
 from trunnion.planning.poses.placement import REWIND
@@ -158,7 +158,7 @@ def test_a_path_that_a_search_finds_is_found(
     steady = np.zeros(n, bool)
     steady[[0, -1]] = True
     kinematics, free = kinematic_parameters(machine), (-math.inf, math.inf)
-    made, lean = least_lean(kinematics, axis, wanted, far, steady, free, angle)
+    made, lean = least_lean(kinematics, axis, StepLimits(wanted, far, steady, *free), angle)
     off = off_at_best(name, axis)
     if made is None:
         # A little less room than there is, for what a grid cannot hit.

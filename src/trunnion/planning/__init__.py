@@ -8,7 +8,7 @@ It knows nothing of text, neither of CL files nor of NC programs.
 
 from trunnion.planning.options import ControlCapabilities, PlanOptions
 from trunnion.planning.planner import plan
-from trunnion.planning.poses.placement import follow_nearest, solve_rotary
+from trunnion.planning.poses.nearest_path import follow_nearest, solve_rotary
 from trunnion.planning.retracts.clearance import Clearance, ClearanceSurface
 from trunnion.planning.speed.operation_time import operation_seconds
 

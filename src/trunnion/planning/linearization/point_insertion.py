@@ -22,7 +22,7 @@ from trunnion.machines import Machine, forward, slide_positions
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Operation
 from trunnion.planning.axis_limits import limit_remedy, limit_violation_text, limits_of, outside_limits
-from trunnion.planning.linearization.intermediate_points import DividedPath, divide_path
+from trunnion.planning.linearization.intermediate_points import USABLE_SHARE, DividedPath, divide_path
 from trunnion.planning.linearization.rotary_motion import rotary_motion
 from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.planning.linearization.slide_arcs import keep_slide_arcs
@@ -34,8 +34,6 @@ from trunnion.planning.rotary_positions import displayed_positions
 _FIRST_PIECES: Final = 8
 _MAX_PIECES: Final = 50_000
 
-#: Share of a tolerance that is used, as in ``trunnion.planning.linearization.intermediate_points``.
-_USABLE_SHARE: Final = 0.96
 
 #: Rows that are named one by one.
 _NAMED: Final = 5
@@ -133,10 +131,10 @@ def _points_holding_tip(
         middle /= np.linalg.norm(middle, axis=1)[:, None]
         bend = np.degrees(np.linalg.norm(half_axis - middle, axis=1).max()) / options.axis_tolerance_between_points
         error = max(float(off), float(bend))
-        if error <= _USABLE_SHARE or pieces >= _MAX_PIECES:
+        if error <= USABLE_SHARE or pieces >= _MAX_PIECES:
             return tips[1:-1], axis[1:-1], turned[1:-1]
         # The error of a piece shrinks with the square of its length.
-        pieces = min(math.ceil(pieces * min(max(1.02 * math.sqrt(error / _USABLE_SHARE), 1.05), 8.0)), _MAX_PIECES)
+        pieces = min(math.ceil(pieces * min(max(1.02 * math.sqrt(error / USABLE_SHARE), 1.05), 8.0)), _MAX_PIECES)
 
 
 def _decisions(file: str, operation: Operation, copies: Ints) -> Iterable[Decision]:

@@ -1,7 +1,7 @@
-"""How far the rotary axes may turn when the tool axis may lean by an angle, and ways with limited speed within that.
+"""How far rotary axes may turn if the tool axis may lean by an angle, and paths with limited steps within that.
 
-With the first rotary axis at an angle, the second one takes the tool axis round a circle about its own direction w2, B
-away from it (``trunnion.machines.inverse`` has the names). So the tool axis can come within e of a wanted one u if
+With the first rotary axis at an angle, the second one turns the tool axis along a circle about its own direction w2, at
+the angle B from it (names as in ``trunnion.machines.inverse``). So the tool axis can come within e of a target u if
 
     B - e <= angle(w2, u) <= B + e,
 
@@ -9,15 +9,15 @@ which, with d the angle from w2 to u about w1, is a condition on cos d alone:
 
     cos(B + e) <= cos G cos A + sin G sin A cos d <= cos(B - e).
 
-Its solutions are an interval for either branch, which grow with e, meet, and at last are the whole turn: the wanted
-axis is no farther from the pole than e then. On its circle the tool axis comes nearest to u where the second angle's
-cosine and sine stand as the components of u across w2, and the second angles within e are an interval about that.
+Its solutions are an interval for either branch. With e they grow, meet, and at last are the whole turn: then the target
+is no farther than e from the pole. On its circle the tool axis is nearest to u where cosine and sine of the second
+angle are in the ratio of the components of u across w2; the second angles within e are an interval about that one.
 
-Angles in degrees outside of kernels, in radians within where their names say so.
+Angles are in degrees outside of kernels; inside they are in radians where their names say so.
 """
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -25,15 +25,31 @@ from trunnion.arrays import Flags, Floats, Floats2
 from trunnion.jit import inner, kernel
 from trunnion.machines import KinematicParameters, Machine
 
-#: Halvings by which the least angle is found.
+#: Halvings by which the least lean is found.
 _HALVINGS: Final = 14
 
-#: No less than the rounding of angles here, rad.
+#: More than the rounding of angles here, rad.
 _NOISE: Final = 1e-11
 
 
+class StepLimits(NamedTuple):
+    """What the positions of one rotary axis must keep in n rows; degrees.
+
+    target     (n,) float64  the values to be near to, as they wind
+    max_step   (n,) float64  the most by which a value may differ from that of the row before
+    fixed      (n,) bool     rows that keep their target
+    low, high                limits of the axis
+    """
+
+    target: Floats
+    max_step: Floats
+    fixed: Flags
+    low: float
+    high: float
+
+
 def degrees_off_pole(kinematics: KinematicParameters, axis: Floats) -> Floats:
-    """(n,): degrees between tool axes (n, 3) and the first rotary axis, whichever way along it."""
+    """(n,) float64: angles between tool axes (n, 3) and the line of the first rotary axis, degrees."""
     frame = np.array(kinematics.basis_1).reshape(3, 3)
     across, along = np.linalg.norm(axis @ frame[:2].T, axis=1), np.abs(axis @ frame[2])
     return np.asarray(np.degrees(np.arctan2(across, along)))
@@ -42,9 +58,9 @@ def degrees_off_pole(kinematics: KinematicParameters, axis: Floats) -> Floats:
 def closest_second_angles(
     machine: Machine, kinematics: KinematicParameters, axis: Floats, first: Floats, near: Floats
 ) -> Floats:
-    """(n,): second angles, degrees, that bring the tool axis nearest to ``axis`` (n, 3), within the limits.
+    """(n,) float64: second angles within limits that bring the tool axis nearest to ``axis`` (n, 3), degrees.
 
-    ``first`` (n,) are the first angles, ``near`` (n,) angles of whose turn the second ones are.
+    ``first`` (n,) are the first angles; the second ones are in the turns of ``near`` (n,).
     """
     bounds = machine.axes[machine.rotary[1]]
     target, slack = np.empty(len(axis)), np.empty(len(axis))
@@ -53,60 +69,43 @@ def closest_second_angles(
 
 
 def least_lean(
-    kinematics: KinematicParameters,
-    axis: Floats,
-    wanted: Floats,
-    max_step: Floats,
-    fixed: Flags,
-    bounds: tuple[float, float],
-    angle: float,
+    kinematics: KinematicParameters, axis: Floats, limits: StepLimits, angle: float
 ) -> tuple[Floats | None, float]:
-    """First angles (n,) that change by no more than ``max_step`` (n,) from row to row, with the least lean of the tool
-    axis.
+    """First angles with limited steps under which the tool axis leans least.
 
     Parameters
     ----------
     axis : (n, 3) float64
-        Wanted tool axes.
-    wanted : (n,) float64
-        First angles under which the tool axis does not lean, as they wind.
-    steady : (n,) bool
-        Rows whose angle stays as wanted.
-    bounds
-        Limits of the axis.
+        Tool axes of the CAM.
+    limits
+        Its targets are the first angles under which nothing leans.
     angle
-        The most that the tool axis may lean.
+        The most that the tool axis may lean, degrees.
 
     Returns
     -------
-    The angles and what the lean is at most, degrees; None and NaN where there is no way.
+    first, lean
+        (n,) float64, degrees, and the most that the tool axis leans, degrees; None and NaN if there are none.
     """
-    g, b = _between(kinematics)
     path = np.empty((5, len(axis)))
-    least = _least_lean(kinematics, axis, wanted, max_step, fixed, bounds, math.radians(angle), g, b, path)
+    least = _least_lean(kinematics, axis, limits, math.radians(angle), *_fixed_angles(kinematics), path)
     return (None, math.nan) if math.isnan(least) else (path[0], math.degrees(least))
 
 
 def second_angles_within(
-    kinematics: KinematicParameters,
-    axis: Floats,
-    first: Floats,
-    wanted: Floats,
-    max_step: Floats,
-    fixed: Flags,
-    bounds: tuple[float, float],
-    angle: float,
+    kinematics: KinematicParameters, axis: Floats, first: Floats, limits: StepLimits, angle: float
 ) -> Floats | None:
-    """Second angles (n,) to given first ones, with the same meaning as ``least_lean``; None where there is no way."""
+    """Second angles (n,) with limited steps for given first ones; None if there are none. As ``least_lean``."""
     target, slack = np.empty(len(axis)), np.empty(len(axis))
-    _second_angle_ranges(kinematics, axis, first, wanted, math.radians(angle), target, slack)
-    target, slack = np.where(fixed, wanted, target), np.where(fixed, 0.0, slack)
+    _second_angle_ranges(kinematics, axis, first, limits.target, math.radians(angle), target, slack)
+    target, slack = np.where(limits.fixed, limits.target, target), np.where(limits.fixed, 0.0, slack)
+    lower, upper = np.maximum(target - slack, limits.low), np.minimum(target + slack, limits.high)
     path = np.empty((3, len(axis)))
-    lower, upper = np.maximum(target - slack, bounds[0]), np.minimum(target + slack, bounds[1])
-    return path[0] if _limit_rate(np.clip(target, *bounds), lower, upper, max_step, *path) else None
+    nearest = np.clip(target, limits.low, limits.high)
+    return path[0] if _limit_steps(nearest, lower, upper, limits.max_step, path) else None
 
 
-def _between(kinematics: KinematicParameters) -> tuple[float, float]:
+def _fixed_angles(kinematics: KinematicParameters) -> tuple[float, float]:
     """Angles G between both rotary axes and B between the second one and the spindle, rad."""
     less = math.atan2(kinematics.half_difference[1], kinematics.half_difference[0])
     more = math.atan2(kinematics.half_sum[1], kinematics.half_sum[0])
@@ -117,52 +116,48 @@ def _between(kinematics: KinematicParameters) -> tuple[float, float]:
 def _least_lean(
     kinematics: KinematicParameters,
     axis: Floats2,
-    wanted: Floats,
-    max_step: Floats,
-    fixed: Flags,
-    bounds: tuple[float, float],
+    limits: StepLimits,
     angle: float,
     g: float,
     b: float,
     path: Floats2,
 ) -> float:
-    """Write the way into ``path[0]``; return the least lean, rad, or NaN. The other rows are for the work."""
+    """Write the first angles into ``path[0]``; return the least lean, rad, or NaN. Other rows are for the work."""
     lower, upper = path[3], path[4]
-    _first_angle_ranges(kinematics, axis, wanted, fixed, bounds, angle, g, b, lower, upper)
-    if not _limited_rate_path(wanted, lower, upper, max_step, path[0], path[1], path[2]):
+    _first_angle_ranges(kinematics, axis, limits, angle, g, b, lower, upper)
+    if not _path_with_steps(limits.target, lower, upper, limits.max_step, path):
         return math.nan
     low, high = 0.0, angle
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        _first_angle_ranges(kinematics, axis, wanted, fixed, bounds, middle, g, b, lower, upper)
-        if _limited_rate_path(wanted, lower, upper, max_step, path[0], path[1], path[2]):
+        _first_angle_ranges(kinematics, axis, limits, middle, g, b, lower, upper)
+        if _path_with_steps(limits.target, lower, upper, limits.max_step, path):
             high = middle
         else:
             low = middle
-    _first_angle_ranges(kinematics, axis, wanted, fixed, bounds, high, g, b, lower, upper)
-    _limited_rate_path(wanted, lower, upper, max_step, path[0], path[1], path[2])
+    _first_angle_ranges(kinematics, axis, limits, high, g, b, lower, upper)
+    _path_with_steps(limits.target, lower, upper, limits.max_step, path)
     return high
 
 
 @inner
 def _first_angle_ranges(
     kinematics: KinematicParameters,
-    axis: Floats,
-    wanted: Floats,
-    fixed: Flags,
-    bounds: tuple[float, float],
+    axis: Floats2,
+    limits: StepLimits,
     angle: float,
     g: float,
     b: float,
     lower: Floats,
     upper: Floats,
 ) -> None:
-    """Write least and greatest first angle of every row with which the tool axis leans by no more than ``angle``."""
+    """Write the least and the greatest first angle of every row for a lean of at most ``angle``, rad."""
+    target, fixed = limits.target, limits.fixed
     one = kinematics.basis_1
     cos_g, sin_g = math.cos(g), math.sin(g)
     angle = max(angle - _NOISE, 0.0)
     for row in range(axis.shape[0]):
-        lower[row] = upper[row] = wanted[row]
+        lower[row] = upper[row] = target[row]
         if fixed[row]:
             continue
         i, j, k = axis[row, 0], axis[row, 1], axis[row, 2]
@@ -181,19 +176,19 @@ def _first_angle_ranges(
             if b + angle < math.pi:
                 low = (math.cos(b + angle) - rest) / size
                 most = math.pi if low <= -1.0 else math.acos(min(low, 1.0))
-        before, after = _allowed_turns(kinematics, wanted[row], u0, u1, least, most)
-        lower[row] = max(wanted[row] - before, bounds[0])
-        upper[row] = min(wanted[row] + after, bounds[1])
+        before, after = _allowed_turns(kinematics, target[row], u0, u1, least, most)
+        lower[row] = max(target[row] - before, limits.low)
+        upper[row] = min(target[row] + after, limits.high)
 
 
 @inner
 def _allowed_turns(
-    kinematics: KinematicParameters, wanted: float, u0: float, u1: float, least: float, most: float
+    kinematics: KinematicParameters, target: float, u0: float, u1: float, least: float, most: float
 ) -> tuple[float, float]:
-    """How far the first angle may go below and above ``wanted``, degrees, if d has a size of least to most, rad."""
+    """How far the first angle may be below and above its target, degrees, if |d| is from least to most, rad."""
     if least <= 0.0 and most >= math.pi:
         return math.inf, math.inf
-    d = math.atan2(u1, u0) - kinematics.sense_1 * math.radians(wanted)
+    d = math.atan2(u1, u0) - kinematics.sense_1 * math.radians(target)
     d -= 2.0 * math.pi * math.floor(d / (2.0 * math.pi) + 0.5)
     begin, end = least, most
     if least <= 0.0:
@@ -241,7 +236,7 @@ def _second_angle_ranges(
         cos, sin = p * spindle[0] + q * spindle[1], q * spindle[0] - p * spindle[1]
         size = math.sqrt(cos * cos + sin * sin)
         target[row], slack[row] = near[row], 180.0
-        if size < 1e-12:  # the wanted tool axis stands along the second rotary axis: all of its angles are alike
+        if size < 1e-12:  # the target is along the second rotary axis: all of its angles are alike
             continue
         best = math.degrees(math.atan2(sin, cos))
         target[row] = best + 360.0 * math.floor((near[row] - best) / 360.0 + 0.5)
@@ -249,23 +244,21 @@ def _second_angle_ranges(
         slack[row] = math.degrees(math.acos(min(max(share, -1.0), 1.0)))
 
 
-@kernel(writes="path low high")
-def _limit_rate(
-    wanted: Floats, lower: Floats, upper: Floats, max_step: Floats, path: Floats, low: Floats, high: Floats
-) -> bool:
-    """Call ``_limited_rate_path``."""
-    return _limited_rate_path(wanted, lower, upper, max_step, path, low, high)
+@kernel(writes="path")
+def _limit_steps(target: Floats, lower: Floats, upper: Floats, max_step: Floats, path: Floats2) -> bool:
+    """Call ``_path_with_steps``."""
+    return _path_with_steps(target, lower, upper, max_step, path)
 
 
 @inner
-def _limited_rate_path(
-    wanted: Floats, lower: Floats, upper: Floats, max_step: Floats, path: Floats, low: Floats, high: Floats
-) -> bool:
-    """Write values within bounds that change by no more than ``max_step`` from row to row, each as near as it can be.
+def _path_with_steps(target: Floats, lower: Floats, upper: Floats, max_step: Floats, path: Floats2) -> bool:
+    """Write into ``path[0]`` values within bounds, each as near to its target as the steps allow.
 
-    ``low`` and ``high`` are what each row may be if the rest is to be possible. False where nothing is.
+    A value differs from that of the row before by no more than ``max_step``. ``path[1]`` and ``path[2]`` become the
+    least and the greatest values with which the rest is possible. Returns False if there is no path.
     """
-    last = len(wanted) - 1
+    values, low, high = path[0], path[1], path[2]
+    last = len(target) - 1
     for row in range(last, -1, -1):
         low[row], high[row] = lower[row], upper[row]
         if row < last:
@@ -273,8 +266,8 @@ def _limited_rate_path(
             high[row] = min(high[row], high[row + 1] + max_step[row + 1])
         if low[row] > high[row]:
             return False
-    path[0] = min(max(wanted[0], low[0]), high[0])
+    values[0] = min(max(target[0], low[0]), high[0])
     for row in range(1, last + 1):
-        least, most = max(low[row], path[row - 1] - max_step[row]), min(high[row], path[row - 1] + max_step[row])
-        path[row] = min(max(wanted[row], least), most)
+        least, most = max(low[row], values[row - 1] - max_step[row]), min(high[row], values[row - 1] + max_step[row])
+        values[row] = min(max(target[row], least), most)
     return True

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
-from trunnion.planning.pole.lean_limits import least_lean, second_angles_within
+from trunnion.planning.pole.lean_limits import StepLimits, least_lean, second_angles_within
 from trunnion.planning.pole.lean_task import LeanTask, PoleRegion, axis_deviation
 from trunnion.planning.pole.passages import PolePassage, remaining_passages
 from trunnion.planning.poses.states import REWIND_STEP
@@ -117,14 +117,15 @@ def _path(task: LeanTask, exact: Floats, rows: Ints) -> tuple[Floats | None, flo
     fixed[0] |= not task.unbound[rows[0]]
     after = int(rows[-1]) + 1
     fixed[-1] |= after < len(exact) and not task.unbound[after]
-    bounds = [(task.machine.axes[column].low, task.machine.axes[column].high) for column in task.machine.rotary]
-    first, lean = least_lean(task.kinematics, axis, target[:, 0], max_step[:, 0], fixed, bounds[0], task.angle)
+    limits = [
+        StepLimits(target[:, r], max_step[:, r], fixed, task.machine.axes[column].low, task.machine.axes[column].high)
+        for r, column in enumerate(task.machine.rotary)
+    ]
+    first, lean = least_lean(task.kinematics, axis, limits[0], task.angle)
     if first is None:
         return None, np.nan
     for allowed in (lean, task.angle):
-        second = second_angles_within(
-            task.kinematics, axis, first, target[:, 1], max_step[:, 1], fixed, bounds[1], allowed
-        )
+        second = second_angles_within(task.kinematics, axis, first, limits[1], allowed)
         if second is not None:
             path = np.column_stack((first, second))
             deviation = float(axis_deviation(task.machine, path, axis).max())

@@ -8,9 +8,9 @@ from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machines import Machine, inverse
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.toolpath import Operation
+from trunnion.planning.poses.contact import NO_CONTACT, contact_of
 from trunnion.planning.poses.limit_lookahead import LimitHit, continue_in_branch, first_limit_hit
-from trunnion.planning.poses.optimizer import NO_CONTACT
-from trunnion.planning.poses.selection import choose_nearest_states, contact_of, poses_of_states
+from trunnion.planning.poses.selection import choose_nearest_states, poses_of_states
 from trunnion.planning.poses.states import MAX_BEND, POLE_JUMP, REWIND_STEP, STATE_BITS, states_of
 from trunnion.planning.rotary_positions import is_endless, tool_axes
 

@@ -12,8 +12,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, inverse, slide_positions
 from trunnion.model.toolpath import Moves
 from trunnion.planning.axis_limits import limit_violation_text, limits_of, outside_limits
-from trunnion.planning.poses.optimizer import NO_CONTACT
-from trunnion.planning.poses.selection import contact_of
+from trunnion.planning.poses.contact import NO_CONTACT, contact_of
 
 #: Rows looked at together: at first so many, then twice as many each time.
 _CHUNK: Final = 256

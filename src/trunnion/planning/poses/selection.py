@@ -12,20 +12,24 @@ import numpy as np
 
 from trunnion.arrays import Codes, Floats, Ints
 from trunnion.concurrency import prefetch
-from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
-from trunnion.model.toolpath import Kind, Moves, Phase
-from trunnion.planning.axis_limits import limits_of
-from trunnion.planning.poses.optimizer import (
-    CUTS,
-    MAY_TOUCH,
-    NO_CONTACT,
-    find_cheapest,
-    find_nearest,
-    trace_back,
-    workspace,
-)
-from trunnion.planning.poses.placement import BRANCH, follow_nearest, place_rows, solve_rotary
-from trunnion.planning.poses.states import STATE_BITS, SearchSpace, States, states_of
+from trunnion.machines import Machine, kinematic_parameters
+from trunnion.model.toolpath import Moves
+from trunnion.planning.poses.contact import NO_CONTACT, contact_of
+from trunnion.planning.poses.nearest_path import BRANCH, SOLUTION_COLUMNS, follow_nearest, solve_rotary
+from trunnion.planning.poses.optimizer import find_cheapest, find_nearest, trace_back
+from trunnion.planning.poses.placement import PoseColumns, place_rows
+from trunnion.planning.poses.search_rows import workspace
+from trunnion.planning.poses.search_space import search_space_of
+from trunnion.planning.poses.states import STATE_BITS, states_of
+
+#: Changes that are kept one by one.
+_NAMED: Final = 50
+
+#: Rows per chunk: half a megabyte, and long enough in milliseconds that two threads seldom wait for each other.
+_CHUNK: Final = 16384
+
+#: Axes are parallel, or at right angles, within this sine.
+_PARALLEL_SINE: Final = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,38 +54,23 @@ class PlannedPoses:
     extreme_rows: Ints
     changes: Ints
 
+    @staticmethod
+    def empty(state: Codes) -> "PlannedPoses":
+        """Columns for kernels to fill."""
+        return PlannedPoses(
+            rotary=np.empty((len(state), 2)),
+            state=state,
+            outcome=np.zeros(len(state), np.uint8),
+            beyond_value=np.empty(len(state)),
+            extremes=np.tile([np.inf, -np.inf], (5, 1)),
+            extreme_rows=np.zeros((5, 2), np.int64),
+            changes=np.zeros(2 + _NAMED, np.int64),
+        )
 
-#: Changes that are kept one by one.
-_NAMED: Final = 50
-
-#: Rows per chunk: half a megabyte, and long enough in milliseconds that two threads seldom wait for each other.
-_CHUNK: Final = 16384
-
-#: Axes are parallel, or at right angles, within this sine.
-_PARALLEL_SINE: Final = 1e-12
-
-
-def contact_of(moves: Moves, rows: slice = slice(None)) -> Codes:
-    """(n,) uint8: whether the move into a row touches the part: NO_CONTACT, MAY_TOUCH or CUTS."""
-    code = np.full(len(Phase), MAY_TOUCH, np.uint8)
-    code[[Phase.RAPID, Phase.APPROACH, Phase.DEPARTURE, Phase.TRAVERSE]] = NO_CONTACT
-    code[Phase.CUT] = CUTS
-    return np.where(moves.kind[rows] == Kind.RAPID, np.uint8(NO_CONTACT), code[moves.phase[rows]])
-
-
-def search_space_of(
-    machine: Machine, kinematics: KinematicParameters, states: States, keep_slide_limits: bool
-) -> SearchSpace:
-    """The search space of a machine; limits of slides count only with ``keep_slide_limits``."""
-    low, high = limits_of(machine, keep_slide_limits)
-    slides = list(machine.linear)
-    has_slide_limits = bool(np.isfinite(low[slides]).any() or np.isfinite(high[slides]).any())
-    first, second = (machine.axes[column] for column in machine.rotary)
-    start, sign = (first.home, second.home), (first.preferred_sign, second.preferred_sign)
-    second_angle_sum = -2.0 * math.degrees(math.atan2(kinematics.phase[1], kinematics.phase[0]))
-    return SearchSpace(
-        tuple(low.tolist()), tuple(high.tolist()), has_slide_limits, states.turn_ranges, start, sign, second_angle_sum
-    )
+    @property
+    def columns(self) -> PoseColumns:
+        """All columns but the state, as kernels take them."""
+        return PoseColumns(self.rotary, self.outcome, self.beyond_value, self.extremes, self.extreme_rows, self.changes)
 
 
 def choose_states(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Codes:
@@ -105,25 +94,22 @@ def choose_states(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Co
 
 def cheapest_states(machine: Machine, moves: Moves, keep_slide_limits: bool, prefer: int = -1) -> Codes:
     """(n,) uint8: the cheapest states if branch ``prefer`` is preferred; -1: none."""
-    states, kinematics = states_of(machine), kinematic_parameters(machine)
-    space = search_space_of(machine, kinematics, states, keep_slide_limits)
-    backpointers = np.empty((len(moves), len(states)), np.uint8)
-    state = np.empty(len(moves), np.uint8)
-    work = workspace(len(states))
-    end = find_cheapest(
-        kinematics, space, states.table, moves.tip, moves.axis, contact_of(moves), prefer, backpointers, *work
-    )
-    trace_back(backpointers, end, state)
-    return state
+    space, kinematics = search_space_of(machine, keep_slide_limits), kinematic_parameters(machine)
+    backpointers, work = np.empty((len(moves), len(space.states)), np.uint8), workspace(len(space.states))
+    end = find_cheapest(kinematics, space, moves.tip, moves.axis, contact_of(moves), prefer, backpointers, work)
+    return _traced(backpointers, end)
 
 
 def choose_nearest_states(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Codes:
     """As ``choose_states``, but from row to row the nearest state, without regard to what follows: for comparison."""
-    states, kinematics = states_of(machine), kinematic_parameters(machine)
-    backpointers = np.empty((len(moves), len(states)), np.uint8)
-    state = np.empty(len(moves), np.uint8)
-    space = search_space_of(machine, kinematics, states, keep_slide_limits)
-    end = find_nearest(kinematics, space, states.table, moves.tip, moves.axis, backpointers, *workspace(len(states)))
+    space, kinematics = search_space_of(machine, keep_slide_limits), kinematic_parameters(machine)
+    backpointers, work = np.empty((len(moves), len(space.states)), np.uint8), workspace(len(space.states))
+    return _traced(backpointers, find_nearest(kinematics, space, moves.tip, moves.axis, backpointers, work))
+
+
+def _traced(backpointers: Codes, end: int) -> Codes:
+    """(n,) uint8: the states of the path that ends in state ``end``."""
+    state = np.empty(len(backpointers), np.uint8)
     trace_back(backpointers, end, state)
     return state
 
@@ -155,13 +141,10 @@ def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slide_limits: 
     """
     if any(axis.preferred_sign for axis in machine.axes) or not branches_travel_alike(machine):
         return None
-    kinematics, poses = kinematic_parameters(machine), _empty(np.empty(len(moves), np.uint8))
-    space, display_low = (
-        search_space_of(machine, kinematics, states_of(machine), keep_slide_limits),
-        _display_low(machine),
-    )
+    kinematics, space = kinematic_parameters(machine), search_space_of(machine, keep_slide_limits)
+    poses = PlannedPoses.empty(np.empty(len(moves), np.uint8))
     progress = np.array([*space.start, math.remainder(space.start[0], 360.0), 0.0, 1.0, 0.0])
-    buffers, joints = np.empty((2, min(_CHUNK, len(moves)), 7)), np.empty(5)
+    buffers, joints = np.empty((2, min(_CHUNK, len(moves)), SOLUTION_COLUMNS)), np.empty(5)
 
     def solve(first: int) -> tuple[int, int, Floats]:
         axis, branch = moves.axis[first : first + _CHUNK], int(progress[BRANCH])
@@ -169,12 +152,11 @@ def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slide_limits: 
         solve_rotary(kinematics, axis, branch, solutions)
         return first, branch, solutions
 
+    columns = poses.columns
     for first, branch, solutions in prefetch(solve, range(0, len(moves), _CHUNK)):
         if not follow_nearest(
-            kinematics, space, display_low, first, moves.tip, moves.axis, solutions, branch, progress,
-            poses.state, poses.rotary, poses.outcome, poses.beyond_value, poses.extremes, poses.extreme_rows,
-            poses.changes, joints,
-        ):  # fmt: skip
+            kinematics, space, first, moves.tip, moves.axis, solutions, branch, progress, poses.state, columns, joints
+        ):
             return None
     return poses
 
@@ -191,29 +173,7 @@ def branches_travel_alike(machine: Machine) -> bool:
 
 def poses_of_states(machine: Machine, moves: Moves, state: Codes, keep_slide_limits: bool) -> PlannedPoses:
     """The poses for states (n,) uint8 of ``choose_states``."""
-    states, kinematics = states_of(machine), kinematic_parameters(machine)
-    space = search_space_of(machine, kinematics, states, keep_slide_limits)
-    poses = _empty(state)
-    place_rows(
-        kinematics, space, states.table, _display_low(machine), moves.tip, moves.axis, state,
-        poses.rotary, poses.outcome, poses.beyond_value, poses.extremes, poses.extreme_rows, poses.changes,
-    )  # fmt: skip
+    kinematics, space = kinematic_parameters(machine), search_space_of(machine, keep_slide_limits)
+    poses = PlannedPoses.empty(state)
+    place_rows(kinematics, space, moves.tip, moves.axis, state, poses.columns)
     return poses
-
-
-def _empty(state: Codes) -> PlannedPoses:
-    """Columns for kernels to fill."""
-    return PlannedPoses(
-        rotary=np.empty((len(state), 2)),
-        state=state,
-        outcome=np.zeros(len(state), np.uint8),
-        beyond_value=np.empty(len(state)),
-        extremes=np.tile([np.inf, -np.inf], (5, 1)),
-        extreme_rows=np.zeros((5, 2), np.int64),
-        changes=np.zeros(2 + _NAMED, np.int64),
-    )
-
-
-def _display_low(machine: Machine) -> Floats:
-    """(5,) float64: lower end of the 360 degrees that each axis displays; NaN if it displays its turns."""
-    return np.array([axis.display_low for axis in machine.axes])

@@ -7,13 +7,14 @@ need.
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Floats2, Ints
 from trunnion.jit import kernel
 from trunnion.machines import Machine
+from trunnion.machines.inverse import Pair
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 from trunnion.planning.rotary_positions import is_endless
 
@@ -42,8 +43,7 @@ class FastestRow:
     count: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class OffPartTurns:
+class OffPartTurns(NamedTuple):
     """Rows before which the rotary axes turn while the tool is off the part.
 
     row    (k,) int64      ascending
@@ -51,7 +51,7 @@ class OffPartTurns:
     """
 
     row: Ints
-    after: Floats
+    after: Floats2
 
 
 #: No such rows.
@@ -83,7 +83,7 @@ def find_fastest_row(machine: Machine, operation: Operation, rotary: Floats, off
         Turns that take place outside of the rows.
     """
     share = np.empty((0, 2))
-    return FastestRow(*_speed_shares(*_kernel_columns(machine, operation, rotary), off_part.row, off_part.after, share))
+    return FastestRow(*_speed_shares(*_kernel_arguments(machine, operation, rotary), off_part, share))
 
 
 def speed_shares(machine: Machine, operation: Operation, rotary: Floats, off_part: OffPartTurns = NO_TURNS) -> Floats:
@@ -92,7 +92,7 @@ def speed_shares(machine: Machine, operation: Operation, rotary: Floats, off_par
     Parameters as for ``find_fastest_row``.
     """
     share = np.zeros((len(rotary), 2))
-    _speed_shares(*_kernel_columns(machine, operation, rotary), off_part.row, off_part.after, share)
+    _speed_shares(*_kernel_arguments(machine, operation, rotary), off_part, share)
     return share
 
 
@@ -146,58 +146,65 @@ def lower_feeds(
     return replace(moves, feed=np.where(factor < 1.0, moves.feed * factor, moves.feed)), np.flatnonzero(factor < 1.0)
 
 
-def _kernel_columns(
-    machine: Machine, operation: Operation, rotary: Floats
-) -> tuple[Floats, Codes, Floats, Floats, Flags, Floats]:
-    """What the kernel takes."""
-    moves = operation.moves
-    rapid = [machine.axes[column].rapid for column in machine.rotary]
-    speeds = np.array([math.inf if speed is None else speed for speed in rapid])
-    return moves.tip, moves.kind, tip_speeds(operation), rotary, np.array(is_endless(machine)), speeds
+class _Rows(NamedTuple):
+    """Columns of an operation; ``rate`` is the speed of the tip, ``rotary`` the displayed positions."""
+
+    tip: Floats2
+    kind: Codes
+    rate: Floats
+    rotary: Floats2
+
+
+class _RotaryAxes(NamedTuple):
+    """Of both rotary axes, whether they are endless, and their rapid speeds, degrees/min."""
+
+    endless: tuple[bool, bool]
+    rapid: Pair
+
+
+def _kernel_arguments(machine: Machine, operation: Operation, rotary: Floats) -> tuple[_Rows, _RotaryAxes]:
+    first, second = (machine.axes[column].rapid for column in machine.rotary)
+    rapid = (math.inf if first is None else first, math.inf if second is None else second)
+    rows = _Rows(operation.moves.tip, operation.moves.kind, tip_speeds(operation), rotary)
+    return rows, _RotaryAxes(is_endless(machine), rapid)
 
 
 @kernel(writes="share")
 def _speed_shares(
-    tip: Floats2,
-    kind: Codes,
-    rate: Floats,
-    rotary: Floats2,
-    free: Flags,
-    rapid: Floats,
-    off_part: Ints,
-    after: Floats2,
-    share: Floats2,
+    rows: _Rows, axes: _RotaryAxes, off_part: OffPartTurns, share: Floats2
 ) -> tuple[float, int, int, int]:
-    """Most share, its row and axis, and how many rows ask for more than all; all shares too if there is room."""
-    most, where, which, count = 0.0, -1, 0, 0
-    skip = 0
+    """Fill the shares (n, 2), if there is space; return the fields of ``FastestRow``."""
+    tip, kind, rate, rotary = rows
+    off_part_row, after = off_part
+    largest, fastest_row, fastest_axis, count = 0.0, -1, 0, 0
+    turn = 0
     for row in range(1, tip.shape[0]):
-        while skip < len(off_part) and off_part[skip] < row:
-            skip += 1
+        while turn < len(off_part_row) and off_part_row[turn] < row:
+            turn += 1
         if kind[row] == 0 or not rate[row] > 0.0:
             continue
         one, two = rotary[row, 0] - rotary[row - 1, 0], rotary[row, 1] - rotary[row - 1, 1]
-        if skip < len(off_part) and off_part[skip] == row:
-            one, two = rotary[row, 0] - after[skip, 0], rotary[row, 1] - after[skip, 1]
+        if turn < len(off_part_row) and off_part_row[turn] == row:
+            one, two = rotary[row, 0] - after[turn, 0], rotary[row, 1] - after[turn, 1]
         if one == 0.0 and two == 0.0:
             continue
-        if free[0]:
+        if axes.endless[0]:
             one -= 360.0 * math.floor(one / 360.0 + 0.5)
-        if free[1]:
+        if axes.endless[1]:
             two -= 360.0 * math.floor(two / 360.0 + 0.5)
         one, two = abs(one), abs(two)
         x, y, z = tip[row, 0] - tip[row - 1, 0], tip[row, 1] - tip[row - 1, 1], tip[row, 2] - tip[row - 1, 2]
-        way = math.sqrt(x * x + y * y + z * z)
-        if way < REST_LENGTH:
-            way = max(one, two)
-            if way < REST_LENGTH:
+        length = math.sqrt(x * x + y * y + z * z)
+        if length < REST_LENGTH:
+            length = max(one, two)
+            if length < REST_LENGTH:
                 continue
-        minutes = way / rate[row]
-        one, two = one / minutes / rapid[0], two / minutes / rapid[1]
+        minutes = length / rate[row]
+        one, two = one / minutes / axes.rapid[0], two / minutes / axes.rapid[1]
         if len(share):
             share[row, 0], share[row, 1] = one, two
         if one > 1.0 or two > 1.0:
             count += 1
-        if max(one, two) > most:
-            most, where, which = max(one, two), row, 0 if one >= two else 1
-    return most, where, which, count
+        if max(one, two) > largest:
+            largest, fastest_row, fastest_axis = max(one, two), row, 0 if one >= two else 1
+    return largest, fastest_row, fastest_axis, count
