@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.locations import ROOT
-from trunnion import jit
+from trunnion.jit import store
 
 INNER = """
 from trunnion.jit import inner
@@ -137,9 +137,9 @@ def test_what_cannot_be_loaded_is_compiled_anew(folder: Path) -> None:
     for kept in folder.glob("kept/*/double-*"):
         for file in kept.glob("*/*.nbc"):
             file.write_bytes(b"not a pickle")
-        (store,) = [jit._Store(kept.parent, "double", "")]
-        store.folder = kept
-        store.seal()
+        damaged = store.Store(kept.parent, "double", "")
+        damaged.folder = kept
+        damaged.seal()
     found = run(folder)
 
     assert found[1] == "False True"
@@ -195,9 +195,11 @@ def test_processes_that_need_the_same_kernel_wait_for_the_one_that_compiles_it(f
 
 def test_without_a_folder_that_can_be_written_to_kernels_are_compiled_and_it_is_said_once(folder: Path) -> None:
     nowhere = folder / "some_inner.py" / "below"
-    script = (
-        f"import pathlib\nfrom trunnion import jit\njit._candidates = lambda: iter([pathlib.Path({str(nowhere)!r})])\n"
-    )
+    script = f"""
+from pathlib import Path
+from trunnion.jit import store
+store._candidates = lambda: iter([Path({str(nowhere)!r})])
+"""
     found = run(folder, script + RUN)
 
     assert found[:2] == ["[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]", "False False"]
@@ -209,12 +211,12 @@ def test_the_user_chooses_the_folder_and_the_next_best_is_taken(
 ) -> None:
     file = tmp_path / "file"
     file.write_text("", encoding="utf-8")
-    monkeypatch.setattr(jit._config, "CACHE_DIR", str(tmp_path / "mine"))
-    candidates = list(jit._candidates())
+    monkeypatch.setattr(store._config, "CACHE_DIR", str(tmp_path / "mine"))
+    candidates = list(store._candidates())
 
     assert candidates[0].parent == tmp_path / "mine"
-    monkeypatch.setattr(jit, "_candidates", lambda: iter([file / "below", tmp_path / "next"]))
-    assert jit.cache_folder.__wrapped__() == tmp_path / "next"
+    monkeypatch.setattr(store, "_candidates", lambda: iter([file / "below", tmp_path / "next"]))
+    assert store.cache_folder.__wrapped__() == tmp_path / "next"
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="temporary folders are the user's own there")
@@ -224,9 +226,9 @@ def test_machine_code_is_not_taken_from_a_folder_that_others_can_write_to(tmp_pa
     open_to_all.chmod(0o777)
     (tmp_path / "link").symlink_to(tmp_path)
 
-    assert jit._is_private(tmp_path / "own")
-    assert not jit._is_private(open_to_all)
-    assert not jit._is_private(tmp_path / "link")
+    assert store._is_private(tmp_path / "own")
+    assert not store._is_private(open_to_all)
+    assert not store._is_private(tmp_path / "link")
 
 
 def test_an_argument_of_another_type_is_refused(folder: Path) -> None:

@@ -1,0 +1,71 @@
+"""Compiling on two cores: in one process Numba compiles one function at a time, so that it takes a second process."""
+
+import gc
+import logging
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numba
+
+from trunnion.jit.kernels import Kernel
+from trunnion.jit.store import cache_folder
+
+_log = logging.getLogger("trunnion.jit")
+
+#: Missing kernels from which on a second process is worth its start.
+_WORTH_A_PROCESS = 3
+
+
+def compile_ahead(kernels: Sequence[Any]) -> None:
+    """Have a second process compile the kernels that are not on disk, the last one first.
+
+    This process compiles from the front, each kernel when it is first called, and waits for one that the other process
+    has begun: they meet half-way. Does nothing where no kernel is missing.
+
+    Parameters
+    ----------
+    kernels
+        In the order in which they will be called.
+    """
+    missing = [one for one in kernels if isinstance(one, Kernel) and not one.is_kept]
+    if not missing:
+        return
+    _log.info("compiling %d kernels for this computer, once; this takes some seconds", len(missing))
+    for one in missing:
+        one.announced = True
+    folder = cache_folder()
+    alone = (os.cpu_count() or 1) < 2 or not sys.executable or getattr(sys, "frozen", False)
+    if folder is not None and not alone and len(missing) >= _WORTH_A_PROCESS:
+        _start(folder, [one.name for one in reversed(missing)])
+
+
+def _start(folder: Path, names: Sequence[str]) -> None:
+    """Start the second process; without it, everything is compiled here."""
+    package = str(Path(__file__).parents[2])
+    path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
+    call = f"from {__name__} import compile_named; compile_named()"
+    try:
+        subprocess.Popen(
+            [sys.executable, "-c", call, str(folder.parent), *names],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONPATH": path},
+        )
+    except OSError as error:
+        _log.debug("no second process: %s", error)
+
+
+def compile_named() -> None:
+    """Compile the kernels that the arguments name, but for those that another process has begun."""
+    gc.disable()
+    config: Any = numba.config
+    config.CACHE_DIR, *names = sys.argv[1:]
+    for name in names:
+        module, _, kernel_name = name.rpartition(".")
+        getattr(import_module(module), kernel_name).prepare(wait=False)

@@ -1,0 +1,67 @@
+"""The Numba types of a kernel's arguments, by its annotations, and arguments made to fit them."""
+
+import inspect
+from collections.abc import Callable
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+import numba
+import numpy as np
+
+_SCALARS = {int: numba.int64, float: numba.float64, bool: numba.boolean}
+
+_tuple_of: Callable[..., Any] = numba.types.BaseTuple.from_types
+
+
+def numba_types(function: Callable[..., Any], writes: frozenset[str]) -> tuple[Any, ...]:
+    """Numba types of all arguments.
+
+    ``int``, ``float`` and ``bool``; arrays as ``trunnion.arrays`` names them; tuples of these, and named ones.
+
+    Parameters
+    ----------
+    writes
+        Names of arguments whose arrays are written to; the others' are read-only.
+    """
+    hints = get_type_hints(function, include_extras=True)
+    return tuple(_numba_type(hints[name], name in writes) for name in inspect.signature(function).parameters)
+
+
+def _numba_type(annotation: Any, written: bool) -> Any:
+    size = 1
+    if get_origin(annotation) is Annotated:
+        annotation, size = get_args(annotation)
+    if annotation in _SCALARS:
+        return _SCALARS[annotation]
+    if get_origin(annotation) is np.ndarray:
+        (scalar,) = get_args(get_args(annotation)[1])
+        return numba.types.Array(numba.from_dtype(np.dtype(scalar)), size, "C", readonly=not written)
+    if get_origin(annotation) is tuple:
+        parts = get_args(annotation)
+        parts = parts[:1] * size if parts[1:] == (...,) else parts
+        return _tuple_of([_numba_type(part, written) for part in parts])
+    if hasattr(annotation, "_fields"):
+        fields = get_type_hints(annotation, include_extras=True)
+        return _tuple_of([_numba_type(fields[name], written) for name in annotation._fields], annotation)
+    raise TypeError(f"no Numba type for {annotation}")
+
+
+def is_read(kind: Any) -> bool:
+    """Whether an argument of a Numba type is, or holds, an array that is not written to."""
+    if isinstance(kind, numba.types.Array):
+        return not kind.mutable
+    parts: Any = kind if isinstance(kind, numba.types.BaseTuple) else ()
+    return any(is_read(part) for part in parts)
+
+
+def as_readable(value: Any) -> Any:
+    """An array, or a named tuple with arrays, as a kernel reads it: C-contiguous."""
+    if isinstance(value, np.ndarray):
+        return np.ascontiguousarray(value)
+    # Numba takes an array that may be written to for a read-only one, but not within a tuple.
+    return type(value)(*(_read_only(part) if isinstance(part, np.ndarray) else part for part in value))
+
+
+def _read_only(array: Any) -> Any:
+    view = np.ascontiguousarray(array).view()
+    view.flags.writeable = False
+    return view

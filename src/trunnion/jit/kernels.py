@@ -1,0 +1,175 @@
+"""The decorators that make kernels, and the life of a kernel: declared, loaded or compiled, called."""
+
+import hashlib
+import logging
+import threading
+from collections.abc import Callable
+from functools import cached_property, update_wrapper
+from typing import Any, TypeVar, cast
+
+import numba
+from numba.extending import register_jitable
+
+from trunnion.jit.argument_types import as_readable, is_read, numba_types
+from trunnion.jit.digest import ingredients
+from trunnion.jit.store import Store, cache_folder
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_log = logging.getLogger("trunnion.jit")
+
+_config: Any = numba.config
+
+#: Held while ``numba.config.CACHE_DIR``, which is the process's, is that of one kernel.
+_enabling = threading.Lock()
+
+
+def inner(function: Function) -> Function:
+    """Compile a function into the kernels that call it. Called from Python, it is the plain function."""
+    return register_jitable(function)
+
+
+def inlined(function: Function) -> Function:
+    """Copy a function into the kernels that call it before they are compiled, for functions shorter than a call."""
+    return cast(Function, numba.njit(inline="always")(function))
+
+
+def kernel(*, writes: str = "") -> Callable[[Function], Function]:
+    """Compile a function that Python calls, for the types that its signature declares.
+
+    Arrays have one dimension, unless their annotation says more (``trunnion.arrays.Floats2``). Those that ``writes``
+    names are written to and must be C-contiguous; the others may be read-only, and of any layout. The function gives up
+    the interpreter's lock while it runs.
+    """
+
+    def compiled(function: Function) -> Function:
+        if _config.DISABLE_JIT:
+            return function
+        return cast(Function, Kernel(function, frozenset(writes.split())))
+
+    return compiled
+
+
+class Kernel:
+    """A function that is compiled when it is first called, or loaded if its machine code is kept."""
+
+    def __init__(self, function: Callable[..., Any], writes: frozenset[str]) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        self.name = f"{function.__module__}.{function.__qualname__}"
+        self._writes = writes
+        self._dispatcher: Any = numba.njit(nogil=True)(function)
+        self._ready = False
+        #: Whether the log has said that it is compiled.
+        self.announced = False
+        self._preparing = threading.Lock()
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run it. Arrays that it reads are copied if they are not C-contiguous."""
+        if not self._ready:
+            self.prepare()
+        given = list(arguments)
+        for k in self._read:
+            given[k] = as_readable(given[k])
+        return self._dispatcher(*given)
+
+    @cached_property
+    def types(self) -> tuple[Any, ...]:
+        """The Numba types of the arguments."""
+        return numba_types(self.py_func, self._writes)
+
+    @cached_property
+    def _read(self) -> list[int]:
+        """Which arguments are, or hold, arrays that it does not write to."""
+        return [k for k, kind in enumerate(self.types) if is_read(kind)]
+
+    @cached_property
+    def digest(self) -> str:
+        """A short name for everything that is compiled into the kernel."""
+        digest = hashlib.sha256(repr((self.types, self._dispatcher.targetoptions)).encode())
+        for part in ingredients(self.py_func):
+            digest.update(part)
+        return digest.hexdigest()[:16]
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether its machine code is on disk, undamaged."""
+        return self._store is not None and self._store.is_whole()
+
+    @property
+    def was_loaded(self) -> bool:
+        """Whether it runs the machine code that was kept on disk."""
+        return self._ready and bool(self._dispatcher.stats.cache_hits)
+
+    def prepare(self, *, wait: bool = True) -> None:
+        """Load the machine code, or compile it.
+
+        While another process compiles it, wait, and load what that process made; without ``wait``, return.
+        """
+        with self._preparing:
+            if self._ready:
+                return
+            store = self._store
+            if store is None:
+                self._announce()
+                self._dispatcher.compile(self.types)
+            elif not self._load(store):
+                with store.locked(wait=wait) as held:
+                    if not held:
+                        return
+                    if not self._load(store):  # nor has another process made it meanwhile
+                        self._renew(store)
+            self._dispatcher.disable_compile()
+            self._ready = True
+
+    def _announce(self) -> None:
+        if not self.announced:
+            self.announced = True
+            _log.info("compiling the kernel %s, once", self.name)
+
+    @cached_property
+    def _store(self) -> Store | None:
+        root = cache_folder()
+        return None if root is None else Store(root, self.name, self.digest)
+
+    def _load(self, store: Store) -> bool:
+        """Load what is kept; False if there is nothing, or nothing that can be used."""
+        if not store.is_whole():
+            return False
+        try:
+            self._compile_into(store)
+        except Exception as error:  # whatever the unpickling of a foreign file raises
+            _log.warning("the machine code of %s cannot be loaded and is compiled anew: %r", self.name, error)
+            store.remove()
+            return False
+        if not self._dispatcher.stats.cache_hits:  # what is kept was for other processors; now it is for this one too
+            with store.locked():
+                store.seal()
+        return True
+
+    def _renew(self, store: Store) -> None:
+        """Compile, and keep it."""
+        if store.is_sealed:
+            _log.warning("the machine code of %s was damaged on disk and is compiled anew", self.name)
+        self._announce()
+        store.clear()
+        self._compile_into(store)
+        store.seal()
+
+    def _compile_into(self, store: Store) -> None:
+        """Compile and keep it in a folder, or load it from there."""
+        with _enabling:
+            chosen, _config.CACHE_DIR = _config.CACHE_DIR, str(store.folder)
+            try:
+                self._dispatcher.enable_caching()
+            except RuntimeError:  # "no locator available": the folder cannot be written to any more
+                _log.warning("the machine code of %s cannot be kept in %s", self.name, store.folder)
+            finally:
+                _config.CACHE_DIR = chosen
+        try:
+            self._dispatcher.compile(self.types)
+        except OSError as error:
+            if not self._dispatcher.signatures:
+                raise
+            # It was compiled before it was written.
+            _log.warning("the machine code of %s cannot be kept: %s", self.name, error)
