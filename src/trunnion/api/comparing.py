@@ -6,6 +6,7 @@ from trunnion import readers
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
 from trunnion.api.settings import check_tolerance
 from trunnion.api.verifying import rapid_feed_of
+from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.verification import Comparison, compare, restore_rapids
@@ -61,6 +62,7 @@ def diff(
     two = one if to_machine is None else as_machine(to_machine)
     for each in (one, two):
         readers.reader_of(each)
+    compile_ahead(readers.KERNELS)
     return compare(_run(first, one, subprograms), _run(second, two, to_subprograms), tolerance, path=path)
 
 

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from trunnion import conversion
+from trunnion import conversion, readers
+from trunnion.api import kernels
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.post_result import PostResult
@@ -19,6 +20,7 @@ from trunnion.controls import Control, load_control
 from trunnion.conversion import Conversion
 from trunnion.conversion.program_events import COMPENSATION_FINDINGS
 from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 
@@ -120,6 +122,7 @@ def convert(
     control = load_control(source.control)
     job = prepare(source if to_machine is None else as_machine(to_machine), settings, force=force)
     _check_settings(job, to_cl)
+    compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
     source = set_up_machine(source, zero, tool_length)
     with open_target(_checked_output(output, nc)) as target:
         divided = job.subprograms(target.files, target.path) is not None

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from trunnion.api import kernels
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
@@ -19,19 +20,11 @@ from trunnion.api.reports import check_report_name
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
-from trunnion.cl import KERNELS as CL_KERNELS
 from trunnion.errors import Problem, Severity
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.output import KERNELS as OUTPUT_KERNELS
-from trunnion.planning import KERNELS as PLANNING_KERNELS
-from trunnion.readers import KERNELS as READER_KERNELS
-from trunnion.verification import KERNELS as VERIFICATION_KERNELS
 from trunnion.verification import Verification, verify
-
-#: In the order in which posting needs them.
-_KERNELS = (*CL_KERNELS, *PLANNING_KERNELS, *OUTPUT_KERNELS, *READER_KERNELS, *VERIFICATION_KERNELS)
 
 
 def post(
@@ -105,7 +98,7 @@ def post(
     """
     if report is not None:
         check_report_name(report)
-    compile_ahead(_KERNELS)
+    compile_ahead(kernels.POSTING)
     place = None if report is None else Path(report)
     job = prepare(as_machine(machine), settings, force=force, explain=explain, report=place, columns=columns)
     with open_target(output) as target:

@@ -4,11 +4,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal
 
 from trunnion import readers, verification
+from trunnion.api import kernels
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths, read_program
 from trunnion.api.settings import check_tolerance, set_up_machine, work_offset_number
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
+from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.verification import Settings, Tolerances, Verification
@@ -98,6 +100,7 @@ def verify(
         check_tolerance(f"--{key}", value)
     loaded = as_machine(machine)
     readers.reader_of(loaded)
+    compile_ahead(kernels.VERIFYING)
     loaded = set_up_machine(loaded, zero, tool_length)
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer)

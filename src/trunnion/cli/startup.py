@@ -8,10 +8,15 @@ import argparse
 from concurrent.futures import ThreadPoolExecutor
 
 from trunnion.cli.cl_files import read_toolpaths
+from trunnion.jit import compile_ahead, is_first_run
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Post every CL file."""
+    if is_first_run():  # compiling takes longer than all else: the second process should begin at once
+        from trunnion.api import kernels
+
+        compile_ahead(kernels.POSTING)
     with ThreadPoolExecutor(1) as executor:
         coming = read_toolpaths(arguments.files, dict(arguments.settings).get("units"), arguments.strict, executor)
         from trunnion.cli.post import post

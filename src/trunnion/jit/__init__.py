@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.jit.ahead import compile_ahead
+from trunnion.jit.ahead import compile_ahead, is_first_run
 from trunnion.jit.kernels import inlined, inner, kernel
 
 #: Kernels that scan bytes keep positions as unsigned numbers: Numba asks of every signed index whether it counts from
@@ -24,4 +24,4 @@ unsigned: Any = np.uint64
 signed: Any = np.int64
 ONE: Any = np.uint64(1)
 
-__all__ = ["ONE", "compile_ahead", "inlined", "inner", "kernel", "signed", "unsigned"]
+__all__ = ["ONE", "compile_ahead", "inlined", "inner", "is_first_run", "kernel", "signed", "unsigned"]

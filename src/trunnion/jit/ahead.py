@@ -21,6 +21,12 @@ _log = logging.getLogger("trunnion.jit")
 _WORTH_A_PROCESS = 3
 
 
+def is_first_run() -> bool:
+    """Whether no machine code is on disk."""
+    folder = cache_folder()
+    return folder is None or not any(folder.iterdir())
+
+
 def compile_ahead(kernels: Sequence[Any]) -> None:
     """Have a second process compile the kernels that are not on disk, the last one first.
 
@@ -32,7 +38,7 @@ def compile_ahead(kernels: Sequence[Any]) -> None:
     kernels
         In the order in which they will be called.
     """
-    missing = [one for one in kernels if isinstance(one, Kernel) and not one.is_kept]
+    missing = [one for one in kernels if isinstance(one, Kernel) and not (one.announced or one.is_kept)]
     if not missing:
         return
     _log.info("compiling %d kernels for this computer, once; this takes some seconds", len(missing))

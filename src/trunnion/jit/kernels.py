@@ -60,6 +60,7 @@ class Kernel:
         self._writes = writes
         self._dispatcher: Any = numba.njit(nogil=True)(function)
         self._ready = False
+        self._whole = False
         #: Whether the log has said that it is compiled.
         self.announced = False
         self._preparing = threading.Lock()
@@ -94,7 +95,8 @@ class Kernel:
     @property
     def is_kept(self) -> bool:
         """Whether its machine code is on disk, undamaged."""
-        return self._store is not None and self._store.is_whole()
+        self._whole = self._whole or (self._store is not None and self._store.is_whole())
+        return self._whole
 
     @property
     def was_loaded(self) -> bool:
@@ -134,13 +136,14 @@ class Kernel:
 
     def _load(self, store: Store) -> bool:
         """Load what is kept; False if there is nothing, or nothing that can be used."""
-        if not store.is_whole():
+        if not self.is_kept:
             return False
         try:
             self._compile_into(store)
         except Exception as error:  # whatever the unpickling of a foreign file raises
             _log.warning("the machine code of %s cannot be loaded and is compiled anew: %r", self.name, error)
             store.remove()
+            self._whole = False
             return False
         if not self._dispatcher.stats.cache_hits:  # what is kept was for other processors; now it is for this one too
             with store.locked():

@@ -100,29 +100,24 @@ def resolve_angles(
     machine: Machine, words: RotaryWords, start: Floats, status: Codes, deciding_axis: int = TOTAL_ROTATION
 ) -> None:
     """Replace ``words.rotary`` by positions, beginning at ``start`` (2,), and set bits of ``status`` (n,)."""
-    n = len(words.rotary)
-    has_vector = ~np.isnan(words.vector[:, 0])
-    solutions = np.full((2, n, 2), np.nan) if has_vector.any() else np.empty((2, 0, 2))
-    pole = np.zeros(n, np.bool_)
     columns = list(machine.rotary)
-    if has_vector.any():
-        solved = inverse(machine, np.zeros((int(has_vector.sum()), 3)), words.vector[has_vector])
-        solutions[:, has_vector] = solved.joints[:, :, columns]
-        pole[has_vector] = solved.pole
     axes = [machine.axes[column] for column in columns]
-    resolve_turns(
-        words.rotary,
-        words.turn_rule,
-        has_vector,
-        solutions,
-        pole,
-        start,
-        np.array([axis.endless for axis in axes]),
-        np.array([[axis.low, axis.high] for axis in axes]),
-        np.array([-180.0 if axis.output == "-180..180" else 0.0 for axis in axes]),
-        deciding_axis,
-        status,
-    )
+    turn_start = np.array([-180.0 if axis.output == "-180..180" else 0.0 for axis in axes])
+    has_vector = ~np.isnan(words.vector[:, 0])
+    if not has_vector.any():
+        resolve_turns(words.rotary, words.turn_rule, start, turn_start)
+        return
+    n = len(words.rotary)
+    solutions, pole = np.full((2, n, 2), np.nan), np.zeros(n, np.bool_)
+    solved = inverse(machine, np.zeros((int(has_vector.sum()), 3)), words.vector[has_vector])
+    solutions[:, has_vector] = solved.joints[:, :, columns]
+    pole[has_vector] = solved.pole
+    endless = np.array([axis.endless for axis in axes])
+    travel = np.array([[axis.low, axis.high] for axis in axes])
+    resolve_vectors(
+        words.rotary, words.turn_rule, has_vector, solutions, pole, start, endless, travel, turn_start,
+        deciding_axis, status,
+    )  # fmt: skip
 
 
 def joints_from_rows(
@@ -143,8 +138,24 @@ def slide_columns(machine: Machine) -> list[int]:
     return [machine.column(name) for name in "XYZ"]
 
 
+@kernel(writes="rotary")
+def resolve_turns(rotary: Floats2, turn_rule: Codes, start: Floats, turn_start: Floats) -> None:
+    """Replace the values of ``rotary`` (n, 2), NaN where none is programmed, by the positions that the axes take.
+
+    start       (2,) float64  positions before the first row
+    turn_start  (2,) float64  where the displayed turn of an axis begins, 0 or -180
+    """
+    a, b = start[0], start[1]
+    for row in range(rotary.shape[0]):
+        rule = int(turn_rule[row])
+        a = rotary_position(a, rotary[row, 0], rule & 15, turn_start[0])
+        b = rotary_position(b, rotary[row, 1], rule >> 4, turn_start[1])
+        rotary[row, 0] = a
+        rotary[row, 1] = b
+
+
 @kernel(writes="rotary status")
-def resolve_turns(
+def resolve_vectors(
     rotary: Floats2,
     turn_rule: Codes,
     has_vector: Flags,
@@ -157,9 +168,9 @@ def resolve_turns(
     deciding_axis: int,
     status: Codes,
 ) -> None:
-    """Replace the values of ``rotary`` (n, 2), NaN where none is programmed, by the positions that the axes take.
+    """Do as ``resolve_turns``, with rows that program the tool axis as a vector.
 
-    solutions   (2, n, 2) float64  both solutions of rows with a vector, in (-180, 180]; may be empty if there are none
+    solutions   (2, n, 2) float64  both solutions of rows with a vector, in (-180, 180]
     pole        (n,) bool          the first angle is free: the axis stays
     start       (2,) float64       positions before the first row
     endless     (2,) bool
@@ -170,8 +181,9 @@ def resolve_turns(
     a, b = start[0], start[1]
     for row in range(rotary.shape[0]):
         if not has_vector[row]:
-            a = rotary_position(a, rotary[row, 0], turn_rule[row] & 15, turn_start[0])
-            b = rotary_position(b, rotary[row, 1], turn_rule[row] >> 4, turn_start[1])
+            rule = int(turn_rule[row])
+            a = rotary_position(a, rotary[row, 0], rule & 15, turn_start[0])
+            b = rotary_position(b, rotary[row, 1], rule >> 4, turn_start[1])
         else:
             found = False
             best_a, best_b = a, b

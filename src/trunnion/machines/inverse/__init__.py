@@ -32,7 +32,7 @@ Kernels do not raise; they return status bits:
                       axis between slides, such as a quill at 90 degrees
 """
 
-from trunnion.machines.inverse.parameters import FlatArray, KinematicParameters, kinematic_parameters
+from trunnion.machines.inverse.parameters import FlatArray, KinematicParameters, Pair, kinematic_parameters
 from trunnion.machines.inverse.rotary import (
     POLE,
     POLE_TOLERANCE,
@@ -53,6 +53,7 @@ __all__ = [
     "FlatArray",
     "InverseSolutions",
     "KinematicParameters",
+    "Pair",
     "branch_angles",
     "inverse",
     "kinematic_parameters",

@@ -11,7 +11,7 @@ from trunnion.machines.inverse.parameters import MIN_SLIDE_VOLUME, FlatArray, Ki
 SLIDES_DEPENDENT: Final = 4
 
 
-@inner
+@inlined
 def solve_slides(
     kinematics: KinematicParameters, first: float, second: float, x: float, y: float, z: float, out: Floats
 ) -> int:
