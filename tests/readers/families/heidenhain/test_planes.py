@@ -169,13 +169,65 @@ def test_axial_planes_are_those_that_the_tool_stands_on(run: Runner) -> None:
     close(found.axis[-1], matrix(-30, 0, 50)[:, 2], atol=1e-9)
 
 
-@pytest.mark.parametrize("reset", ["PLANE RESET STAY", "PLANE RESET TURN FMAX", "CYCL DEF 19.0 PLANE\nCYCL DEF 19.1"])
-def test_a_reset_leaves_the_shift_from_before_the_plane(reset: str, run: Runner) -> None:
-    text = "CYCL DEF 7.1 X+10\nPLANE SPATIAL SPA-45 SPB+0 SPC+0 TURN FMAX SEQ-\nCYCL DEF 7.1 X+5\nL X+1 Y+0 Z+0\n"
-    found = run(text + reset + "\nL A+0 C+0 FMAX\nL X+1 Y+0 Z+0")
+RESETS = ["PLANE RESET STAY", "PLANE RESET TURN FMAX", "CYCL DEF 19.0 PLANE\nCYCL DEF 19.1"]
+TILT = "PLANE SPATIAL SPA-45 SPB+0 SPC+0 TURN FMAX SEQ-\n"
+SHIFT = "CYCL DEF 7.0 SHIFT\nCYCL DEF 7.1 X+248\nCYCL DEF 7.2 Y+0\nCYCL DEF 7.3 Z-48\n"
+NO_SHIFT = "CYCL DEF 7.0 SHIFT\nCYCL DEF 7.1 X+0\nCYCL DEF 7.2 Y+0\nCYCL DEF 7.3 Z+0\n"
+HERE = "L A+0 C+0 FMAX\nL X+10 Y+1 Z+2"
+
+
+@pytest.mark.parametrize("reset", RESETS)
+def test_a_shift_that_is_reset_in_the_plane_ends_with_it(reset: str, run: Runner) -> None:
+    found = run(SHIFT + TILT + "L X+1 Y+0 Z+0\n" + NO_SHIFT + reset + "\n" + HERE)
     assert found.diagnostics == ()
-    close(found.tip[1], [16, 0, 0], atol=1e-9)
-    close(found.tip[-1], [11, 0, 0], atol=1e-9)
+    close(found.tip[1], [249, 0, -48], atol=1e-9)
+    close(found.tip[-1], [10, 1, 2], atol=1e-9)
+
+
+@pytest.mark.parametrize("reset", RESETS)
+def test_a_shift_from_before_the_plane_outlives_it(reset: str, run: Runner) -> None:
+    found = run(SHIFT + TILT + reset + "\n" + HERE)
+    assert found.diagnostics == ()
+    close(found.tip[-1], [258, 1, -46], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        # Which of two shifts counts, or whether both do.
+        (SHIFT + TILT + "CYCL DEF 7.1 X+5\nL X+1", 7),
+        (SHIFT + TILT + "CYCL DEF 7.1 X+0\nL X+1", 7),
+        (SHIFT + TILT + "CYCL DEF 7.2 IY+5\nL X+1", 7),
+        (SHIFT + TILT + NO_SHIFT + TILT + "L X+1", 11),
+        # A part of a shift that is not reset, and shifts that are not reset at all.
+        (SHIFT + TILT + "CYCL DEF 7.1 X+0\nPLANE RESET STAY\nL X+100", 8),
+        (TILT + "CYCL DEF 7.1 X+5\nL X+1\nPLANE RESET STAY\nL X+1", 5),
+        (TILT + "CYCL DEF 7.1 X+5\nL X+1\n" + TILT + "L X+1", 5),
+        (TILT + "CYCL DEF 7.1 X+5\nPLANE RELATIV SPA+5 STAY\nCYCL DEF 7.1 X+0\nPLANE RESET STAY\nL X+1", 6),
+        # The same with rotation, mirror and scale, with holes and with words of plain blocks.
+        (TILT + "CYCL DEF 10.1 ROT+5\nPLANE RESET STAY\nL X+1", 4),
+        ("CYCL DEF 8.1 X\n" + TILT + "CYCL DEF 8.1\nL X+1", 4),
+        ("CYCL DEF 11.1 SCL2\n" + TILT + "CYCL DEF 11.1 SCL1\nPLANE RESET STAY\nL X+1", 5),
+        (TILT + "CYCL DEF 7.1 X+5\nPLANE RESET STAY\nCYCL DEF 7.1 IX+5\nL X+1", 5),
+    ],
+)
+def test_what_no_source_settles_is_an_error_at_the_first_motion(text: str, line: int, run: Runner) -> None:
+    found = run(text + " Y+1 Z+7 R0 FMAX\nL Z+8 F100")
+    assert [each.line for each in found.errors] == [line]
+    assert "unconfirmed" in found.errors[0].text
+
+
+def test_motions_in_machine_coordinates_and_what_is_set_anew_are_not_in_doubt(run: Runner) -> None:
+    found = run(TILT + "CYCL DEF 7.1 X+5\nPLANE RESET STAY\nL Z+0 R0 FMAX M91\n" + SHIFT + HERE)
+    assert found.diagnostics == ()
+    close(found.tip[-1], [258, 1, -46], atol=1e-9)
+
+
+def test_a_rotation_in_a_plane_with_a_shift_from_before_is_the_order_of_the_manuals(run: Runner) -> None:
+    found = run(SHIFT + TILT + "CYCL DEF 10.1 ROT+90\nL X+1 Y+0 Z+0\nCYCL DEF 10.1 ROT+0\nPLANE RESET STAY\n" + HERE)
+    assert found.diagnostics == ()
+    close(found.tip[1], matrix(-45, 0, 0) @ [0, 1, 0] + [248, 0, -48], atol=1e-9)
+    close(found.tip[-1], [258, 1, -46], atol=1e-9)
 
 
 def test_cycle_19_is_a_plane_without_a_motion(run: Runner) -> None:

@@ -8,6 +8,7 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
+from trunnion.readers.families.heidenhain import plane_datums
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycles import (
     CYCLES,
@@ -134,29 +135,35 @@ class Definitions:
             self._note("cycle 7 takes a datum from a table, which only the control has", Severity.ERROR)
             return
         shift = list(self._control.datum.shift)
-        for word, value in _axis_values(words(rest), parameters, "XYZ"):
+        values = _axis_values(words(rest), parameters, "XYZ")
+        for word, value in values:
             axis = "XYZ".index(word.name)
             value *= self._control.length_unit
             shift[axis] = shift[axis] + value if word.incremental else value
         if any(abs(value) > MAX_POSITION for value in shift):
             raise KlartextError("a shift that no machine has")
-        self._control.set_datum(replace(self._control.datum, shift=(shift[0], shift[1], shift[2])))
+        datum = replace(self._control.datum, shift=(shift[0], shift[1], shift[2]))
+        parts = {plane_datums.SHIFTS["XYZ".index(word.name)] for word, _ in values}
+        self._control.set_datum(datum, parts, incremental=any(word.incremental for word, _ in values))
 
     def _mirror(self, block_words: list[Word]) -> None:
         names = [word.name for word in block_words]
         if any(name not in ("X", "Y", "Z") for name in names):
             raise KlartextError("only X, Y and Z are mirrored here")
         mirrored = ("X" in names, "Y" in names, "Z" in names)
-        self._control.set_datum(replace(self._control.datum, mirrored=mirrored))
+        self._control.set_datum(replace(self._control.datum, mirrored=mirrored), {plane_datums.MIRROR})
 
     def _rotate(self, block_words: list[Word], parameters: Parameters) -> None:
         angle = self._control.datum.angle
+        incremental = any(word.incremental for word in block_words)
         for word in block_words:
             if word.name != "ROT" or word.operand is None:
                 raise KlartextError(f"unknown word {word.name}")
             value = value_of(word.operand, parameters)
             angle = angle + value if word.incremental else value
-        self._control.set_datum(replace(self._control.datum, angle=angle))
+        self._control.set_datum(
+            replace(self._control.datum, angle=angle), {plane_datums.ROTATION}, incremental=incremental
+        )
 
     def _scale(self, block_words: list[Word], parameters: Parameters) -> None:
         scale, centre = [1.0, 1.0, 1.0], [0.0, 0.0, 0.0]
@@ -178,7 +185,7 @@ class Definitions:
         datum = replace(
             self._control.datum, scale=(scale[0], scale[1], scale[2]), centre=(centre[0], centre[1], centre[2])
         )
-        self._control.set_datum(datum)
+        self._control.set_datum(datum, {plane_datums.SCALE})
 
     def _tilt(self, block_words: list[Word], parameters: Parameters) -> None:
         """Cycle 19: tilt by spatial angles, without a motion; that the angles are spatial ones is unconfirmed."""

@@ -77,7 +77,10 @@ class HeidenhainInterpreter(FlowInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        if self._block_parts or self._m_functions.modal_call or self.control.modal.compensation.current:
+        control = self.control
+        if self._block_parts or self._m_functions.modal_call or control.modal.compensation.current:
+            return False
+        if control.is_datum_in_doubt:
             return False
         beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH]
         return _PLAIN_START.match(beginning.tobytes()) is not None

@@ -1,6 +1,7 @@
 """Datums and tilted planes of a TNC."""
 
 import math
+from collections.abc import Set
 from dataclasses import dataclass
 from typing import Final
 
@@ -16,6 +17,7 @@ from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import RotaryTarget
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.control.virtual_control import VirtualControl
+from trunnion.readers.families.heidenhain.plane_datums import PlaneDatums
 from trunnion.readers.families.heidenhain.plane_frames import Datum
 
 #: A master axis within this of zero has no sign, degrees.
@@ -48,30 +50,49 @@ class PlaneControl(VirtualControl):
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
-        # Datums before the plane was tilted, and in the plane.
-        self._base_datum = Datum()
-        self._plane_datum = Datum()
+        self._datums = PlaneDatums()
+        self._doubt_reported = False
 
     # Datum shift, mirror, rotation, scale
 
     @property
     def datum(self) -> Datum:
         """The datum in force: that of the tilted plane, or the one without a plane."""
-        return self._plane_datum if self.tilted else self._base_datum
+        return self._datums.in_plane if self.tilted else self._datums.base
 
-    def set_datum(self, datum: Datum) -> None:
-        """Shift, mirror, rotate or scale; the axes stay."""
+    def set_datum(self, datum: Datum, parts: Set[str], *, incremental: bool = False) -> None:
+        """Shift, mirror, rotate or scale; the axes stay.
+
+        parts        those of ``plane_datums`` that are set
+        incremental  they count from their values before
+        """
         frame = datum.frame(self.plane_axis)
         self.set_program_frame(frame, keep_base=False)
         if self.program_frame is not frame:
             return
         if self.tilted:
-            if datum == Datum() and self._plane_datum == Datum() and self._base_datum != Datum():
-                text = "the shift from before the tilted plane stays: taken as a reset of the plane's own (unconfirmed)"
-                self.note(text, Severity.WARNING)
-            self._plane_datum = datum
+            self._datums.set_in_plane(datum, parts)
         else:
-            self._base_datum = datum
+            self._datums.set_base(datum, frozenset() if incremental else parts)
+
+    @property
+    def is_datum_in_doubt(self) -> bool:
+        """The datum is unsettled, and no motion has reported it."""
+        if not self._datums.unsettled:
+            self._doubt_reported = False
+        return bool(self._datums.unsettled) and not self._doubt_reported
+
+    def report_datum_in_doubt(self) -> None:
+        """Report, once, that a motion depends on a datum that is unsettled."""
+        if self.is_datum_in_doubt:
+            parts = ", ".join(sorted(self._datums.unsettled))
+            what = f"which {parts} counts here is unconfirmed: it was set before the tilted plane and again in it"
+            if not self.tilted:
+                what = f"whether the {parts} of the tilted plane ends with it is unconfirmed"
+            self.note(
+                f"{what}; reset what is set in a plane before it ends, and set it anew without one", Severity.ERROR
+            )
+            self._doubt_reported = True
 
     # Planes
 
@@ -92,7 +113,7 @@ class PlaneControl(VirtualControl):
             aligned = tool_orientation.align_first_axis(self.machine, rotary, total.linear[:, 0])
             rotary = self._in_nearest_turn(aligned)
         self._position_rotary(rotary, positioning)
-        self._enter_plane(total)
+        self._enter_plane(total, on_top=relative)
         return rotary
 
     def tilt_axial(self, rotary: tuple[float, float], positioning: Positioning) -> None:
@@ -106,17 +127,17 @@ class PlaneControl(VirtualControl):
         """PLANE RESET: end the tilted plane, and the datum that was set in it."""
         self._position_rotary((0.0, 0.0), positioning)
         if self.tilted:
+            self._datums.leave_plane()
             self.set_plane(None, self._base_frame)
-        self._plane_datum = Datum()
 
     @property
     def _base_frame(self) -> AffineMap:
         """The frame in which planes are defined."""
-        return self._base_datum.frame(self.plane_axis)
+        return self._datums.base.frame(self.plane_axis)
 
-    def _enter_plane(self, plane: AffineMap) -> None:
+    def _enter_plane(self, plane: AffineMap, *, on_top: bool = False) -> None:
+        self._datums.enter_plane(on_top=on_top)
         self.set_plane(plane)
-        self._plane_datum = Datum()
 
     def _rotary_solution(self, normal: Floats, positioning: Positioning) -> tuple[float, float] | None:
         """Return the rotary position with the tool normal to a plane that the block selects."""
