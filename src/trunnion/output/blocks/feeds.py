@@ -1,5 +1,7 @@
 """F in motion blocks, and the words that tell what it means."""
 
+from typing import Final
+
 import numpy as np
 
 from trunnion.arrays import Flags
@@ -10,6 +12,9 @@ from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import BlockWriter
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, feed_rule, feed_words
 from trunnion.output.program import Program
+
+#: The modal words F, by what it means: mm per minute, and mm per revolution.
+FEED_WORDS: Final = ("feed", "feed_per_rev")
 
 
 class FeedWords:
@@ -34,16 +39,24 @@ class FeedWords:
     def use_mode(self, code: int) -> int:
         """Return the code of a feed mode that is active from here on; where it changes, F is written again."""
         if code != self._mode:
-            self._writer.forget("feed")
+            self._writer.forget(*FEED_WORDS)
         self._mode = code
         return code
 
+    def count(self, feed: float, per_rev: bool) -> tuple[str, int]:
+        """Return the word of a feed, mm/min or mm/rev, and its count."""
+        word = FEED_WORDS[per_rev and FEED_WORDS[1] in self._family.WORDS]
+        return word, self._writer.to_count(word, feed)
+
     def add_words(self, table: BlockTable, moves: Moves, rows: slice, rapid: Flags) -> None:
         """Put F, the feed mode and the motion words of a family into a table; ``rapid``: the rows that are rapids."""
-        decimals = self._writer.word("feed").format.decimals
-        feed = round_to_counts(np.where(rapid, np.nan, moves.feed[rows]), decimals)
-        table.columns["feed"] = np.where(rapid, self.rapid_feed, feed)
-        table.columns |= self._family.row_words(rapid, moves.per_rev[rows], self._codes)
+        per_rev = moves.per_rev[rows]
+        for word, absent in zip(FEED_WORDS, (rapid | per_rev, rapid | ~per_rev), strict=True):
+            if word == "feed" or per_rev.any():
+                feed = np.where(absent, np.nan, moves.feed[rows])
+                table.columns[word] = round_to_counts(feed, self._writer.word(word).format.decimals)
+        table.columns["feed"][rapid] = self.rapid_feed
+        table.columns |= self._family.row_words(rapid, per_rev, self._codes)
 
     def add_words_without_tcp(
         self, table: BlockTable, motion: AxisCoordinates, moves: Moves, rows: slice, rapid: Flags
@@ -71,5 +84,6 @@ class FeedWords:
         modes = table.columns["feed_mode"][cuts]
         changes = np.zeros(len(rapid), np.bool_)
         changes[cuts] = modes != np.concatenate(([self._mode], modes[:-1]))
-        table.force("feed", changes)
+        for word in FEED_WORDS:
+            table.force(word, changes)
         self._mode = int(modes[-1])

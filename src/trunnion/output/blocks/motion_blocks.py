@@ -19,7 +19,7 @@ from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, Coolant, Kind, LoadTool, Phase, SpindleOn
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import BLOCK_NUMBER_BYTES, CHUNK, BlockWriter
-from trunnion.output.blocks.feeds import FeedWords
+from trunnion.output.blocks.feeds import FEED_WORDS, FeedWords
 from trunnion.output.blocks.orientation import OrientationWords
 from trunnion.output.blocks.surface_normals import add_vector_lines, contact_rows
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
@@ -123,7 +123,7 @@ class MotionBlockWriter:
         self._words = self.program.block_words(motion)
         self.writer.use_words(self._words)
         if from_plane:
-            self.writer.forget("X", "Y", "Z", "feed")
+            self.writer.forget("X", "Y", "Z", *FEED_WORDS)
         else:
             self.writer.forget()
             for word, code in self.control.initial_modal_state.items():

@@ -159,6 +159,7 @@ class _Holes:
             Index into ``texts`` of the phase comment before each hole, -1 for none.
         """
         blocks, writer, codes = self._blocks, self._writer, self._control.codes
+        feed_word, count = blocks.feeds.count(feed, per_rev)
         rapids = self._rapid_columns(len(positions["X"]))
         if CYCLE_CALL_WORD in self._family.WORDS:
             blocks.write_lines(lines)
@@ -175,9 +176,9 @@ class _Holes:
             if modes:
                 blocks.write_block(modes)
             blocks.write_lines([texts[comments[0]]] if comments[0] >= 0 else [])
-            self._write_call_with_first_hole(lines, positions, writer.to_count("feed", feed), comments, texts)
+            self._write_call_with_first_hole(lines, positions, {feed_word: count}, comments, texts)
         else:
-            blocks.write_block(modes | {"feed": writer.to_count("feed", feed)})
+            blocks.write_block(modes | {feed_word: count})
             blocks.write_lines(lines)
             writer.write_table({**rapids, **positions}, _REPEAT_POSITION, comments, texts)
 
@@ -190,15 +191,21 @@ class _Holes:
             self._blocks.write_lines([comment, *hole] if comment else hole)
 
     def _write_call_with_first_hole(
-        self, lines: Sequence[str], positions: Mapping[str, Ints], feed: int, comments: Ints, texts: Sequence[str]
+        self,
+        lines: Sequence[str],
+        positions: Mapping[str, Ints],
+        feed: Mapping[str, int],
+        comments: Ints,
+        texts: Sequence[str],
     ) -> None:
         """Write the call of a cycle in the block of its first hole, with F if it is not active; then the other holes.
 
-        Their blocks have only positions: any other motion word would end the cycle.
+        Their blocks have only positions: any other motion word would end the cycle. ``feed`` is the word F, as a count.
         """
         writer = self._writer
         position = " ".join(writer.print_word(word, int(positions[word][0])) for word in "XY")
-        end = "" if writer.last_count("feed") == feed else f" {writer.print_word('feed', feed)}"
+        changed = [word for word, count in feed.items() if writer.last_count(word) != count]
+        end = "".join(f" {writer.print_word(word, feed[word])}" for word in changed)
         self._blocks.write_lines(
             [line.replace(FIRST_HOLE, position) + (end if FIRST_HOLE in line else "") for line in lines]
         )

@@ -79,7 +79,8 @@ class _Holes:
         settings = blocks.program.effective_settings()
         lines = blocks.family.cycle_call(self._cycle, top, spindle, settings, formats)
         mode = blocks.control.codes["feed_per_revolution" if per_rev else "feed_per_minute"]
-        blocks.write_block({"feed_mode": blocks.feeds.use_mode(mode), "feed": blocks.writer.to_count("feed", feed)})
+        feed_word, count = blocks.feeds.count(feed, per_rev)
+        blocks.write_block({"feed_mode": blocks.feeds.use_mode(mode), feed_word: count})
         if EACH_HOLE in lines:
             hole = [line for line in lines if line != EACH_HOLE]
             for row in range(first, last):

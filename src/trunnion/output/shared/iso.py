@@ -9,7 +9,7 @@ from trunnion.model.toolpath import Arcs, Coolant, Kind, Operation, Sense, Spind
 
 WORDS: tuple[str, ...] = (
     "cutter_comp", "feed_mode", "plane", "motion", "I", "J", "K", "turns", "speed", "spindle", "coolant", "feed",
-    "inverse_feed",
+    "feed_per_rev", "inverse_feed",
 )  # fmt: skip
 
 CODES: tuple[str, ...] = (

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 
 from trunnion.controls.definition import Control
-from trunnion.controls.vocabulary import HOLES_IN_PLANES, HOLES_SETTING
+from trunnion.controls.vocabulary import CYCLE_CALL_WORD, HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.errors import Problem
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn, Kind, Operation
@@ -84,7 +84,7 @@ def _check_cycle(
     formats = program.control.number_formats(motion.three_axis)
     settings = program.effective_settings() | ({} if along_tool else {HOLES_SETTING: HOLES_IN_PLANES})
     program.control.family.cycle_call(cycle, 0.0, spindle_here, settings, formats)
-    feed, per_rev = cycle_feed(cycle, spindle_here, float(moves.feed[row]), False)
+    feed, per_rev = cycle_feed(cycle, spindle_here, float(moves.feed[row]), bool(moves.per_rev[row]))
     if not feed > 0.0:
         raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
     below = row > 0 and moves.tip[row - 1, 2] < moves.tip[row, 2] + cycle.rapid_height - 1e-6
@@ -92,7 +92,12 @@ def _check_cycle(
         raise HoleCycleError("CYCLE while the tool is below the height of RAPTO", "retract the tool before the cycle")
     if cycle.method.startswith("TAP"):
         return None
-    return rounding_problem(program.file, event.line, formats["feed"], feed, per_rev)
+    words = program.control.family.WORDS
+    if per_rev and "feed_per_rev" not in words:
+        raise HoleCycleError("a feed per revolution, which this control does not have", "output it in mm/min (MMPM)")
+    if per_rev and spindle_here is not None and CYCLE_CALL_WORD in words:
+        feed, per_rev = feed * spindle_here.rpm, False  # a cycle that is called hole by hole has mm/min
+    return rounding_problem(program.file, event.line, formats, feed, per_rev)
 
 
 def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycleError:

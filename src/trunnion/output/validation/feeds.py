@@ -1,5 +1,7 @@
 """Feeds that are missing, or that a number format distorts."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -10,8 +12,10 @@ from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind
 from trunnion.output.program import Program
 
-#: A rounding error above this share of a feed is worth a warning.
-_ROUNDING_LIMIT: Final = 0.01
+#: A feed that is printed with a greater error, as a share of it, is told; one of mm/min with an error above the second
+#: share is refused, and so is every feed per revolution that is told: its share of a chip is small.
+TOLD_ERROR: Final = 0.001
+REFUSED_ERROR: Final = 0.01
 
 
 def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -24,26 +28,43 @@ def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
 
 
 def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
-    """Return the first feed of an operation that prints as zero, or else the first that rounding changes much."""
-    moves, number_format = motion.operation.moves, program.control.number_formats(motion.three_axis)["feed"]
+    """Return the first feed of an operation that rounding makes another one, or else the first that it changes much.
+
+    A feed that was lowered for the rotary axes is told at most: the CL file cannot write another.
+    """
+    moves, formats = motion.operation.moves, program.control.number_formats(motion.three_axis)
     if motion.mode is MachiningMode.WITHOUT_TCP or not len(moves):
         return []
     changes = np.flatnonzero(np.diff(moves.feed, prepend=np.nan) != 0.0)
     rows = changes[(moves.kind[changes] != Kind.RAPID) & (moves.feed[changes] > 0.0)]
-    found = (
-        rounding_problem(program.file, int(moves.line[k]), number_format, float(moves.feed[k]), bool(moves.per_rev[k]))
-        for k in rows.tolist()
-    )
-    problems = [problem for problem in found if problem is not None]
-    return sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)[:1]
+    lowered = set(motion.deviations.slowed_feed.tolist())
+    found = []
+    for k in rows.tolist():
+        line, feed, per_rev = int(moves.line[k]), float(moves.feed[k]), bool(moves.per_rev[k])
+        problem = rounding_problem(program.file, line, formats, feed, per_rev)
+        if problem is not None and feed in lowered and feed >= feed_format(formats, per_rev).least:
+            problem = replace(problem, severity=Severity.WARNING)
+        found += [problem] if problem is not None else []
+    return sorted(found, key=lambda problem: problem.severity is not Severity.ERROR)[:1]
 
 
-def rounding_problem(file: str, line: int, number_format: NumberFormat, feed: float, per_rev: bool) -> Problem | None:
-    """Return what a number format makes of a feed: zero, or another feed; None if it prints it well."""
+def feed_format(formats: Mapping[str, NumberFormat], per_rev: bool) -> NumberFormat:
+    """Return the number format of a feed; a control without feeds per revolution has one only."""
+    return formats.get("feed_per_rev", formats["feed"]) if per_rev else formats["feed"]
+
+
+def rounding_problem(
+    file: str, line: int, formats: Mapping[str, NumberFormat], feed: float, per_rev: bool
+) -> Problem | None:
+    """Return what the digits of a control make of a feed: zero, or another feed; None if they print it well."""
+    number_format = feed_format(formats, per_rev)
     printed = round(feed, number_format.decimals)
-    cure = "write it in mm/min (MMPM)" if per_rev else "raise it"
+    cure = "write it in mm/min (MMPM)" if per_rev else "write a feed that the control can print"
     if printed < number_format.least:
         return Problem(file, line, f"a feed of {feed:g} is below the least that the control reads", cure)
-    if abs(printed - feed) > _ROUNDING_LIMIT * feed:
-        return Problem(file, line, f"a feed of {feed:g} prints as {printed:g}", cure, Severity.WARNING)
-    return None
+    error = abs(printed - feed) / feed
+    if error <= TOLD_ERROR:
+        return None
+    what = f"a feed of {feed:g} prints as {printed:g}, which is {100.0 * error:.2g} % off"
+    refused = per_rev or error > REFUSED_ERROR
+    return Problem(file, line, what, cure, Severity.ERROR if refused else Severity.WARNING)

@@ -1,8 +1,11 @@
 """What a control cannot do without TCP, where X Y Z are positions of the linear axes."""
 
+from typing import Final
+
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Floats, Ints
+from trunnion.controls.words import NumberFormat, round_to_counts
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Mount
 from trunnion.model.motion import Motion
@@ -16,6 +19,10 @@ from trunnion.output.coordinates.axis_coordinates import (
     to_axis_coordinates,
 )
 from trunnion.output.program import Program
+from trunnion.output.validation.feeds import REFUSED_ERROR, TOLD_ERROR
+
+#: Of computing, as a share.
+_NOISE: Final = 1e-6
 
 
 def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
@@ -47,7 +54,7 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
         problems.append(Problem(program.file, int(moves.line[per_rev[0]]), what, "output it in mm/min (FEDRAT/MMPM)"))
     rule = feed_rule(program.control, settings)
     number_format = program.control.number_formats(motion.three_axis)[feed_format(rule)]
-    _, below, above = feed_words(coordinates.select(cuts), moves.feed[cuts], rule, number_format)
+    value, below, above = feed_words(coordinates.select(cuts), moves.feed[cuts], rule, number_format)
     if below.any():
         row = int(cuts[np.argmax(below)])
         what, cure = f"F of a block would be below its least value, {number_format.least:g}", "program a higher feed"
@@ -60,8 +67,26 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
         what = f"{int(above.sum())} blocks so short that F would be above {number_format.greatest:g}: they are slower"
         location = program.file, int(moves.line[cuts[np.argmax(above)]])
         problems.append(Problem(*location, what, "a wider tolerance inserts fewer points", Severity.WARNING))
+    problems += _rounding_problems(program, motion, cuts, value, rule, number_format)
     heads = [axis.name for axis in program.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
     if rule == FEED_AT_TIP and heads:
         what = f"rotary_feed is tip, and {' and '.join(heads)} turns in the head, which the control leaves out"
         problems.append(Problem(program.file, operation.line, what, "leave the setting rotary_feed out"))
     return problems
+
+
+def _rounding_problems(
+    program: Program, motion: Motion, cuts: Ints, value: Floats, rule: str, number_format: NumberFormat
+) -> list[Problem]:
+    """What the digits of F make of the feed of blocks; with inverse time a block may be off by a thousandth."""
+    printed = round_to_counts(value, number_format.decimals) / float(10**number_format.decimals)
+    error = np.abs(printed - value) / np.maximum(value, number_format.least)
+    inverse_time = rule == "inverse_time"
+    wrong = np.flatnonzero(error > (TOLD_ERROR + _NOISE if inverse_time else REFUSED_ERROR))
+    if not len(wrong):
+        return []
+    worst = int(np.argmax(error))
+    what = f"F of {len(wrong)} blocks is up to {100.0 * error[worst]:.2g} % off, as its digits are too few"
+    cure = "output the toolpath with points nearer to each other, or a higher feed"
+    severity = Severity.ERROR if inverse_time else Severity.WARNING
+    return [Problem(program.file, int(motion.operation.moves.line[cuts[worst]]), what, cure, severity)]

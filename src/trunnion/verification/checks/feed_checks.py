@@ -10,6 +10,7 @@ from trunnion.model.feed_path import FeedPath, row_feed_path_lengths
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, needlessly_lowered_feeds
+from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE
 from trunnion.verification.results import Check, Place
 
 #: A tip that moves by less than this, mm, or by less than rounding, may be taken to rest.
@@ -35,7 +36,9 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations) -> Check:
             context.expected.section_at(segments.cl).tolerances,
         )
         asked = np.full(len(segments.nc), should)
-        near, feed = _compare_feeds(context, segments.nc, asked, tolerances.tip, tolerances.feed)
+        per_rev = context.expected.per_rev(np.array([segments.cl]))[0]
+        digit = np.full(len(asked), FEED_PER_REV_SHARE * should if per_rev else tolerances.feed)
+        near, feed = _compare_feeds(context, segments.nc, asked, tolerances.tip, digit)
         for k in np.flatnonzero(~near).tolist():
             count += 1
             text = f"moves with {feed[k]:g} mm/min; the CL file wants {should:g}"
@@ -66,7 +69,8 @@ def _compare_points(context: ComparedContext) -> _ComparedFeeds:
     for nc, cl in context.matching.all_pair_chunks():
         at_feed = (run.kind[nc] != Kind.RAPID) & (expected.kind(cl) != Kind.RAPID)
         per_rev, asked, mode = expected.per_rev(cl), expected.feed(cl), run.state.feed_mode.at(nc)
-        near, feed = _compare_feeds(context, nc, asked, expected.max_tip_tolerance, feed_tolerance)
+        digit = np.where(per_rev, FEED_PER_REV_SHARE * asked, feed_tolerance)
+        near, feed = _compare_feeds(context, nc, asked, expected.max_tip_tolerance, digit)
         stated = at_feed & ~np.isnan(asked)
         wrong = at_feed & ((mode == 95) != per_rev)
         wrong |= stated & ~near
@@ -86,13 +90,13 @@ def _compare_points(context: ComparedContext) -> _ComparedFeeds:
 
 
 def _compare_feeds(
-    context: ComparedContext, nc: Ints, asked: Floats, tip_tolerance: float, feed_tolerance: float
+    context: ComparedContext, nc: Ints, asked: Floats, tip_tolerance: float, feed_tolerance: Floats
 ) -> tuple[Flags, Floats]:
     """Whether rows move at the feeds asked for, (k,) bool, and their feeds, (k,).
 
     Blocks whose F is not the feed of the tip are compared by their time: those with inverse time, and those that turn
     rotary axes without TCP. Where F is the feed of the tip at the start of each block (``FeedPath.TIP``), it is
-    compared as programmed.
+    compared as programmed. ``feed_tolerance`` (k,) is that of the rounding, in the unit of each feed.
     """
     run, settings = context.run, context.settings
     feed = run.state.feed.at(nc)
@@ -111,9 +115,9 @@ def _compare_feeds(
     if len(free):
         with np.errstate(divide="ignore", invalid="ignore"):
             minutes = length[free] / feed[free]
-            rounding = feed_tolerance / feed[free]
-        limit = np.inf if settings.max_feed is None else settings.max_feed - feed_tolerance
-        always = np.where(feed[free] >= limit, minutes, _SHORTEST_BLOCK)
+            rounding = feed_tolerance[free] / feed[free]
+        greatest = np.inf if settings.max_feed is None else settings.max_feed
+        always = np.where(feed[free] >= greatest - feed_tolerance[free], minutes, _SHORTEST_BLOCK)
         blocks = _TimedBlocks(nc[free], minutes, asked[free], always)
         near[free], feed[free] = _compare_times(context, blocks, slack, rounding)
     return near, feed

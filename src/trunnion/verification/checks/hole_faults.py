@@ -15,9 +15,10 @@ from trunnion.verification.checks.drill_motions import DrillMotions, HoleFault
 from trunnion.verification.checks.peck_faults import peck_faults
 from trunnion.verification.checks.spindle_checks import RPM_TOLERANCE
 from trunnion.verification.expected.holes import Hole
+from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE
 from trunnion.verification.matching.hole_matching import MatchedHole
 
-#: Half of the last digit of the feeds of threads, mm/min or mm/rev, and of pitches, mm; and the noise of computing.
+#: Half of the last digit of the feeds of threads, mm/min, and of pitches, mm; and the noise of computing.
 _FEED, _PITCH, _NOISE = 0.005, 5e-6, 1e-6
 
 #: Half of the last digit of dwells, seconds.
@@ -118,8 +119,8 @@ def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float) -> Iterator[Hole
     feed = np.where(mode == 95, programmed * rpm, programmed)
     should = hole.cycle.feed * rpm if hole.cycle.per_rev else hole.cycle.feed
     digit = (min(hole.feed_tolerance, _FEED) if hole.cycle.mode[0] == "TAP" else hole.feed_tolerance) + _NOISE
-    last_digit = np.where(mode == 95, digit * rpm, digit + _PITCH * rpm)
-    off = ~(np.abs(feed - should) <= last_digit + 1e-9 * should)
+    allowed = np.where(mode == 95, FEED_PER_REV_SHARE * should + _NOISE, digit + _PITCH * rpm)
+    off = ~(np.abs(feed - should) <= allowed + 1e-9 * should)
     if off.any():
         k = int(np.argmax(off))
         unit = f" ({hole.cycle.feed:g} mm/rev)" if hole.cycle.per_rev else ""

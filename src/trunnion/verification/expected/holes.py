@@ -50,7 +50,7 @@ class Hole:
     line, file      of its CL point
     spindle         None before the first SPINDL
     tip_tolerance   of each coordinate, mm
-    feed_tolerance  of the feed, for its rounding, in its own unit
+    feed_tolerance  of the feed, for its rounding, mm/min
     tool_names      what a program may call the tool; empty: any
     length_numbers  numbers that its length may have where programs call lengths by number; empty: any
     """

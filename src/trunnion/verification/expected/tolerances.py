@@ -1,8 +1,12 @@
 """How far a program may be from its CL files, operation by operation."""
 
 from dataclasses import dataclass
+from typing import Final
 
 from trunnion.model.deviations import Deviations
+
+#: Share by which a feed per revolution may be off, however many digits are printed.
+FEED_PER_REV_SHARE: Final = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,7 +16,7 @@ class Tolerances:
     tip         of the tip, in each coordinate, mm
     angle       of each rotary axis, degrees
     chord       of lines from the arc that they replace, mm
-    feed        of a feed, in its own unit
+    feed        of a feed, mm/min; feeds per revolution may be off by ``FEED_PER_REV_SHARE``
     deviations  rows at which the program may depart from the CL file on purpose
     centre      added for the centre of a circle that the control finds from a radius, mm
     normal      of each component of a surface normal

@@ -26,8 +26,8 @@ from trunnion.planning.holes.cycles import Cycle, SpindleState
 WORDS: tuple[str, ...] = (
     "line", "vector_line", "surface_x", "surface_y", "surface_z", "axis_x", "axis_y", "axis_z", "arc",
     *RADIUS_ARC_WORDS, "helix", "arc_angle", "arc_rise",
-    "counterclockwise", "clockwise", "comp_off", "comp_left", "comp_right", "feed", "rapid", "spindle", "coolant",
-    "feed_mode", "call",
+    "counterclockwise", "clockwise", "comp_off", "comp_left", "comp_right", "feed", "feed_per_rev", "rapid",
+    "spindle", "coolant", "feed_mode", "call",
 )  # fmt: skip
 
 CODES: tuple[str, ...] = (

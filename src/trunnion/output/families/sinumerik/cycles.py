@@ -34,6 +34,8 @@ class _Input:
     dwell    seconds at the bottom as printed; empty for none
     lift     lift-off for BORE,NODRAG, mm; None if it is not set
     number   prints a length
+    pitch    prints a pitch
+    feed     prints the feed of the cycle
     """
 
     cycle: Cycle
@@ -41,6 +43,8 @@ class _Input:
     dwell: str
     lift: float | None
     number: Callable[[float], str]
+    pitch: Callable[[float], str]
+    feed: Callable[[float], str]
 
 
 def cycle_statement(
@@ -59,7 +63,7 @@ def cycle_statement(
     lift
         How far BORE,NODRAG lifts off along X after the spindle was oriented, mm; None if it is not set.
     formats
-        ``coordinate`` and ``dwell`` of the control.
+        ``coordinate``, ``pitch``, ``feed``, ``feed_per_rev`` and ``dwell`` of the control.
 
     Raises
     ------
@@ -71,7 +75,8 @@ def cycle_statement(
     heights = [number(z) for z in (top + cycle.retract_height, top)]
     heights += [number(cycle.rapid_height), number(top - cycle.depth)]
     dwell = formats["dwell"].text(cycle_dwell_seconds(cycle, spindle)) if cycle.dwell else ""
-    name, arguments = _CYCLES[cycle.method](_Input(cycle, spindle, dwell, lift, number))
+    feed = formats["feed_per_rev" if cycle.per_rev else "feed"].text
+    name, arguments = _CYCLES[cycle.method](_Input(cycle, spindle, dwell, lift, number, formats["pitch"].text, feed))
     return f"{name}({','.join([*heights, *arguments])})"
 
 
@@ -111,7 +116,7 @@ def _tap(of: _Input) -> CycleArguments:
     """Sense after the cycle, no size, pitch, spindle position 0, speed in and out."""
     pitch, spindle = _signed_pitch(of)
     speed = f"{spindle.rpm:g}"
-    return "CYCLE84", ["", of.dwell, _sense_code(spindle), "", of.number(pitch), "0", speed, speed]
+    return "CYCLE84", ["", of.dwell, _sense_code(spindle), "", of.pitch(pitch), "0", speed, speed]
 
 
 def _tap_in_strokes(of: _Input) -> CycleArguments:
@@ -129,14 +134,14 @@ def _tap_in_strokes(of: _Input) -> CycleArguments:
 def _floating_tap(of: _Input) -> CycleArguments:
     """The spindle reverses by itself; sense after the cycle, with encoder, no size, pitch."""
     pitch, spindle = _signed_pitch(of)
-    return "CYCLE840", ["", of.dwell, "0", _sense_code(spindle), "0", "", of.number(pitch)]
+    return "CYCLE840", ["", of.dwell, "0", _sense_code(spindle), "0", "", of.pitch(pitch)]
 
 
 def _ream(of: _Input) -> CycleArguments:
     """In and out at the feed of the cycle."""
     if of.cycle.feed is None:
         raise HoleCycleError("CYCLE/BORE without a feed", "write MMPM,feed")
-    return "CYCLE85", ["", of.dwell, of.number(of.cycle.feed), of.number(of.cycle.feed)]
+    return "CYCLE85", ["", of.dwell, of.feed(of.cycle.feed), of.feed(of.cycle.feed)]
 
 
 def _bore(of: _Input) -> CycleArguments:
