@@ -148,11 +148,10 @@ def test_machine_positions_and_the_placing_of_rotary_axes_are_no_motion_of_the_p
 
 
 def test_machine_positions_on_the_way_are_remarked_upon(programs: Programs) -> None:
-    converted = programs.all("G0 X1 Y2 Z3", "SUPA Z0", "G0 X2 Y2 Z3")
-    assert [len(operation.moves) for operation in converted.toolpath.operations] == [2]
-    assert [(remark.line, remark.what) for remark in converted.warnings] == [
-        (2, "moves to machine positions within an operation are left out")
-    ]
+    converted = programs.all("G0 X1 Y2 Z3", "SUPA G0 Z0", "G0 X2 Y2 Z3")
+    assert [len(operation.moves) for operation in converted.toolpath.operations] == [1, 1]
+    what = "the tool leaves the workpiece within an operation, for positions of the machine or to turn without TCP"
+    assert [(remark.line, remark.what) for remark in converted.warnings] == [(2, what)]
 
 
 def test_frames_and_cycles_come_back_as_the_motion_that_they_make(programs: Programs) -> None:
@@ -162,8 +161,9 @@ def test_frames_and_cycles_come_back_as_the_motion_that_they_make(programs: Prog
 
 
 def test_an_arc_keeps_the_point_where_it_begins(programs: Programs) -> None:
-    operation = programs.one("SUPA G0 X0 Y0 Z0", "G2 X10 Y0 Z0 I5 J0 F100")
-    assert operation.moves.kind.tolist() == [Kind.RAPID, Kind.ARC]
+    lines = "T1 M6", "G0 X0 Y0 Z0", "G1 X0 F100", "T2 M6", "G2 X10 Y0 Z0 I5 J0"
+    _, operation = programs.all(*lines).toolpath.operations
+    assert operation.moves.kind.tolist() == [Kind.LINEAR, Kind.ARC]
     assert operation.arcs.row.tolist() == [1]
 
 
@@ -208,7 +208,6 @@ def warnings_for(programs: Programs, *lines: str) -> list[tuple[int, str]]:
             5,
             "1 points turn the tool on a great circle, which is not carried over",
         ),
-        (["G0 X0 Y0 Z0", "G1 X1 B30 F1"], 2, "1 points turn the tool without TCP, which is not carried over"),
     ],
 )
 def test_what_a_toolpath_has_no_place_for_is_remarked_upon(

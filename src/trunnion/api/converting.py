@@ -181,6 +181,11 @@ class _Reader:
             raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
         self.report([problem for problem in found if not problem.what.startswith(COMPENSATION_FINDINGS)])
         converted = conversion.convert(run, control)
+        if converted.errors and not self._force:
+            what = f"{len(converted.errors)} places cannot be converted, and nothing is written"
+            cure = "--force converts the rest without them"
+            raise RefusedError((*converted.errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
+        self.report(converted.errors)
         if not converted.toolpath.operations:
             what = "there is no motion at the part in it"
             raise InputError(Problem(self._file, 0, what, "give a program that cuts"))

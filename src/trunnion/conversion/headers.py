@@ -68,7 +68,7 @@ class HeaderReader:
                 **program_values,
                 **section.values,
                 **self._plane_setting(section.line, first),
-                **self._offset_settings(section),
+                **self.offset_settings(section),
                 **self._orientation_setting(section.rows),
             }
 
@@ -92,7 +92,7 @@ class HeaderReader:
                 return {"plane": command}
         return {}
 
-    def _offset_settings(self, section: ProgramSection) -> dict[str, str]:
+    def offset_settings(self, section: ProgramSection) -> dict[str, str]:
         """The work offset and the edge in force at the first row.
 
         A work offset that is no G word is found in the header. On controls without edges the number is that of a tool

@@ -1,12 +1,14 @@
 """The sections of a program that become operations: where they begin and end, and which events belong to them."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.conversion.program_events import ProgramEvent
+from trunnion.conversion.unsupported import Warnings
+from trunnion.model.run import Run
 
 
 @dataclass(slots=True)
@@ -18,8 +20,9 @@ class ProgramSection:
     end_event    index after its last event, where its path has ended; -1: not yet known
     first_row    row of the run where it begins
     end_row      row after its last one
-    rows         (n,) rows that move the tool at the workpiece
+    stretches    rows that move the tool at the workpiece, (n,) each: one stretch, or several where it leaves in between
     values       values found in its header and its end: name in the templates -> text
+    part         which of several operations that a section became, from 1
     """
 
     line: int
@@ -27,8 +30,14 @@ class ProgramSection:
     first_row: int
     end_event: int = -1
     end_row: int = 0
-    rows: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    stretches: list[Ints] = field(default_factory=list)
     values: dict[str, str] = field(default_factory=dict)
+    part: int = 1
+
+    @property
+    def rows(self) -> Ints:
+        """The rows (n,) of all stretches."""
+        return np.concatenate([np.zeros(0, np.int64), *self.stretches])
 
 
 def split_program(
@@ -61,6 +70,32 @@ def split_program(
     return sections
 
 
+def divide_sections(
+    events: Sequence[ProgramEvent], sections: Sequence[ProgramSection], run: Run, warn: Warnings
+) -> list[ProgramSection]:
+    """Sections of one stretch each.
+
+    Between two stretches the new program goes home. Radius compensation that stays on there is refused.
+    """
+    divided: list[ProgramSection] = []
+    for section in sections:
+        first_event = section.first_event
+        for k, rows in enumerate(section.stretches):
+            later = (n for n in range(first_event, section.end_event) if events[n].row > rows[-1])
+            is_last = k + 1 == len(section.stretches)
+            end_event = section.end_event if is_last else next(later, section.end_event)
+            line = section.line if k == 0 else int(run.line[rows[0]])
+            part = replace(section, line=line, first_event=first_event, end_event=end_event, part=k + 1)
+            part.stretches, part.values = [rows], dict(section.values)
+            divided.append(part)
+            sides = [event for event in events[section.first_event : end_event] if event.kind == "comp"]
+            if not is_last and sides and sides[-1].value != ("OFF", ""):
+                what = "radius compensation stays on while the tool leaves the workpiece"
+                warn.refuse(sides[-1].line, what, "end it with G40 (R0) before", sides[-1].file)
+            first_event = end_event
+    return divided
+
+
 def assign_events(
     events: Sequence[ProgramEvent],
     sections: Sequence[ProgramSection],
@@ -70,7 +105,8 @@ def assign_events(
     """The events of each section.
 
     An event outside of all sections belongs to the next one, or to the last if none follows. Every operation of a
-    toolpath switches its coolant on itself, so a section in which coolant keeps running gets the event that did it.
+    toolpath switches its coolant on itself, so a section in which coolant keeps running gets the event that did it; as
+    does a part of a divided section in which blocks are skipped.
 
     coolants         M number -> CL word
     template_lines   lines of the program that were written from templates
@@ -85,6 +121,9 @@ def assign_events(
         running = _coolant_running(events[: section.first_event], coolants)
         if running and not any(event.row <= row and _is_coolant(event, coolants) for event in own):
             own.insert(0, running._replace(row=row))
+        skipped = next((event for event in reversed(events[: section.first_event]) if event.kind == "skip"), None)
+        if section.part > 1 and skipped is not None and skipped.value:
+            own.insert(0, skipped._replace(row=row))
         assigned.append(own)
         begin = end
     return assigned

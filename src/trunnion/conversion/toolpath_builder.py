@@ -5,7 +5,7 @@ In:     a ``Run`` (what the reader found), the program's text, and the definitio
 Out:    operations in the workpiece frame, mm, and the settings that do not fit into a toolpath.
 
 What belongs to the machine and not to the part is left out: moves to machine positions, and positioning of the rotary
-axes before an operation's first position.
+axes before an operation's first position. Where they stand between two cuts, the operation is divided there.
 """
 
 from collections.abc import Sequence
@@ -15,11 +15,12 @@ from pathlib import Path
 from trunnion.controls.definition import Control
 from trunnion.conversion.event_builder import EventBuilder
 from trunnion.conversion.headers import HeaderReader
+from trunnion.conversion.known_positions import known_positions
 from trunnion.conversion.moves import build_arcs, build_moves
 from trunnion.conversion.phases import PhaseComments
 from trunnion.conversion.program_events import ProgramEvent, collect_events
 from trunnion.conversion.program_text import ProgramText
-from trunnion.conversion.sections import ProgramSection, assign_events, split_program
+from trunnion.conversion.sections import ProgramSection, assign_events, divide_sections, split_program
 from trunnion.conversion.settings import parse_number, settings_from_headers
 from trunnion.conversion.tools import build_tool
 from trunnion.conversion.unsupported import (
@@ -31,8 +32,8 @@ from trunnion.conversion.unsupported import (
     warn_of_poses,
     warn_of_register_changes,
 )
-from trunnion.conversion.workpiece_rows import workpiece_rows
-from trunnion.errors import Problem
+from trunnion.conversion.workpiece_rows import workpiece_stretches
+from trunnion.errors import Problem, Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Event, Frame, LoadTool, Operation, Toolpath
 from trunnion.readers import reader_of
@@ -45,11 +46,13 @@ class Conversion:
 
     settings  what does not fit into a toolpath, as ``--set`` takes it; without defaults
     warnings  what could not be converted
+    errors    what must not be left out: such a program is refused unless it is forced
     """
 
     toolpath: Toolpath
     settings: dict[str, str]
     warnings: tuple[Problem, ...]
+    errors: tuple[Problem, ...] = ()
 
 
 def convert(run: Run, control: Control) -> Conversion:
@@ -90,22 +93,34 @@ class _ToolpathBuilder:
         starts = self._headers.start_lines(events)
         sections = self._sections(events, starts)
         self._headers.read(sections, events)
+        sections = self._divided(sections, events)
         operations = self._operations(sections, events, PhaseComments(self._control, has_headers=bool(starts)))
         headers = [(section.line, section.values) for section in sections]
         settings = settings_from_headers(self._control, headers, self._warn)
         self._warn_of_losses(sections, operations, settings.get("orientation") == "vector")
         toolpath = Toolpath(self._run.files[0], operations, settings.get("part", ""))
-        return Conversion(toolpath, settings, self._warn.problems)
+        problems = self._warn.problems
+        warnings = tuple(problem for problem in problems if problem.severity is Severity.WARNING)
+        errors = tuple(problem for problem in problems if problem.severity is Severity.ERROR)
+        return Conversion(toolpath, settings, warnings, errors)
 
     def _sections(self, events: Sequence[ProgramEvent], starts: set[int]) -> list[ProgramSection]:
         """The sections that move the tool at the workpiece; ``starts`` are the lines where operations begin."""
         ends = self._headers.end_lines(events) if starts else set[int]()
         sections = split_program(events, len(self._run), starts, ends)
+        known = known_positions(self._run)
         for section in sections:
-            section.rows = workpiece_rows(
-                self._run, section.first_row, section.end_row, self._control.level_approach, self._warn
+            section.stretches = workpiece_stretches(
+                self._run, known, section.first_row, section.end_row, self._control.level_approach, self._warn
             )
-        return [section for section in sections if len(section.rows)]
+        return [section for section in sections if section.stretches]
+
+    def _divided(self, sections: Sequence[ProgramSection], events: Sequence[ProgramEvent]) -> list[ProgramSection]:
+        """The sections with one stretch each, with the work offset and edge of each."""
+        divided = divide_sections(events, sections, self._run, self._warn)
+        for section in divided:
+            section.values |= self._headers.offset_settings(section) if section.part > 1 else {}
+        return divided
 
     def _operations(
         self, sections: Sequence[ProgramSection], events: Sequence[ProgramEvent], phases: PhaseComments
@@ -124,8 +139,9 @@ class _ToolpathBuilder:
         found = builder.build(events, rows, section.line)
         phase = phases.column(events, run, rows, self._headers.template_lines, self._warn)
         default_name = f"TOOL_{builder.tool}" if builder.tool else Path(run.files[0]).stem
+        name = values.get("operation", "") or default_name
         return Operation(
-            name=values.get("operation", "") or default_name,
+            name=name if section.part == 1 else f"{name}_{section.part}",
             tool=build_tool(values, builder.tool, self._control),
             frame=Frame(),
             moves=build_moves(run, rows, phase, self._warn),

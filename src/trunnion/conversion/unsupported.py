@@ -35,7 +35,7 @@ _ZEROS = re.compile(r"^([GM])0+(?=\d)")
 
 
 class Warnings:
-    """Collects what cannot be converted."""
+    """Collects what cannot be converted: what is lost, and what must not be lost."""
 
     def __init__(self, files: Sequence[str]) -> None:
         """``files`` are those of the run."""
@@ -46,9 +46,13 @@ class Warnings:
         """Add a warning; ``file`` is an index as in ``Run.file``."""
         self._found.append(Problem(self._files[file], line, what, cure, Severity.WARNING))
 
+    def refuse(self, line: int, what: str, cure: str = "", file: int = 0) -> None:
+        """Add an error: the program must not be converted without it."""
+        self._found.append(Problem(self._files[file], line, what, cure, Severity.ERROR))
+
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """All warnings, in the order in which they were added."""
+        """All warnings and errors, in the order in which they were added."""
         return tuple(self._found)
 
 

@@ -1,4 +1,8 @@
-"""Which rows of a run move the tool at the workpiece; the others are moves of the machine and are left out."""
+"""Which rows of a run move the tool at the workpiece; the others are moves of the machine and are left out.
+
+Where the tool leaves the workpiece and comes back, the rows are divided: each stretch becomes an operation of its own,
+and between operations every program goes home.
+"""
 
 import numpy as np
 
@@ -12,36 +16,105 @@ _XYZ = _XY | ProgrammedWord.Z
 _POSITION = _XYZ | ProgrammedWord.VECTOR
 
 
-def workpiece_rows(run: Run, first: int, end: int, level_approach: bool, warn: Warnings) -> Ints:
+def workpiece_stretches(
+    run: Run, known: Flags, first: int, end: int, level_approach: bool, warn: Warnings
+) -> list[Ints]:
     """Rows from ``first`` up to ``end`` that move the tool at the workpiece; none before its first position there.
 
-    level_approach   the control approaches X and Y first, then Z (``Control.level_approach``)
+    Parameters
+    ----------
+    known : (n,) bool
+        ``known_positions`` of the run.
+    first, end
+        Rows of a section.
+    level_approach
+        The control approaches X and Y first, then Z (``Control.level_approach``).
+    warn
+        Hears of the places where the rows are divided, and of cuts that would be lost.
+
+    Returns
+    -------
+    list
+        Row numbers of each stretch, in order; empty without a position at the workpiece.
     """
     rows = np.arange(first, end)
     approach = _level_approaches(run, rows) if level_approach else np.zeros(len(rows), np.bool_)
-    at_part = ~run.machine_frame[rows] & ~approach
+    at_part = known[rows] & ~run.machine_frame[rows] & ~approach
     positions = at_part & ((run.programmed[rows] & _XYZ) != 0)
-    if not positions.any():
-        return rows[:0]
-    begin = int(np.argmax(positions))
-    at_part &= ~_rotary_positioning(run, rows)
-    last = int(np.flatnonzero(at_part)[-1])
-    left_out = begin + np.flatnonzero(~(at_part | approach)[begin:last])
-    if len(left_out):
-        row = int(rows[left_out[0]])
-        what = "moves to machine positions within an operation are left out"
-        warn(int(run.line[row]), what, file=int(run.file[row]))
-    kept = begin + np.flatnonzero(at_part[begin:])
-    if run.kind[rows[begin]] == Kind.ARC and rows[begin] > 0:
-        return np.concatenate(([rows[begin] - 1], rows[kept]))  # an arc needs its start point
-    return rows[kept]
+    begin = int(np.argmax(positions)) if positions.any() else len(rows)
+    at_part &= (np.arange(len(rows)) >= begin) & ~_rotary_positioning(run, rows)
+    _refuse_lost_cuts(run, rows[~known[rows] & ~run.machine_frame[rows]], rows, warn)
+    _refuse_machine_cuts(run, rows, warn)
+    kept = np.flatnonzero(at_part)
+    left_out = np.cumsum(~(at_part | approach))
+    stretches: list[Ints] = []
+    for part in np.split(kept, np.flatnonzero(np.diff(left_out[kept])) + 1) if len(kept) else []:
+        moved = np.flatnonzero(positions[part] | (run.kind[rows[part]] != Kind.RAPID))
+        if not len(moved):
+            continue  # only rotary axes that turn away from the part
+        stretch = rows[part[moved[0] :]]
+        if stretches:
+            _warn_of_division(run, int(stretches[-1][-1]) + 1, int(stretch[0]), warn)
+        stretches.append(_with_arc_start(run, known, stretch, warn))
+    return stretches
+
+
+def _with_arc_start(run: Run, known: Flags, stretch: Ints, warn: Warnings) -> Ints:
+    """The rows of a stretch, and the one before if the first is an arc: that needs its start point."""
+    first = int(stretch[0])
+    if run.kind[first] != Kind.ARC:
+        return stretch
+    if first == 0 or not known[first - 1]:
+        _refuse_unknown(run, first, warn)
+        return stretch
+    return np.concatenate(([first - 1], stretch))
+
+
+def _warn_of_division(run: Run, first: int, end: int, warn: Warnings) -> None:
+    """Warn of the rows from ``first`` up to ``end`` that divide an operation."""
+    what = "the tool leaves the workpiece within an operation, for positions of the machine or to turn without TCP"
+    cure = f"the operation is divided; the new program goes home before line {run.line[end]}"
+    warn(int(run.line[first]), what, cure, int(run.file[first]))
+
+
+def _refuse_lost_cuts(run: Run, unknown: Ints, rows: Ints, warn: Warnings) -> None:
+    """Refuse cuts whose position is not known; rotary axes that turn at feed away from the part are no cuts."""
+    cuts = unknown[run.kind[unknown] != Kind.RAPID]
+    if len(cuts):
+        away = _latest(run.machine_frame[rows]) > _latest(~run.machine_frame[rows] & ~_turns_only(run, rows))
+        cuts = cuts[~(_turns_only(run, cuts) & away[cuts - rows[0]])]
+    if len(cuts):
+        _refuse_unknown(run, int(cuts[0]), warn)
+
+
+def _refuse_unknown(run: Run, row: int, warn: Warnings) -> None:
+    what = (
+        "cuts where the tip follows from positions of the machine, and the workpiece zero or tool length is not known"
+    )
+    warn.refuse(int(run.line[row]), what, "give --zero and --tool-length of the program's machine", int(run.file[row]))
+
+
+def _refuse_machine_cuts(run: Run, rows: Ints, warn: Warnings) -> None:
+    """Refuse motion at feed to positions of the machine, unless Z alone is drawn back before a rapid."""
+    at_feed = rows[run.machine_frame[rows] & (run.kind[rows] != Kind.RAPID) & ((run.programmed[rows] & _XYZ) != 0)]
+    for row in at_feed.tolist():
+        following = np.flatnonzero(~run.machine_frame[row : rows[-1] + 1])
+        cuts_then = len(following) > 0 and run.kind[row + int(following[0])] != Kind.RAPID
+        if int(run.programmed[row]) & int(_XYZ) != ProgrammedWord.Z or cuts_then:
+            what, cure = "moves at feed to a position of the machine", "a toolpath cannot hold it; write it at rapid"
+            warn.refuse(int(run.line[row]), what, cure, int(run.file[row]))
+            return
+
+
+def _turns_only(run: Run, rows: Ints) -> Flags:
+    """(n,) bool: blocks that program rotary axes and no position."""
+    programmed = run.programmed[rows]
+    return np.asarray(((programmed & _POSITION) == 0) & (programmed != 0))
 
 
 def _rotary_positioning(run: Run, rows: Ints) -> Flags:
     """(n,) bool: rapids of the rotary axes alone, without TCP, away from the part or after the last position there."""
-    programmed = run.programmed[rows]
-    rotary_only = ((programmed & _POSITION) == 0) & (programmed != 0)
-    alone = rotary_only & ~run.tcp[rows] & (run.kind[rows] == Kind.RAPID)
+    alone = _turns_only(run, rows) & ~run.tcp[rows] & (run.kind[rows] == Kind.RAPID)
     works = ~alone & ~run.machine_frame[rows]
     order = np.arange(len(rows))
     after_last = order > (int(np.flatnonzero(works)[-1]) if works.any() else -1)

@@ -93,6 +93,9 @@ class RunEvent:
     tcp: bool = False
 
 
+#: ``Run.work_offset`` where work offsets are suppressed and positions count from the machine's zero (G500).
+NO_OFFSET = 500
+
 #: Work offsets with higher codes are called by ``G54.1 P``.
 EXTENDED_OFFSET_BASE = 600
 

@@ -13,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
+from trunnion.model.run import NO_OFFSET
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs, tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
@@ -36,7 +37,7 @@ class SinumerikControl(VirtualControl):
                 control decide where X and Y point, and whether it is a frame of its own, which TRANS does not delete.
     """
 
-    no_offset = 500
+    no_offset = NO_OFFSET
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         self._machine_vectors = False

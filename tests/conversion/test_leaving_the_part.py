@@ -1,0 +1,216 @@
+"""Programs that leave the workpiece within an operation: nothing may lead the tool through the part instead."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from trunnion.controls import load_control
+from trunnion.conversion import Conversion, convert
+from trunnion.machines import Machine, load_machine
+from trunnion.model.toolpath import Coolant, CutterComp, Dwell, LoadTool, SpindleOff, SpindleOn
+from trunnion.readers import run_program
+
+#: A cut on one side of the part, a retract in machine positions, a turn of the table, and a cut on the other side.
+PROGRAMS = {
+    "mikron_600u": """BEGIN PGM A MM
+TOOL CALL 5 Z S3000
+L Z+560 R0 FMAX M91
+L B+30 C+90 R0 FMAX M3
+M128
+L X+0 Y+90 Z+60 R0 FMAX
+L Y+60 Z+5 F500
+L X+20
+M129
+L Z+560 R0 FMAX M91
+L C+270 R0 FMAX
+M128
+L X+20 Y-60 Z+5 R0 FMAX
+L X+0
+M129
+L Z+560 R0 FMAX M91
+M30
+END PGM A MM
+""",
+    "yl569": """T5 M6
+SUPA G0 Z0 D0
+G0 B30 C90
+TRAORI
+G54 S3000 M3
+G0 X0 Y90 Z60 D1
+G1 Y60 Z5 F500
+X20
+TRAFOOF
+SUPA G0 Z0 D0
+G0 C270
+TRAORI
+G0 X20 Y-60 Z5 D1
+G1 X0
+TRAFOOF
+SUPA G0 Z0 D0
+M30
+""",
+    "matsuura_mx330": """%
+O0001
+G21
+T5 M6
+G53 G0 Z0.
+G0 A-30. C90.
+G54 S3000 M3
+G43.4 H5
+G0 X0. Y90. Z60.
+G1 Y60. Z5. F500.
+X20.
+G49
+G91 G28 Z0.
+G90
+G0 C270.
+G43.4 H5
+G0 X20. Y-60. Z5.
+G1 X0.
+G49
+G53 G0 Z0.
+M30
+%
+""",
+    "xyzac_trt": """T5 M6
+G53 G0 Z0
+G0 A30 C90
+G54 S3000 M3
+M428
+G0 X0 Y90 Z60
+G1 Y60 Z5 F500
+X20
+M429
+G53 G0 Z0
+G0 C270
+M428
+G0 X20 Y-60 Z5
+G1 X0
+M429
+G53 G0 Z0
+M2
+""",
+    "hs664rt": """G71
+M306 T.5
+G55 O1
+M242
+G01 C90. A30. F3000
+G196
+M3 S3000
+G1 X0. Y90. Z60. F3000
+G1 Y60. Z5. F500
+X20.
+G197
+M242
+G01 C270. A30. F3000
+G196
+G1 X20. Y-60. Z5. F3000
+G1 X0. F500
+G197
+M242
+M02
+""",
+}
+
+
+def converted(text: str, machine: Machine, folder: Path) -> Conversion:
+    """A program converted."""
+    program = folder / "part.nc"
+    program.write_text(text)
+    run = run_program(program, machine)
+    assert run.errors == ()
+    return convert(run, load_control(machine.control.unread_copy()))
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_retract_in_machine_positions_divides_the_operation(name: str, tmp_path: Path) -> None:
+    found = converted(PROGRAMS[name], load_machine(name), tmp_path)
+    assert found.errors == ()
+    first, second = found.toolpath.operations
+    assert first.moves.tip.tolist() == [[0.0, 90.0, 60.0], [0.0, 60.0, 5.0], [20.0, 60.0, 5.0]]
+    assert second.moves.tip.tolist() == [[20.0, -60.0, 5.0], [0.0, -60.0, 5.0]]
+    assert second.events[0] == LoadTool(0, second.events[0].line, 5)
+    if name != "hs664rt":  # M242 begins its operations
+        assert second.name == f"{first.name}_2"
+        assert any("the tool leaves the workpiece within an operation" in remark.what for remark in found.warnings)
+
+
+def sinumerik(folder: Path, *lines: str, **setup: object) -> Conversion:
+    """A Sinumerik program converted."""
+    machine = replace(load_machine("yl569"), **setup)  # type: ignore[arg-type]
+    return converted("\n".join([*lines, "M30", ""]), machine, folder)
+
+
+KNOWN = {"workpiece_zero": (0.0, 0.0, 0.0), "tool_length": 0.0}
+
+
+def test_coolant_and_stops_go_with_the_second_part(tmp_path: Path) -> None:
+    lines = ["T5 M6", "S500 M3 M8", "G0 X0 Y0 Z5", "G1 X1 F10", "SUPA G0 Z0", "M5", "G4 F2", "G0 X9 Y0 Z5", "G1 X8 M3"]
+    first, second = sinumerik(tmp_path, *lines).toolpath.operations
+    assert [event.row for event in first.events] == [0, 0, 0]
+    assert {*second.events} == {
+        Coolant(0, 2, "ON"),
+        LoadTool(0, 8, 5),
+        SpindleOff(0, 6),
+        Dwell(0, 7, 2.0),
+        SpindleOn(1, 9, 500.0),
+    }
+
+
+def test_radius_compensation_cannot_stay_on_while_the_tool_leaves(tmp_path: Path) -> None:
+    lines = ["G0 X0 Y0 Z5", "G41 G1 X1 F10", "X2", "SUPA G0 Z0", "G0 X9 Y0 Z5", "G1 X8", "G40 X7"]
+    found = sinumerik(tmp_path, *lines)
+    assert [(error.line, error.what) for error in found.errors] == [
+        (2, "radius compensation stays on while the tool leaves the workpiece")
+    ]
+    lines[3:3] = ["G40 X3", "X4"]
+    found = sinumerik(tmp_path, *lines[:-1])
+    assert found.errors == ()
+    assert CutterComp(3, 4, "OFF") in found.toolpath.operations[0].events
+
+
+def test_a_turn_without_tcp_at_the_part_divides_too_where_the_zero_is_not_known(tmp_path: Path) -> None:
+    lines = ["TRAORI", "G0 X0 Y60 Z5", "G1 X1 F10", "TRAFOOF", "G0 C180", "TRAORI", "G0 X0 Y-60 Z5", "G1 X1"]
+    assert len(sinumerik(tmp_path, *lines).toolpath.operations) == 2
+
+
+def test_first_legs_from_home_whose_height_nobody_knows_are_left_out(tmp_path: Path) -> None:
+    (operation,) = sinumerik(tmp_path, "SUPA G0 Z300", "G0 X5 Y6", "Z50", "G1 Z1 F10").toolpath.operations
+    assert operation.moves.tip.tolist() == [[5.0, 6.0, 50.0], [5.0, 6.0, 1.0]]
+
+
+@pytest.mark.parametrize(
+    ("lines", "line"),
+    [
+        (["G0 X0 Y0", "G1 Z1 F10", "SUPA G0 Z300", "G1 X5 F10"], 4),
+        (["G0 X0 Y0 Z5", "SUPA G0 Z0", "G0 C90", "G0 X0 Y0 Z5", "G1 X1 F10"], 5),
+        (["G0 X0 Y0 Z5", "G1 X1 B30 F1"], 2),
+        (["SUPA G0 X0 Y0 Z0", "G2 X10 Y0 Z0 I5 J0 F100"], 2),
+        (["G500", "G0 X0 Y0 Z5", "G1 X1 F10"], 3),
+        (["TRAORI", "G0 B30 X0 Y0 Z5", "TRAFOOF", "G0 Z9", "TRAORI", "G1 X1 F10"], 6),
+    ],
+)
+def test_a_cut_at_a_position_that_follows_from_the_machine_is_refused(
+    lines: list[str], line: int, tmp_path: Path
+) -> None:
+    found = sinumerik(tmp_path, *lines)
+    assert [(error.line, error.cure) for error in found.errors] == [
+        (line, "give --zero and --tool-length of the program's machine")
+    ]
+    assert sinumerik(tmp_path, *lines, **KNOWN).errors == ()
+
+
+@pytest.mark.parametrize(
+    ("lines", "refused"),
+    [
+        (["G0 X0 Y0 Z5", "G1 X1 F10", "SUPA G1 Z0", "G0 X9 Y0 Z5", "G1 X8"], False),
+        (["G0 X0 Y0 Z5", "G1 X1 F10", "SUPA G1 Z-200", "G1 X9 Y0 Z5", "G1 X8"], True),
+        (["G0 X0 Y0 Z5", "G1 X1 F10", "SUPA G1 X0", "G0 X9 Y0 Z5", "G1 X8"], True),
+    ],
+)
+def test_cuts_in_machine_positions_are_refused_and_retracts_at_feed_are_not(
+    lines: list[str], refused: bool, tmp_path: Path
+) -> None:
+    found = sinumerik(tmp_path, *lines)
+    assert [error.what for error in found.errors] == ["moves at feed to a position of the machine"] * refused
