@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from trunnion import readers
-from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
+from trunnion.api.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.api.settings import check_tolerance
 from trunnion.api.verifying import rapid_feed_of
 from trunnion.jit import compile_ahead
@@ -68,5 +68,4 @@ def diff(
 
 def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath]) -> Run:
     """The run of a program, with lines at the feed of rapids as rapids."""
-    run = program if isinstance(program, Run) else read_program(program, machine=machine, subprograms=subprograms)
-    return restore_rapids(run, rapid_feed_of(machine))
+    return restore_rapids(as_run(program, machine, subprograms), rapid_feed_of(machine))

@@ -8,6 +8,7 @@ from typing import TypeAlias
 from trunnion import machines, readers
 from trunnion.api.observer import SILENT, Observer
 from trunnion.cl import read_cl as read_cl_file
+from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -131,6 +132,32 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     ((30, 3), ())
     """
     return readers.run_program(Path(nc), as_machine(machine), subprograms=as_paths(subprograms))
+
+
+def as_run(nc: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath] = ()) -> Run:
+    """The run of a program; one that has already been read must have been read for this machine, set up as it is.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or a run is of another machine, workpiece zero or tool length: its positions were
+        computed with those that it has.
+    """
+    if not isinstance(nc, Run):
+        return read_program(nc, machine=machine, subprograms=subprograms)
+    if subprograms:
+        raise InputError(Problem(nc.files[0], 0, "has already been read", "give the subprograms to read_program"))
+    own = nc.machine
+    if (own.key, own.axes, own.spindle_direction, own.spindle_point) != (
+        machine.key, machine.axes, machine.spindle_direction, machine.spindle_point,
+    ):  # fmt: skip
+        what = f"was read for {own.key}, and not for {machine.key} as it is defined here"
+        raise InputError(Problem(nc.files[0], 0, what, "give the path of the program, or the machine that ran it"))
+    given = ((machine.workpiece_zero, own.workpiece_zero), (machine.tool_length, own.tool_length))
+    if any(new is not None and new != old for new, old in given):
+        what = "has already been read with another workpiece zero or tool length"
+        raise InputError(Problem(nc.files[0], 0, what, "give the path of the program"))
+    return nc
 
 
 def as_machine(machine: MachineLike) -> Machine:

@@ -52,6 +52,9 @@ _NUMBERS: Final = {
 #: Settings of the post itself; all others belong to the control, whose templates print them.
 RUN_SETTINGS: Final = (*_CHOICES, *_NUMBERS, "mode", "zero", "clearance")
 
+#: The farthest that the workpiece zero may be from the origin of the machine, mm.
+_FARTHEST_ZERO: Final = 1e5
+
 #: Lengths and angles of ``check_tolerance`` are below this.
 _GREATEST_TOLERANCE: Final = 1e6
 
@@ -150,7 +153,8 @@ def _point_setting(text: str) -> tuple[float, float, float]:
     try:
         x, y, z = (float(part) for part in text.split(","))
     except ValueError:
-        raise InputError(
-            Problem("--set", 0, f"zero is {text!r}", "write zero=X,Y,Z: the workpiece zero on the machine, mm")
-        ) from None
+        x = y = z = math.nan
+    if not max(abs(x), abs(y), abs(z)) <= _FARTHEST_ZERO or math.isnan(x + y + z):
+        cure = "write zero=X,Y,Z: the workpiece zero on the machine, mm, such as zero=0,0,120.5"
+        raise InputError(Problem("--set", 0, f"zero is {text!r}", cure))
     return x, y, z

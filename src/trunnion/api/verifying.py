@@ -6,7 +6,7 @@ from typing import Literal
 from trunnion import readers, verification
 from trunnion.api import kernels
 from trunnion.api.observer import SILENT, Observer
-from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths, read_program
+from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import check_tolerance, set_up_machine, work_offset_number
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
@@ -43,7 +43,7 @@ def verify(
     Parameters
     ----------
     nc
-        The program: a path, or its run (``trunnion.read_program``).
+        The program: a path, or its run (``trunnion.read_program``), which keeps the machine that it was read for.
     machine
         The machine that runs it: a name, a path or a ``Machine``.
     cl
@@ -104,7 +104,7 @@ def verify(
     loaded = set_up_machine(loaded, zero, tool_length)
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer)
-    run = nc if isinstance(nc, Run) else read_program(nc, machine=loaded, subprograms=subprograms)
+    run = as_run(nc, loaded, subprograms)
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals
 
