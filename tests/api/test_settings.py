@@ -40,11 +40,11 @@ def test_the_command_refuses_an_endless_workpiece_zero(tmp_path: Path, capsys: p
 
 
 def test_a_run_keeps_the_setup_with_which_it_was_read() -> None:
-    """Its slides were computed with the workpiece zero and the tool length of its machine: no others can replace them."""
+    """Its slides were computed with the workpiece zero and the tool length of its machine."""
     run = trunnion.read_program(PROGRAM, machine="yl569")
     for setup in ({"zero": (0, 0, 5000)}, {"tool_length": 100.0}, {"subprograms": ["sub.spf"]}):
         with pytest.raises(trunnion.InputError, match="already been read"):
-            trunnion.verify(run, machine="yl569", **setup)  # type: ignore[arg-type]
+            trunnion.verify(run, machine="yl569", **setup)
     with pytest.raises(trunnion.InputError, match="was read for"):
         trunnion.verify(run, machine="dmu65")
     with pytest.raises(trunnion.InputError, match="was read for"):

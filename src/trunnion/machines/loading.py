@@ -135,6 +135,7 @@ def _axis(entry: Table) -> Axis:
         home=home,
         positive=PositiveDirection(positive),
         prefer=rotary.prefer,
+        home_is_stated=f"home_{unit}" in entry,
     )
 
 

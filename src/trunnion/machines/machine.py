@@ -68,6 +68,7 @@ class Axis:
     rapid           mm/min or deg/min; None where not stated
     acceleration    mm/s^2 or deg/s^2; None where not stated
     home            displayed value, mm or deg
+    home_is_stated  the definition states it; else it is assumed to be 0
     """
 
     name: str
@@ -84,11 +85,17 @@ class Axis:
     home: float = 0.0
     positive: PositiveDirection = PositiveDirection.STANDARD
     prefer: PreferredSign = PreferredSign.EITHER
+    home_is_stated: bool = True
 
     @property
     def is_rotary(self) -> bool:
         """Whether the joint turns."""
         return self.kind is AxisKind.ROTARY
+
+    @property
+    def has_limits(self) -> bool:
+        """Whether an end of its travel is stated."""
+        return not self.endless and bool(np.isfinite(self.low) or np.isfinite(self.high))
 
     @property
     def sense(self) -> float:

@@ -7,6 +7,7 @@ from trunnion.output.program import Program
 from trunnion.output.validation.cycles import cycle_problems
 from trunnion.output.validation.events import block_skip_problems, event_problems
 from trunnion.output.validation.feeds import missing_feed_problems, rounded_feed_problems
+from trunnion.output.validation.machine import machine_problems
 from trunnion.output.validation.operations import (
     machining_mode_problems,
     next_axis_problems,
@@ -44,7 +45,7 @@ def check_program(program: Program) -> list[Problem]:
         tool_in_spindle = operation.tool.name
         problems += machining_mode_problems(program, motion)
         problems += tolerance_problems(program, motion)
-    return [*problems, *block_skip_problems(program)]
+    return [*problems, *block_skip_problems(program), *machine_problems(program)]
 
 
 def _motion_problems(program: Program, motion: Motion) -> list[Problem]:

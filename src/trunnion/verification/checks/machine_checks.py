@@ -1,6 +1,5 @@
 """What the program asks of the machine: travel, speed and acceleration of its axes."""
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -34,8 +33,9 @@ def check_travel(context: Context, motion: AxisMotion) -> Check:
     """Every axis is inside its limits; the summary has the smallest margin."""
     title = "travel of the axes"
     margins = sorted(_margins(context, motion), key=lambda margin: margin.share)
+    unchecked = _unchecked_axes(context)
     if not margins:
-        return Check("travel", title, True, "no limits are stated")
+        return Check("travel", title, True, unchecked or "no axis with limits moves")
     over = [margin for margin in margins if margin.left < -_ROUNDING]
     places = tuple(
         context.place(margin.row, margin.value, f"{margin.text}, {_words(margin.left, margin.left < 0)}")
@@ -43,8 +43,19 @@ def check_travel(context: Context, motion: AxisMotion) -> Check:
     )
     least = margins[0]
     unit = "deg" if least.axis.is_rotary else "mm"
-    summary = f"{least.text}, {_words(least.left, bool(over))}"
+    summary = "; ".join(filter(None, (f"{least.text}, {_words(least.left, bool(over))}", unchecked)))
     return Check("travel", title, not over, summary, least.left, 0.0, unit, places)
+
+
+def _unchecked_axes(context: Context) -> str:
+    """Which axes this check says nothing about, and why; empty if it judges all of them as they stand."""
+    machine = context.run.machine
+    without = [axis.name for axis in machine.axes if not axis.endless and not axis.has_limits]
+    slides = [axis.name for axis in machine.axes if not axis.is_rotary and axis.has_limits]
+    reasons = [f"{', '.join(without)}: not checked, the definition states no travel"] if without else []
+    if slides and machine.workpiece_zero is None:
+        reasons.append(f"{', '.join(slides)}: only the length of their travel, the workpiece zero is not known")
+    return "; ".join(reasons)
 
 
 def _words(left: float, too_far: bool) -> str:
@@ -56,7 +67,7 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
     machine = context.run.machine
     for k, axis in enumerate(machine.axes):
         low, high = motion.extremes[k].tolist()
-        if low > high or axis.endless or not (math.isfinite(axis.low) or math.isfinite(axis.high)):
+        if low > high or not axis.has_limits:
             continue
         rows = motion.extreme_rows[k].tolist()
         if not axis.is_rotary and machine.workpiece_zero is None:

@@ -1,0 +1,25 @@
+"""What a machine's definition leaves open that a program for it would take for granted."""
+
+from trunnion.errors import Problem, Severity
+from trunnion.output.program import Program
+
+
+def machine_problems(program: Program) -> list[Problem]:
+    """Return warnings of home positions that are assumed, and of slides whose travel nothing checks."""
+    machine = program.machine
+    printed = {name for template in program.control.templates.values() for name, _ in template.fields()}
+    slides = [axis for axis in machine.axes if not axis.is_rotary]
+    homeless = [axis.name for axis in slides if not axis.home_is_stated and f"home_{axis.name.lower()}" in printed]
+    unlimited = [axis.name for axis in slides if not axis.has_limits]
+    problems = []
+    if homeless:
+        what = f"home of {', '.join(homeless)} is not stated: 0 is assumed, and the program goes there"
+        problems.append(_warning(program, what, "write home_mm of these axes in the definition"))
+    if unlimited:
+        what = f"travel of {', '.join(unlimited)} is not stated: nothing checks it"
+        problems.append(_warning(program, what, "write limits_mm of these axes in the definition"))
+    return problems
+
+
+def _warning(program: Program, what: str, cure: str) -> Problem:
+    return Problem(program.machine.key, 0, what, cure, Severity.WARNING)

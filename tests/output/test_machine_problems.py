@@ -1,0 +1,55 @@
+"""What a machine's definition leaves open is said by every program that takes it for granted."""
+
+import pytest
+
+import trunnion
+from tests.support.locations import YL569
+from trunnion.machines.loading import shipped_machines
+
+CL = YL569 / "3_blade_finish.cls"
+
+
+def travel_and_warnings(machine: str, zero: tuple[float, float, float] | None = None) -> tuple[str, list[str]]:
+    result = trunnion.post(CL, machine=machine, settings={"zero": zero} if zero else {}, columns=False)
+    travel = next(check.summary for check in result.checks if check.key == "travel")
+    return travel, [str(problem) for problem in result.problems if problem.file == machine]
+
+
+@pytest.mark.parametrize("machine", ["ucp800", "hs664rt"])
+def test_slides_without_a_stated_travel_are_named(machine: str) -> None:
+    travel, warnings = travel_and_warnings(machine, (0.0, 0.0, 5000.0))
+    assert travel.endswith("X, Y, Z: not checked, the definition states no travel")
+    unlimited = f"{machine}: warning: travel of X, Y, Z is not stated: nothing checks it"
+    assert [text for text in warnings if text.startswith(unlimited)]
+
+
+def test_a_home_that_is_assumed_is_said() -> None:
+    _, warnings = travel_and_warnings("ucp800")
+    assumed = "ucp800: warning: home of X, Y, Z is not stated: 0 is assumed, and the program goes there"
+    assert [text for text in warnings if text.startswith(assumed)]
+
+
+def test_a_program_that_does_not_go_home_along_the_slides_says_nothing_of_it() -> None:
+    _, warnings = travel_and_warnings("hs664rt")
+    assert not [text for text in warnings if "home" in text]
+
+
+@pytest.mark.parametrize("machine", ["yl569", "dmu65", "mikron_600u", "matsuura_mx330"])
+def test_a_definition_that_states_everything_is_not_warned_of(machine: str) -> None:
+    assert travel_and_warnings(machine)[1] == []
+
+
+def test_a_travel_that_is_only_compared_in_length_is_said() -> None:
+    travel, _ = travel_and_warnings("yl569")
+    assert travel.endswith("X, Y, Z: only the length of their travel, the workpiece zero is not known")
+    assert "only" not in travel_and_warnings("yl569", (0.0, 0.0, 0.0))[0]
+
+
+@pytest.mark.parametrize("machine", shipped_machines())
+def test_no_axis_is_left_out_in_silence(machine: str) -> None:
+    """Each axis has limits, or turns without end, or is named."""
+    loaded = trunnion.load_machine(machine)
+    travel, _ = travel_and_warnings(machine)
+    open_axes = [axis.name for axis in loaded.axes if not axis.endless and not axis.has_limits]
+    assert ", ".join(open_axes) in travel
+    assert bool(open_axes) is ("not checked" in travel)
