@@ -9,7 +9,7 @@ CI systems jump to the line.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 
@@ -40,6 +40,17 @@ class Problem:
         place = f"{self.file}:{self.line}" if self.line else self.file
         cure = f"; {self.cure}" if self.cure else ""
         return f"{place}: {self.severity}: {self.what}{cure}"
+
+
+def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
+    """Problems that differ only in their lines become one: at the first line, with their number."""
+    alike: dict[tuple[object, ...], list[Problem]] = {}
+    for problem in problems:
+        alike.setdefault((problem.file, problem.what, problem.cure, problem.severity), []).append(problem)
+    return tuple(
+        same[0] if len(same) == 1 else replace(same[0], what=f"{same[0].what} ({len(same)} times, first here)")
+        for same in alike.values()
+    )
 
 
 class TrunnionError(Exception):

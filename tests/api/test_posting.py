@@ -206,15 +206,17 @@ class Log(trunnion.Observer):
 def test_an_observer_hears_what_happens_in_its_order(tmp_path: Path) -> None:
     cl = tmp_path / "odd.cls"
     text = HUB.read_text(encoding="utf-8")
-    cl.write_text(text.replace("FEDRAT/", "FROBNICATE/ON\nFEDRAT/", 1), encoding="utf-8")
+    cl.write_text(text.replace("FEDRAT/", "PAINT/COLOR,7\nFEDRAT/", 1), encoding="utf-8")
     log = Log()
     result = trunnion.post(cl, machine="yl569", observer=log)
-    (warning,) = [problem for problem in result.problems if "FROBNICATE" in problem.what]
+    (warning,) = [problem for problem in result.problems if "colour 7" in problem.what]
     assert log.heard == [f"problem: {warning.what}", "planned", "verified"]
     assert log.total == {"odd.cls": cl.stat().st_size, "writing": 23}
     assert log.done == log.total
-    with pytest.raises(trunnion.InputError, match="FROBNICATE"):
-        trunnion.post(cl, machine="yl569", strict=True)
+    cl.write_text(text.replace("FEDRAT/", "FROBNICATE/ON\nFEDRAT/", 1), encoding="utf-8")
+    for strict in (False, True):
+        with pytest.raises(trunnion.InputError, match="FROBNICATE"):
+            trunnion.post(cl, machine="yl569", strict=strict)
 
 
 def test_a_result_shows_itself_in_one_line(tmp_path: Path) -> None:

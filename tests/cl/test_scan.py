@@ -72,7 +72,7 @@ def test_a_point_is_read_to_the_last_bit_or_left_to_python(fields: list[str], bl
 @pytest.mark.filterwarnings("error")
 @QUICK
 @given(
-    st.lists(spelled, min_size=3, max_size=3).filter(lambda fields: all(abs(float(field)) < 1e12 for field in fields))
+    st.lists(spelled, min_size=3, max_size=3).filter(lambda fields: all(abs(float(field)) <= 1e6 for field in fields))
 )
 def test_what_the_reader_gives_is_what_python_reads(tmp_path: Path, fields: list[str]) -> None:
     path = tmp_path / "a.cls"

@@ -103,7 +103,6 @@ def test_load_select_and_their_registers(body: Body) -> None:
         ("800.,RPM,CCLW", 800, Sense.CCLW),
         ("CCLW, RPM , 800", 800, Sense.CCLW),
         ("800", 800, Sense.CLW),
-        ("RPM,800,RANGE,2", 800, Sense.CLW),
         ("SMM,100,CLW", 100_000 / (math.pi * 10), Sense.CLW),
         ("SFM,100,CLW", 30_480 / (math.pi * 10), Sense.CLW),
         ("SFM,100,CLW,DIAMTR,20", 30_480 / (math.pi * 20), Sense.CLW),
@@ -144,8 +143,10 @@ def test_coolnt_keeps_its_kind(body: Body, kind: str) -> None:
         ("INSERTG00Z10.$", Insert(0, 3, "G00Z10.$")),
         ("OPSKIP/ON", BlockSkip(0, 3, True)),
         ("OPSKIP/OFF", BlockSkip(0, 3, False)),
-        ("SET/LINEAR", SetMode(0, 3, ("SET", "LINEAR"))),
-        ("MODE/TOOL,0,0,1", SetMode(0, 3, ("MODE", "TOOL", "0", "0", "1"))),
+        ("SET/MODE,ABSOL", SetMode(0, 3, ("SET", "MODE", "ABSOL"))),
+        ("MODE/MILL", SetMode(0, 3, ("MODE", "MILL"))),
+        ("LOADTL/7", LoadTool(0, 3, 7)),
+        ("LOADTL/7,ADJUST,3", LoadTool(0, 3, 7, 3)),
         ("MULTAX/ON", SetMode(0, 3, ("MULTAX", "ON"))),
         ("GOHOME", GoHome(0, 3)),
         ("CYCLE/OFF", CycleOff(0, 3)),
@@ -380,7 +381,27 @@ def test_cycle_on_repeats_the_last_cycle(body: Body) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["WOBBLE/1,2", "ORIGIN/1,0,0,0", "COOLNT/LAVA", "SPINDL/ORIENT", "CUTCOM/ADJUST,1", "OPSKIP/ON,2", "DELAY/1,MIN"],
+    [
+        "WOBBLE/1,2",
+        "ORIGIN/1,0,0,0",
+        "COOLNT/LAVA",
+        "SPINDL/ORIENT",
+        "CUTCOM/ADJUST,1",
+        "OPSKIP/ON,2",
+        "DELAY/1,MIN",
+        "ROTATE/TABLE,90",
+        "ROTABL/ATANGL,90",
+        "TLAXIS/0,1,0",
+        "AUXFUN/31",
+        "PREFUN/91",
+        "CLAMP/ON",
+        "SEQNO/10,INCR,5",
+        "MY_EVENT/1",
+        "SET/LINEAR",
+        "MODE/TOOL,0,0,1",
+        "MULTAX/OFF",
+        "LOAD/HOLDER,3",
+    ],
 )
 def test_a_statement_that_is_not_known_is_kept_with_a_remark_and_an_error_when_strict(
     read: Read, body: Body, body_fails: Fail, text: str
@@ -398,14 +419,39 @@ def test_a_statement_is_kept_once_however_much_of_it_is_not_known(read: Read) ->
     assert [event for event in toolpath.operations[0].events if isinstance(event, UnknownStatement)] == [
         UnknownStatement(0, 2, "CYCLE/DRILL,A,B,C")
     ]
-    assert len(toolpath.remarks) == 3
+    (remark,) = toolpath.remarks
+    assert all(f"CYCLE with {word} is not known" in remark.what for word in "ABC")
 
 
-def test_each_statement_that_is_not_known_is_named_and_the_list_is_capped(read: Read) -> None:
-    toolpath = read("TOOL PATH/A,TOOL,T\n" + "WOBBLE\n" * 150 + "GOTO/0,0,0\nEND-OF-PATH\n")
+def test_what_is_known_of_a_statement_is_followed(body: Body) -> None:
+    events = body(
+        "SPINDL/RPM,800,RANGE,2", "LOAD/TOOL,3,LENGTH,80", "COOLNT/MIST,HIGH", "SELECT/TOOL,4,LARGE", GO
+    ).events
+    assert [event for event in events if not isinstance(event, UnknownStatement)] == [
+        SpindleOn(0, 3, 800, Sense.CLW),
+        LoadTool(0, 4, 3),
+        Coolant(0, 5, "MIST"),
+        SelectTool(0, 6, 4),
+    ]
+    unknown = [event.words for event in events if isinstance(event, UnknownStatement)]
+    assert unknown == [("RANGE",), ("LENGTH",), ("HIGH",), ("LARGE",)]
+
+
+def test_what_only_listings_have_is_nothing(read: Read, body: Body) -> None:
+    lines = ("REMARK/roughing", "LEADER/20", "CLPRNT/ON", "CUTTER/10,1", "MACHIN/MILL,1")
+    assert body(*lines, GO).events == ()
+    assert read("TOOL PATH/A,TOOL,T\n" + "\n".join(lines) + "\nGOTO/0,0,0\nEND-OF-PATH\n").remarks == ()
+
+
+def test_a_remark_is_made_once_however_often_its_reason_comes_and_the_list_is_capped(read: Read) -> None:
+    toolpath = read("TOOL PATH/A,TOOL,T\n" + "WOBBLE\n" * 62 + "GOTO/0,0,0\nEND-OF-PATH\n")
+    (remark,) = toolpath.remarks
+    assert (remark.line, "(62 times, first here)" in remark.what) == (2, True)
+    assert len(toolpath.operations[0].events) == 62
+    many = "".join(f"WOBBLE{k}\n" for k in range(150))
+    toolpath = read("TOOL PATH/A,TOOL,T\n" + many + "GOTO/0,0,0\nEND-OF-PATH\n")
     assert len(toolpath.remarks) == 101
     assert toolpath.remarks[-1].what == "and 50 more"
-    assert len(toolpath.operations[0].events) == 150
 
 
 @pytest.mark.parametrize("text", ["PAINT/PATH", "PAINT/SPEED,10", "PAINT/TOOL,NOMORE", "PAINT/ARROW"])

@@ -152,19 +152,14 @@ def test_the_head_says_so_where_the_control_reads_it(tmp_path: Path, machine: st
     assert "MUST NOT RUN AS IT IS" in lines[len(first)]
 
 
-def test_an_unknown_statement_is_a_warning_and_an_error_under_strict(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("options", [(), ("--strict",), ("--force",)])
+def test_an_unknown_statement_is_an_error(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], options: tuple[str, ...]
 ) -> None:
-    text = GOOD.replace(POINT, "FROBNICATE/ON\n" + POINT)
-    outcome = post_text(tmp_path, capfd, text)
-    assert outcome.code == 0
-    assert "part.cls:17: warning: " in outcome.err
-    assert "FROBNICATE" in outcome.err
-    assert outcome.left == ["program.mpf"]
-    outcome.target.unlink()
-    strict = post_text(tmp_path, capfd, text, "--strict")
-    assert (strict.code, strict.left) == (2, [])
-    assert "part.cls:17: error: " in strict.err
+    outcome = post_text(tmp_path, capfd, GOOD.replace(POINT, "FROBNICATE/ON\n" * 3 + POINT), *options)
+    assert (outcome.code, outcome.left) == (2, [])
+    assert "part.cls:17: error: FROBNICATE is not known" in outcome.err
+    assert "kept as it stands" not in outcome.err
 
 
 def test_an_old_program_stays_when_the_new_one_fails(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

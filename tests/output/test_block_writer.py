@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trunnion.controls.words import ABSENT, BlockNumbers, NumberFormat, Word, round_to_counts
-from trunnion.errors import RefusedError
+from trunnion.controls.words import ABSENT, BlockNumbers, NumberFormat, Word, WordRangeError, round_to_counts
 from trunnion.output.blocks.block_writer import BlockWriter
 
 COORDINATE = NumberFormat(5, zero="0.0", least=-1e11, greatest=1e11)
@@ -125,5 +124,6 @@ def test_block_skip_goes_before_the_block_number() -> None:
 
 def test_a_number_beyond_its_word_is_refused_and_names_the_limit() -> None:
     writer = BlockWriter(io.BytesIO(), [Word("S", "S", NumberFormat(0, greatest=99999))], BlockNumbers())
-    with pytest.raises(RefusedError, match="word S100000 is beyond 99999"):
-        writer.write_table({"S": np.array([100000])})
+    with pytest.raises(WordRangeError, match="word S100000 is beyond 99999") as caught:
+        writer.write_table({"S": np.array([5, 100000, 7])})
+    assert caught.value.row == 1

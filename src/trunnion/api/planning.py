@@ -4,6 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from trunnion import planning, readers
+from trunnion.api.cl_statements import replace_unknown_statements
+from trunnion.api.inserts import insert_problems
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
@@ -76,6 +78,7 @@ def load_toolpaths(
 ) -> list[Toolpath]:
     """The toolpaths of a post, with surface normals if the program has them; their remarks are reported."""
     toolpaths = as_toolpaths(cl, job.settings.get("units"), strict, observer)
+    toolpaths = replace_unknown_statements(toolpaths, job.control.statements)
     if not toolpaths:
         raise InputError(Problem("post", 0, "there is no CL file", "give at least one"))
     if job.has_normals:
@@ -117,13 +120,14 @@ def plan_program(
         raise InputError(problems)
     observer.problems(problems)
     unproven = _missing_reader(job)
-    blocking = [problem for problem in planned.problems if problem.severity is Severity.ERROR] + unproven
+    found = [*planned.problems, *insert_problems(program)]
+    blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, "no program is written", "--force writes it")
-        raise RefusedError((*planned.problems, *unproven, refused))
-    observer.problems(planned.problems)
+        raise RefusedError((*found, *unproven, refused))
+    observer.problems(found)
     notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in blocking]
-    return replace(program, notices=notices), planned, [*problems, *planned.problems]
+    return replace(program, notices=notices), planned, [*problems, *found]
 
 
 def _missing_reader(job: PostJob) -> list[Problem]:

@@ -5,10 +5,11 @@ from typing import Literal
 
 from trunnion import readers, verification
 from trunnion.api import kernels
+from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import check_tolerance, set_up_machine, work_offset_number
-from trunnion.controls import load_control
+from trunnion.controls import Control, load_control
 from trunnion.errors import InputError, Problem
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
@@ -102,8 +103,10 @@ def verify(
     readers.reader_of(loaded)
     compile_ahead(kernels.VERIFYING)
     loaded = set_up_machine(loaded, zero, tool_length)
+    control = written_control(loaded)
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer)
+    toolpaths = replace_unknown_statements(toolpaths, control.statements if control else {})
     run = as_run(nc, loaded, subprograms)
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals
@@ -130,10 +133,16 @@ def verify(
 
 def default_settings(machine: Machine) -> Mapping[str, str]:
     """The settings of a control's definition; usual ones where its programs can be read but not written."""
+    control = written_control(machine)
+    return control.settings if control else {"edge": "1"}
+
+
+def written_control(machine: Machine) -> Control | None:
+    """The control of a machine; None where its programs can be read but not written."""
     try:
-        return load_control(machine.control.unread_copy()).settings
+        return load_control(machine.control.unread_copy())
     except InputError:
-        return {"edge": "1"}
+        return None
 
 
 def rapid_feed_of(machine: Machine) -> float | None:

@@ -10,13 +10,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats
+from trunnion.arrays import Flags, Floats, Lines
 from trunnion.cl.arcs import arcs_of, complete_circles
 from trunnion.cl.builder import FeedChange, FromStatement, MoveColumns, OperationBuilder, SurfaceSpeed
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.cl.scan import fill_modal_axes
 from trunnion.model.toolpath import CycleOn, Event, Frame, From, Kind, Moves, Operation, SpindleOn, Tool
+
+#: No machine reaches farther, mm: a coordinate beyond it is a mistake in the file.
+_MAX_COORDINATE = 1e6
+_NO_SUCH_MACHINE = f"no machine reaches farther than {_MAX_COORDINATE:g} mm: correct it, or check the unit of the file"
 
 #: Couplets of CYCLE whose numbers are lengths.
 CYCLE_LENGTHS = frozenset({"RAPTO", "FEDTO", "RTRCTO", "CLEAR", "STEP", "CSKDIA", "HOLDIA"})
@@ -47,6 +51,7 @@ def assemble_operation(
     kind[rapids] = Kind.RAPID
     fill_phases(columns.phase[rows], rapids, builder.colours)
     _report_unknown_colours(builder, diagnostics)
+    _report_far_points(tip, columns.line[rows], builder, unit, diagnostics)
     starts = _fill_tool_axes(columns, builder, unit, diagnostics)
     circles = complete_circles(builder.circles, kind, diagnostics)
     kind[[circle.row for circle in circles]] = Kind.ARC
@@ -90,6 +95,18 @@ def _report_unknown_colours(builder: OperationBuilder, diagnostics: Diagnostics)
             f"operation {builder.name} uses colour {colour}, which names no phase; the one before it goes on",
             "use the standard path colours of the CAM system",
         )
+
+
+def _report_far_points(
+    tip: Floats, line: Lines, builder: OperationBuilder, unit: float, diagnostics: Diagnostics
+) -> None:
+    """Refuse coordinates of a size that no machine has: ``tip`` (n, 3) in mm, and the origin of the frame."""
+    if len(tip) and max(float(tip.max()), -float(tip.min())) > _MAX_COORDINATE:
+        for row in np.flatnonzero((np.abs(tip) > _MAX_COORDINATE).any(axis=1))[: MAX_LISTED + 1].tolist():
+            diagnostics.error(int(line[row]), f"a coordinate of {np.abs(tip[row]).max():.10g} mm", _NO_SUCH_MACHINE)
+    farthest = max(map(abs, builder.frame.origin)) * unit
+    if farthest > _MAX_COORDINATE:
+        diagnostics.error(builder.line, f"an MSYS with its origin {farthest:.10g} mm away", _NO_SUCH_MACHINE)
 
 
 def _fill_tool_axes(

@@ -1,5 +1,7 @@
 """Errors and remarks about a file, collected while it is read."""
 
+from dataclasses import replace
+
 from trunnion.errors import InputError, Problem, Severity
 
 #: More problems than this are counted, not listed.
@@ -22,14 +24,17 @@ class Diagnostics:
         self.file = file
         self._lists: dict[Severity, list[Problem]] = {severity: [] for severity in Severity}
         self._more = dict.fromkeys(Severity, 0)
+        self._repeated: dict[tuple[str, str], int] = {}
 
     def error(self, line: int, what: str, cure: str = "") -> None:
         """Note a problem that makes the file unusable."""
         self._add(Problem(self.file, line, what, cure, Severity.ERROR))
 
     def remark(self, line: int, what: str, cure: str = "") -> None:
-        """Note something that the user should know."""
-        self._add(Problem(self.file, line, what, cure, Severity.WARNING))
+        """Note something that the user should know; what is said of many lines is listed once, with their number."""
+        times = self._repeated[what, cure] = self._repeated.get((what, cure), 0) + 1
+        if times == 1:
+            self._add(Problem(self.file, line, what, cure, Severity.WARNING))
 
     def fatal(self, line: int, what: str, cure: str = "") -> InputError:
         """Return this error with all earlier ones as an exception: the file cannot be read any further."""
@@ -64,8 +69,13 @@ class Diagnostics:
         else:
             self._more[problem.severity] += 1
 
+    def _with_count(self, problem: Problem) -> Problem:
+        times = self._repeated.get((problem.what, problem.cure), 1)
+        repeated = problem.severity is Severity.WARNING and times > 1
+        return replace(problem, what=f"{problem.what} ({times} times, first here)") if repeated else problem
+
     def _listed(self, severity: Severity) -> tuple[Problem, ...]:
-        problems = sorted(self._lists[severity], key=lambda problem: problem.line)
+        problems = sorted(map(self._with_count, self._lists[severity]), key=lambda problem: problem.line)
         if self._more[severity]:
             problems.append(Problem(self.file, 0, f"and {self._more[severity]} more", "", severity))
         return tuple(problems)

@@ -130,4 +130,4 @@ class ClsfInterpreter:
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
             raise self._diagnostics.fatal(0, _NOT_CL, _GIVE_CL)
-        self._state.keep_unknown(statement, f"{statement.major or 'a statement without a word'} is not known")
+        self._state.note_unknown(statement, f"{statement.major or 'a statement without a word'} is not known")

@@ -6,7 +6,7 @@ sized; then for its content. Points never become Python objects.
 
 import stat
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -19,6 +19,7 @@ from trunnion.cl.diagnostics import Diagnostics
 from trunnion.cl.encoding import EncodingDetector
 from trunnion.cl.nx import ClsfInterpreter
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
+from trunnion.cl.unknown import unknown_statement_problems
 from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time.
@@ -116,7 +117,10 @@ def read_in_chunks(
         columns.tip[: scanner.rows] *= unit
     operations = tuple(assemble_operation(builder, columns, unit, diagnostics) for builder in interpreter.builders)
     diagnostics.raise_errors()
-    return Toolpath(str(path), operations, interpreter.part, diagnostics.remarks, unit)
+    toolpath = Toolpath(str(path), operations, interpreter.part, unit=unit)
+    for problem in unknown_statement_problems(toolpath):
+        diagnostics.remark(problem.line, problem.what, problem.cure)
+    return replace(toolpath, remarks=diagnostics.remarks)
 
 
 def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:

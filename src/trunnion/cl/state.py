@@ -1,6 +1,6 @@
 """The state of the CL reader between two statements: the operation being read, the row, and what is modal."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from trunnion.cl.builder import MoveColumns, OperationBuilder, SurfaceSpeed
 from trunnion.cl.diagnostics import Diagnostics
@@ -17,7 +17,7 @@ FEED_UNITS = {"MMPM": (1.0, False), "MMPR": (1.0, True), "IPM": (MM_PER_INCH, Fa
 class ReaderState:
     """What the handlers of statements (``trunnion.cl.statements``) read and change.
 
-    strict           an unknown statement is an error, not a remark
+    strict           an unknown statement is an error
     builders         the operations that are complete
     builder          the operation being read; outside of operations one without a name, which the next one takes over
     in_operation     between TOOL PATH and END-OF-PATH
@@ -70,15 +70,20 @@ class ReaderState:
         else:
             self.first_inch_feed = self.first_inch_feed or self.line
 
-    def keep_unknown(self, statement: Statement, what: str) -> None:
-        """Keep a statement as it stands, as one event even if several of its words are unknown, and report it."""
-        last = self.builder.events[-1] if self.builder.events else None
-        if not isinstance(last, UnknownStatement) or last.line != self.line:
-            self.add(UnknownStatement(self.operation_row, self.line, statement.source))
+    def note_unknown(self, statement: Statement, what: str, *words: str) -> None:
+        """Note that a statement, or some ``words`` of it, are not known: one event a statement, which says why."""
+        events = self.builder.events
         if self.strict:
             self.diagnostics.error(self.line, what, "remove the statement, or read without strict")
-        else:
-            self.diagnostics.remark(self.line, f"{what}; kept as it stands", "check whether the program needs it")
+        found = UnknownStatement(self.operation_row, self.line, statement.source, words, what)
+        for k in range(len(events) - 1, -1, -1):
+            before = events[k]
+            if before.line != self.line:
+                break
+            if isinstance(before, UnknownStatement):
+                events[k] = replace(found, words=before.words + words, what=f"{before.what}; {what}")
+                return
+        self.add(found)
 
     def close_operation(self) -> None:
         """Finish the operation being read."""

@@ -19,6 +19,9 @@ _NUMBER_LAST = frozenset(".0123456789")
 #: No length, feed or angle of a machine tool is larger; a larger number is a mistake in the file.
 _MAX_NUMBER = 1e12
 
+#: No tool, register or colour has a higher number.
+_MAX_WHOLE_NUMBER = 99_999_999
+
 
 class Statement(NamedTuple):
     """A statement of a CL file.
@@ -41,6 +44,10 @@ class Statement(NamedTuple):
     def plain_numbers(self) -> tuple[float, ...]:
         """Return the numbers among the values."""
         return tuple(value for value in self.values if not isinstance(value, str))
+
+    def listed(self) -> str:
+        """Return the values as they are written, between commas."""
+        return ",".join(value if isinstance(value, str) else f"{value:g}" for value in self.values)
 
     def words(self) -> list[str]:
         """Return the words among the values."""
@@ -78,7 +85,7 @@ def whole_number(major: str, values: tuple[str | float, ...]) -> int:
         If it is not.
     """
     (number,) = numbers(major, values, 1)
-    if not is_whole(number, 0):
+    if not is_whole(number, 0) or number > _MAX_WHOLE_NUMBER:
         raise StatementError(f"{major} has {number:g} where a whole number belongs", "write 0, 1, 2 ...")
     return int(number)
 

@@ -105,6 +105,8 @@ class Control:
     formats, words        number formats by name; words of motion blocks in their order
     codes, coolant        numbers of G and M words by name, as the family asks for them
     initial_modal_state   word -> code that is active after the program start
+    statements            what becomes of CL statements that Trunnion does not know: statement -> line of the program,
+                          empty for nothing
     settings              name -> default value
     method_defaults       setting -> (part of a method's name, value): defaults that depend on the machining method;
                           the first part that occurs in the name decides
@@ -134,6 +136,7 @@ class Control:
     codes: Mapping[str, int]
     coolant: Mapping[str, int]
     initial_modal_state: Mapping[str, int]
+    statements: Mapping[str, str]
     settings: Mapping[str, str]
     method_defaults: Mapping[str, tuple[tuple[str, str], ...]]
     tool_types: Mapping[str, str]

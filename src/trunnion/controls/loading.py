@@ -63,6 +63,7 @@ def load_control(own: Table) -> Control:
         codes=_read_integers(table.table("codes"), family.CODES),
         coolant=_read_integers(table.table("coolant"), COOLANTS, complete=False),
         initial_modal_state=_read_integers(table.table("in_force"), words, complete=False),
+        statements=_read_statements(table.table("statements")),
         settings=_read_settings(settings, family),
         method_defaults=_read_method_defaults(table.tables("by_method"), settings),
         tool_types=_read_texts(table.table("tool_types"), TOOL_TYPES),
@@ -175,6 +176,16 @@ def _read_settings(table: Table, family: FamilyWriter) -> dict[str, str]:
             table.add_problem(name, f"is {found[name]!r}", f"write one of {', '.join(choices)}")
     for name, cure in family.validate_settings(found):
         table.add_problem(name, f"is {found[name]!r}", cure)
+    table.report_unread_keys()
+    return found
+
+
+def _read_statements(table: Table) -> dict[str, str]:
+    """What becomes of CL statements; each is a line of the program, or nothing."""
+    found = {statement: table.text(statement) for statement in list(table.keys())}
+    for statement, line in found.items():
+        if any(ord(character) < 32 for character in line):
+            table.add_problem(statement, "has a line break or a control character in it", "write one line of a program")
     table.report_unread_keys()
     return found
 

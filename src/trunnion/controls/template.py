@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from trunnion.controls.words import NumberFormat
+from trunnion.controls.words import NumberFormat, WordRangeError
 from trunnion.errors import InputError, Problem
 
 Value = str | float | None
@@ -38,12 +38,14 @@ class Template:
         ------
         InputError
             If the value of a field with a format is not a number.
+        WordRangeError
+            If it is beyond the limits of its format.
         """
 
         def field_text(match: re.Match[str]) -> str:
             value = values[match[1]]
             if match[2]:
-                return formats[match[2]].text(self._number(match[1], value))
+                return self._number_text(match[1], value, formats[match[2]])
             return f"{value:g}" if isinstance(value, float) else str(value)
 
         def is_complete(text: str) -> bool:
@@ -51,6 +53,13 @@ class Template:
 
         lines = [_OPTIONAL_PART.sub(lambda part: part[1] if is_complete(part[1]) else "", text) for text in self.lines]
         return [_FIELD.sub(field_text, text) for text in lines if is_complete(text)]
+
+    def _number_text(self, name: str, value: Value, number_format: NumberFormat) -> str:
+        number = self._number(name, value)
+        if not number_format.least <= number <= number_format.greatest:
+            limit = number_format.least if number < number_format.least else number_format.greatest
+            raise WordRangeError(f"{name.replace('_', ' ')} {number:g} is beyond {limit:g}")
+        return number_format.text(number)
 
     def _number(self, name: str, value: Value) -> float:
         try:

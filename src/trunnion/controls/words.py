@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.errors import InputError, Problem
 from trunnion.jit import kernel
 
 #: The count of a word that is not in the block.
@@ -81,6 +82,19 @@ class Word:
     def text(self, value: float) -> str:
         """Return the whole word, such as ``X-.31289``."""
         return self.letter if self.bare else self.letter + self.format.text(value) + self.closing
+
+
+class WordRangeError(InputError):
+    """A number beyond the limits of its format; ``row`` of a table that has it."""
+
+    def __init__(self, what: str, row: int = 0, file: str = "program", line: int = 0) -> None:
+        cure = "correct it in the CL file; the control's definition has the limits of the word's format"
+        super().__init__(Problem(file, line, what, cure))
+        self.what, self.row, self.line = what, row, line
+
+    def at(self, file: str, line: int) -> "WordRangeError":
+        """The error with the file and the line of the CL file to which it belongs, unless it has them."""
+        return self if self.line else WordRangeError(self.what, self.row, file, line)
 
 
 @kernel(writes="out")

@@ -248,9 +248,16 @@ class SetMode(Event):
 
 @dataclass(frozen=True, slots=True)
 class UnknownStatement(Event):
-    """An unknown statement, as it stands in the CL file."""
+    """A statement that is not known, or some of whose words are not: what is known of it are events of their own.
+
+    text   as it stands in the CL file
+    words  those that are not known; none if all of the statement is not
+    what   why, for messages
+    """
 
     text: str
+    words: tuple[str, ...] = field(default=(), compare=False)
+    what: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)

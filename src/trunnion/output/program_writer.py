@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from trunnion.controls.template import Value
-from trunnion.controls.words import round_to_counts
+from trunnion.controls.words import WordRangeError, round_to_counts
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
@@ -46,8 +46,8 @@ def write_program(
     ------
     InputError
         If a value that the program needs is missing.
-    RefusedError
-        If a number is beyond the limits of its word's format.
+    WordRangeError
+        If a number is beyond the limits of its word's format; an ``InputError`` with the line of the CL file.
     """
     _ProgramWriter(program, sink, progress or (lambda _: None), subprograms).write()
 
@@ -98,7 +98,10 @@ class _ProgramWriter:
             ends_operation = ends_program or motions[k + 1].starts_operation
             if motion.starts_operation:
                 self._begin_operation_file(motion, k)
-            self._write_motion(motion, k, ends_operation)
+            try:
+                self._write_motion(motion, k, ends_operation)
+            except WordRangeError as error:
+                raise error.at(self._program.file, motion.operation.line) from None
             if ends_operation:
                 self._switch_coolant_off(motion, ends_program)
                 self._end_operation_file(motion, k)

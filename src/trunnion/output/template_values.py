@@ -176,7 +176,7 @@ class TemplateValues:
         if number:
             return number
         if loads:
-            return self._family.tool_call(loads[0].number, "", by_name=False)
+            return self._family.tool_call(loads[-1].number, "", by_name=False)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(Problem(self._program.file, operation.line, what, "write --set tool=NUMBER"))
 

@@ -97,11 +97,11 @@ def _couplet(state: ReaderState, statement: Statement, found: _Parts, word: str,
     """Take a word with the numbers behind it, or without any."""
     if given:
         if word not in _NUMBER_WORDS:
-            state.keep_unknown(statement, f"CYCLE with {word} is not known")
+            state.note_unknown(statement, f"CYCLE with {word} is not known", word)
         found.couplets.append((word, given))
         return
     if word in _NUMBER_WORDS:
         raise StatementError(f"CYCLE has {word} without a number", f"write {word},value")
     if word not in _BARE_WORDS:
-        state.keep_unknown(statement, f"CYCLE with {word or 'nothing between two commas'} is not known")
+        state.note_unknown(statement, f"CYCLE with {word or 'nothing between two commas'} is not known", word)
     found.words.append((word, ""))

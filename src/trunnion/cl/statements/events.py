@@ -35,6 +35,9 @@ _COOLANTS = frozenset({"ON", "OFF", "FLOOD", "MIST", "TAP", "THRU", "AIR"})
 _SIDES = frozenset({"LEFT", "RIGHT", "ON", "OFF"})
 _PLANES = frozenset({"XYPLAN", "ZXPLAN", "YZPLAN"})
 
+#: Statements about the form of a program that every program fulfils.
+_FULFILLED_MODES = frozenset({("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULTAX",), ("MULTAX", "ON")})
+
 
 def fedrat(state: ReaderState, statement: Statement) -> None:
     """Set the modal feed and its unit."""
@@ -59,13 +62,13 @@ def spindl(state: ReaderState, statement: Statement) -> None:
     if "OFF" in words:
         state.add(SpindleOff(state.operation_row, state.line))
         return
-    if words - _SPINDLE_WORDS:
-        state.keep_unknown(statement, f"SPINDL/{','.join(statement.words())} is not known")
-        return
-    if words & _GEAR_RANGES:
-        what = "the gear range of SPINDL is not written"
-        state.diagnostics.remark(state.line, what, "write it with INSERT/ if the machine needs it")
+    if unknown := sorted(words - _SPINDLE_WORDS):
+        state.note_unknown(statement, f"SPINDL with {','.join(unknown)} is not known", *unknown)
+    if ranges := sorted(words & _GEAR_RANGES):
+        state.note_unknown(statement, f"a gear range has no words here: SPINDL with {','.join(ranges)}", *ranges)
     speed, diameter = _speed_and_diameter(statement)
+    if unknown and speed is None and not words & _SPINDLE_WORDS:
+        return
     sense = _sense(state, words)
     surface = words & _SURFACE_SPEEDS.keys()
     row, line = state.operation_row, state.line
@@ -110,29 +113,35 @@ def load(state: ReaderState, statement: Statement) -> None:
     """Load or select a tool."""
     values = statement.values
     if values[:1] != ("TOOL",):
-        state.keep_unknown(statement, f"{statement.major} without TOOL is not known")
+        state.note_unknown(statement, f"{statement.major} without TOOL is not known", *statement.words())
         return
     number = whole_number(statement.major, values[1:2])
-    if statement.major == "SELECT":
-        state.add(SelectTool(state.operation_row, state.line, number))
-        return
     adjust = 0
-    if "ADJUST" in values:
+    if "ADJUST" in values and statement.major != "SELECT":
         index = values.index("ADJUST")
         adjust = whole_number("LOAD ADJUST", values[index + 1 : index + 2])
         values = values[:index] + values[index + 2 :]
-    if len(values) > 2:
-        state.keep_unknown(statement, f"LOAD/TOOL with {','.join(map(str, values[2:]))} is known for its number only")
-    state.add(LoadTool(state.operation_row, state.line, number, adjust))
+    if rest := [value if isinstance(value, str) else f"{value:g}" for value in values[2:]]:
+        words = [value for value in values[2:] if isinstance(value, str)]
+        state.note_unknown(statement, f"{statement.major}/TOOL with {','.join(rest)} is not known", *words)
+    row, line = state.operation_row, state.line
+    state.add(SelectTool(row, line, number) if statement.major == "SELECT" else LoadTool(row, line, number, adjust))
+
+
+def loadtl(state: ReaderState, statement: Statement) -> None:
+    """Load a tool by the older word: LOADTL/n is LOAD/TOOL,n."""
+    load(state, statement._replace(major="LOAD", values=("TOOL", *statement.values)))
 
 
 def coolnt(state: ReaderState, statement: Statement) -> None:
     """Switch the coolant."""
-    values = statement.values or ("ON",)
-    if len(values) != 1 or not isinstance(values[0], str) or values[0] not in _COOLANTS:
-        state.keep_unknown(statement, f"{statement.source.strip()} is not a known coolant")
-        return
-    state.add(Coolant(state.operation_row, state.line, values[0]))
+    kind, *rest = statement.values or ("ON",)
+    known = isinstance(kind, str) and kind in _COOLANTS
+    if rest or not known:
+        words = [word for word in (rest if known else statement.values) if isinstance(word, str)]
+        state.note_unknown(statement, f"COOLNT/{statement.listed()} is not a known coolant", *words)
+    if known:
+        state.add(Coolant(state.operation_row, state.line, str(kind)))
 
 
 def cutcom(state: ReaderState, statement: Statement) -> None:
@@ -142,7 +151,7 @@ def cutcom(state: ReaderState, statement: Statement) -> None:
     plane = [word for word in words if word in _PLANES]
     register = statement.plain_numbers()
     if len(side) != 1 or len(plane) > 1 or len(words) != len(side) + len(plane) or len(register) > 1:
-        state.keep_unknown(statement, f"{statement.source.strip()} is not known")
+        state.note_unknown(statement, f"CUTCOM/{statement.listed()} is not known", *words)
         return
     number = whole_number("CUTCOM", register) if register else 0
     state.add(CutterComp(state.operation_row, state.line, side[0], plane[0] if plane else "", number))
@@ -152,7 +161,7 @@ def delay(state: ReaderState, statement: Statement) -> None:
     """Dwell for a time or a number of revolutions."""
     words = statement.words()
     if words not in ([], ["REV"]):
-        state.keep_unknown(statement, f"DELAY/{','.join(words)} is not known")
+        state.note_unknown(statement, f"DELAY/{statement.listed()} is not known", *words)
         return
     (amount,) = numbers("DELAY", statement.plain_numbers(), 1)
     if amount < 0:
@@ -178,12 +187,15 @@ def insert(state: ReaderState, statement: Statement) -> None:
 def opskip(state: ReaderState, statement: Statement) -> None:
     """Switch block skip."""
     if statement.values not in (("ON",), ("OFF",)):
-        state.keep_unknown(statement, f"{statement.source.strip()} is not known")
+        state.note_unknown(statement, f"OPSKIP/{statement.listed()} is not known", *statement.words())
         return
     state.add(BlockSkip(state.operation_row, state.line, statement.values == ("ON",)))
 
 
 def set_mode(state: ReaderState, statement: Statement) -> None:
-    """Keep SET, MODE or MULTAX with its words."""
-    values = [value if isinstance(value, str) else f"{value:g}" for value in statement.values]
-    state.add(SetMode(state.operation_row, state.line, (statement.major, *values)))
+    """Keep SET, MODE or MULTAX where it states what every program does anyway."""
+    words = (statement.major, *statement.words())
+    if words in _FULFILLED_MODES and not statement.plain_numbers():
+        state.add(SetMode(state.operation_row, state.line, words))
+    else:
+        state.note_unknown(statement, f"{statement.source.strip()} is not followed", *words[1:])

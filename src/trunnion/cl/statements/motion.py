@@ -13,7 +13,7 @@ _MAX_TURNS = 10000
 def rapid(state: ReaderState, statement: Statement) -> None:
     """Make the next row a rapid."""
     if statement.values:
-        state.keep_unknown(statement, f"RAPID/{statement.words()} is not known")
+        state.note_unknown(statement, f"RAPID/{statement.listed()} is not known", *statement.words())
     state.builder.rapids.append(state.operation_row)
 
 
@@ -39,7 +39,7 @@ def gohome(state: ReaderState, statement: Statement) -> None:
         state.add(GoHome(state.operation_row, state.line))
         return
     if not state.has_row:
-        state.keep_unknown(statement, "GOHOME with words is not known")
+        state.note_unknown(statement, f"GOHOME/{statement.listed()} is not known", *statement.words())
         return
     state.builder.rapids.append(state.operation_row)
     _write_row(state, statement.numbers(3, 6))

@@ -79,7 +79,8 @@ def tldata(state: ReaderState, statement: Statement) -> None:
     kind = form if form in _TLDATA_FIELDS else "UNKNOWN"
     state.builder.tool = Tool(kind=kind, name=state.builder.tool.name, **fields)
     if form not in _TLDATA_FIELDS:
-        state.keep_unknown(statement, f"TLDATA/{form} is not a known form of tool")
+        what = f"TLDATA/{form} is not a known form of tool"
+        state.diagnostics.remark(state.line, what, "the program has the tool's name and number, and no sizes")
 
 
 def msys(state: ReaderState, statement: Statement) -> None:
@@ -144,4 +145,4 @@ def paint(state: ReaderState, statement: Statement) -> None:
 
 
 def ignore(state: ReaderState, statement: Statement) -> None:
-    """Do nothing: ends of the file, which the file itself shows, and names of machines."""
+    """Do nothing: ends of the file, which the file itself shows, names of machines, and what only listings have."""

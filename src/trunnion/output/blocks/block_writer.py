@@ -6,8 +6,7 @@ from typing import BinaryIO, Final, NamedTuple
 import numpy as np
 
 from trunnion.arrays import Bytes, Ints
-from trunnion.controls.words import ABSENT, BlockNumbers, Word, round_to_counts
-from trunnion.errors import Problem, RefusedError
+from trunnion.controls.words import ABSENT, BlockNumbers, Word, WordRangeError, round_to_counts
 from trunnion.output.blocks.block_kernel import BARE, DIGITS, LETTERS, MODAL, write_blocks
 
 #: Rows of a table at most: one chunk stays in the processor's cache.
@@ -170,7 +169,7 @@ class BlockWriter:
 
         Raises
         ------
-        RefusedError
+        WordRangeError
             If a number is beyond the limits of its word's format.
         """
         rows = len(next(iter(columns.values())))
@@ -231,7 +230,7 @@ def _lines_before(rows: int, text_before: Ints | None, texts: Sequence[str], lin
 
 
 def _check_range(word: Word, column: Ints) -> None:
-    """Raise ``RefusedError`` if a number is beyond the limits of the word's format."""
+    """Raise ``WordRangeError`` if a number is beyond the limits of the word's format."""
     scale = 10**word.format.decimals
     highest, lowest = int(column.max()), int(column.min())
     if lowest == ABSENT and highest != ABSENT:
@@ -242,7 +241,7 @@ def _check_range(word: Word, column: Ints) -> None:
     ):
         if beyond and count != ABSENT:
             what = f"word {word.letter}{count / scale:g} is beyond {limit:g}"
-            raise RefusedError(Problem("program", 0, what, "see the limits of the word's format in the definition"))
+            raise WordRangeError(what, int(np.argmax(column == count)))
 
 
 def _rule(word: Word) -> list[int]:

@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
 from trunnion.controls.vocabulary import TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
-from trunnion.controls.words import ABSENT, round_to_counts
+from trunnion.controls.words import ABSENT, WordRangeError, round_to_counts
 from trunnion.errors import InputError, Problem
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, Coolant, Kind, LoadTool, Phase, SpindleOn
@@ -174,7 +174,10 @@ class MotionBlockWriter:
 
     def write_event(self, event: WordEvent) -> None:
         """Write the words of an event as a block of its own."""
-        self.write_block(self.event_words(event))
+        try:
+            self.write_block(self.event_words(event))
+        except WordRangeError as error:
+            raise error.at(self.program.file, event.line) from None
 
     def event_words(self, event: WordEvent) -> dict[str, int]:
         """Return the words of an event that joins a motion block, as counts."""
@@ -242,7 +245,10 @@ class MotionBlockWriter:
         ids, texts = self.phase_texts()
         phases = ids[moves.phase[rows]]
         changes = phases != np.concatenate(([phase], phases[:-1]))
-        self.writer.write_table(table.columns, table.forced, np.where(changes, phases, -1), texts, table.lines)
+        try:
+            self.writer.write_table(table.columns, table.forced, np.where(changes, phases, -1), texts, table.lines)
+        except WordRangeError as error:
+            raise error.at(self.program.file, int(moves.line[start + error.row])) from None
         if other_end:
             self.writer.forget("X", "Y", "Z")
         self._orientation.remember_state()

@@ -3,6 +3,7 @@
 import math
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
+from trunnion.controls.words import NumberFormat
 from trunnion.model.toolpath import Dwell
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, SpindleState
 
@@ -20,6 +21,21 @@ def dwell_seconds(event: Dwell, rpm: float | None) -> float:
     if rpm is None or not rpm > 0.0:
         raise UnsupportedFeatureError("a dwell in spindle revolutions while the spindle stands", "put SPINDL before it")
     return 60.0 * event.amount / rpm
+
+
+def dwell_text(amount: float, number_format: NumberFormat, factor: float = 1.0, unit: str = "s") -> str:
+    """Return a dwell as it is printed: an amount of ``unit``, of which each is printed as ``factor``.
+
+    Raises
+    ------
+    UnsupportedFeatureError
+        If it is longer or shorter than the control can wait.
+    """
+    least, greatest = number_format.least / factor, number_format.greatest / factor
+    if not least <= amount <= greatest:
+        what = f"a dwell of {amount:g} {unit}, and the control waits {least:g} to {greatest:g} {unit}"
+        raise UnsupportedFeatureError(what, "write a dwell within that")
+    return number_format.text(factor * amount)
 
 
 def cycle_dwell_seconds(cycle: Cycle, spindle: SpindleState | None) -> float:

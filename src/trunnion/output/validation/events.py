@@ -3,11 +3,8 @@
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.errors import Problem, Severity
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, LoadTool, SelectTool, SetMode
+from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, LoadTool, SelectTool
 from trunnion.output.program import Program
-
-#: Statements about the form of a program that every program fulfils.
-_DEFAULT_MODES = {("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULTAX",), ("MULTAX", "ON")}
 
 
 def event_problems(program: Program, motion: Motion, event: Event, rpm: float | None) -> list[Problem]:
@@ -27,10 +24,6 @@ def event_problems(program: Program, motion: Motion, event: Event, rpm: float | 
     if isinstance(event, SelectTool):
         what = f"SELECT/TOOL,{event.number} is not written: programs name a tool only when they change it"
         return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING)]
-    if isinstance(event, SetMode) and event.words not in _DEFAULT_MODES:
-        statement = f"{event.words[0]}/{','.join(event.words[1:])}"
-        what = f"{statement} is not followed: the control's definition sets the form of the program"
-        return [Problem(*location, what, "check that the program has the form it asks for", Severity.WARNING)]
     if isinstance(event, Coolant) and event.kind not in control.coolant:
         known = ", ".join(control.coolant)
         return [Problem(*location, f"{control.name} has no coolant {event.kind}", f"use one of {known}")]

@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.model.run import Run, RunEvent
 from trunnion.verification.context import ComparedContext, check_from_places
-from trunnion.verification.expected.states import coolant_states
+from trunnion.verification.expected.states import all_coolants, coolant_states
 from trunnion.verification.results import Check, Place
 
 #: Coolant words of the CL file as they show in a run; the others are M words of the machine builder, whose meaning is
@@ -97,8 +97,9 @@ def check_coolant(context: ComparedContext) -> Check:
             elif fault is not None:
                 places.append(context.place(min(fault.row, len(run) - 1), 0.0, fault.text))
         before = state.value
+    anywhere = {_COOLANT.get(word) for word in all_coolants(context.expected)}
     for _, name, event in words.changes:
-        if not unread and name not in asked | {"off"}:
+        if not unread and None not in anywhere and name not in asked | anywhere | {"off"}:
             places.append(context.place_of_event(event, 0.0, f"coolant {name}, which the CL file never asks for"))
     good = ", ".join(sorted(asked | {word.lower() + " (not read)" for word in unread}))
     places.sort(key=lambda place: place.nc_line)

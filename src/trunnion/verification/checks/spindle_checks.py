@@ -11,7 +11,7 @@ from trunnion.model.run import Run
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle
-from trunnion.verification.expected.states import spindle_states
+from trunnion.verification.expected.states import all_spindles, spindle_states
 from trunnion.verification.results import Check, Place
 
 #: Spindle speeds are printed without decimals: this much is rounding, rev/min.
@@ -39,7 +39,7 @@ def check_spindle(context: ComparedContext) -> Check:
             is_ = ExpectedSpindle(run.state.rpm[row], run.state.spindle[row])
             text = f"{_words(is_)}; the CL file wants {_words(should)}"
             places.append(context.place_with_cl(row, is_.rpm, text, cl))
-    places += _foreign_events(context, asked) if asked else ()
+    places += _foreign_events(context, asked | all_spindles(context.expected)) if asked else ()
     places.sort(key=lambda place: place.nc_line)
     good = ", ".join(_words(each) for each in sorted(asked, key=lambda each: (each.rpm, each.sense)))
     return check_from_places("spindle", "spindle as the CL file says", places, good or "the CL file has no SPINDL")

@@ -19,7 +19,8 @@ def check_tool(context: ComparedContext) -> Check:
     run, matching, settings = context.run, context.matching, context.settings
     places: list[Place] = []
     asked: list[tuple[str, ...]] = []
-    for state in tool_states(context.expected):
+    states = tool_states(context.expected)
+    for state in states:
         names = (settings.tool,) if settings.tool else state.value.names
         first, end = matching.pair_range(state.first, state.end)
         if (state.value.number is None and not settings.tool) or first == end:
@@ -32,7 +33,8 @@ def check_tool(context: ComparedContext) -> Check:
         places += _wrong_edges(context, settings.edge)
     if run.uses_length_numbers:
         places += _wrong_lengths(context)
-    places += _foreign_changes(context, asked) if asked else ()
+    unnumbered = 0 if settings.tool else next((s.first for s in states if s.value.number is not None), 0)
+    places += _foreign_changes(context, asked, unnumbered) if asked else ()
     good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in asked)) or "the CL file names no tool"
     return check_from_places("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
 
@@ -52,9 +54,13 @@ def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, .
         yield context.place_of_event(calls[-1], 0.0, f"{text}: this is the last block that calls a tool")
 
 
-def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]]) -> Iterator[Place]:
-    """Changes to a tool that the CL file never asks for."""
+def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]], unnumbered: int) -> Iterator[Place]:
+    """Changes to a tool that the CL file never asks for; it gives its first ``unnumbered`` rows no number of a tool."""
+    matching = context.matching
     for event in context.run.events:
+        pair = matching.nc.count_before(event.before_row)
+        if pair < len(matching.cl) and matching.cl[pair] < unnumbered:
+            continue
         if event.kind == "tool_change":
             tool = str(event.value or "")
             if tool and tool != "0" and not any(names_tool(tool, names) for names in asked):

@@ -48,6 +48,18 @@ def coolant_states(expected: ExpectedPath) -> list[StateRange[str]]:
     return states
 
 
+def all_spindles(expected: ExpectedPath) -> set[ExpectedSpindle]:
+    """Every spindle that a CL file starts, also where nothing moves before it is switched again."""
+    events = (event for section in expected.sections for event in section.operation.events)
+    return {spindle_on(event) for event in events if isinstance(event, SpindleOn)}
+
+
+def all_coolants(expected: ExpectedPath) -> set[str]:
+    """Every coolant word of a CL file, also where nothing moves before it is switched again."""
+    events = (event for section in expected.sections for event in section.operation.events)
+    return {event.kind for event in events if isinstance(event, Coolant)}
+
+
 def compensation_states(expected: ExpectedPath) -> list[StateRange[int]]:
     """Sides of radius compensation: 1 left, -1 right, 0 off. An operation starts with it off; ON is the last side."""
     states: list[StateRange[int]] = []

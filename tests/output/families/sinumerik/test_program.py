@@ -218,18 +218,23 @@ def test_a_tool_change_within_an_operation_is_refused(post: Post) -> None:
     assert "part.cls:12: error: tool change within an operation" in err
 
 
+def test_what_is_left_out_of_the_program_is_said(post: Post) -> None:
+    code, _, err = post.all(HEAD + "SELECT/TOOL,8\nGOTO/20,0,5\n" + FOOT)
+    assert code == 0
+    assert "part.cls:12: warning: SELECT/TOOL,8 is not written" in err
+
+
 @pytest.mark.parametrize(
     ("statement", "said"),
     [
-        ("SELECT/TOOL,8", "SELECT/TOOL,8 is not written"),
         ("SET/MODE,INCR", "SET/MODE,INCR is not followed"),
-        ("SPINDL/RPM,900,CLW,RANGE,2", "the gear range of SPINDL is not written"),
+        ("SPINDL/RPM,900,CLW,RANGE,2", "a gear range has no words here: SPINDL with RANGE"),
     ],
 )
-def test_what_is_left_out_of_the_program_is_said(statement: str, said: str, post: Post) -> None:
-    code, _, err = post.all(HEAD + statement + "\nGOTO/20,0,5\n" + FOOT)
-    assert code == 0
-    assert f"part.cls:12: warning: {said}" in err
+def test_what_the_program_cannot_follow_is_an_error(statement: str, said: str, post: Post) -> None:
+    code, out, err = post.all(HEAD + statement + "\nGOTO/20,0,5\n" + FOOT)
+    assert (code, out) == (2, [])
+    assert f"part.cls:12: error: {said}" in err
 
 
 def test_what_every_program_does_needs_no_word(post: Post) -> None:

@@ -22,7 +22,7 @@ from trunnion.output.families.fanuc.cycles import cycle_lines, is_valid_shift
 from trunnion.output.shared import iso
 from trunnion.output.shared.iso import row_words as row_words
 from trunnion.output.shared.lines import program_stop
-from trunnion.output.shared.spindle import dwell_seconds
+from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 #: Circles have no word for whole turns. Tool length and radius are data of the control, called by number.
@@ -98,7 +98,7 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return ``G4 P`` with milliseconds."""
-    return [f"G4 P{formats['dwell'].text(1000.0 * dwell_seconds(event, rpm))}"]
+    return [f"G4 P{dwell_text(dwell_seconds(event, rpm), formats['dwell'], 1000.0)}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:

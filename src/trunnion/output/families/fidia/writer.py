@@ -18,7 +18,7 @@ from trunnion.model.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense
 from trunnion.output.shared import iso
 from trunnion.output.shared.iso import event_words as event_words
 from trunnion.output.shared.lines import program_stop
-from trunnion.output.shared.spindle import cycle_dwell_seconds, dwell_seconds, running_spindle
+from trunnion.output.shared.spindle import cycle_dwell_seconds, dwell_seconds, dwell_text, running_spindle
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 
 WORDS: tuple[str, ...] = (
@@ -72,7 +72,7 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return ``G4 HD`` with seconds."""
-    return [f"G4 HD{formats['dwell'].text(dwell_seconds(event, rpm))}"]
+    return [f"G4 HD{dwell_text(dwell_seconds(event, rpm), formats['dwell'])}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:

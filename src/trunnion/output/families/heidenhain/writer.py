@@ -20,7 +20,7 @@ from trunnion.output.coordinates.euler_angles import tait_bryan_angles
 from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
 from trunnion.output.families.heidenhain.cycles import cycle_definition
 from trunnion.output.shared.lines import program_stop, split_text
-from trunnion.output.shared.spindle import dwell_seconds
+from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 WORDS: tuple[str, ...] = (
@@ -92,12 +92,7 @@ def tool_call(number: int, name: str, by_name: bool) -> str:
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return cycle 9 with seconds."""
-    seconds, number_format = dwell_seconds(event, rpm), formats["dwell"]
-    least, greatest = number_format.least, number_format.greatest
-    if not least <= seconds <= greatest:
-        what = f"a dwell of {seconds:g} s, and the control waits {least:g} to {greatest:g} s"
-        raise UnsupportedFeatureError(what, "write a dwell within that")
-    return ["CYCL DEF 9.0 DWELL TIME", f"CYCL DEF 9.1 DWELL {number_format.text(seconds)}"]
+    return ["CYCL DEF 9.0 DWELL TIME", f"CYCL DEF 9.1 DWELL {dwell_text(dwell_seconds(event, rpm), formats['dwell'])}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:

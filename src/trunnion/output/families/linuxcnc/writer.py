@@ -19,7 +19,7 @@ from trunnion.output.shared import iso
 from trunnion.output.shared.iso import event_words as event_words
 from trunnion.output.shared.iso import row_words as row_words
 from trunnion.output.shared.lines import program_stop, split_text
-from trunnion.output.shared.spindle import dwell_seconds
+from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 WORDS: tuple[str, ...] = iso.WORDS
@@ -56,7 +56,7 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return ``G4 P`` with seconds."""
-    return [f"G4 P{formats['dwell'].text(dwell_seconds(event, rpm))}"]
+    return [f"G4 P{dwell_text(dwell_seconds(event, rpm), formats['dwell'])}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:

@@ -18,6 +18,7 @@ from trunnion.output.shared.iso import arc_words as arc_words
 from trunnion.output.shared.iso import event_words as event_words
 from trunnion.output.shared.iso import row_words as row_words
 from trunnion.output.shared.lines import program_stop
+from trunnion.output.shared.spindle import dwell_text
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
 
 WORDS: tuple[str, ...] = (
@@ -75,7 +76,8 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return ``G4 F`` for seconds or ``G4 S`` for spindle revolutions, in a block of its own."""
-    return [f"G4 {'S' if event.revolutions else 'F'}{formats['dwell'].text(event.amount)}"]
+    letter, unit = ("S", "turns") if event.revolutions else ("F", "s")
+    return [f"G4 {letter}{dwell_text(event.amount, formats['dwell'], unit=unit)}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:

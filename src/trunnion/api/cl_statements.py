@@ -1,0 +1,68 @@
+"""CL statements that the reader does not know: a definition says what becomes of each, or the file is refused.
+
+In:     toolpaths, and the table ``[control.statements]`` of a definition.
+Out:    toolpaths with the lines of the definition in place of these statements.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+from trunnion.cl import statement_words, unknown_statement_problems
+from trunnion.errors import InputError, Problem
+from trunnion.model.toolpath import Event, Insert, Operation, Toolpath, UnknownStatement
+
+#: Statements by their parts: the major word, what is behind it, and the line of the program.
+_Entries = Sequence[tuple[str, frozenset[str], str]]
+
+#: More statements than this are counted, not listed.
+_MOST_LISTED: Final = 100
+
+_CURE: Final = (
+    "remove it, or write under [control.statements] of the machine's definition what becomes of it: a line of the"
+    ' program, or "" for nothing'
+)
+
+
+def replace_unknown_statements(toolpaths: Iterable[Toolpath], statements: Mapping[str, str]) -> list[Toolpath]:
+    """Replace the statements that the reader does not know by what a definition makes of them.
+
+    Raises
+    ------
+    InputError
+        With every statement of which the definition says nothing.
+    """
+    entries = [(*statement_words(statement), line) for statement, line in statements.items()]
+    entries.sort(key=lambda entry: -len(entry[1]))  # the one that says most comes first
+    found = [(toolpath, _replaced(toolpath, entries)) for toolpath in toolpaths]
+    problems = [problem for _, new in found for problem in unknown_statement_problems(new, _CURE)]
+    if len(problems) > _MOST_LISTED:
+        more = Problem(problems[0].file, 0, f"and {len(problems) - _MOST_LISTED} more")
+        problems = [*problems[:_MOST_LISTED], more]
+    if problems:
+        raise InputError(problems)
+    return [new if new is not old else old for old, new in found]
+
+
+def _replaced(toolpath: Toolpath, entries: _Entries) -> Toolpath:
+    """The toolpath without the statements that ``entries`` have, and without the remarks about them."""
+    remarks = set(toolpath.remarks) - set(unknown_statement_problems(toolpath))
+    operations = tuple(_replaced_in_operation(operation, entries) for operation in toolpath.operations)
+    kept = tuple(remark for remark in toolpath.remarks if remark in remarks)
+    return replace(toolpath, operations=operations, remarks=kept)
+
+
+def _replaced_in_operation(operation: Operation, entries: _Entries) -> Operation:
+    if not any(isinstance(event, UnknownStatement) for event in operation.events):
+        return operation
+    return replace(operation, events=tuple(new for old in operation.events for new in _replaced_event(old, entries)))
+
+
+def _replaced_event(event: Event, entries: _Entries) -> list[Event]:
+    if not isinstance(event, UnknownStatement):
+        return [event]
+    major, words = statement_words(event.text)
+    for entry_major, entry_words, line in entries:
+        if entry_major == major and entry_words <= words and entry_words.issuperset(event.words):
+            return [Insert(event.row, event.line, line)] if line else []
+    return [event]

@@ -1,0 +1,171 @@
+"""Raw text (INSERT) that ends or bends a program: found by running what the program does with the text and without it.
+
+In:     a program as it was planned.
+Out:    problems at the lines of the INSERT statements, before the program is written.
+"""
+
+import tempfile
+from collections.abc import Sequence
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion import readers
+from trunnion.arrays import Floats, Ints
+from trunnion.errors import InputError, Problem
+from trunnion.model.deviations import Deviations
+from trunnion.model.motion import Motion
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, SpindleOff, SpindleOn
+from trunnion.output.program import Program
+from trunnion.output.program_writer import write_program
+
+#: Columns of a run that a text must leave as they are, and what each of them is.
+_COLUMNS: Final = {
+    "machine_frame": "the points behind it are in machine coordinates",
+    "inches": "it changes the unit of lengths",
+    "work_offset": "it changes the work offset",
+    "tcp": "it switches TCP",
+    "tool": "it changes the tool",
+    "edge": "it changes the tool length",
+    "compensation": "it switches radius compensation",
+    "kind": "the moves behind it are of another kind",
+    "tip": "the points behind it are elsewhere",
+    "rotary": "the rotary axes behind it are elsewhere",
+    "feed_mode": "it changes what F means",
+    "feed": "it changes the feed",
+    "spindle": "it switches the spindle",
+    "rpm": "it changes the spindle speed",
+    "orientation": "it changes how the tool axis moves",
+}
+
+#: Events that a text may make: functions of the machine's builder, dwells, stops, messages.
+_HARMLESS_EVENTS: Final = frozenset({"m", "h", "dwell", "stop", "optional_stop", "message"})
+
+#: Blocks that jumps and loops of a text may execute.
+_STEP_LIMIT: Final = 20_000
+
+_MOST_LISTED: Final = 20
+_CURE: Final = "write it as a CL statement, or leave it out: INSERT takes what moves nothing and changes no mode"
+
+
+def insert_problems(program: Program) -> list[Problem]:
+    """What is wrong with the raw texts of a program; empty where its control has no reader."""
+    if not readers.can_read(program.machine):
+        return []
+    problems: list[Problem] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for motion in program.motions:
+            lines: dict[str, int] = {}
+            for event in motion.operation.events:
+                if isinstance(event, Insert):
+                    lines.setdefault(event.text, event.line)
+            trial = _Trial(program, motion, Path(folder))
+            for text, effect in trial.effects(list(lines)):
+                problems.append(Problem(program.file, lines[text], f"INSERT/{text.strip()}: {effect}", _CURE))
+                if len(problems) >= _MOST_LISTED:
+                    return problems
+    return problems
+
+
+class _Trial:
+    """Writes and runs some moves of one motion, with and without texts between them."""
+
+    def __init__(self, program: Program, motion: Motion, folder: Path) -> None:
+        self._program, self._motion = program, motion
+        self._file = folder / "trial"
+        self._quiet = program.control.family.comment("text")[0]
+
+    def effects(self, texts: Sequence[str]) -> list[tuple[str, str]]:
+        """The texts that change something, each with what it does: alone, or with those around it."""
+        if not texts:
+            return []
+        effect = self._effect(texts)
+        if not effect:
+            return []
+        half = len(texts) // 2
+        found = [*self.effects(texts[:half]), *self.effects(texts[half:])] if half else []
+        return found or [(texts[0], effect)]
+
+    def _effect(self, texts: Sequence[str]) -> str:
+        """What texts do, in words; empty if nothing."""
+        without = self._run([self._quiet] * len(texts))
+        try:
+            with_text = self._run(texts)
+        except InputError as error:
+            return f"the program cannot be run with it: {error.problems[0].what}"
+        return _difference(without, with_text)
+
+    def _run(self, texts: Sequence[str]) -> Run:
+        sink = BytesIO()
+        write_program(replace(self._program, motions=[_with_texts(self._motion, texts)], notices=()), sink)
+        self._file.write_bytes(sink.getvalue())
+        return readers.run_program(self._file, self._program.machine, step_limit=_STEP_LIMIT)
+
+
+def _with_texts(motion: Motion, texts: Sequence[str]) -> Motion:
+    """A motion to and fro between its first point and the one farthest from it, with each text at both."""
+    operation = motion.operation
+    distance = np.linalg.norm(operation.moves.tip - operation.moves.tip[0], axis=1)
+    rows: Ints = np.zeros(2 * len(texts) + 2, np.int64)
+    rows[1::2] = int(distance.argmax())
+    moves = operation.moves.select(rows)
+    feed = np.where(moves.feed > 0.0, moves.feed, _first_feed(operation.moves.feed))
+    kind = np.full(len(rows), Kind.LINEAR, np.uint8)
+    kind[0] = Kind.RAPID
+    events: list[Event] = [
+        event for event in operation.events if event.row == 0 and isinstance(event, LoadTool | SpindleOn | SpindleOff)
+    ]
+    events += [Insert(2 * k + at + 1, 0, text) for k, text in enumerate(texts) for at in (0, 1)]
+    return replace(
+        motion,
+        operation=replace(
+            operation, moves=replace(moves, feed=feed, kind=kind), arcs=Arcs.empty(), events=tuple(events)
+        ),
+        rotary=motion.rotary[rows],
+        deviations=Deviations.none(),
+        starts_operation=True,
+        ends_in_hole=False,
+    )
+
+
+def _first_feed(feed: Floats) -> float:
+    known = feed[feed > 0.0]
+    return float(known[0]) if len(known) else 100.0
+
+
+def _difference(without: Run, with_text: Run) -> str:
+    """What a run does that another one does not, in words; empty if nothing."""
+    known = {diagnostic.text for diagnostic in without.errors}
+    unknown = [diagnostic.text for diagnostic in with_text.errors if diagnostic.text not in known]
+    if len(with_text) > len(without) and not unknown:
+        return "it moves the machine"
+    effect = _first_change(without, with_text)
+    if effect:
+        return effect
+    if unknown:
+        return f"nobody can say what it does: {unknown[0]}"
+    if len(with_text) < len(without):
+        return "it ends the program"
+    more = _events(with_text) - _events(without)
+    return f"it changes {', '.join(sorted({kind for kind, _ in more}))}" if more else ""
+
+
+def _first_change(without: Run, with_text: Run) -> str:
+    """What is different in the first row that is, in words; empty if the rows that both have are the same."""
+    rows, found = min(len(without), len(with_text)), ""
+    first = rows
+    for name, what in _COLUMNS.items():
+        before, after = (getattr(run, name)[:rows].astype(np.float64) for run in (without, with_text))
+        differs = ~np.isclose(before, after, rtol=0.0, atol=1e-9, equal_nan=True).reshape(rows, -1).all(axis=1)
+        row = int(np.argmax(differs)) if differs.any() else rows
+        if row < first:
+            first, found = row, what
+    return found
+
+
+def _events(run: Run) -> set[tuple[str, str]]:
+    return {(event.kind, str(event.value)) for event in run.events if event.kind not in _HARMLESS_EVENTS}

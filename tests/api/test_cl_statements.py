@@ -1,0 +1,91 @@
+"""CL statements that the reader does not know are refused, or become what the machine's definition says."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.posting import FOOT, HEAD
+
+#: One machine of each family of controls.
+MACHINES = ("yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt")
+
+#: What moves an axis, changes a tool or switches something, in the words of several CAM systems.
+STATEMENTS = (
+    "ROTATE/TABLE,AAXIS,90", "ROTABL/ATANGL,90,CLW", "TLAXIS/0,1,0", "AUXFUN/31", "PREFUN/91", "CLAMP/ON", "SEQNO/100",
+    "USER_EVENT/1", "TURRET/3", "HEAD/2", "PIVOTZ/100", "COOLNT/MIST,HIGH", "SPINDL/RPM,800,CLW,RANGE,2",
+    "LOAD/TOOL,1,LENGTH,90", "SET/MODE,INCR", "MODE/TURN", "MULTAX/OFF", "REWIND/0", "OPSKIP/ON,2",
+)  # fmt: skip
+
+
+def part(folder: Path, *statements: str) -> Path:
+    file = folder / "part.cls"
+    file.write_text(HEAD + "".join(f"{statement}\n" for statement in statements) + "GOTO/10.0,9.0,5.0\n" + FOOT)
+    return file
+
+
+def definition(folder: Path, *entries: str) -> Path:
+    file = folder / "own.toml"
+    file.write_text("\n".join(['extends = "yl569"', "[control.statements]", *entries, ""]))
+    return file
+
+
+@pytest.mark.parametrize("statement", STATEMENTS)
+def test_a_statement_that_moves_or_chooses_something_is_never_dropped(tmp_path: Path, statement: str) -> None:
+    with pytest.raises(trunnion.InputError) as caught:
+        trunnion.post(part(tmp_path, statement), machine="yl569")
+    (problem,) = caught.value.problems
+    assert (problem.file, problem.line) == (str(tmp_path / "part.cls"), 12)
+    assert "[control.statements]" in problem.cure
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_no_control_drops_it(tmp_path: Path, machine: str) -> None:
+    with pytest.raises(trunnion.InputError, match=r"12: error: ROTABL is not known \(2 times, first here\)"):
+        trunnion.post(part(tmp_path, "ROTABL/ATANGL,90", "ROTABL/ATANGL,0"), machine=machine)
+    with pytest.raises(trunnion.InputError, match="ROTABL is not known"):
+        trunnion.plan(part(tmp_path, "ROTABL/ATANGL,90"), machine=machine)
+
+
+def test_a_tool_loaded_inside_an_operation_by_the_older_word_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(trunnion.InputError, match="tool change within an operation"):
+        trunnion.post(part(tmp_path, "LOADTL/7"), machine="yl569")
+
+
+def test_the_definition_says_what_becomes_of_a_statement(tmp_path: Path) -> None:
+    cl = part(tmp_path, "SEQNO/100", "AUXFUN/31", "AUXFUN/32", "PPRINT/HERE", "COOLNT/FLOOD,HIGH")
+    machine = definition(
+        tmp_path, '"SEQNO" = ""', '"AUXFUN/31" = ";CHIP CONVEYOR ON"', '"AUXFUN" = ""', '"COOLNT/HIGH" = ";12 BAR"'
+    )
+    result = trunnion.post(cl, machine=machine)
+    assert result.passed
+    assert result.text is not None
+    lines = [line.partition(" ")[2] for line in result.text.splitlines()]
+    assert lines[lines.index(";CHIP CONVEYOR ON") + 1] == ";HERE"
+    assert ";12 BAR" in lines
+    assert "M8" in " ".join(lines).split()
+    assert not any("not known" in problem.what for problem in result.problems)
+    file = tmp_path / "part.mpf"
+    file.write_text(result.text)
+    assert trunnion.verify(file, machine=machine, cl=cl).passed
+
+
+def test_words_that_no_entry_names_stay_errors(tmp_path: Path) -> None:
+    machine = definition(tmp_path, '"COOLNT/HIGH" = ""', '"CLAMP/ON" = ""')
+    with pytest.raises(trunnion.InputError) as caught:
+        trunnion.post(part(tmp_path, "COOLNT/FLOOD,HIGH,SLOW", "CLAMP/OFF", "CLAMP/ON,AAXIS"), machine=machine)
+    assert [problem.line for problem in caught.value.problems] == [12, 13]
+
+
+def test_verify_refuses_them_too(tmp_path: Path) -> None:
+    file = tmp_path / "part.mpf"
+    text = trunnion.post(part(tmp_path), machine="yl569").text
+    assert text is not None
+    file.write_text(text)
+    with pytest.raises(trunnion.InputError, match="ROTABL is not known"):
+        trunnion.verify(file, machine="yl569", cl=part(tmp_path, "ROTABL/ATANGL,90"))
+
+
+def test_a_line_of_a_definition_is_one_line(tmp_path: Path) -> None:
+    with pytest.raises(trunnion.InputError, match="line break"):
+        trunnion.post(part(tmp_path), machine=definition(tmp_path, '"CLAMP" = "M10\\nM11"'))
