@@ -193,6 +193,38 @@ def test_processes_that_need_the_same_kernel_wait_for_the_one_that_compiles_it(f
         assert sum(lines[1].split()[which] == "False" for lines in printed) == 1
 
 
+def test_what_another_checkout_compiled_meanwhile_is_completed_and_nothing_waits_for_itself(folder: Path) -> None:
+    run(folder)
+    other = folder / "other"
+    other.mkdir()
+    for name in ("some_inner.py", "some_kernels.py"):
+        (other / name).write_bytes((folder / name).read_bytes())
+    script = f"""
+import sys
+sys.path.insert(0, {str(other)!r})
+from trunnion.jit.kernels import Kernel
+load, first = Kernel._load, set()
+Kernel._load = lambda self, store: self.name in first and load(self, store) or first.add(self.name) or False
+"""
+    path = os.pathsep.join((str(other), str(ROOT / "src")))
+    found = run(folder, script + RUN, PYTHONPATH=path)
+
+    assert found[:2] == ["[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]", "False False"]
+    assert run(folder, PYTHONPATH=path)[1] == "True True"
+    assert run(folder)[1] == "True True"
+
+
+@pytest.mark.parametrize("text", ["5", "[]", "{}", "null", "[" * 100_000, '{"../lock": 1}', "\0"])
+def test_checksums_that_are_none_are_damage(folder: Path, text: str) -> None:
+    run(folder)
+    for file in (folder / "kept").rglob("checksums.json"):
+        file.write_text(text, encoding="utf-8")
+    found = run(folder)
+
+    assert found[:2] == ["[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]", "False False"]
+    assert any("was damaged on disk" in line for line in found)
+
+
 def test_without_a_folder_that_can_be_written_to_kernels_are_compiled_and_it_is_said_once(folder: Path) -> None:
     nowhere = folder / "some_inner.py" / "below"
     script = f"""
@@ -225,10 +257,30 @@ def test_machine_code_is_not_taken_from_a_folder_that_others_can_write_to(tmp_pa
     open_to_all.mkdir()
     open_to_all.chmod(0o777)
     (tmp_path / "link").symlink_to(tmp_path)
+    (tmp_path / "common").mkdir(mode=0o700)
+    (tmp_path / "common").chmod(0o770)
 
     assert store._is_private(tmp_path / "own")
+    assert not store._is_private(tmp_path / "common")
     assert not store._is_private(open_to_all)
     assert not store._is_private(tmp_path / "link")
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="temporary folders are the user's own there")
+def test_nor_from_such_a_folder_that_the_user_chose(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen = tmp_path / "chosen"
+    chosen.mkdir()
+    chosen.chmod(0o777)
+    monkeypatch.setattr(store, "_candidates", lambda: iter([chosen, tmp_path / "next"]))
+
+    assert store.cache_folder.__wrapped__() == tmp_path / "next"
+
+
+def test_a_home_that_does_not_exist_is_not_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("HOME", "USERPROFILE", "LOCALAPPDATA"):
+        monkeypatch.setenv(name, str(tmp_path / "nowhere"))
+
+    assert not [folder for folder in store._candidates() if tmp_path in folder.parents]
 
 
 def test_an_argument_of_another_type_is_refused(folder: Path) -> None:

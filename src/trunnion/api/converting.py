@@ -94,7 +94,7 @@ def convert(
     force
         Convert what was understood, and write a program that must not run; its head says so.
     observer
-        Hears of the progress, of warnings and of the proof.
+        Receives the progress, warnings and the proof.
 
     Returns
     -------

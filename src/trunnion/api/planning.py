@@ -41,7 +41,7 @@ def plan(
     explain
         Record why the axes are planned as they are (``Plan.decisions``).
     observer
-        Hears of the progress and of warnings about the CL files.
+        Receives the progress and warnings about the CL files.
 
     Returns
     -------

@@ -69,7 +69,7 @@ def post(
         Work out the columns of the verification: ``seconds`` (n,), ``tip_feed`` (n,) in mm/min and ``cl_line`` (n,). A
         report needs them; without them a program of any length takes little memory.
     observer
-        Hears of the progress, of warnings, of the plan and of the proof.
+        Receives the progress, warnings, the plan and the proof.
 
     Returns
     -------

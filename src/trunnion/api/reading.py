@@ -35,7 +35,7 @@ def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, o
     strict
         Raise an error for an unknown statement instead of keeping it with a remark.
     observer
-        Hears of the progress, in bytes.
+        Receives the progress, in bytes.
 
     Returns
     -------

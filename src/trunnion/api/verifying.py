@@ -76,7 +76,7 @@ def verify(
         Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
         needs them; without them a program of any length takes little memory.
     observer
-        Hears of the progress of reading CL files.
+        Receives the progress of reading CL files.
 
     Returns
     -------

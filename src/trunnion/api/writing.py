@@ -39,7 +39,7 @@ def read_back_while_writing(
     Yields
     ------
     progress
-        Is told how much of the file can be read.
+        Receives how much of the file can be read.
     run
         Complete soon after the block has ended; None: no reader knows the control.
     """
@@ -77,11 +77,11 @@ def write(
     sink
         Takes the bytes of the main program.
     progress
-        Is told how much of them can be read back.
+        Receives how much of them can be read back.
     subprograms
         How the program is divided into files; None: it is one.
     observer
-        Hears of the progress, in points.
+        Receives the progress, in points.
     """
     rows, done = sum(len(motion.operation.moves) for motion in program.motions), 0
     with observer.progress("writing", rows, "points") as advance:

@@ -7,11 +7,11 @@ from contextlib import contextmanager
 
 @contextmanager
 def progress(what: str, total: int, unit: str) -> Iterator[Callable[[int], None]]:
-    """Gives a function that is told how much more has been done."""
+    """Yield a function that takes how much more has been done."""
     if not sys.stderr.isatty():
         yield lambda more: None
         return
-    from tqdm import tqdm  # its import takes as long as posting a small file, so only who sees it pays for it
+    from tqdm import tqdm  # imported late: it takes as long as posting a small file
 
     with tqdm(total=total, unit=unit, unit_scale=True, desc=what, delay=1, leave=False) as bar:
 

@@ -30,6 +30,7 @@ def _numba_type(annotation: Any, written: bool) -> Any:
     size = 1
     if get_origin(annotation) is Annotated:
         annotation, size = get_args(annotation)
+    annotation = _without_alias(annotation)
     if annotation in _SCALARS:
         return _SCALARS[annotation]
     if get_origin(annotation) is np.ndarray:
@@ -43,6 +44,12 @@ def _numba_type(annotation: Any, written: bool) -> Any:
         fields = get_type_hints(annotation, include_extras=True)
         return _tuple_of([_numba_type(fields[name], written) for name in annotation._fields], annotation)
     raise TypeError(f"no Numba type for {annotation}")
+
+
+def _without_alias(annotation: Any) -> Any:
+    """``ndarray[...]`` for ``NDArray[...]``, which is an alias with a value of its own from NumPy 2.5 on."""
+    value = getattr(get_origin(annotation), "__value__", None)
+    return annotation if value is None else value[get_args(annotation)]
 
 
 def is_read(kind: Any) -> bool:

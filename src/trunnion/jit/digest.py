@@ -32,6 +32,7 @@ def ingredients(value: Any, seen: set[int] | None = None) -> Iterator[bytes]:
     elif isinstance(value, type):
         members = [(name, one.value) for name, one in value.__members__.items()] if issubclass(value, Enum) else ()
         yield repr((value.__qualname__, getattr(value, "_fields", ()), members)).encode()
+        yield from ingredients(list(getattr(value, "_field_defaults", {}).items()), seen)
     elif isinstance(value, tuple | list):
         for part in value:
             yield from ingredients(part, seen)
@@ -43,7 +44,8 @@ def ingredients(value: Any, seen: set[int] | None = None) -> Iterator[bytes]:
 
 
 def _of_function(function: FunctionType, seen: set[int]) -> Iterator[bytes]:
-    yield from ingredients((function.__code__, function.__defaults__), seen)
+    keyword_defaults = sorted((function.__kwdefaults__ or {}).items())
+    yield from ingredients((function.__code__, function.__defaults__, keyword_defaults), seen)
     for cell in function.__closure__ or ():
         yield from ingredients(cell.cell_contents, seen)
     for code in _codes(function.__code__):
@@ -63,6 +65,6 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 def _in_module(value: Any, names: Sequence[str]) -> Any:
     """What a function may take by these names from a module of this package; any other value itself."""
-    if isinstance(value, ModuleType) and value.__name__.startswith("trunnion."):
+    if isinstance(value, ModuleType) and value.__name__.partition(".")[0] == "trunnion":
         return [getattr(value, name) for name in names if hasattr(value, name)]
     return value

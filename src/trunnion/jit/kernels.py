@@ -89,7 +89,7 @@ class Kernel:
         """A short name for everything that is compiled into the kernel."""
         digest = hashlib.sha256(repr((self.types, self._dispatcher.targetoptions)).encode())
         for part in ingredients(self.py_func):
-            digest.update(part)
+            digest.update(b"%d:" % len(part) + part)  # 1.5 and 23.0 are not 1.52 and 3.0
         return digest.hexdigest()[:16]
 
     @property
@@ -115,12 +115,18 @@ class Kernel:
             if store is None:
                 self._announce()
                 self._dispatcher.compile(self.types)
-            elif not self._load(store):
+            elif self._load(store):
+                if self._is_new:
+                    with store.locked():
+                        store.seal()
+            else:
                 with store.locked(wait=wait) as held:
                     if not held:
                         return
                     if not self._load(store):  # nor has another process made it meanwhile
                         self._renew(store)
+                    elif self._is_new:
+                        store.seal()
             self._dispatcher.disable_compile()
             self._ready = True
 
@@ -145,10 +151,12 @@ class Kernel:
             store.remove()
             self._whole = False
             return False
-        if not self._dispatcher.stats.cache_hits:  # what is kept was for other processors; now it is for this one too
-            with store.locked():
-                store.seal()
         return True
+
+    @property
+    def _is_new(self) -> bool:
+        """Whether what was kept is for another processor or checkout, and this one's was compiled and added."""
+        return not self._dispatcher.stats.cache_hits
 
     def _renew(self, store: Store) -> None:
         """Compile, and keep it."""

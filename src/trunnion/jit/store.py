@@ -42,11 +42,13 @@ def cache_folder() -> Path | None:
     """
     for folder in _candidates():
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=folder).close()
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            if _is_private(folder):
+                tempfile.TemporaryFile(dir=folder).close()
+                return folder
         except OSError:
             continue
-        return folder
+        _log.warning("%s is not used for compiled kernels: other users can write to it", folder)
     _log.warning("no folder can be written to: kernels are compiled in every run; NUMBA_CACHE_DIR can name a folder")
     return None
 
@@ -58,24 +60,23 @@ def _candidates() -> Iterator[Path]:
     yield Path(__file__).parent / "__pycache__" / version
     local = os.environ.get("LOCALAPPDATA")
     with suppress(RuntimeError):  # a user without a home
-        yield (Path(local) if local else Path.home() / ".cache") / "trunnion" / version
+        home = Path(local) if local else Path.home()
+        if home.is_dir():  # a service account may name one that does not exist: it is not for us to make it
+            yield (home if local else home / ".cache") / "trunnion" / version
     temporary = Path(tempfile.gettempdir())
     if sys.platform == "win32":
         yield temporary / "trunnion" / version
-    elif _is_private(temporary / f"trunnion-{os.getuid()}"):
-        yield temporary / f"trunnion-{os.getuid()}" / version
+    else:
+        yield temporary / f"trunnion-{os.getuid()}-{version}"
 
 
 def _is_private(folder: Path) -> bool:
-    """Whether a folder, made if need be, is the user's alone: machine code that others could write is not run."""
+    """Whether only the user can write to a folder, which is made if need be: machine code of others is not run."""
+    folder.mkdir(mode=0o700, exist_ok=True)
     if sys.platform == "win32":
         return True
-    try:
-        folder.mkdir(mode=0o700, exist_ok=True)
-        found = folder.lstat()
-    except OSError:
-        return False
-    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077
+    found = folder.lstat()
+    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o022
 
 
 class Store:
@@ -96,8 +97,8 @@ class Store:
         """Whether it is complete and undamaged."""
         try:
             sums = json.loads((self.folder / _CHECKSUMS).read_text(encoding="utf-8"))
-            return bool(sums) and sums == self._sums(list(sums))
-        except (OSError, ValueError):
+            return isinstance(sums, dict) and bool(sums) and sums == self._sums(list(sums))
+        except (OSError, ValueError, RecursionError):
             return False
 
     def seal(self) -> None:

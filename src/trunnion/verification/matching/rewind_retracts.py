@@ -1,7 +1,7 @@
 """Rewind retracts: within a cut the tool retracts along its axis, the rotary axes turn, and the tool comes back.
 
 A planner inserts them where a rotary axis must rewind, and no CL point belongs to them. They are recognized by what
-they do, whoever wrote them: motions between two CL points that leave the first one along the tool axis away from the
+they do, in programs of any origin: motions between two CL points that leave the first along the tool axis away from the
 part, turn rotary axes only out there, and end where they began, under the same tool axis, at a feed. While the rotary
 axes turn the tip is held, by TCP or by slides that follow. Any other motion without a CL point stays a fault.
 """
