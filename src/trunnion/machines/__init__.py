@@ -23,8 +23,10 @@ from trunnion.machines.machine import (
     PositiveDirection,
     PreferredSign,
 )
+from trunnion.machines.turn_clearance import SAFE_DISTANCE, SweptPart, turn_clearance, turns_part_alone
 
 __all__ = [
+    "SAFE_DISTANCE",
     "AngleOutput",
     "Axis",
     "AxisKind",
@@ -35,6 +37,7 @@ __all__ = [
     "Mount",
     "PositiveDirection",
     "PreferredSign",
+    "SweptPart",
     "forward",
     "inverse",
     "kinematic_parameters",
@@ -42,4 +45,6 @@ __all__ = [
     "shipped_machines",
     "slide_positions",
     "tool_axes",
+    "turn_clearance",
+    "turns_part_alone",
 ]

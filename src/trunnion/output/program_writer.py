@@ -10,12 +10,15 @@ from typing import BinaryIO
 
 import numpy as np
 
+from trunnion.arrays import Floats
 from trunnion.controls.template import Value
 from trunnion.controls.words import WordRangeError, round_to_counts
+from trunnion.machines import SweptPart
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
+from trunnion.output.coordinates.turn_distance import is_clear_of_turn, part_of
 from trunnion.output.event_writer import EventWriter
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
@@ -81,6 +84,7 @@ class _ProgramWriter:
         self._loaded_tool = LoadedTool()
         self._called_tool = ""  # in the present file
         self._previous_motion: Motion | None = None
+        self._part: SweptPart | None = None
         self._files: SubprogramFiles | None = None
         if subprograms is not None:
             naming = program.control.subprograms
@@ -164,7 +168,7 @@ class _ProgramWriter:
             self._templates.write("operation_start", values, motion)
             self._change_tool(motion, values)
         from_plane = self._continues_from_plane(motion)
-        must_retract = from_plane and not self._is_retracted()
+        must_retract = from_plane and not self._may_turn_here(motion)
         retracted = must_retract or not from_plane
         self._blocks.begin_motion(motion, str(values["tool"]), from_plane=from_plane, retracted=retracted)
         if must_retract:
@@ -212,6 +216,16 @@ class _ProgramWriter:
         """Whether the tool comes from another plane of the same operation, and not from home."""
         return not motion.starts_operation and motion.plane is not None and self._control.plane_from_pose
 
+    def _may_turn_here(self, motion: Motion) -> bool:
+        """Whether the rotary axes may turn to a plane where the CL file has left the tool."""
+        if not self._is_retracted():
+            return False
+        before, machine = self._previous_motion, self._program.machine
+        assert before is not None
+        if self._part is None:
+            self._part = part_of(self._program)
+        return is_clear_of_turn(machine, self._part, self._last_tip(before), before, motion)
+
     def _is_retracted(self) -> bool:
         """Whether the CL file has retracted the tool, at rapid, at the end of the motion before."""
         assert self._previous_motion is not None
@@ -219,6 +233,10 @@ class _ProgramWriter:
         cycles = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
         in_hole = self._previous_motion.ends_in_hole or (bool(cycles) and isinstance(cycles[-1], CycleOn))
         return not in_hole and bool(operation.moves.kind[-1] == Kind.RAPID)
+
+    def _last_tip(self, before: Motion) -> Floats:
+        """Where the motion before has left the tool, in its plane, (3,) mm."""
+        return np.append(before.operation.moves.tip[-1, :2], self._blocks.tool_height)
 
     def _is_at_first_point(self, motion: Motion) -> bool:
         """Whether turning the rotary axes to the next plane has brought the tool to the first point there."""
@@ -228,7 +246,7 @@ class _ProgramWriter:
         has_events = any(event.row == 0 and not isinstance(event, CycleOff) for event in operation.events)
         if has_events or operation.moves.kind[0] != Kind.RAPID:
             return False
-        last = np.append(before.operation.moves.tip[-1, :2], self._blocks.tool_height)
+        last = self._last_tip(before)
         decimals = self._blocks.writer.word("X").format.decimals
         reached = round_to_counts(tip_after_turn(self._program.machine, last, before, motion), decimals)
         return bool((reached == round_to_counts(np.ascontiguousarray(operation.moves.tip[0]), decimals)).all())

@@ -8,25 +8,17 @@ axes are.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
 from trunnion.model.run import Run, RunEvent
-from trunnion.model.toolpath import Kind
-from trunnion.verification.checks.home_checks import HOME_TOLERANCE
+from trunnion.verification.checks.turns_at_the_part import STILL, turn_flags, turns_at_the_part
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.kinematics.positioning_moves import (
     ROTARY_WORDS,
     only_positions_rotary_axes,
-    rotary_positioning_flags,
 )
 from trunnion.verification.results import Check, Place
-from trunnion.verification.row_ranges import chunk_bounds
-
-#: Smaller rotary motion, degrees, is none.
-_STILL: Final = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,14 +33,13 @@ class _PlaneChange:
 def check_turns(context: Context) -> Check:
     """Rotary axes turn away from the part and in no plane; planes are off at tool changes and at the end."""
     changes = _plane_changes(context.run)
-    places = _turns_at_the_part(context) + _turns_in_a_plane(context, changes)
+    turns = turns_at_the_part(context)
+    places = turns.places + _turns_in_a_plane(context, changes)
     places += list(_planes_left_on(context, changes))[:MAX_PLACES]
     places += _turned_without_plane(context) if isinstance(context, ComparedContext) else []
     places.sort(key=lambda place: place.nc_line)
     on = sum(change.on for change in changes)
-    good = "rotary axes turn away from the part" + (
-        f"; {on} tilted planes, each off before the next turn" if on else ""
-    )
+    good = turns.summary() + (f"; {on} tilted planes, each off before the next turn" if on else "")
     return check_from_places("turns", "turns and planes in a safe order", places, good)
 
 
@@ -74,75 +65,6 @@ def _plane_changes(run: Run) -> list[_PlaneChange]:
     return found
 
 
-def _positioning_rows(run: Run) -> Ints:
-    """Rows in the workpiece frame that only position rotary axes, at rapid with TCP off."""
-    found = [np.zeros(0, np.int64)]
-    for start, end in chunk_bounds(len(run)):
-        here = rotary_positioning_flags(run, start, end) & ~run.state.machine_frame.part(start, end)
-        found.append(start + np.flatnonzero(here))
-    return np.concatenate(found)
-
-
-def _turn_flags(run: Run, rows: Ints) -> Flags:
-    """Which rows, not counting the first of the run, move a rotary axis, (k,) bool."""
-    columns = list(run.machine.rotary)
-    before, after = run.positions(rows - 1).joints[:, columns], run.positions(rows).joints[:, columns]
-    return np.asarray((np.abs(after - before) > _STILL).any(axis=1))
-
-
-def _turns_at_the_part(context: Context) -> list[Place]:
-    """Turns for which the tool was not retracted: to the home of the slide along the spindle, or by a word for it.
-
-    The CL file itself may have retracted the tool, if it turns the tool axis at rapid there. A program that never goes
-    home has positions of its own, which are not judged without a CL file.
-    """
-    run, machine = context.run, context.run.machine
-    along = max(machine.linear, key=lambda k: abs(np.dot(machine.axes[k].direction, machine.spindle_direction)))
-    home = float(machine.home[along])
-    retracts = np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64)
-    frame = run.state.machine_frame.rows_with(True)
-    frame = frame[~np.isin(frame, retracts)]
-    goes_home = len(frame) > 0 and bool((np.abs(run.positions(frame).joints[:, along] - home) <= HOME_TOLERANCE).any())
-    if not goes_home and not (len(retracts) and isinstance(context, ComparedContext)):
-        return []
-    positioning = _positioning_rows(run)
-    rows = positioning[positioning > 0]
-    rows = rows[_turn_flags(run, rows)]
-    every = set(positioning.tolist())
-    places = []
-    for row in rows.tolist():
-        before = row - 1
-        while before in every:
-            before -= 1
-        if before < 0 or _is_retracted(run, retracts, before, row) or _is_turn_of_cl_file(context, before):
-            continue
-        slide = float(run.positions(np.array([before])).joints[0, along])
-        if not run.state.machine_frame[before] or abs(slide - home) > HOME_TOLERANCE:
-            name = machine.axes[along].name
-            text = f"turns a rotary axis while the tool is at the part: go home in {name} first"
-            places.append(context.place(row, 0.0, text))
-    return places[:MAX_PLACES]
-
-
-def _is_retracted(run: Run, retracts: Ints, before: int, row: int) -> bool:
-    """Whether a word has retracted the tool between two rows; if that word is a motion, it is ``before``."""
-    first = before if run.state.machine_frame[before] else before + 1
-    return bool(((retracts >= first) & (retracts <= row)).any())
-
-
-def _is_turn_of_cl_file(context: Context, row: int) -> bool:
-    """Whether a row goes to a CL point at rapid from which the CL file goes on at rapid with another tool axis."""
-    if not isinstance(context, ComparedContext) or row not in context.matching.nc:
-        return False
-    expected, matching = context.expected, context.matching
-    cl = matching.cl[matching.nc.count_before(row)]
-    if cl + 1 >= expected.section_at(cl).end:
-        return False
-    point, following = expected.point(cl), expected.point(cl + 1)
-    at_rapid = point.kind is Kind.RAPID and following.kind is Kind.RAPID
-    return at_rapid and bool((point.axis != following.axis).any())
-
-
 def _turns_in_a_plane(context: Context, changes: list[_PlaneChange]) -> list[Place]:
     """Rotary axes that turn without TCP in a plane, which holds for one rotary position only."""
     run = context.run
@@ -155,7 +77,7 @@ def _turns_in_a_plane(context: Context, changes: list[_PlaneChange]) -> list[Pla
         end = changes[k + 1].event.before_row if k + 1 < len(changes) else len(run)
         rows = first + np.flatnonzero((run.programmed[first:end] & int(ROTARY_WORDS)) != 0)
         rows = rows[~run.state.tcp.at(rows)]
-        for row in rows[_turn_flags(run, rows)].tolist():
+        for row in rows[turn_flags(run, rows)].tolist():
             same_block = run.lines[row] == event.line and run.state.file[row] == event.file
             if not (same_block and row == event.before_row):
                 text = "turns a rotary axis in a tilted plane: switch the plane off first"
@@ -178,7 +100,7 @@ def _turned_without_plane(context: ComparedContext) -> list[Place]:
         if not turned.any():  # with TCP, as most are
             continue
         # Whole turns leave everything where it was.
-        turned &= (np.abs(run.rotary[nc] - 360.0 * np.rint(run.rotary[nc] / 360.0)) > _STILL).any(axis=1)
+        turned &= (np.abs(run.rotary[nc] - 360.0 * np.rint(run.rotary[nc] / 360.0)) > STILL).any(axis=1)
         turned &= ~only_positions_rotary_axes(run, nc)  # on the way from plane to plane
         for k in np.flatnonzero(turned)[: MAX_PLACES - len(places)].tolist():
             text = "works under turned rotary axes with TCP off and in no plane: say where the workpiece zero is (zero)"

@@ -37,6 +37,8 @@ _PREFIX_LENGTH: Final = 32
 _RADIUS_COMPENSATION: Final = {"R0": 0, "RL": 1, "RR": -1}
 
 _CYCLE = re.compile(r"[ \t]*(DEF|CALL)(?![A-Z])")
+_CORNER = re.compile(r"[ \t]*FORM[ \t]+0\.([12])(?![0-9])[ \t]*[XYZ]?(?=[ \t])")
+_COORDINATE = re.compile(r"(I?)([XYZ])[ \t]*([+-]?[ \t]*(?:[0-9]{1,9}[.,]?[0-9]{0,9}|[.,][0-9]{1,9}))")
 _KEYWORD = re.compile(r"([A-Z]+)")
 _PATH = re.compile(rf"({'|'.join(sorted(PATHS, key=len, reverse=True))})(?=[ \t]|$)")
 
@@ -53,10 +55,12 @@ class HeidenhainInterpreter(FlowInterpreter):
         # The lines so far of a block that continues over several lines, and its first line and number.
         self._block_parts: list[str] = []
         self._block_start = 0, -1
+        # The first corner of the stock (BLK FORM 0.1).
+        self._stock_corner: dict[str, float] = {}
         self._handlers: dict[str, Callable[[ActiveProgram, str], None]] = {
             "BEGIN": self._begin_program,
             "END": self._end_program,
-            "BLK": self._ignore,
+            "BLK": self._block_form,
             "TOOL": self._tool,
             "CYCL": self._cycle,
             "CYCLE": self._cycle,
@@ -155,8 +159,22 @@ class HeidenhainInterpreter(FlowInterpreter):
             # A block of M words, or of a single axis, needs no path function.
             self._path_block(active, "L", statement)
 
-    def _ignore(self, active: ActiveProgram, rest: str) -> None:
-        pass
+    def _block_form(self, active: ActiveProgram, rest: str) -> None:
+        """BLK FORM 0.1 and 0.2: opposite corners of the stock. Other forms of stock are not read."""
+        which = _CORNER.match(rest)
+        if which is None:
+            return
+        found = _COORDINATE.findall(rest[which.end() :])
+        low = self._stock_corner if which[1] == "2" else {}
+        corner = {
+            name: float(re.sub(r"[ \t]", "", number).replace(",", ".")) * self.control.length_unit
+            + (low.get(name, 0.0) if incremental else 0.0)
+            for incremental, name, number in found
+        }
+        if which[1] == "1":
+            self._stock_corner = corner
+        elif corner.keys() == low.keys() == set("XYZ"):
+            self.control.add_event("stock", (*(low[name] for name in "XYZ"), *(corner[name] for name in "XYZ")))
 
     def _begin_program(self, active: ActiveProgram, rest: str) -> None:
         if not rest.split()[:1] == ["PGM"]:

@@ -1,0 +1,182 @@
+"""Rotary axes that turn without TCP while the tool is at the part.
+
+The tool is away from the part at home along the spindle, or after a word that retracts it. Elsewhere it is away only
+if a number says so: the distance from the turned part (``trunnion.machines.turn_clearance``). That needs to know where
+the part turns to, so the workpiece zero must be known. One turn needs less: the rotary axis next to the part alone, at
+constant tilt, in a program that has no machine positions at all, turns the part about its own zero.
+"""
+
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
+from trunnion.model.run import Run
+from trunnion.verification.checks.home_checks import HOME_TOLERANCE
+from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, rotary_positioning_flags
+from trunnion.verification.kinematics.worked_part import worked_part
+from trunnion.verification.results import Place
+from trunnion.verification.row_ranges import chunk_bounds
+
+#: Smaller rotary motion, degrees, is none; and smaller motion of a slide, mm.
+STILL: Final = 1e-3
+
+
+@dataclass(slots=True)
+class TurnsAtThePart:
+    """What was found: the faults, and how the other turns are safe.
+
+    at_home, by_word  turns behind a retract home along the spindle, and behind a word for it
+    distances         of each turn that a number makes safe, mm from the turned part
+    """
+
+    places: list[Place] = field(default_factory=list)
+    at_home: int = 0
+    by_word: int = 0
+    distances: list[float] = field(default_factory=list)
+
+    def summary(self) -> str:
+        """How the turns are safe, in words."""
+        ways = [f"{self.at_home} at home along the spindle"] if self.at_home else []
+        ways += [f"{self.by_word} behind a retract"] if self.by_word else []
+        if self.distances:
+            least = f"{min(self.distances):.1f} mm or more from the turned part (at least {SAFE_DISTANCE:g})"
+            ways.append(f"{len(self.distances)} {least}")
+        return f"rotary axes turn away from the part{': ' if ways else ''}{', '.join(ways)}"
+
+
+def turn_flags(run: Run, rows: Ints) -> Flags:
+    """Which rows, not counting the first of the run, move a rotary axis, (k,) bool."""
+    columns = list(run.machine.rotary)
+    before, after = run.positions(rows - 1).joints[:, columns], run.positions(rows).joints[:, columns]
+    return np.asarray((np.abs(after - before) > STILL).any(axis=1))
+
+
+def turns_at_the_part(context: Context) -> TurnsAtThePart:
+    """Judge every turn of a rotary axis that positions it with TCP off."""
+    return _Judge(context).result()
+
+
+class _Judge:
+    """Judges the turns of one program."""
+
+    def __init__(self, context: Context) -> None:
+        self._context, self._run = context, context.run
+        self._machine = context.run.machine
+        self._retracts = np.array([e.before_row for e in self._run.events if e.kind == "retract"], np.int64)
+        self._along, self._outward = _spindle_slide(self._machine)
+        frame = self._run.state.machine_frame.rows_with(True)
+        self._frame = frame[~np.isin(frame, self._retracts)]
+        self._safe_height = self._height_of_retract()
+        self._part: SweptPart | None = None
+        self._part_is_known = False
+
+    def result(self) -> TurnsAtThePart:
+        """Judge all turns."""
+        found, run = TurnsAtThePart(), self._run
+        positioning = _positioning_rows(run)
+        rows = positioning[positioning > 0]
+        rows = rows[turn_flags(run, rows)]
+        every = set(positioning.tolist())
+        for row in rows.tolist():
+            before = row - 1
+            while before in every and not self._is_home(before):
+                before -= 1
+            if before < 0:
+                continue  # from where the program starts, which is home
+            if self._is_retracted(before, row):
+                found.by_word += 1
+            elif self._is_home(before):
+                found.at_home += 1
+            else:
+                self._judge_by_number(row, found)
+        del found.places[MAX_PLACES:]
+        return found
+
+    def _is_retracted(self, before: int, row: int) -> bool:
+        """Whether a word has retracted the tool between two rows; if that word is a motion, it is ``before``."""
+        first = before if self._run.state.machine_frame[before] else before + 1
+        return bool(((self._retracts >= first) & (self._retracts <= row)).any())
+
+    def _is_home(self, row: int) -> bool:
+        """Whether a row leads to the height to which this program retracts, or above, in machine coordinates."""
+        if not self._run.state.machine_frame[row] or self._safe_height is None:
+            return False
+        return float(self._height(np.array([row]))[0]) >= self._safe_height - HOME_TOLERANCE
+
+    def _height_of_retract(self) -> float | None:
+        """The height of home, along the spindle; the highest machine position of a program that never goes there."""
+        if not len(self._frame):
+            return None
+        heights = self._height(self._frame)
+        home = self._outward * float(self._machine.home[self._along])
+        goes_home = bool((np.abs(heights - home) <= HOME_TOLERANCE).any())
+        return home if goes_home else float(heights.max())
+
+    def _height(self, rows: Ints) -> Floats:
+        """How far out the slide along the spindle is at the end of rows, (k,) mm."""
+        return np.asarray(self._outward * self._run.positions(rows).joints[:, self._along])
+
+    # By a number
+
+    def _judge_by_number(self, row: int, found: TurnsAtThePart) -> None:
+        """Judge a turn by the distance between the tool and the turned part."""
+        poses = self._run.positions(np.array([row - 1, row])).joints
+        distance = self._distance(poses[0], poses[1])
+        if distance is not None and distance >= SAFE_DISTANCE:
+            found.distances.append(distance)
+            return
+        text = "turns a rotary axis while the tool is at the part"
+        if distance is not None:
+            text += f", {distance:.1f} mm from the turned part and not {SAFE_DISTANCE:g}"
+        found.places.append(self._context.place(row, distance or 0.0, f"{text}: {self._cure(distance)}"))
+
+    def _distance(self, before: Floats, after: Floats) -> float | None:
+        """Distance of the tool from the turned part, mm; None if it is not known where the part turns to."""
+        machine, slides = self._machine, list(self._machine.linear)
+        if (np.abs(after[slides] - before[slides]) > STILL).any() or not self._knows_the_turn(before, after):
+            return None
+        if not self._part_is_known:
+            self._part, self._part_is_known = worked_part(self._run), True
+        if self._part is None:
+            return None
+        return turn_clearance(machine, before, after, self._part)
+
+    def _knows_the_turn(self, before: Floats, after: Floats) -> bool:
+        """Whether it is known where the part, or the head, turns to."""
+        machine = self._machine
+        moved = [k for k in machine.rotary if abs(after[k] - before[k]) > STILL]
+        if machine.tool_length is None and any(machine.axes[k].mount is Mount.TOOL for k in moved):
+            return False  # the tip swings by a length that is not known
+        if machine.workpiece_zero is not None:
+            return True
+        return not len(self._frame) and turns_part_alone(machine, before, after, STILL)
+
+    def _cure(self, distance: float | None) -> str:
+        """What to do about a turn at the part."""
+        cure = f"go home in {self._machine.axes[self._along].name} first"
+        if len(self._retracts) and not len(self._frame):
+            cure = "retract first"
+        if distance is None and self._machine.workpiece_zero is None:
+            cure += ", or say where the workpiece zero is (zero) if the tool is far enough from the turned part"
+        return cure
+
+
+def _spindle_slide(machine: Machine) -> tuple[int, float]:
+    """Column of the slide along the spindle, and whether its growing values lead away from the part (1.0 or -1.0)."""
+    along = {k: float(np.dot(machine.axes[k].direction, machine.spindle_direction)) for k in machine.linear}
+    column = max(along, key=lambda k: abs(along[k]))
+    return column, float(np.copysign(1.0, along[column] * machine.axes[column].sense))
+
+
+def _positioning_rows(run: Run) -> Ints:
+    """Rows that position rotary axes at rapid with TCP off: alone, or in machine coordinates."""
+    found = [np.zeros(0, np.int64)]
+    for start, end in chunk_bounds(len(run)):
+        names_rotary = (run.programmed[start:end] & int(ROTARY_WORDS)) != 0
+        in_frame = run.state.machine_frame.part(start, end) & names_rotary & ~run.state.tcp.part(start, end)
+        found.append(start + np.flatnonzero(rotary_positioning_flags(run, start, end) | in_frame))
+    return np.concatenate(found)
