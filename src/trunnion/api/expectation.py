@@ -5,6 +5,7 @@ Out:    tolerances and settings for ``trunnion.verification.verify``.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from trunnion.api.settings import work_offset_number
@@ -12,7 +13,7 @@ from trunnion.api.tolerances import program_tolerances
 from trunnion.model.motion import MachiningMode
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
-from trunnion.verification import Settings, Tolerances
+from trunnion.verification import OperationSettings, Settings, Tolerances
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,12 +37,19 @@ def _expected_settings(program: Program, options: PlanOptions) -> Settings:
     """What the settings of the post say and the CL files do not."""
     without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
     axis_tolerance = options.axis_tolerance_between_points
-    values = {**program.control.settings, **{key: value for key, value in program.settings.items() if value}}
+    values = program.effective_settings()
+    by_operation = {
+        motion.operation.name: OperationSettings(*_operation_settings(program.effective_settings(motion.operation)))
+        for motion in program.motions
+        if motion.operation.name in program.own_settings
+    }
+    tool, work_offset, edge = _operation_settings(values)
     inverse_time = program.control.formats.get("inverse_time")
     return Settings(
-        tool=values["tool"].strip('"'),
-        work_offset=work_offset_number(values["work_offset"]),
-        edge=int(values["edge"]) if "edge" in values else None,
+        tool=tool,
+        work_offset=work_offset,
+        edge=edge,
+        by_operation=by_operation,
         span=axis_tolerance if without_tcp or math.isfinite(axis_tolerance) else None,
         span_tip=options.tip_tolerance if without_tcp else None,
         absolute=options.absolute_frame,
@@ -49,3 +57,9 @@ def _expected_settings(program: Program, options: PlanOptions) -> Settings:
         max_feed=program.control.formats["feed"].five_axis.greatest,
         rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
     )
+
+
+def _operation_settings(values: Mapping[str, str]) -> tuple[str, int | None, int | None]:
+    """Tool, work offset and edge as settings give them."""
+    edge = int(values["edge"]) if "edge" in values else None
+    return values["tool"].strip('"'), work_offset_number(values["work_offset"]), edge

@@ -2,11 +2,19 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.api.settings import RUN_SETTINGS, Settings, apply_setup, as_texts, check_settings, number_setting
+from trunnion.api.settings import (
+    RUN_SETTINGS,
+    Settings,
+    apply_setup,
+    as_texts,
+    check_settings,
+    number_setting,
+    split_by_operation,
+)
 from trunnion.controls import Control, load_control
 from trunnion.errors import InputError, Problem
 from trunnion.files import OutputFiles
@@ -34,6 +42,7 @@ class PostJob:
     capabilities  of the control with the settings
     options       of the planner
     settings      all of them, as text
+    own_settings  those of single operations, by their names
     force         write a program that must not run, with notices in its head
     report        file of the report; None: there is none
     columns       work out the columns of the verification
@@ -47,6 +56,7 @@ class PostJob:
     force: bool = False
     report: Path | None = None
     columns: bool = False
+    own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def printed(self) -> dict[str, str]:
@@ -106,13 +116,14 @@ def prepare(
     """
     control = load_control(machine.control)
     texts = as_texts(settings)
+    texts, own = split_by_operation(texts, control)
     check_settings(texts, control)
     if texts.get("numbers") == "off":
         control = replace(control, block_numbers=replace(control.block_numbers, numbered=False))
     machine = apply_setup(machine, texts)
     options = parse_plan_options(texts, control, explain or report is not None)
     capabilities = control_capabilities(control, texts)
-    return PostJob(machine, control, capabilities, options, texts, force, report, columns or report is not None)
+    return PostJob(machine, control, capabilities, options, texts, force, report, columns or report is not None, own)
 
 
 def parse_plan_options(settings: Mapping[str, str], control: Control, explain: bool = False) -> PlanOptions:

@@ -9,7 +9,7 @@ from trunnion.api.inserts import insert_problems
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
-from trunnion.api.settings import Settings
+from trunnion.api.settings import Settings, check_operation_names
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
@@ -111,10 +111,12 @@ def plan_program(
     RefusedError
         When the program must not run and ``force`` is off.
     """
+    names = [operation.name for toolpath in toolpaths for operation in toolpath.operations if len(operation.moves)]
+    check_operation_names(job.own_settings, job.settings, names)
     planned = planning.plan(toolpaths, job.machine, job.control.arcs.chord_tolerance, job.options, job.capabilities)
     observer.planned(planned)
     file = toolpaths[0].file
-    program = Program(job.machine, job.control, planned.motions, job.printed, file)
+    program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
     problems = check_program(program)
     if any(problem.severity is Severity.ERROR for problem in problems):
         raise InputError(problems)

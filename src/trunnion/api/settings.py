@@ -14,7 +14,7 @@ from trunnion.controls import Control
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.motion import PoleStrategy
-from trunnion.model.run import EXTENDED_OFFSET_BASE
+from trunnion.model.run import EXTENDED_OFFSET_BASE, ORIGIN_OFFSET_BASE
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
 
 #: A setting as text, as a number, or as several numbers (``zero``).
@@ -98,6 +98,60 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
         raise InputError(problems)
 
 
+def split_by_operation(
+    settings: Mapping[str, str], control: Control
+) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
+    """Settings of the program, and those of single operations by their names: ``method=ROUGH,TOP:FINISH``.
+
+    Raises
+    ------
+    InputError
+        If an operation is given a value that the control cannot have, or a setting has two values for all operations.
+    """
+    program: dict[str, str] = {}
+    own: dict[str, dict[str, str]] = {}
+    problems: list[Problem] = []
+    for key, text in settings.items():
+        if ":" not in text or not control.differs_by_operation(key):
+            program[key] = text
+            continue
+        for entry in text.split(","):
+            name, _, value = entry.rpartition(":")
+            if name:
+                own.setdefault(name, {})[key] = value
+            elif key in program:
+                cure = f"write {key}=VALUE,OPERATION:VALUE: a text can have no comma beside a colon"
+                problems.append(Problem("--set", 0, f"{key} has two values for all operations: {text!r}", cure))
+            else:
+                program[key] = value
+    if problems:
+        raise InputError(problems)
+    for values in own.values():
+        check_settings({**program, **values}, control)
+    return program, own
+
+
+def check_operation_names(
+    own: Mapping[str, Mapping[str, str]], settings: Mapping[str, str], names: Iterable[str]
+) -> None:
+    """Raise ``InputError`` for settings of operations not among ``names``, or where ``settings`` cannot differ."""
+    known = list(dict.fromkeys(names))
+    cure = f"write one of {', '.join(known)}; in a setting that can differ by operation, a colon follows its name"
+    problems = [
+        Problem("--set", 0, f"{key} is set for operation {name}, and the program has none of that name", cure)
+        for name, values in own.items()
+        if name not in known
+        for key in values
+    ]
+    problems += [
+        Problem("--set", 0, f"{key} is {text!r}, and it cannot differ by operation", f"write {key}=VALUE")
+        for key, text in settings.items()
+        if key != "mode" and any(entry.rpartition(":")[0] in known for entry in text.split(",") if ":" in entry)
+    ]
+    if problems:
+        raise InputError(problems)
+
+
 def number_setting(settings: Mapping[str, str], key: str) -> float | None:
     """A setting as a number; None if it is not set.
 
@@ -140,8 +194,11 @@ def check_tolerance(option: str, value: float | None) -> None:
 
 
 def work_offset_number(text: str) -> int | None:
-    """The number of a work offset: 54 for ``G54``, 603 for ``G54.1 P3``; None where it has another name."""
+    """The number of a work offset: 54 for ``G54``, 603 for ``G54.1 P3``, 501 for ``G55 O1``; None for other names."""
     code = text.strip().upper().removeprefix("G")
+    origin = re.fullmatch(r"55 +O0*(\d{1,2})", code)
+    if origin:
+        return ORIGIN_OFFSET_BASE + int(origin[1])
     extended = re.fullmatch(r"54\.1 *P0*(\d{1,3})", code)
     if extended:
         return EXTENDED_OFFSET_BASE + int(extended[1])

@@ -14,6 +14,8 @@ from trunnion.controls.vocabulary import (
     HOLES_IN_PLANES,
     HOLES_SETTING,
     ORIENT_BY_VECTOR_WORD,
+    PROGRAM_SETTINGS,
+    PROGRAM_TEMPLATES,
     THREE_AXIS,
     TOOL_VECTOR_WORDS,
     UNKNOWN_FEED,
@@ -153,6 +155,13 @@ class Control:
     holes_from: str
     subprograms: SubprogramNaming | None
     templates: Mapping[str, Template] = field(repr=False)
+
+    def differs_by_operation(self, setting: str) -> bool:
+        """Whether operations of one program can have different values of a setting."""
+        if setting not in self.settings or setting in PROGRAM_SETTINGS:
+            return False
+        templates = [self.templates[name] for name in PROGRAM_TEMPLATES if name in self.templates]
+        return all(name != setting for template in templates for name, _ in template.fields())
 
     def default_for_method(self, setting: str, method: str) -> str | None:
         """Return the default of a setting for operations of a machining method, or None if there is no rule for it."""

@@ -29,6 +29,9 @@ THREE_AXIS: Final = "three_axis"
 FIVE_AXIS: Final = "five_axis"
 WITHOUT_TCP: Final = "without_tcp"
 
+#: Templates that every program has once.
+PROGRAM_TEMPLATES: Final = ("program_start", "program_end")
+
 #: The template that starts the spindle, on controls where that takes blocks of its own.
 SPINDLE_ON: Final = "spindle_on"
 
@@ -61,6 +64,15 @@ RADIUS_ARC_WORDS: Final = ("arc_by_radius", "arc_radius")
 #: each tool axis gets a plane of its own. With any other value the tool turns from hole to hole under TCP.
 HOLES_SETTING: Final = "holes"
 HOLES_IN_PLANES: Final = "planes"
+
+#: Settings that a program has only once: those of its head and its files, and those by which all of it is planned.
+#: All others can differ by operation, unless the templates of the head or the end of the program print them.
+PROGRAM_SETTINGS: Final = frozenset(
+    {
+        "title", "part", "date", "program", "series", "blank", "call", "call_folder", "normals", "rapid_feed",
+        "rotary_feed", "orientation", "plane", HOLES_SETTING, "bore_lift", "disengage", "rigid_tap",
+    }
+)  # fmt: skip
 
 #: The value of ``feed_without_tcp`` for a control of which it is not known what F means while rotary axes turn without
 #: TCP. Operations without TCP are then refused.

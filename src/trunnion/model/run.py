@@ -96,6 +96,9 @@ class RunEvent:
 #: ``Run.work_offset`` where work offsets are suppressed and positions count from the machine's zero (G500).
 NO_OFFSET = 500
 
+#: Work offsets that are called by ``G55 O`` have codes from here on, as those of ``G505`` and higher.
+ORIGIN_OFFSET_BASE = 500
+
 #: Work offsets with higher codes are called by ``G54.1 P``.
 EXTENDED_OFFSET_BASE = 600
 

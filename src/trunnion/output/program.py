@@ -1,13 +1,15 @@
 """The input of a program: machine, control, planned motions and the settings of the run."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from trunnion.controls.definition import Control
 from trunnion.controls.words import Word
 from trunnion.machines import Machine
 from trunnion.model.motion import Motion
+from trunnion.model.toolpath import Operation
+from trunnion.output.machining_method import machining_method
 
 
 class RotaryWord(NamedTuple):
@@ -27,9 +29,10 @@ class RotaryWord(NamedTuple):
 class Program:
     """All that a program is made from.
 
-    settings  those of the run; they take precedence over the control's
-    file      the CL file, for messages
-    notices   comments at the start of the program
+    settings      those of the run; they take precedence over the control's
+    own_settings  those of single operations, by their names; they take precedence over all others
+    file          the CL file, for messages
+    notices       comments at the start of the program
     """
 
     machine: Machine
@@ -38,14 +41,25 @@ class Program:
     settings: Mapping[str, str]
     file: str = ""
     notices: Sequence[str] = ()
+    own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
-    def effective_settings(self) -> dict[str, str]:
-        """Return the settings of the run over those of the definition."""
-        return {**self.control.settings, **{key: value for key, value in self.settings.items() if value}}
+    def settings_of(self, operation: Operation) -> dict[str, str]:
+        """Return the settings of the run, with those of an operation over them."""
+        return {**self.settings, **self.own_settings.get(operation.name, {})}
 
-    def effective_setting(self, name: str) -> str:
-        """Return a setting of the run, or else of the definition; empty if neither has it."""
-        return self.settings.get(name) or self.control.settings.get(name, "")
+    def effective_settings(self, operation: Operation | None = None) -> dict[str, str]:
+        """Return the settings of the run, for an operation if one is given, over those of the definition."""
+        given = self.settings if operation is None else self.settings_of(operation)
+        return {**self.control.settings, **{key: value for key, value in given.items() if value}}
+
+    def effective_setting(self, name: str, operation: Operation | None = None) -> str:
+        """Return a setting of the run, for an operation if one is given, or else of the definition; empty for none."""
+        return self.effective_settings(operation).get(name, "")
+
+    def method_of(self, operation: Operation) -> str:
+        """Return the machining method of an operation: that of its settings, or else what the CL file tells."""
+        given = self.settings_of(operation).get("method")
+        return given or machining_method(operation)
 
     def template_suffix(self, motion: Motion) -> str:
         """Return the suffix of the templates for a motion; empty if the control cannot work in its mode."""

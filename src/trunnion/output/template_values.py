@@ -87,7 +87,7 @@ class TemplateValues:
     def _setting_values(self, motion: Motion) -> dict[str, Value]:
         """Settings, with the values that the family makes of them and the defaults that depend on the operation."""
         control, operation = self._program.control, motion.operation
-        values: dict[str, Value] = {**control.settings, **self._program.settings}
+        values: dict[str, Value] = {**control.settings, **self._program.settings_of(operation)}
         if values.get("blank") == EXTENTS:
             values["blank"] = self._extents()
         values |= self._family.template_values(values, None if motion.plane is None else motion.plane.matrix())
@@ -96,8 +96,9 @@ class TemplateValues:
             values["tolerance"] = (
                 (operation.intol or 0.0) + (operation.outtol or 0.0) if given else values.get("fallback_tolerance")
             )
+        method = self._program.method_of(operation)
         for setting in control.method_defaults:
-            values[setting] = values[setting] or control.default_for_method(setting, str(values.get("method", "")))
+            values[setting] = values[setting] or control.default_for_method(setting, method)
         return values
 
     def _extents(self) -> str:
@@ -168,10 +169,13 @@ class TemplateValues:
     def _tool_call(self, operation: Operation, loaded: LoadedTool) -> str:
         """The tool as a tool change calls it: by the run's setting, the number of LOAD/TOOL, or else its name."""
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
-        number, name = self._program.effective_setting("tool"), operation.tool.name
+        number, name = self._program.effective_setting("tool", operation), operation.tool.name
+        own = self._program.own_settings.get(operation.name, {}).get("tool")
+        if own:
+            return own
         if loaded.call and not loads and name == loaded.name:
             return loaded.call
-        if name and (self._program.effective_setting("tool_call") == "name" or not (number or loads)):
+        if name and (self._program.effective_setting("tool_call", operation) == "name" or not (number or loads)):
             return self._family.tool_call(0, name, by_name=True)
         if number:
             return number

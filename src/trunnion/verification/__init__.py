@@ -5,6 +5,7 @@ from trunnion.verification.comparison.comparison import compare
 from trunnion.verification.comparison.result import Comparison, Difference
 from trunnion.verification.context import Settings
 from trunnion.verification.deviations.point_deviations import compare_rows
+from trunnion.verification.expected.path import OperationSettings
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
@@ -21,6 +22,7 @@ __all__ = [
     "Comparison",
     "Difference",
     "OperationRows",
+    "OperationSettings",
     "Place",
     "Settings",
     "Tolerances",

@@ -1,13 +1,13 @@
 """What checks are given: the run, the settings, and the expected path with its matching; and how they name places."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
-from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.expected.path import ExpectedPath, OperationSettings
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.results import Check, Place
 
@@ -33,6 +33,7 @@ class Settings:
     rapid_feed             feed of lines that replace rapids, mm/min; None: rapids are rapids
     max_inverse_time_feed  largest inverse-time F of the control: no block need be quicker; None: no limit
     max_feed               largest F per minute of the control: no block need be faster; None: no limit
+    by_operation           tool, work offset and edge of single operations, by their names
     """
 
     tool: str = ""
@@ -44,6 +45,12 @@ class Settings:
     rapid_feed: float | None = None
     max_inverse_time_feed: float | None = None
     max_feed: float | None = None
+    by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
+
+    def for_operation(self, name: str) -> OperationSettings:
+        """Tool, work offset and edge of an operation."""
+        every = OperationSettings(self.tool, self.work_offset, self.edge)
+        return self.by_operation.get(name, every)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -73,7 +73,7 @@ def verify(
     run = restore_rapids(run, settings.rapid_feed)
     analyzer = AxisMotionAnalyzer(run, MAX_PLACES, times=columns)
     if toolpaths:
-        expected = ExpectedPath(toolpaths, tolerances or Tolerances(), settings.absolute)
+        expected = ExpectedPath(toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation)
         checked = _check_against(expected, run, settings, analyzer)
     else:
         checked = _check_alone(run, settings, analyzer)

@@ -118,7 +118,7 @@ class MotionBlockWriter:
         self._tool = tool
         loads = [event for event in motion.operation.events if isinstance(event, LoadTool)]
         if loads:  # a tool that the run's settings name has its own register
-            self._length_register = 0 if self.program.effective_setting("tool") else loads[-1].adjust
+            self._length_register = 0 if self.program.effective_setting("tool", motion.operation) else loads[-1].adjust
         self.xy_before_z = retracted and self.control.level_approach and motion.mode in _Z_ALONG_TOOL
         self._words = self.program.block_words(motion)
         self.writer.use_words(self._words)
@@ -138,7 +138,7 @@ class MotionBlockWriter:
     def first_block_words(self, motion: Motion) -> dict[str, int]:
         """Return the family's words for the first motion block, as counts."""
         orientation = {"orientation": "vector" if self._orientation.uses_vectors else "angles"}
-        settings = self.program.effective_settings() | orientation
+        settings = self.program.effective_settings(motion.operation) | orientation
         words = self.family.first_block_words(motion, self._tool, self._length_register, settings)
         return {word: self.writer.to_count(word, value) for word, value in words.items()}
 

@@ -21,13 +21,13 @@ def tool_problems(program: Program, operation: Operation, in_spindle: str) -> li
     ``in_spindle`` is the name of the tool of the operation before.
     """
     problems, name = list[Problem](), operation.tool.name
-    loaded = any(isinstance(e, LoadTool) for e in operation.events) or program.effective_setting("tool")
+    loaded = any(isinstance(e, LoadTool) for e in operation.events) or program.effective_setting("tool", operation)
     stays = not loaded and name == in_spindle
     if not loaded and name and not stays:
         what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
         cure = "--set tool=NUMBER calls it by number"
         problems.append(Problem(program.file, operation.line, what, cure, Severity.WARNING))
-    if name and (not (loaded or stays) or program.effective_setting("tool_call") == "name"):
+    if name and (not (loaded or stays) or program.effective_setting("tool_call", operation) == "name"):
         try:
             program.control.family.tool_call(0, name, by_name=True)
         except UnsupportedFeatureError as why:
@@ -48,9 +48,9 @@ def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
     """Warn of an operation without a tolerance, if its templates print one."""
     operation = motion.operation
     given = operation.intol is not None and operation.outtol is not None
-    if given or not _prints_tolerance(program, motion) or program.effective_setting("tolerance"):
+    if given or not _prints_tolerance(program, motion) or program.effective_setting("tolerance", operation):
         return []
-    fallback = program.effective_setting("fallback_tolerance")
+    fallback = program.effective_setting("fallback_tolerance", operation)
     what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
     return [Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING)]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from trunnion.model.run import Run
 from trunnion.verification.checks.drill_motions import HoleFault
 from trunnion.verification.checks.hole_faults import hole_faults
-from trunnion.verification.checks.tool_checks import allowed_length_numbers, length_fault, tool_fault
+from trunnion.verification.checks.tool_checks import length_fault, tool_fault
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.expected.holes import Hole
 from trunnion.verification.expected.spindle_and_tool import names_tool
@@ -78,13 +78,13 @@ def _has_pair_between(matching: Matching, first: int, last: int) -> bool:
 
 def _faults_around(context: ComparedContext, drilled: _Drilled) -> Iterator[HoleFault]:
     """A wrong tool or tool length, and a hole that is drilled out of its turn."""
-    run, matching, settings = context.run, context.matching, context.settings
+    run, matching = context.run, context.matching
     hole, row = drilled.hole, drilled.match.first
-    names = (settings.tool,) if settings.tool else hole.tool_names
+    names = hole.tool_names
     has = run.tools[run.state.tool[row]]
     if names and not names_tool(has, names):
         yield HoleFault(row, 0.0, tool_fault(has, names))
-    numbers = allowed_length_numbers(settings.tool, hole.length_numbers) if run.uses_length_numbers else ()
+    numbers = hole.length_numbers if run.uses_length_numbers else ()
     if numbers and (number := int(run.state.edge[row])) not in numbers:
         yield HoleFault(row, 0.0, length_fault(number, numbers))
     k = matching.cl.count_before(hole.row)

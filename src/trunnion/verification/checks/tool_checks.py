@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.context import ComparedContext, check_from_places
@@ -16,24 +17,23 @@ from trunnion.verification.results import Check, Place
 
 def check_tool(context: ComparedContext) -> Check:
     """The tool at every CL point with its edge and length, and no change to another tool."""
-    run, matching, settings = context.run, context.matching, context.settings
+    run, matching = context.run, context.matching
     places: list[Place] = []
     asked: list[tuple[str, ...]] = []
     states = tool_states(context.expected)
     for state in states:
-        names = (settings.tool,) if settings.tool else state.value.names
+        names = state.value.names
         first, end = matching.pair_range(state.first, state.end)
-        if (state.value.number is None and not settings.tool) or first == end:
+        if not state.value.is_known or first == end:
             continue
         asked.append(names)
         bad = first_wrong_pair(matching, first, end, partial(_holds_other_tool, run, names))
         if bad is not None:
             places += _wrong_tool(context, *bad, names)
-    if settings.edge is not None:
-        places += _wrong_edges(context, settings.edge)
+    places += _wrong_edges(context)
     if run.uses_length_numbers:
         places += _wrong_lengths(context)
-    unnumbered = 0 if settings.tool else next((s.first for s in states if s.value.number is not None), 0)
+    unnumbered = next((state.first for state in states if state.value.is_known), 0)
     places += _foreign_changes(context, asked, unnumbered) if asked else ()
     good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in asked)) or "the CL file names no tool"
     return check_from_places("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
@@ -73,26 +73,38 @@ def tool_fault(has: str, names: tuple[str, ...]) -> str:
     return f"{f'tool {has}' if has else 'no tool'} is in the spindle; the CL file wants {names[0]}"
 
 
-def _wrong_edges(context: ComparedContext, edge: int) -> Iterator[Place]:
+def _wrong_edges(context: ComparedContext) -> Iterator[Place]:
     """The first motion under another cutting edge, and the first one home with an edge that is neither none nor it."""
     used, matching = context.run.state.edge, context.matching
-    bad = first_wrong_pair(matching, 0, len(matching.nc), lambda nc: used.at(nc) != edge)
-    if bad is not None:
-        row, cl = bad
-        yield context.place_with_cl(row, 0.0, f"works with D{used[row]}, not with D{edge}", cl)
+    known: list[int] = []
+    for section in context.expected.sections:
+        edge = section.settings.edge
+        if edge is None:
+            return
+        known.append(edge)
+        bad = first_wrong_pair(
+            matching, *matching.pair_range(section.first, section.end), partial(_has_other_edge, used, edge)
+        )
+        if bad is not None:
+            row, cl = bad
+            yield context.place_with_cl(row, 0.0, f"works with D{used[row]}, not with D{edge}", cl)
     rows = context.run.state.machine_frame.rows_with(True)
     edges = used.at(rows)
-    others = rows[(edges > 0) & (edges != edge)]
+    others = rows[(edges > 0) & ~np.isin(edges, known)]
     if len(others):
         row = int(others[0])
-        yield context.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{edge}")
+        yield context.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{known[0]}")
+
+
+def _has_other_edge(used: StepColumn, edge: int, nc: Ints) -> Flags:
+    return np.asarray(used.at(nc) != edge)
 
 
 def _wrong_lengths(context: ComparedContext) -> Iterator[Place]:
     """The first motion of each tool without its length: its own number, or the register of LOAD/TOOL."""
     run, matching = context.run, context.matching
     for state in tool_states(context.expected):
-        numbers = allowed_length_numbers(context.settings.tool, state.value.lengths)
+        numbers = state.value.lengths
         first, end = matching.pair_range(state.first, state.end)
         if not numbers or first == end:
             continue
@@ -104,11 +116,6 @@ def _wrong_lengths(context: ComparedContext) -> Iterator[Place]:
 
 def _has_other_length(run: Run, numbers: tuple[int, ...], nc: Ints) -> Flags:
     return ~np.isin(run.state.edge.at(nc), numbers)
-
-
-def allowed_length_numbers(tool: str, numbers: tuple[int, ...]) -> tuple[int, ...]:
-    """Numbers that a tool length may have; ``tool`` is that of the settings, or empty."""
-    return (int(tool),) if tool.isdigit() else numbers
 
 
 def length_fault(number: int, allowed: tuple[int, ...]) -> str:

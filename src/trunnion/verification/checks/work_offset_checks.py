@@ -1,5 +1,6 @@
 """The work offset of a program."""
 
+from collections.abc import Iterator
 from typing import Final
 
 from trunnion.model.run import Run, offset_name
@@ -11,37 +12,55 @@ _TITLE: Final = "one work offset throughout"
 
 
 def check_work_offset(context: Context) -> Check:
-    """One work offset wherever the tool works: that of the settings, if they name one.
+    """The work offset of the settings wherever the tool works, or the same one throughout if they name none.
 
     Without a CL file, rows with no work offset and TCP off may lead to or from the work.
     """
-    run, compared = context.run, isinstance(context, ComparedContext)
-    used, tcp = run.state.work_offset, run.state.tcp
-    rows = context.matching.nc if isinstance(context, ComparedContext) else _workpiece_frame_rows(run)
-    if not len(rows):
+    stretches = list(_stretches(context))
+    if not stretches:
         return Check("offset", _TITLE, True, "nothing moves")
-    should = context.settings.work_offset
-    if should is None:
-        should = used[rows[0]] if compared else used[rows[-1]]
+    used, tcp = context.run.state.work_offset, context.run.state.tcp
+    compared = isinstance(context, ComparedContext)
     places: list[Place] = []
     count = 0
-    for start in range(0, len(rows), CHUNK):
-        part = rows.rows(start, start + CHUNK)
-        here = used.at(part)
-        if (here == should).all():
-            continue
-        wrong = here != should if compared else (here != should) & ~((here == 0) & ~tcp.at(part))
-        bad = part[wrong]
-        count += len(bad)
-        places += [
-            context.place(row, 0.0, f"works in {_name(used[row])}, not in {_name(should)}")
-            for row in bad[: max(MAX_PLACES - len(places), 0)].tolist()
-        ]
-    others = set(used.distinct().tolist()) - {0, should}
+    for rows, should in stretches:
+        for start in range(0, len(rows), CHUNK):
+            part = rows.rows(start, start + CHUNK)
+            here = used.at(part)
+            if (here == should).all():
+                continue
+            wrong = here != should if compared else (here != should) & ~((here == 0) & ~tcp.at(part))
+            bad = part[wrong]
+            count += len(bad)
+            places += [
+                context.place(row, 0.0, f"works in {_name(used[row])}, not in {_name(should)}")
+                for row in bad[: max(MAX_PLACES - len(places), 0)].tolist()
+            ]
+    known = list(dict.fromkeys(should for _, should in stretches))
+    others = set(used.distinct().tolist()) - {0, *known}
     if others and not places:
         row = min(int(used.rows_with(code)[0]) for code in others)
         places.append(context.place(row, 0.0, f"{_name(used[row])} is not the offset of this program"))
-    return check_from_places("offset", _TITLE, places, f"{_name(should)} throughout", count or None)
+    good = f"{_name(known[0])} throughout" if len(known) == 1 else ", ".join(map(_name, known))
+    return check_from_places("offset", _TITLE, places, good, count or None)
+
+
+def _stretches(context: Context) -> Iterator[tuple[RowRanges, int]]:
+    """Rows with the work offset that they should have: those of each operation, or all without CL files."""
+    used = context.run.state.work_offset
+    if not isinstance(context, ComparedContext):
+        rows, should = _workpiece_frame_rows(context.run), context.settings.work_offset
+        if len(rows):
+            yield rows, used[rows[-1]] if should is None else should
+        return
+    matching = context.matching
+    if not len(matching.nc):
+        return
+    for section in context.expected.sections:
+        own = section.settings.work_offset
+        rows = RowRanges.from_ranges(matching.nc.ranges(*matching.pair_range(section.first, section.end)))
+        if len(rows):
+            yield rows, used[matching.nc[0]] if own is None else own
 
 
 def _workpiece_frame_rows(run: Run) -> RowRanges:

@@ -142,7 +142,7 @@ def holes_of_operation(
                 spindle=spindle_at(operation, row, spindle),
                 tip_tolerance=tolerances.tip,
                 feed_tolerance=tolerances.feed,
-                tool_names=() if tool.number is None else tool.names,
+                tool_names=tool.names if tool.is_known else (),
                 length_numbers=tool.lengths,
             )
         )

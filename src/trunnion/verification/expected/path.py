@@ -5,7 +5,7 @@ Out:    the rows of all operations one after the other, without holes; and the h
 Frame:  the program's: the coordinate system of the first operation that moves, or the absolute one of the CAM.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -32,6 +32,20 @@ from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, Exp
 from trunnion.verification.expected.tolerances import Tolerances
 
 
+@dataclass(frozen=True, slots=True)
+class OperationSettings:
+    """What the CL file leaves open about one operation.
+
+    tool         tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
+    work_offset  54..59, 505..599, or 600 plus the P of G54.1; None: any, but the same throughout
+    edge         number of the cutting edge (D); None: any
+    """
+
+    tool: str = ""
+    work_offset: int | None = None
+    edge: int | None = None
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Section:
     """One operation within the expected path: rows ``first`` to ``end`` (exclusive), in the program's frame."""
@@ -40,6 +54,7 @@ class Section:
     operation: Operation
     first: int
     tolerances: Tolerances
+    settings: OperationSettings
 
     @property
     def end(self) -> int:
@@ -65,7 +80,11 @@ class ExpectedPath:
     """
 
     def __init__(
-        self, toolpaths: Sequence[Toolpath], tolerances: Tolerances | Sequence[Tolerances], absolute: bool = False
+        self,
+        toolpaths: Sequence[Toolpath],
+        tolerances: Tolerances | Sequence[Tolerances],
+        absolute: bool = False,
+        settings_of: Callable[[str], OperationSettings] = lambda name: OperationSettings(),
     ) -> None:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
@@ -84,12 +103,14 @@ class ExpectedPath:
             placed = transform_to_frame(frame, whole)
             operation, hole_rows = without_holes(placed)
             loads = [(event.number, event.adjust) for event in placed.events if isinstance(event, LoadTool)]
-            tool = ExpectedTool(*loads[-1], placed.tool.name) if loads else replace(tool, name=placed.tool.name)
+            settings = settings_of(placed.name)
+            tool = ExpectedTool(*loads[-1]) if loads else tool
+            tool = replace(tool, name=placed.tool.name, called=settings.tool)
             found += holes_of_operation(placed, hole_rows, first, path.file, limit, tool, spindle)
             spindle = spindle_at(placed, len(placed.moves), spindle)
             if limit.deviations is not None and hole_rows.any():
                 limit = replace(limit, deviations=limit.deviations.without_rows(hole_rows))
-            sections.append(Section(path.file, operation, first, limit))
+            sections.append(Section(path.file, operation, first, limit, settings))
             first += len(operation.moves)
         self.sections: tuple[Section, ...] = tuple(sections)
         self.holes: tuple[Hole, ...] = tuple(found)

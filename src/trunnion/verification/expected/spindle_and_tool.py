@@ -19,20 +19,31 @@ class ExpectedTool:
 
     number  None before the first LOAD/TOOL
     adjust  the length register of LOAD/TOOL, 0 if it names none
+    called  what the settings call it instead; empty: nothing
     """
 
     number: int | None
     adjust: int = 0
     name: str = ""
+    called: str = ""
+
+    @property
+    def is_known(self) -> bool:
+        """Whether a program must call one tool, and no other."""
+        return self.number is not None or bool(self.called)
 
     @property
     def names(self) -> tuple[str, ...]:
         """What a program may call the tool."""
+        if self.called:
+            return (self.called,)
         return tuple(str(text) for text in (self.number, self.name) if text not in (None, ""))
 
     @property
     def lengths(self) -> tuple[int, ...]:
         """Numbers that its tool length may have: the tool's own, or the register of LOAD/TOOL."""
+        if self.called.isdigit():
+            return (int(self.called),)
         return tuple(number for number in (self.number, self.adjust) if number)
 
 

@@ -79,11 +79,11 @@ def tool_states(expected: ExpectedPath) -> list[StateRange[ExpectedTool]]:
     tool = ExpectedTool(None)
     states: list[StateRange[ExpectedTool]] = []
     for section in expected.sections:
-        tool = replace(tool, name=section.operation.tool.name)
+        tool = replace(tool, name=section.operation.tool.name, called=section.settings.tool)
         changes = [(0, tool)]
         for event in section.operation.events:
             if isinstance(event, LoadTool):
-                tool = ExpectedTool(event.number, event.adjust, tool.name)
+                tool = ExpectedTool(event.number, event.adjust, tool.name, tool.called)
                 changes.append((event.row, tool))
         states += _ranges(section, changes)
     return states

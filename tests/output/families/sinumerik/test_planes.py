@@ -71,8 +71,8 @@ def test_planes_are_proven_on_every_machine_that_reaches_them(
 
 
 STATEMENTS = {
-    "cycle800": ["TRAFOOF", "G0 B30. C0.0", "COMPOF", "CYCLE832(0.01, _ORI_ROUGH,1)", "G54"],
-    "frames": ["G0 B30. C0.0", "CYCLE832(_camtolerance,_ORI_ROUGH,1)", "TRAORI", "G54"],
+    "cycle800": ["TRAFOOF", "G0 B30. C0.0", "COMPOF", "CYCLE832(0.01, _ORI_SEMIFIN,1)", "G54"],
+    "frames": ["G0 B30. C0.0", "CYCLE832(_camtolerance,_ORI_SEMIFIN,1)", "TRAORI", "G54"],
 }
 
 
