@@ -10,7 +10,7 @@ from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
 from trunnion.api.settings import Settings, check_operation_names
-from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.errors import InputError, Problem, RefusedError, Severity, merge_repeated
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
@@ -117,12 +117,12 @@ def plan_program(
     observer.planned(planned)
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
-    problems = check_program(program)
+    problems = [*merge_repeated(check_program(program))]
     if any(problem.severity is Severity.ERROR for problem in problems):
         raise InputError(problems)
     observer.problems(problems)
     unproven = _missing_reader(job)
-    found = [*planned.problems, *insert_problems(program)]
+    found = [*merge_repeated(planned.problems), *insert_problems(program)]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, "no program is written", "--force writes it")

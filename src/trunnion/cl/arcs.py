@@ -12,6 +12,9 @@ from trunnion.model.toolpath import Arcs, From, Kind
 #: How far start and end of an arc may be off its radius, mm: coordinates are printed with three or four decimals.
 RADIUS_TOLERANCE = 0.02
 
+#: An arc whose ends are as near to each other is a full circle, mm.
+_CLOSED = 1e-4
+
 #: How far the normal of a CIRCLE may be off unit length.
 _NORMAL_TOLERANCE = 0.01
 
@@ -99,3 +102,15 @@ def distance_from_line(offset: Floats, normal: Floats) -> Floats:
     along = np.sum(offset * normal, axis=1)
     across = offset - along[:, None] * normal
     return np.asarray(np.sqrt(np.sum(across * across, axis=1)), np.float64)
+
+
+def arc_lengths(arcs: Arcs, start: Floats, end: Floats) -> Floats:
+    """Lengths of arcs and helices, (m,) mm, from ``start`` to ``end``, (m, 3) each."""
+    first, last = start - arcs.centre, end - arcs.centre
+    rise = np.einsum("ij,ij->i", last - first, arcs.normal)
+    across = np.einsum("ij,ij->i", np.cross(first, last), arcs.normal)
+    angle = np.arctan2(across, np.einsum("ij,ij->i", first, last) - rise * np.einsum("ij,ij->i", first, arcs.normal))
+    angle = np.mod(angle, 2.0 * np.pi)
+    closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < _CLOSED
+    angle = np.where(closed, 2.0 * np.pi, angle)
+    return np.asarray(np.hypot(arcs.radius * (angle + 2.0 * np.pi * arcs.full_turns), rise))

@@ -10,13 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Lines
-from trunnion.cl.arcs import arcs_of, complete_circles
+from trunnion.arrays import Codes, Flags, Floats, Lines
+from trunnion.cl.arcs import arc_lengths, arcs_of, complete_circles
 from trunnion.cl.builder import FeedChange, FromStatement, MoveColumns, OperationBuilder, SurfaceSpeed
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.cl.scan import fill_modal_axes
-from trunnion.model.toolpath import CycleOn, Event, Frame, From, Kind, Moves, Operation, SpindleOn, Tool
+from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Frame, From, Kind, Moves, Operation, SpindleOn, Tool
 
 #: No machine reaches farther, mm: a coordinate beyond it is a mistake in the file.
 _MAX_COORDINATE = 1e6
@@ -56,6 +56,7 @@ def assemble_operation(
     circles = complete_circles(builder.circles, kind, diagnostics)
     kind[[circle.row for circle in circles]] = Kind.ARC
     arcs = arcs_of(circles, starts, tip, unit, diagnostics)
+    _inverse_to_per_minute(builder, feed, tip, arcs, columns.line[rows], kind, starts, diagnostics)
     tool = _tool_in_mm(builder.tool, unit)
     events = [*(_event_in_mm(event, unit, tool, diagnostics) for event in builder.events), *starts]
     return Operation(
@@ -85,6 +86,44 @@ def _fill_feeds(feed: Floats, per_rev: Flags, feeds: Sequence[FeedChange], unit:
         value = change.value * unit if change.in_file_units else change.value
     feed[begin:] = value
     per_rev[begin:] = is_per_rev
+
+
+def _inverse_to_per_minute(
+    builder: OperationBuilder,
+    feed: Floats,
+    tip: Floats,
+    arcs: Arcs,
+    line: Lines,
+    kind: Codes,
+    starts: Sequence[From],
+    diagnostics: Diagnostics,
+) -> None:
+    """Turn feeds that are one over the minutes of a move into mm/min by the length of each move.
+
+    Those of holes become NaN, as none: a cycle has moves of its own.
+    """
+    if not any(change.inverse for change in builder.feeds):
+        return
+    n = len(feed)
+    ends = [change.row for change in builder.feeds[1:]] + [n]
+    inverse = np.zeros(n, np.bool_)
+    for change, end in zip(builder.feeds, ends, strict=True):
+        inverse[change.row : end] = change.inverse
+    before = np.concatenate((np.full((1, 3), np.nan), tip[:-1]))
+    for start in starts:
+        before[start.row : start.row + 1] = start.tip
+    length = np.linalg.norm(tip - before, axis=1)
+    if len(arcs.row):
+        length[arcs.row] = arc_lengths(arcs, before[arcs.row], tip[arcs.row])
+    in_hole = np.zeros(n, np.bool_)
+    for event in sorted((e for e in builder.events if isinstance(e, CycleOn | CycleOff)), key=lambda e: e.line):
+        in_hole[event.row :] = isinstance(event, CycleOn)
+    feed[inverse] *= length[inverse]
+    feed[inverse & in_hole] = np.nan
+    cuts = inverse & ~in_hole & (kind != Kind.RAPID)
+    for row in np.flatnonzero(cuts & ~(length > 0.0))[: MAX_LISTED + 1].tolist():
+        what = "FEDRAT/INVERS for a move whose length is not known, or that only turns the tool"
+        diagnostics.error(int(line[row]), what, "write its feed in MMPM, or FROM/ before the first point")
 
 
 def _report_unknown_colours(builder: OperationBuilder, diagnostics: Diagnostics) -> None:

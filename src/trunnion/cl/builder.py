@@ -66,12 +66,13 @@ class SurfaceSpeed(Event):
 
 
 class FeedChange(NamedTuple):
-    """A FEDRAT: ``value`` in mm/min or mm/rev, or in units of the file if it names no unit."""
+    """A FEDRAT: ``value`` in mm/min or mm/rev, in units of the file if it names no unit, or 1/min if ``inverse``."""
 
     row: int
     value: float
     per_rev: bool
     in_file_units: bool
+    inverse: bool = False
 
 
 class CircleStatement(NamedTuple):

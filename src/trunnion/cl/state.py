@@ -27,6 +27,7 @@ class ReaderState:
     length_unit      mm and line of the UNITS statement
     feed_factor      mm in the modal length unit of feeds
     feed_per_rev     feeds are per revolution
+    feed_inverse     feeds are one over the minutes of a move
     bare_feeds       feeds are in units of the file: no FEDRAT has named one yet
     first_mm_feed    line of the first feed in mm, 0 if there is none
     first_inch_feed  line of the first feed in inches, 0 if there is none
@@ -47,6 +48,7 @@ class ReaderState:
     length_unit: tuple[float, int] | None = None
     feed_factor: float = 1.0
     feed_per_rev: bool = False
+    feed_inverse: bool = False
     bare_feeds: bool = True
     first_mm_feed: int = 0
     first_inch_feed: int = 0

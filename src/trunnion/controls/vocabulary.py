@@ -45,6 +45,9 @@ AXIS_WORDS: Final = ("X", "Y", "Z", "primary", "secondary")
 #: The word that calls the cycle defined before, on controls that call it at each hole; also the name of its code.
 CYCLE_CALL_WORD: Final = "call"
 
+#: The word for the register of radius compensation, on controls that do not take the radius of the tool in the spindle.
+RADIUS_NUMBER_WORD: Final = "radius_number"
+
 #: Words for the tool axis as a vector from tip to holder, on controls that accept it instead of rotary words; and the
 #: word that replaces ``line`` in such blocks where they need one. X, Y and Z are then written in every block.
 TOOL_VECTOR_WORDS: Final = ("axis_x", "axis_y", "axis_z")

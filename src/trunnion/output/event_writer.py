@@ -53,6 +53,7 @@ class EventWriter:
         self._phase = -1
         self._cycle: CycleOn | None = None
         self._joining_events: list[WordEvent] = []
+        self._spindle_turns = False
 
     def write(self, motion: Motion, first: int, end_lines: Sequence[str], *, restart_spindle: bool) -> None:
         """Write the rows of a motion from ``first`` on, with its events.
@@ -70,7 +71,9 @@ class EventWriter:
         self._motion, self._next_row, self._phase, self._cycle = motion, first, -1, None
         self._joining_events = []
         if restart_spindle:
-            self._restart_spindle()
+            self._spindle_turns = False
+            if not any(isinstance(event, SpindleOn) and event.row == 0 for event in motion.operation.events):
+                self._restart_spindle(0)
         for event in motion.operation.events:
             self._write_event(event, end_lines if event.row == rows else ())
         self._write_rows(rows)
@@ -93,13 +96,13 @@ class EventWriter:
             blocks.height_bound = None if before is None else max(before, blocks.tool_height)
         writer.set_block_skip(on)
 
-    def _restart_spindle(self) -> None:
-        """Start the spindle as before, unless an event at the first row starts it."""
+    def _restart_spindle(self, row: int) -> None:
+        """Start the spindle before a row as it was started last."""
         spindle = self._blocks.spindle
-        starts = any(isinstance(event, SpindleOn) and event.row == 0 for event in self._motion.operation.events)
-        if starts or spindle is None:
+        if spindle is None:
             return
-        again = replace(spindle, row=0)
+        self._spindle_turns = True
+        again = replace(spindle, row=row)
         if self._joins_motion(again):
             self._joining_events.append(again)
         elif self._starts_spindle_by_template:
@@ -127,6 +130,8 @@ class EventWriter:
             self._cycle = event if isinstance(event, CycleOn) else None
         elif isinstance(event, SpindleOn | SpindleOff | Coolant | CutterComp):
             self._write_word_event(event, end_lines)
+            if isinstance(event, SpindleOn | SpindleOff):
+                self._spindle_turns = isinstance(event, SpindleOn)
         elif isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
             self._finish_rows(event.row)
             self._write_line_event(event)
@@ -150,7 +155,7 @@ class EventWriter:
             formats = self._control.number_formats(self._motion.three_axis)
             blocks.write_lines(self._family.dwell(event, rpm, formats))
         elif isinstance(event, Stop):
-            blocks.write_lines(self._family.stop(event, self._control.codes))
+            self._write_stop(event)
         elif isinstance(event, Message):
             blocks.write_lines(self._family.message(event))
         elif isinstance(event, Insert):
@@ -158,6 +163,19 @@ class EventWriter:
             blocks.writer.forget()  # the text may have changed anything
         else:
             self.set_block_skip(event.on, event.row)
+
+    def _write_stop(self, event: Stop) -> None:
+        """Write a stop, at which the spindle stands; it turns again before the next row, as it did."""
+        stops = self._spindle_turns and not event.optional
+        if stops:
+            self._blocks.write_event(SpindleOff(event.row, event.line))
+        self._blocks.write_lines(self._family.stop(event, self._control.codes))
+        later = [e for e in self._motion.operation.events if e.row == event.row and e.line > event.line]
+        switched = any(isinstance(each, SpindleOn | SpindleOff) for each in later)
+        if stops and not switched and event.row < len(self._motion.operation.moves):
+            self._restart_spindle(event.row)
+        elif stops:
+            self._spindle_turns = False
 
     def _start_spindle(self, event: SpindleOn) -> None:
         self._blocks.spindle = event

@@ -74,7 +74,7 @@ def plan_operation(prepared: PreparedOperation) -> PlannedOperation:
     machine, options, keep_slide_limits = request.machine, request.options, request.keeps_slide_limits
     poses = choose_poses(machine, moves, keep_slide_limits)
     if (poses.outcome == OUT_OF_REACH).any():
-        problems = tuple(pose_problems(file, moves, poses, machine))
+        problems = tuple(pose_problems(file, moves, poses, request))
         return PlannedOperation(prepared, prepared.operation, poses, problems=problems, log=tuple(prepared.log))
     near_pole = handle_pole(prepared, poses)
     poses = near_pole.poses
@@ -83,7 +83,7 @@ def plan_operation(prepared: PreparedOperation) -> PlannedOperation:
     feeds = limit_feeds(prepared.with_operation(near_pole.operation), poses, rewinds, near_pole.deviations)
     problems = (
         *near_pole.problems,
-        *pose_problems(file, moves, poses, machine),
+        *pose_problems(file, moves, poses, request),
         *rewind_problems(chosen, rewinds, request),
     )
     if options.allow_rewinds:

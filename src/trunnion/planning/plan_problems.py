@@ -66,7 +66,7 @@ def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
     return Problem(chosen.file, int(chosen.operation.moves.line[row]), what, cure)
 
 
-def pose_problems(file: str, moves: Moves, poses: PlannedPoses, machine: Machine) -> Iterable[Problem]:
+def pose_problems(file: str, moves: Moves, poses: PlannedPoses, request: PlanRequest) -> Iterable[Problem]:
     """Errors of poses: each kind of trouble at its first few rows, then how many more there are."""
     outcome = poses.outcome
     for code in np.unique(outcome[outcome > 0]).tolist() if outcome.any() else []:
@@ -74,26 +74,28 @@ def pose_problems(file: str, moves: Moves, poses: PlannedPoses, machine: Machine
             continue
         rows = np.flatnonzero(outcome == code)
         for row in rows[:_NAMED].tolist():
-            yield _pose_problem(file, moves, poses, machine, row)
+            yield _pose_problem(file, moves, poses, request, row)
         if len(rows) > _NAMED:
             more = f"the same at {len(rows) - _NAMED} further points, the last in line {moves.line[rows[-1]]}"
             yield Problem(file, int(moves.line[rows[_NAMED]]), more)
 
 
-def _pose_problem(file: str, moves: Moves, poses: PlannedPoses, machine: Machine, row: int) -> Problem:
+def _pose_problem(file: str, moves: Moves, poses: PlannedPoses, request: PlanRequest, row: int) -> Problem:
+    machine, remedy = request.machine, request.frame_remedy
     line, code = int(moves.line[row]), int(poses.outcome[row])
     if code == OUT_OF_REACH:
         i, j, k = moves.axis[row]
         what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
         lacking = f"{degrees_out_of_reach(machine, moves.axis[row]):.3f} degrees"
-        return Problem(file, line, what, f"tilt the workpiece by {lacking}, or post for a machine that reaches it")
+        cure = f"tilt the workpiece by {lacking}, or post for a machine that reaches it{remedy}"
+        return Problem(file, line, what, cure)
     if code == BLOCKED:
         turn = f"{describe_pose(machine, poses.rotary[row - 1])} to {describe_pose(machine, poses.rotary[row])}"
         what = f"the rotary axes must turn over within one step of the cut, {turn}, and no pose serves both its ends"
         return Problem(file, line, what, "output the toolpath with points nearer to each other, or tilt the workpiece")
     column, value = code - 1, float(poses.beyond_value[row])
     cure = limit_remedy(machine, column, value, _other_pose_remark(machine, moves, poses, row))
-    return Problem(file, line, limit_violation_text(machine, column, value), cure)
+    return Problem(file, line, limit_violation_text(machine, column, value), cure + remedy)
 
 
 def _other_pose_remark(machine: Machine, moves: Moves, poses: PlannedPoses, row: int) -> str:

@@ -1,11 +1,13 @@
 """From toolpaths to motions, stage by stage."""
 
+import math
 from collections.abc import Sequence
+from typing import Final
 
 from trunnion.errors import InputError, Problem, RefusedError
 from trunnion.machines import Machine
 from trunnion.model.motion import MachiningMode, Plan
-from trunnion.model.toolpath import Operation, Toolpath
+from trunnion.model.toolpath import Frame, Operation, Toolpath
 from trunnion.planning.linearization.point_insertion import LinearizedMotion, linearize
 from trunnion.planning.linearization.slide_requirements import check_slides_are_known
 from trunnion.planning.operation_plan import PlannedOperation, plan_operation
@@ -13,6 +15,9 @@ from trunnion.planning.options import ControlCapabilities, PlanOptions
 from trunnion.planning.plan_problems import travel_problems, unknown_speed_problems
 from trunnion.planning.preparation import prepare_operations
 from trunnion.planning.request import PlanRequest
+
+#: An MSYS that is tilted by less stands upright, degrees.
+_LEAST_TILT: Final = 0.01
 
 
 def plan(
@@ -47,11 +52,13 @@ def plan(
         When no position of the machine gives a tool axis, or an operation cannot be made in its mode, or a cycle not at
         all. No program is possible then.
     """
-    request = PlanRequest(machine, chord_tolerance, options or PlanOptions(), capabilities or ControlCapabilities())
+    options, capabilities = options or PlanOptions(), capabilities or ControlCapabilities()
     sources = [(path.file, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not sources:
         raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
-    _check_names(request.options, sources)
+    _check_names(options, sources)
+    remedy = _frame_remedy(sources[0][1].frame, options)
+    request = PlanRequest(machine, chord_tolerance, options, capabilities, remedy)
     prepared = prepare_operations(sources, request)
     planned = [plan_operation(operation) for operation in prepared]
     problems = _check_reach_and_travel(planned, request)
@@ -84,6 +91,18 @@ def _check_reach_and_travel(planned: Sequence[PlannedOperation], request: PlanRe
         operations = [(one.prepared.file, one.operation.moves, one.poses) for one in planned]
         problems += travel_problems(operations, request.machine)
     return problems
+
+
+def _frame_remedy(first: Frame, options: PlanOptions) -> str:
+    """What helps, besides tilting the workpiece, if the first operation's MSYS is tilted; empty if it is upright."""
+    upright = float(first.matrix()[2, 2])
+    tilt = math.degrees(math.acos(min(max(upright, -1.0), 1.0)))
+    if options.absolute_frame or tilt < _LEAST_TILT:
+        return ""
+    return (
+        f"; or write --set frame=absolute: the MSYS of the first operation is tilted by {tilt:.4g} degrees, which"
+        " counts as the tilt of the workpiece"
+    )
 
 
 def _linearize(

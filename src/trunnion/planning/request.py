@@ -19,12 +19,14 @@ class PlanRequest:
     """Everything but the toolpaths.
 
     chord_tolerance  for arcs that become lines, mm
+    frame_remedy     what the cure of a tool axis out of reach says of the program's coordinate system; may be empty
     """
 
     machine: Machine
     chord_tolerance: float
     options: PlanOptions
     capabilities: ControlCapabilities
+    frame_remedy: str = ""
 
     @property
     def keeps_slide_limits(self) -> bool:

@@ -29,6 +29,9 @@ _MM_PER_FOOT = 304.8
 
 #: Words of surface speeds: mm/min in one unit.
 _SURFACE_SPEEDS = {"SFM": _MM_PER_FOOT, "SMM": 1000.0}
+#: The word of a feed that is one over the minutes of a move.
+_INVERSE = "INVERS"
+
 _GEAR_RANGES = frozenset({"LOW", "MEDIUM", "HIGH", "RANGE"})
 _SPINDLE_WORDS = frozenset({"RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "DIAMTR"}) | _GEAR_RANGES
 _COOLANTS = frozenset({"ON", "OFF", "FLOOD", "MIST", "TAP", "THRU", "AIR"})
@@ -42,17 +45,22 @@ _FULFILLED_MODES = frozenset({("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULT
 def fedrat(state: ReaderState, statement: Statement) -> None:
     """Set the modal feed and its unit."""
     for word in statement.words():
+        if word == _INVERSE:
+            state.feed_factor, state.feed_per_rev, state.feed_inverse, state.bare_feeds = 1.0, False, True, False
+            continue
         if word not in FEED_UNITS:
-            raise StatementError(f"FEDRAT/{word} is not a known feed", "write the feed in MMPM, MMPR, IPM or IPR")
+            cure = "write the feed in MMPM, MMPR, IPM or IPR, or INVERS,f with f as one over the minutes of each move"
+            raise StatementError(f"FEDRAT/{statement.listed()} is not a known feed", cure)
         state.feed_factor, state.feed_per_rev = FEED_UNITS[word]
-        state.bare_feeds = False
+        state.feed_inverse = state.bare_feeds = False
         state.note_feed_unit(word)
     (value,) = numbers("FEDRAT", statement.plain_numbers(), 1)
     if value < 0:
         raise StatementError(f"FEDRAT is negative: {value:g}", "write a feed above 0")
     if value == 0:
         state.diagnostics.remark(state.line, "FEDRAT is 0", "write a feed above 0, or RAPID")
-    feed = FeedChange(state.operation_row, value * state.feed_factor, state.feed_per_rev, state.bare_feeds)
+    value *= state.feed_factor
+    feed = FeedChange(state.operation_row, value, state.feed_per_rev, state.bare_feeds, state.feed_inverse)
     state.builder.feeds.append(feed)
 
 

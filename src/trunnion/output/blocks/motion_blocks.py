@@ -12,11 +12,11 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
-from trunnion.controls.vocabulary import TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
+from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT, WordRangeError, round_to_counts
 from trunnion.errors import InputError, Problem
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import Arcs, Coolant, Kind, LoadTool, Phase, SpindleOn
+from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, Phase, SpindleOn
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import BLOCK_NUMBER_BYTES, CHUNK, BlockWriter
 from trunnion.output.blocks.feeds import FEED_WORDS, FeedWords
@@ -185,8 +185,15 @@ class MotionBlockWriter:
             self.spindle = event
         elif isinstance(event, Coolant):
             self.coolant = event.kind
+        elif isinstance(event, CutterComp) and event.side != "OFF" and not event.register and self._names_radius:
+            event = replace(event, register=int(self._tool))
         words = self.family.event_words(event, self.control.codes, self.control.coolant)
         return {word: self.writer.to_count(word, value) for word, value in words.items()}
+
+    @property
+    def _names_radius(self) -> bool:
+        """Whether radius compensation names a register: that of the tool, if the CL file names no other."""
+        return RADIUS_NUMBER_WORD in self.family.WORDS and self._tool.isdigit()
 
     def phase_texts(self) -> tuple[Ints, list[str]]:
         """Return an index of each ``Phase`` into the phase comments, -1 for none, (9,) int64; and the comments."""

@@ -32,6 +32,8 @@ def unsupported_cycle_reasons(
     formats = control.number_formats(three_axis=True)
 
     def reason(cycle: Cycle, spindle: SpindleState | None) -> str:
+        if not cycle.depth:
+            return "a hole that ends at its point: cycles of some controls leave a depth of 0 out, others stop"
         try:
             control.family.cycle_call(cycle, 0.0, spindle, known, formats)
         except UnsupportedCycleError as error:

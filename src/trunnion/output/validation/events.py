@@ -1,6 +1,7 @@
 """Events that a control cannot carry out, or not where they are."""
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
+from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Problem, Severity
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, LoadTool, SelectTool
@@ -19,14 +20,24 @@ def event_problems(program: Program, motion: Motion, event: Event, rpm: float | 
         return [Problem(*location, "tool change within an operation", "begin a new operation with the new tool")]
     if isinstance(event, CutterComp) and event.side == "ON":
         return [Problem(*location, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
+    if isinstance(event, CutterComp) and event.register and RADIUS_NUMBER_WORD not in control.family.WORDS:
+        numbers = {
+            n for load in motion.operation.events if isinstance(load, LoadTool) for n in (load.number, load.adjust)
+        }
+        if event.side != "OFF" and event.register not in numbers:
+            what = f"CUTCOM names the register {event.register}, and {control.name} takes the radius of the tool"
+            return [Problem(*location, what, "write CUTCOM without a register, or with the number of the tool")]
     if isinstance(event, GoHome) and event.row < len(motion.operation.moves):
         return [Problem(*location, "GOHOME before the operation's end", "begin a new operation after it")]
     if isinstance(event, SelectTool):
         what = f"SELECT/TOOL,{event.number} is not written: programs name a tool only when they change it"
         return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING)]
     if isinstance(event, Coolant) and event.kind not in control.coolant:
-        known = ", ".join(control.coolant)
-        return [Problem(*location, f"{control.name} has no coolant {event.kind}", f"use one of {known}")]
+        cure = (
+            f"use one of {', '.join(control.coolant)}, or write its M code into the machine's definition:"
+            f" {event.kind} = … under [control.coolant]"
+        )
+        return [Problem(*location, f"{control.name} has no coolant {event.kind}", cure)]
     return []
 
 

@@ -61,6 +61,9 @@ _TAPS: Final = (HoleMethod.TAP, HoleMethod.FLOATING_TAP, HoleMethod.DEEP_TAP, Ho
 #: No length, feed or angle of a cycle is as large as this.
 _FARTHEST: Final = 1e6
 
+#: Words of modes that may end at the point itself, without a depth.
+_NO_DEPTH: Final = frozenset({"DRILL", "FACE", "BORE", "DRAG", "REAM"})
+
 #: FEDTO and the depth of a countersink may differ by this, mm.
 _SAME_DEPTH: Final = 0.01
 
@@ -207,6 +210,11 @@ def _depth(mode: Sequence[str], values: Mapping[str, tuple[float, ...]]) -> floa
             what = f"CYCLE/DRILL,CSINK asks for {depth:g} mm by FEDTO and for {countersunk:.4f} mm by CSKDIA and TLANGL"
             raise HoleCycleError(what, "leave one of them out")
         depth = countersunk
-    if not depth > 0.0:
+    if depth > 0.0:
+        return depth
+    if "FEDTO" not in values:
         raise HoleCycleError("CYCLE without a depth", "write FEDTO,depth")
-    return depth
+    if not _first(values, "RAPTO", _first(values, "CLEAR", 0.0)) > 0.0 or not _NO_DEPTH.issuperset(mode):
+        what = f"CYCLE/{','.join(mode)} with FEDTO,0, which leaves nothing to make"
+        raise HoleCycleError(what, "write FEDTO,depth")
+    return 0.0  # from RAPTO down to the point itself

@@ -112,7 +112,7 @@ def message(event: Message) -> list[str]:
 
 
 def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, float]:
-    """Return the words as ISO has them; radius compensation with D where CUTCOM names a register."""
+    """Return the words as ISO has them; radius compensation with D, the register that CUTCOM names or the tool's."""
     words = iso.event_words(event, codes, coolant)
     if isinstance(event, CutterComp) and event.register:
         words["radius_number"] = event.register
@@ -120,15 +120,12 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
 
 
 def first_block_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
-    """Return G43, G43.4 or G43.5 with H; and D if there is radius compensation.
+    """Return G43, G43.4 or G43.5 with H: the register that LOAD/TOOL names, or else the tool number.
 
-    H is the register that LOAD/TOOL names, or else the tool number; D is the tool number. With the motion to the first
-    point they work whether or not the control moves where they are alone (parameter TOS).
+    With the motion to the first point they work whether or not the control moves where they are alone (parameter TOS).
     """
     length = _TCP_CODES[settings["orientation"]] if motion.mode is MachiningMode.TCP else _LENGTH_CODE
-    words = {"length": length, "length_number": float(register or tool)}
-    compensated = any(isinstance(event, CutterComp) for event in motion.operation.events)
-    return {**words, "radius_number": float(tool)} if compensated else words
+    return {"length": length, "length_number": float(register or tool)}
 
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
