@@ -228,3 +228,25 @@ def test_a_result_shows_itself_in_one_line(tmp_path: Path) -> None:
 def test_surface_normals_come_with_their_setting() -> None:
     cl = GOLDEN / "dmu65" / "corner.cls"
     assert trunnion.post(cl, machine="dmu65").passed
+
+
+@pytest.mark.parametrize("suffix", [".json", ".html"])
+def test_a_program_that_planning_refuses_has_its_report(tmp_path: Path, suffix: str) -> None:
+    report = tmp_path / f"report{suffix}"
+    cl = beyond_travel(tmp_path)
+    with pytest.raises(trunnion.RefusedError):
+        trunnion.post(cl, machine="yl569", report=report, output=tmp_path / "far.mpf")
+    assert not (tmp_path / "far.mpf").exists()
+    text = report.read_text(encoding="utf-8")
+    assert "refused before it was run" in text
+    line = 1 + next(k for k, each in enumerate(cl.read_text(encoding="utf-8").splitlines()) if "0.342020143326" in each)
+    if suffix == ".html":
+        assert f">{line}</span>" in text
+        return
+    data = json.loads(text)
+    (check,) = data["checks"]
+    assert (data["passed"], data["program"], check["passed"], data["motions"]) == (
+        False, str(tmp_path / "far.mpf"), False, 0
+    )  # fmt: skip
+    assert check["places"][0]["cl_line"] == line
+    assert data["columns"]["nc_line"] == []

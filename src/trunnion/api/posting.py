@@ -20,10 +20,11 @@ from trunnion.api.reports import check_report_name
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.reporting import write_refusal
 from trunnion.verification import Verification, verify
 
 
@@ -110,10 +111,15 @@ def post(
 def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, observer: Observer) -> PostResult:
     """Plan, write and prove a program; errors as ``post`` raises them."""
     subprograms = job.subprograms(target.files, target.path)
-    with read_back_while_writing(target.files, job.machine, divided=subprograms is not None) as (progress, run):
-        program, planned, problems = plan_program(toolpaths, job, observer)
-        write(program, target.files.main, progress, subprograms, observer)
-        expected = expectation(program, job.options)
+    try:
+        with read_back_while_writing(target.files, job.machine, divided=subprograms is not None) as (progress, run):
+            program, planned, problems = plan_program(toolpaths, job, observer)
+            write(program, target.files.main, progress, subprograms, observer)
+            expected = expectation(program, job.options)
+    except TrunnionError as error:
+        if job.report is not None:
+            write_refusal(error.problems, job.machine, target.name, job.report)
+        raise
     verification = _prove(run.result(), toolpaths, expected, job, target)
     if verification is None:
         problems.append(_nothing_checked(job, target))

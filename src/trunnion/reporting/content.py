@@ -13,12 +13,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trunnion.errors import Problem, Severity
+from trunnion.machines import Machine
 from trunnion.model.motion import Decision
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, durations, operation_usage, tool_usages
-from trunnion.verification.results import Check, Verification
+from trunnion.verification.results import Check, Place, Verification
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +57,7 @@ def collect_content(
         program=clean(verification.program),
         machine_key=clean(machine.key),
         machine=clean(machine.name),
-        control=clean(control or _control_name(verification)),
+        control=clean(control or _control_name(machine)),
         made=clean(made),
         passed=verification.passed,
         checks=tuple(map(_clean_check, verification.checks)),
@@ -72,9 +74,39 @@ def collect_content(
     )
 
 
-def _control_name(verification: Verification) -> str:
+def refused_content(machine: Machine, program: str, problems: Sequence[Problem]) -> ReportContent:
+    """The content for a program that was refused before it was run: one check, with the problems as places."""
+    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    places = tuple(
+        Place(0, -1, math.nan, f"{problem.what}; {problem.cure}".removesuffix("; "), problem.file, problem.line)
+        for problem in sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
+    )
+    summary = f"refused before it was run: {errors[0].what}" if errors else "refused before it was run"
+    check = Check("program", "a program for this machine", False, summary, places=places)
+    return ReportContent(
+        program=clean(program),
+        machine_key=clean(machine.key),
+        machine=clean(machine.name),
+        control=clean(_control_name(machine)),
+        made="",
+        passed=False,
+        checks=(_clean_check(check),),
+        motions=0,
+        seconds=0.0,
+        cutting_seconds=0.0,
+        rapid_seconds=0.0,
+        untimed=0,
+        tools=(),
+        operations=(),
+        decisions=(),
+        tip=(),
+        axes=(),
+    )
+
+
+def _control_name(machine: Machine) -> str:
     """Name of the control, as far as the machine's definition gives it without that of the control."""
-    table = verification.machine.control.to_dict()
+    table = machine.control.to_dict()
     return next((str(table[key]) for key in ("name", "extends", "family") if table.get(key)), "")
 
 

@@ -93,10 +93,10 @@ def _worst_places(checks: Sequence[Check]) -> str:
 def _check_places(check: Check) -> str:
     rows = [
         f"<tr><td class=n>{format_number(place.value)}</td>"
-        f"<td class=n>{_number(place.number)}</td><td class=n>{place.nc_line}</td><td class=n>{_cl_line(place)}</td>"
+        f"<td class=n>{_number(place.number)}</td><td class=n>{place.nc_line or ''}</td>"
+        f"<td class=n>{_cl_line(place)}</td>"
         f"<td>{escape(place.text)}</td>"
-        f'<td class=go><button type=button data-line="{place.nc_line}" data-cl="{place.cl_line}">plot</button></td>'
-        "</tr>"
+        f"<td class=go>{_plot_button(place)}</td></tr>"
         for place in check.places[:MAX_PLACES]
     ]
     more = len(check.places) - MAX_PLACES
@@ -106,6 +106,13 @@ def _check_places(check: Check) -> str:
     return (
         f'<h3 class="{state}">{_result(check)} {capitalised(check.title)}</h3>{_table(headings, rows, "tight")}{note}'
     )
+
+
+def _plot_button(place: Place) -> str:
+    """The button that zooms to a place, unless it has no block."""
+    if not place.nc_line:
+        return ""
+    return f'<button type=button data-line="{place.nc_line}" data-cl="{place.cl_line}">plot</button>'
 
 
 def _cl_line(place: Place) -> str:

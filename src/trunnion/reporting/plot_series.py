@@ -75,6 +75,12 @@ class PlotSeries:
         return np.cumsum(self.seconds, dtype=np.float64)
 
 
+def no_series() -> PlotSeries:
+    """Columns of a program without motion: the one point before it, and nothing to plot."""
+    none, at = np.zeros(1, np.float32), np.zeros(1, np.int32)
+    return PlotSeries(none, {"feed": none}, {"block": at, "number": at, "cl": at}, (), (), (), timed=False)
+
+
 def collect_series(verification: Verification) -> PlotSeries:
     """Collect the columns that a report plots."""
     run = verification.run

@@ -9,11 +9,12 @@ from pathlib import Path
 
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
+from trunnion.machines import Machine
 from trunnion.model.motion import Decision
-from trunnion.reporting.content import ReportContent, collect_content
+from trunnion.reporting.content import ReportContent, collect_content, refused_content
 from trunnion.reporting.html_page import render_page
 from trunnion.reporting.json_report import render_json
-from trunnion.reporting.plot_series import PlotSeries, collect_series
+from trunnion.reporting.plot_series import PlotSeries, collect_series, no_series
 from trunnion.verification.results import Verification
 
 
@@ -40,11 +41,35 @@ def write_report(
     InputError
         For any other suffix, and for a file that cannot be written.
     """
+    _write(path, collect_content(verification, control, made, decisions), lambda: collect_series(verification))
+
+
+def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, path: Path) -> None:
+    """Write the report of a program that was refused before it was run.
+
+    Parameters
+    ----------
+    problems
+        Why; warnings too.
+    machine, program
+        For which machine, and what the program would have been called.
+    path
+        As ``write_report`` has it.
+
+    Raises
+    ------
+    InputError
+        For any other suffix, and for a file that cannot be written.
+    """
+    _write(path, refused_content(machine, program, problems), no_series)
+
+
+def _write(path: Path, content: ReportContent, series: Callable[[], PlotSeries]) -> None:
     render = RENDERERS.get(path.suffix.lower())
     if render is None:
         raise InputError(Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json"))
     with atomic_file(str(path)) as sink:
-        for piece in render(collect_content(verification, control, made, decisions), collect_series(verification)):
+        for piece in render(content, series()):
             sink.write(piece)
 
 
