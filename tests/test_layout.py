@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import SLOW
 from tests.support.locations import ROOT, TESTS
 
 SOURCES = ROOT / "src" / "trunnion"
@@ -38,3 +39,8 @@ def test_each_folder_tests_a_part_of_the_sources_of_its_name() -> None:
 
 def test_support_has_no_tests() -> None:
     assert not list((TESTS / "support").rglob("test_*.py"))
+
+
+@pytest.mark.parametrize("name", SLOW)
+def test_what_is_marked_slow_exists(name: str) -> None:
+    assert (TESTS / name).exists()
