@@ -7,7 +7,8 @@ from hypothesis import HealthCheck, settings
 
 #: Folders and files that ``make.py quick`` leaves out: whole matrices, judges, fuzzing, and long property tests.
 SLOW = (
-    "api/test_concurrent_proof.py", "conversion", "examples", "fuzz", "jit", "linuxcnc", "machines/test_chains.py", "matrix",
+    "api/test_concurrent_proof.py", "conversion", "examples", "fuzz", "jit", "linuxcnc", "machines/test_chains.py",
+    "machines/test_turn_clearance.py", "matrix",
     "output/families/fanuc", "output/families/heidenhain", "output/families/linuxcnc/test_holes.py",
     "output/families/sinumerik/test_planes.py", "output/test_hole_positions.py", "output/test_holes.py",
     "output/test_holes_as_motion.py", "output/test_small_tilts.py", "output/test_subprograms.py",
