@@ -25,7 +25,8 @@ def read_back_while_writing(
 ) -> Iterator[tuple[WriteProgress, Future[Run | None]]]:
     """Run a program while its file is being written; the reader is set up while the program is planned.
 
-    The run is that of the bytes in the file, as if it had begun when the file was complete.
+    Reading afterwards lengthens the post of a million points by a seventh (2.60 to 2.96 s on the machine where this was
+    measured). The run is that of the bytes in the file, as if it had begun when the file was complete.
 
     Parameters
     ----------

@@ -13,8 +13,8 @@ from trunnion.model.toolpath import Toolpath
 def read_toolpaths(files: Sequence[str], units: str | None, strict: bool, executor: Executor) -> Iterator[Toolpath]:
     """Toolpaths of CL files, one after the other; units and ``strict`` as ``trunnion.cl.read_cl`` has them.
 
-    The first one is read from now on in ``executor``, the others when they are asked for; none is kept. Comes back when
-    reading needs the interpreter no longer, or is done: who imports meanwhile would only be in its way.
+    The first one is read at once in ``executor``, the others when they are due; none is kept. Returns when reading runs
+    in its kernel, which leaves the interpreter to the imports of the caller.
     """
     scanning = Event()
     begun = [executor.submit(_read, files[0], units, strict, scanning)]

@@ -1,7 +1,7 @@
-"""``trunnion post``, begun before all of it is imported: the first CL file is read meanwhile, beside it.
+"""``trunnion post`` reads its first CL file in a thread while the planner, the writers and the readers are imported.
 
-What reads CL files is imported first, which is half of all. The kernel that goes over the file needs no interpreter, so
-that importing the other half takes no time of its own.
+Reading first and importing afterwards lengthens the post of a million points by a tenth (2.60 to 2.86 s on the machine
+where this was measured).
 """
 
 import argparse

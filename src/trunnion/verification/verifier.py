@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,22 +111,17 @@ def _check_alone(run: Run, settings: Settings, analyzer: AxisMotionAnalyzer) -> 
 def _check_against(expected: ExpectedPath, run: Run, settings: Settings, analyzer: AxisMotionAnalyzer) -> _Checked:
     """Checks of a program against its expected path.
 
-    Motions and points are matched by count if that fits, else by position. The checks that do not need the positions
-    of all rows take as long as those that do, and are made in a second thread.
+    Motions and points are matched by count if that fits, else by position.
     """
     accepted = accept_deviations(expected, run.machine)
     expected = accepted.expected
     counted = match_by_count(run, expected)
     context = ComparedContext(run, settings, expected, counted or _match_by_position(expected, run, settings))
-    with ThreadPoolExecutor(1) as executor:
-        pending = executor.submit(_checks_without_positions, context, accepted)
-        errors, deviations = _measure(context, analyzer)
+    errors, deviations = _measure(context, analyzer)
     if counted and any(summary.count for summary in deviations.result()):
         context = ComparedContext(run, settings, expected, _match_by_position(expected, run, settings))
         errors, deviations = _measure(context)
-        order, others, general = _checks_without_positions(context, accepted)
-    else:
-        order, others, general = pending.result()
+    order, others, general = _checks_without_positions(context, accepted)
     tip, axis = deviations.result()
     checks = [order, check_tip(context, tip), check_axis(context, axis, accepted), *others]
     return _Checked(context, errors, checks, general)
