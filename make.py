@@ -4,7 +4,7 @@ python3 make.py sample     set up, and post a real five-axis toolpath
 python3 make.py test       set up, and run everything that CI runs
 python3 make.py quick      style, types, import contracts, and the fast half of the tests
 python3 make.py docs       build the documentation site in build/site
-python3 make.py package    build the wheel and the sdist in dist, and try both in an environment of their own
+python3 make.py package    build the wheel and the sdist in dist, and try both in environments of their own
 python3 make.py run ...    run a program of the environment, such as pytest
 """
 
@@ -19,6 +19,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 HOME = HERE / ".venv"
+SUPPORTED = (11, 12, 13)  # minor versions of Python 3 that the wheel is tried on
 SAMPLE = Path("tests", "golden", "yl569", "3_blade_finish.cls")
 
 
@@ -112,18 +113,35 @@ def package() -> None:
 
 
 def build() -> None:
-    """Build the wheel and the sdist, install each into an environment of its own, and post the sample with it."""
+    """Build the wheel and the sdist; post the sample with both, with the wheel on every supported Python found."""
     dist = HERE / "dist"
     shutil.rmtree(dist, ignore_errors=True)
     run("python", "-m", "build", "--outdir", dist)
-    for archive in sorted(dist.iterdir()):
-        with tempfile.TemporaryDirectory() as folder:
-            environment = Path(folder, "environment")
-            create(environment)
-            install(archive, environment=environment)
-            output = Path(folder, "blade.mpf")
-            run("trunnion", "post", SAMPLE, "--machine", "yl569", "--output", output, environment=environment)
-            print(f"{archive.name}: {len(output.read_bytes())} bytes of NC")
+    (wheel,), (sdist,) = dist.glob("*.whl"), dist.glob("*.tar.gz")
+    try_out(sdist, sys.executable)
+    for python in (sys.executable, *other_pythons()):
+        try_out(wheel, python)
+
+
+def other_pythons() -> list[str]:
+    """The other supported versions of Python on the path."""
+    names = [f"python3.{minor}" for minor in SUPPORTED if minor != sys.version_info.minor]
+    return [name for name in names if shutil.which(name) and works(name)]
+
+
+def works(python: str) -> bool:
+    """Whether a Python runs: version managers put names on the path that stand for nothing."""
+    return not subprocess.run([python, "--version"], capture_output=True, check=False).returncode
+
+
+def try_out(archive: Path, python: str) -> None:
+    """Install an archive into a new environment, with the newest packages that it allows, and post the sample."""
+    with tempfile.TemporaryDirectory() as folder:
+        environment, output = Path(folder, "environment"), Path(folder, "blade.mpf")
+        subprocess.run([python, "-m", "venv", str(environment)], check=True)
+        install(archive, environment=environment)
+        run("trunnion", "post", SAMPLE, "--machine", "yl569", "--output", output, environment=environment)
+        print(f"{archive.name}, {python}: {len(output.read_bytes())} bytes of NC")
 
 
 COMMANDS: dict[str, Callable[[], None]] = {
