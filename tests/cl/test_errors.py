@@ -42,7 +42,7 @@ GO = "GOTO/0,0,0"
         (("SPINDL/RPM,-5", GO), 3, "negative speed"),
         (("LOAD/TOOL,1.5", GO), 3, "1.5 where a whole number belongs"),
         (("LOAD/TOOL", GO), 3, "LOAD has 0 numbers"),
-        (("FEDRAT/INVERS,2", GO), 3, "FEDRAT/INVERS"),
+        (("FEDRAT/INVERS,AUTO", GO), 3, "FEDRAT/INVERS"),
         (("FEDRAT/MMPM", GO), 3, "FEDRAT has 0 numbers"),
         (("FEDRAT/MMPM,-1", GO), 3, "negative"),
         (("DELAY/-1", GO), 3, "negative"),

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from trunnion.controls.definition import Control
 from trunnion.conversion.unsupported import Warnings
+from trunnion.output.machining_method import machining_method
 
 #: Settings that mean the same on every control; the others are words and habits of a family.
 _COMMON_SETTINGS = frozenset(
@@ -61,11 +62,14 @@ def parse_number(text: str | None) -> float | None:
 def _header_settings(control: Control, values: Mapping[str, str]) -> dict[str, str]:
     """The settings in a header, without those that follow from others."""
     given = {name: value for name, value in values.items() if name in control.settings}
-    method = given.get("method", control.settings.get("method", ""))
+    intol, outtol = parse_number(values.get("intol")), parse_number(values.get("outtol"))
+    default = control.settings.get("method", "")
+    method = given.get("method", default)
+    if method == default:
+        method = machining_method(values.get("operation", ""), intol, outtol)
     for setting in control.method_defaults:
         if given.get(setting) == control.default_for_method(setting, method):
             given.pop(setting, None)
-    intol, outtol = parse_number(values.get("intol")), parse_number(values.get("outtol"))
     fallback = parse_number(control.settings.get("fallback_tolerance")) or 0.0
     expected = intol + outtol if intol is not None and outtol is not None else fallback
     tolerance = parse_number(given.get("tolerance"))

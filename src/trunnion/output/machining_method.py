@@ -2,8 +2,6 @@
 
 from typing import Final
 
-from trunnion.model.toolpath import Operation
-
 #: Parts of names, in capitals; the first that occurs decides.
 _METHODS: Final = ("ROUGH", "SEMI", "FINISH")
 
@@ -15,23 +13,26 @@ _FINISHING_TOLERANCE: Final = 0.01
 _SLACK: Final = 1e-9
 
 
-def machining_method(operation: Operation) -> str:
-    """Return ROUGH, SEMI or FINISH: by tolerances if they are coarse, by names, by tolerances, else ROUGH.
+def machining_method(name: str, intol: float | None, outtol: float | None) -> str:
+    """Return ROUGH, SEMI or FINISH: by tolerances if they are coarse, by the name, by tolerances, else ROUGH.
+
+    Parameters
+    ----------
+    name
+        Of the operation.
+    intol, outtol
+        Its tolerances, mm; None: it has none.
 
     Examples
     --------
-    >>> from trunnion import read_cl
-    >>> machining_method(read_cl("tests/golden/yl569/3_blade_finish.cls").operations[0])
-    'ROUGH'
+    >>> machining_method("BLADE_FINISH", 0.03, 0.03), machining_method("BLADE_FINISH", 0.01, 0.01)
+    ('ROUGH', 'FINISH')
     """
-    tolerance = None
-    if operation.intol is not None and operation.outtol is not None:
-        tolerance = operation.intol + operation.outtol
-        if tolerance > _ROUGHING_TOLERANCE + _SLACK:
-            return "ROUGH"
-    name = operation.name.upper()
+    tolerance = None if intol is None or outtol is None else intol + outtol
+    if tolerance is not None and tolerance > _ROUGHING_TOLERANCE + _SLACK:
+        return "ROUGH"
     for method in _METHODS:
-        if method in name:
+        if method in name.upper():
             return method
     if tolerance is None:
         return "ROUGH"

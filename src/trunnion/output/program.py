@@ -58,8 +58,10 @@ class Program:
 
     def method_of(self, operation: Operation) -> str:
         """Return the machining method of an operation: that of its settings, or else what the CL file tells."""
-        given = self.settings_of(operation).get("method")
-        return given or machining_method(operation)
+        given, default = self.settings_of(operation).get("method"), self.control.settings.get("method")
+        if given and given != default:
+            return given
+        return machining_method(operation.name, operation.intol, operation.outtol)
 
     def template_suffix(self, motion: Motion) -> str:
         """Return the suffix of the templates for a motion; empty if the control cannot work in its mode."""
