@@ -37,7 +37,7 @@ def plan(
     settings
         As ``trunnion.post`` takes them.
     strict
-        Raise an error for unknown CL statements.
+        Raise an error for unknown CL statements even if the definition says what becomes of them.
     explain
         Record why the axes are planned as they are (``Plan.decisions``).
     observer

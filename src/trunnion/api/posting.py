@@ -59,7 +59,7 @@ def post(
         As ``--set`` takes them, by the same keys: ``{"title": "BLADE", "zero": (0, 0, 80), "tcp": "off"}``; see
         docs/commands.md.
     strict
-        Raise an error for unknown CL statements instead of keeping them with a warning.
+        Raise an error for unknown CL statements even if the definition says what becomes of them.
     force
         Write a program that must not run; its head says why. ``passed`` is then False.
     explain
