@@ -164,9 +164,24 @@ def test_each_tool_axis_of_a_hole_pattern_has_its_plane(post: Post) -> None:
     assert sum(line.startswith("CYCLE800(0") for line in lines) == 4  # with that of the first point
     at = lines.index(";Next Plane")
     assert lines[at : at + 3] == [";Next Plane", "SUPA G0 Z=_Z_HOME D0", "CYCLE800()"]
+    assert edges_at(lines, "CYCLE800(0") == {"1"}
     frames = post(text, "--set", "plane=frames")
     at = frames.index(";Next Plane")
     assert frames[at : at + 4] == [";Next Plane", "TRANS", "TRAFOOF", "SUPA G0 Z=_Z_HOME D0"]
+    assert edges_at(frames, "TRAORI") == {"1"}
+    motion = post(text, "--set", "mode=tcp", "--set", "cycles=off")
+    assert edges_at(motion, "TRAORI") == {"1"}
+
+
+def edges_at(lines: list[str], statement: str) -> set[str]:
+    """The cutting edges that are active at the lines that start with a statement."""
+    found, edge = set[str](), ""
+    for line in lines:
+        if line.startswith(statement):
+            found.add(edge)
+        edges = re.findall(r"\bD(\d+)", line)
+        edge = edges[-1] if edges and not line.startswith(";") else edge
+    return found
 
 
 SHARES = st.tuples(st.floats(0.02, 0.98), st.floats(0.02, 0.98))

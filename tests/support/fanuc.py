@@ -66,9 +66,10 @@ def proven(toolpath: Toolpath, folder: Path, model: Machine, **asked: str) -> st
     assert all(re.match(r"N[1-9]\d{1,4} ", line) for line in blocks)
     assert not [line for line in blocks if POINTLESS.search(line)]
     assert not [line for line in blocks if len(re.findall(r"M\d", line)) > 1], "one M word a block"
-    # The tool length goes on and off with a motion of its own, before any plane is cancelled.
+    # The tool length goes on and off with a motion of its own, before any plane is cancelled: also the length that a
+    # run left active that was aborted.
     assert all(" Z" in line for line in blocks if re.search(r"G43|G49", line))
-    state = ""
+    state = "on"
     for line in blocks:
         state = {"G43": "on", "G49": "off"}.get(re.search(r"G4[39]|$", line)[0], state)  # type: ignore[index]
         assert not (state == "on" and re.search(r"G69|G68|M6|G53(?!\.)|M30", line)), line

@@ -13,6 +13,7 @@ import numpy as np
 
 from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS
 from trunnion.controls.vocabulary import SURFACE_NORMAL_WORDS
+from trunnion.model.frames import TURNING_NOISE
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn
 from trunnion.output.coordinates.plane_from_pose import with_plane_inside_limits
@@ -58,7 +59,7 @@ def _motion_tolerances(program: Program, motion: Motion) -> Tolerances:
         tip += _helix_angle_error(motion, half["X"], half["arc_angle"])
     if motion.mode is MachiningMode.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
         # Heights of holes are printed along their axes from the zero, which rounded rotary positions turn.
-        tip += math.radians(angle) * float(np.abs(motion.operation.moves.tip).max())
+        tip += math.radians(angle) * float(np.abs(motion.operation.moves.tip).max()) + TURNING_NOISE
     if motion.mode is MachiningMode.WITHOUT_TCP:
         tip *= math.sqrt(3.0)  # three slides are rounded, and turned parts look at them aslant
     return Tolerances(
@@ -141,9 +142,11 @@ def _helix_angle_error(motion: Motion, half: float, angle: float) -> float:
 def _plane_error(motion: Motion, half: float, tilt: float) -> float:
     """How far a coordinate may be off, mm, in the program's coordinate system.
 
-    Coordinates of the plane and of its origin are off by ``half`` mm each, the plane itself by ``tilt`` degrees.
+    Coordinates of the plane and of its origin are off by ``half`` mm each, those of the plane by the noise of turning
+    as well, and the plane itself by ``tilt`` degrees.
     """
     assert motion.plane is not None
     reach = float(np.abs(motion.as_written().moves.tip).max())
     rounded = half * (1.0 + float(np.abs(motion.plane.matrix()).sum(axis=1).max()))
+    rounded += TURNING_NOISE * float(np.abs(motion.plane.matrix()).sum(axis=1).max())
     return rounded + float(np.radians(tilt)) * reach * math.sqrt(3.0)

@@ -1,11 +1,19 @@
 """Operations and coordinate systems expressed in another coordinate system."""
 
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.toolpath import Frame, From, Operation
+
+#: Greatest error of a coordinate that was turned into another coordinate system, mm: CL files have seven decimals of a
+#: direction, which is two last digits of the finest control at an arm of 400 mm.
+TURNING_NOISE: Final = 2e-5
+
+#: Decimals of the lengths that parts are drawn with.
+_DRAWN_DECIMALS: Final = 3
 
 
 def into_frame(operation: Operation, frame: Frame) -> Operation:
@@ -34,6 +42,15 @@ def relative_frame(own: Frame, frame: Frame) -> Frame:
     return frame_from_vectors(origin, turn @ np.array(own.x), turn @ np.array(own.y))
 
 
+def without_turning_noise(lengths: Floats) -> Floats:
+    """Lengths that were turned, mm, of any shape: those within ``TURNING_NOISE`` of a thousandth are that thousandth.
+
+    So zero stays zero, and holes that were drawn at one height have one height.
+    """
+    drawn = np.round(lengths, _DRAWN_DECIMALS)
+    return np.asarray(np.where(np.abs(lengths - drawn) <= TURNING_NOISE, drawn, lengths))
+
+
 def frame_from_vectors(origin: Floats, x: Floats, y: Floats) -> Frame:
     """A frame from origin, X and Y, (3,) float64 each."""
     columns = [(float(v[0]), float(v[1]), float(v[2])) for v in (origin, x, y)]
@@ -41,13 +58,16 @@ def frame_from_vectors(origin: Floats, x: Floats, y: Floats) -> Frame:
 
 
 def _transformed(operation: Operation, turn: Floats, shift: Floats) -> Operation:
-    """Transform the points p of an operation to turn p + shift, and its directions u to turn u."""
+    """Transform the points p of an operation to turn p + shift, free of noise, and its directions u to turn u."""
     moves, arcs = operation.moves, operation.arcs
     normal = None if moves.normal is None else moves.normal @ turn.T
+    tip, centre = moves.tip @ turn.T + shift, arcs.centre @ turn.T + shift
+    if not np.array_equal(turn, np.eye(3)):
+        tip, centre = without_turning_noise(tip), without_turning_noise(centre)
     return replace(
         operation,
-        moves=replace(moves, tip=moves.tip @ turn.T + shift, axis=moves.axis @ turn.T, normal=normal),
-        arcs=replace(arcs, centre=arcs.centre @ turn.T + shift, normal=arcs.normal @ turn.T),
+        moves=replace(moves, tip=tip, axis=moves.axis @ turn.T, normal=normal),
+        arcs=replace(arcs, centre=centre, normal=arcs.normal @ turn.T),
         events=tuple(
             replace(event, tip=tuple(turn @ event.tip + shift), axis=tuple(turn @ event.axis))
             if isinstance(event, From)

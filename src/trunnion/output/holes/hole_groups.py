@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.controls.family_writer import WordEvent
 from trunnion.controls.words import round_to_counts
+from trunnion.model.frames import TURNING_NOISE
 from trunnion.model.motion import Motion
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 
@@ -41,8 +42,8 @@ def write_hole_groups(
     int
         Index of the phase comment that was written last.
     """
-    printed = round_to_counts(heights, blocks.writer.word("X").format.decimals)
-    changes = (first + 1 + np.flatnonzero(np.diff(printed))).tolist()
+    noise = 0.0 if motion.plane is None else TURNING_NOISE
+    changes = [first + k for k in _changes(heights, blocks.writer.word("X").format.decimals, noise)]
     last = first + len(heights)
     edges = {first, last, *changes, *(event.row for event in joining_events if first <= event.row <= last)}
     for begin, end in pairwise(sorted(edges)):
@@ -54,3 +55,14 @@ def write_hole_groups(
             row = stop
     blocks.progress(last - first)
     return phase
+
+
+def _changes(heights: Floats, decimals: int, noise: float) -> list[int]:
+    """Indices of the holes whose height prints otherwise than that of the first of their group, by more than noise."""
+    printed = round_to_counts(heights, decimals)
+    changes, first = list[int](), 0
+    for k in (1 + np.flatnonzero(np.diff(printed))).tolist():
+        if printed[k] != printed[first] and abs(heights[k] - heights[first]) > noise:
+            changes.append(k)
+            first = k
+    return changes

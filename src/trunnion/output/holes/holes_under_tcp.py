@@ -15,6 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.controls.family_writer import EACH_HOLE, WordEvent
+from trunnion.model.frames import without_turning_noise
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
@@ -40,7 +41,7 @@ def write_holes_under_tcp(
     """Write rows ``first`` to ``last`` (excluded) as holes along the tool; as ``MotionBlockWriter.write_rows``."""
     operation = motion.operation
     tip, axis = operation.moves.tip[first:last], operation.moves.axis[first:last]
-    heights = np.einsum("ij,ij->i", tip, axis)
+    heights = without_turning_noise(np.einsum("ij,ij->i", tip, axis))
     moves = replace(operation.moves, tip=_retracted_tips(operation))
     holes = _Holes(blocks, replace(motion, operation=replace(operation, moves=moves)), cycle)
     return write_hole_groups(

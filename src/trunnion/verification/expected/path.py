@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import InputError, Problem
+from trunnion.model.frames import TURNING_NOISE
 from trunnion.model.toolpath import (
     Arcs,
     CutterComp,
@@ -101,6 +102,8 @@ class ExpectedPath:
         tool = ExpectedTool(None)
         for (path, whole), limit in zip(moving, limits, strict=True):
             placed = transform_to_frame(frame, whole)
+            if (whole.frame.x, whole.frame.y) != (frame.x, frame.y):
+                limit = replace(limit, tip=limit.tip + TURNING_NOISE)
             operation, hole_rows = without_holes(placed)
             loads = [(event.number, event.adjust) for event in placed.events if isinstance(event, LoadTool)]
             settings = settings_of(placed.name)

@@ -51,7 +51,7 @@ def test_without_arguments_only_the_word_changes(tmp_path: Path) -> None:
 def test_a_shop_uses_the_arguments_in_its_own_templates(tmp_path: Path) -> None:
     """The operations of a definition that offers them to be left out."""
     machine = tmp_path / "shop.toml"
-    start = "%\\nO{subprogram}\\nIF[#1NE1.]GOTO1\\nM99\\nN1 G21 G17 G40 G80 G90 G94\\nG69"
+    start = "%\\nO{subprogram}\\nIF[#1NE1.]GOTO1\\nM99\\nN1 G21 G17 G40 G80 G90 G94"
     machine.write_text(
         'extends = "matsuura_mx330"\n[control]\nextends = "fanuc_31i"\n[control.block_numbers]\nnumbered = false\n'
         f'[control.templates]\nsubprogram_start = "{start}"\n',
