@@ -78,7 +78,7 @@ class OutputFiles:
 
     def flush(self) -> None:
         """Make everything written readable at the paths."""
-        for sink in self._sinks():
+        for sink in self.sinks():
             sink.flush()
 
     def start_sync(self) -> None:
@@ -90,7 +90,7 @@ class OutputFiles:
     def sync(self) -> None:
         """Bring all files to the disk, so that a power failure cannot leave half a file under its final name."""
         self.flush()
-        for sink in self._sinks():
+        for sink in self.sinks():
             os.fsync(sink.fileno())
 
     def restart(self) -> None:
@@ -106,10 +106,11 @@ class OutputFiles:
         """Close all files."""
         if self._sync_thread is not None:
             self._sync_thread.shutdown()
-        for sink in self._sinks():
+        for sink in self.sinks():
             sink.close()
 
-    def _sinks(self) -> list[BinaryIO]:
+    def sinks(self) -> list[BinaryIO]:
+        """Return the sinks of all files, the first file's first."""
         return [self.main, *self._other_files.values()]
 
 

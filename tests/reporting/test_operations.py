@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+import trunnion
 from tests.support.locations import YL569
 from tests.support.reports import Page, blade
 from trunnion.cli import main
@@ -69,3 +70,34 @@ def test_post_puts_times_and_decisions_into_its_report(tmp_path: Path, capfd: py
     err = capfd.readouterr().err
     assert "time: " in err
     assert "starts at" not in err, "the log is printed with --explain only"
+
+
+UPRIGHT = """TOOL PATH/ONE,TOOL,D10
+TLDATA/MILL,10,0,75,0,0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,1
+SPINDL/RPM,1000,CLW
+RAPID
+GOTO/0,0,50,0,0,1
+FEDRAT/MMPM,500
+GOTO/0,0,5
+GOTO/90,40,5
+END-OF-PATH
+"""
+
+
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "hs664rt", "dmu65"])
+def test_extents_are_those_of_the_travel_check(machine: str, tmp_path: Path) -> None:
+    """The way down from home is none of the program's: its height there is not known."""
+    cl, report = tmp_path / "part.cls", tmp_path / "report.json"
+    cl.write_text(UPRIGHT, encoding="utf-8")
+    result = trunnion.post(cl, machine=machine, report=report)
+    travel = next(check for check in result.checks if check.key == "travel")
+    axes = {axis["name"]: axis for axis in json.loads(report.read_text(encoding="utf-8"))["extents"]["axes"]}
+    needs = {place.text.split(" ")[0]: place.value for place in travel.places if " needs " in place.text}
+    assert travel.passed
+    assert needs
+    for name, value in needs.items():
+        assert axes[name]["whole"]["high"] - axes[name]["whole"]["low"] == pytest.approx(value)
+    assert min(axis["margin"] for axis in axes.values() if axis["margin"] is not None) >= 0.0

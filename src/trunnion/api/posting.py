@@ -12,6 +12,7 @@ from pathlib import Path
 from trunnion.api import kernels
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.job import PostJob, prepare
+from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.planning import load_toolpaths, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
@@ -25,7 +26,7 @@ from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.reporting import write_refusal
-from trunnion.verification import Verification, verify
+from trunnion.verification import Verification, verify, without_columns
 
 
 def post(
@@ -114,13 +115,18 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     try:
         with read_back_while_writing(target.files, job.machine, divided=subprograms is not None) as (progress, run):
             program, planned, problems = plan_program(toolpaths, job, observer)
+            program = replace(program, has_time_tokens=prints_times(program))
             write(program, target.files.main, progress, subprograms, observer)
             expected = expectation(program, job.options)
     except TrunnionError as error:
         if job.report is not None:
             write_refusal(error.problems, job.machine, target.name, job.report)
         raise
-    verification = _prove(run.result(), toolpaths, expected, job, target)
+    columns = job.columns or program.has_time_tokens
+    verification = _prove(run.result(), toolpaths, expected, target, columns=columns)
+    times = operation_times(program, verification) if program.has_time_tokens else []
+    if verification is not None and not job.columns:
+        verification = without_columns(verification)
     if verification is None:
         problems.append(_nothing_checked(job, target))
         observer.problems(problems[-1:])
@@ -137,16 +143,18 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
         target.files.restart()
         write(replace(program, notices=[*program.notices, *notices]), target.files.main, subprograms=subprograms)
+    if program.has_time_tokens:
+        write_times(target.files, program, times)
     return replace(result, output=target.path, subprograms=target.subprograms, _memory=target.memory)
 
 
 def _prove(
-    run: Run | None, toolpaths: Sequence[Toolpath], expected: Expectation, job: PostJob, target: Target
+    run: Run | None, toolpaths: Sequence[Toolpath], expected: Expectation, target: Target, *, columns: bool
 ) -> Verification | None:
     """What the proof of a program finds; None without its run."""
     if run is None:
         return None
-    found = verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=job.columns)
+    found = verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=columns)
     return replace(found, program=target.name)
 
 

@@ -41,6 +41,10 @@ class NumberFormat:
     least: float = -99999999.0
     greatest: float = 99999999.0
 
+    def rounded(self, value: float) -> float:
+        """Return the number that ``value`` is printed as."""
+        return float(round_to_counts(np.array([value]), self.decimals)[0]) / 10.0**self.decimals
+
     def text(self, value: float) -> str:
         """Return ``value`` as it is printed."""
         return self.text_of_count(int(round_to_counts(np.array([value]), self.decimals)[0]))

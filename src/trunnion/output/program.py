@@ -29,10 +29,12 @@ class RotaryWord(NamedTuple):
 class Program:
     """All that a program is made from.
 
-    settings      those of the run; they take precedence over the control's
-    own_settings  those of single operations, by their names; they take precedence over all others
-    file          the CL file, for messages
-    notices       comments at the start of the program
+    settings         those of the run; they take precedence over the control's
+    own_settings     those of single operations, by their names; they take precedence over all others
+    file             the CL file, for messages
+    notices          comments at the start of the program
+    has_time_tokens  tokens stand for machining times (``trunnion.output.template_values.TIME_TOKEN``) until they are
+                     known
     """
 
     machine: Machine
@@ -42,6 +44,7 @@ class Program:
     file: str = ""
     notices: Sequence[str] = ()
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    has_time_tokens: bool = False
 
     def settings_of(self, operation: Operation) -> dict[str, str]:
         """Return the settings of the run, with those of an operation over them."""

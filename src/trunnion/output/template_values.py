@@ -23,6 +23,13 @@ from trunnion.planning import operation_seconds
 #: The value of the setting ``blank`` for a block form around all cuts.
 EXTENTS: Final = "extents"
 
+#: Begins the text that stands for a machining time while it is not known; the number of the operation follows, from 1,
+#: or 0 for the whole program. The times are those of the proof.
+TIME_TOKEN: Final = "ZZTIME"
+
+#: Characters of the whole token: no time is longer.
+TIME_TOKEN_LENGTH: Final = 14
+
 _NO_POSITION: Final = (None, None, None)
 
 
@@ -119,18 +126,20 @@ class TemplateValues:
 
     def _time_values(self, number: int) -> dict[str, Value]:
         """Machining times of the operation and of the program; computed only if a template prints them."""
-        fields = {name for template in self._program.control.templates.values() for name, _ in template.fields()}
-        if not fields & {"time", "total_time"}:
+        if not prints_times(self._program):
             return {"time": None, "total_time": None}
-        if not self._seconds:
-            self._seconds = [operation_seconds(self._program.machine, motion) for motion in self._program.motions]
-        return {"time": format_duration(self._seconds[number]), "total_time": format_duration(sum(self._seconds))}
+        operation = sum(motion.starts_operation for motion in self._program.motions[: number + 1 or None])
+        if self._program.has_time_tokens:
+            return {"time": _time_token(operation), "total_time": _time_token(0)}
+        self._seconds = self._seconds or estimated_seconds(self._program)
+        seconds = self._seconds
+        return {"time": format_duration(seconds[operation - 1]), "total_time": format_duration(sum(seconds))}
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
 
         ``plane_side`` is -1 for the position with the lower value of the rotary axis farther from the workpiece, and 1
-        for the other; ``plane_sign`` is the sign of that axis.
+        for the other; ``plane_sign`` is the sign of that axis. At zero it is the one for which the axis has travel.
         """
         names = "plane_x", "plane_y", "plane_z"
         if motion.plane is None:
@@ -140,9 +149,16 @@ class TemplateValues:
         distance = solutions - motion.rotary[0, 1]
         distance -= 360.0 * np.rint(distance / 360.0)
         lower = np.argmin(np.abs(distance)) == np.argmin(solutions)
-        sign = "-" if motion.rotary[0, 1] < 0.0 else "+"
+        sign = self._solution_sign(motion)
         origin = dict(zip(names, motion.plane.origin, strict=True))
         return {**origin, "plane_side": "-1" if lower else "1", "plane_sign": sign}
+
+    def _solution_sign(self, motion: Motion) -> str:
+        """The sign of the rotary axis farther from the workpiece, as its position is printed."""
+        number_format = self._program.control.number_formats(motion.three_axis)["angle"]
+        angle, axis = number_format.rounded(float(motion.rotary[0, 1])), self._program.machine.rotary[1]
+        has_travel_above = self._program.machine.axes[axis].high >= 10.0**-number_format.decimals
+        return "+" if angle > 0.0 or (angle == 0.0 and has_travel_above) else "-"
 
     def _home_values(self) -> dict[str, Value]:
         """The home position, for templates that move in machine coordinates."""
@@ -183,6 +199,28 @@ class TemplateValues:
             return self._family.tool_call(loads[-1].number, "", by_name=False)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(Problem(self._program.file, operation.line, what, "write --set tool=NUMBER"))
+
+
+def prints_times(program: Program) -> bool:
+    """Return whether a template of the control prints machining times."""
+    fields = {name for template in program.control.templates.values() for name, _ in template.fields()}
+    return bool(fields & {"time", "total_time"})
+
+
+def estimated_seconds(program: Program) -> list[float]:
+    """Return the seconds of each operation as planned, from its first point to its last; cycles take no time."""
+    seconds: list[float] = []
+    for motion in program.motions:
+        own = operation_seconds(program.machine, motion)
+        if motion.starts_operation:
+            seconds.append(own)
+        else:
+            seconds[-1] += own
+    return seconds
+
+
+def _time_token(number: int) -> str:
+    return TIME_TOKEN + str(number).zfill(TIME_TOKEN_LENGTH - len(TIME_TOKEN))
 
 
 def spindle_values(program: Program, event: SpindleOn | None) -> dict[str, Value]:

@@ -13,6 +13,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.reporting.text import clean
+from trunnion.verification.kinematics.positioning_moves import approach_rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,11 +101,16 @@ def is_zero_known(run: Run, axis: Axis) -> bool:
 
 
 def travel_rows(run: Run, axis: Axis) -> Ints:
-    """Rows that count for the travel of an axis: for a slide, not those in machine coordinates."""
+    """Rows that count for the travel of an axis, as for the check: for a slide, not those in machine coordinates.
+
+    On the first leg of an approach the tool is still as high as the machine position before it.
+    """
     if axis.is_rotary:
         return np.arange(len(run))
     linear = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
-    return np.flatnonzero(~run.machine_frame & (run.tcp | ((run.programmed & linear) != 0)))
+    counts = ~run.machine_frame & (run.tcp | ((run.programmed & linear) != 0))
+    counts[approach_rows(run)] = False
+    return np.flatnonzero(counts)
 
 
 def _extremes(run: Run, values: Floats, rows: Ints) -> Extremes | None:

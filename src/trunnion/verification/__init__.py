@@ -9,7 +9,7 @@ from trunnion.verification.expected.path import OperationSettings
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
-from trunnion.verification.results import Check, OperationRows, Place, Verification
+from trunnion.verification.results import Check, OperationRows, Place, Verification, without_columns
 from trunnion.verification.text import check_lines, failures, place_line, place_lines, time_lines
 from trunnion.verification.verifier import verify
 
@@ -35,4 +35,5 @@ __all__ = [
     "restore_rapids",
     "time_lines",
     "verify",
+    "without_columns",
 ]

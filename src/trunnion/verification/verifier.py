@@ -34,6 +34,7 @@ from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion import AxisMotionAnalyzer
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
+from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.matching.path_matching import match_by_count, match_by_position
 from trunnion.verification.results import Check, OperationRows, Verification
@@ -205,10 +206,12 @@ def _operation_rows(context: Context) -> Iterator[OperationRows]:
     if not isinstance(context, ComparedContext):
         return
     matching, sections = context.matching, context.expected.sections
+    holes = match_holes(context.run, context.expected) if context.expected.holes else []
     first = 0
     for number, section in enumerate(sections):
         k = matching.cl.count_before(section.end)
         end = max(first, matching.nc[k - 1] + 1) if k else first
+        end = max([end, *(hole.end for hole in holes if hole.index < context.expected.hole_ends[number])])
         end = len(context.run) if number == len(sections) - 1 else end
         yield OperationRows(section.operation.name, section.operation.tool.name, section.file, first, end)
         first = end

@@ -77,6 +77,8 @@ class Point:
 class ExpectedPath:
     """All operations of a program end to end: rows are counted through them, and holes are kept apart.
 
+    ``hole_ends`` has, for each section, how many holes there are up to its end.
+
     The columns of an operation are not copied; ``tip``, ``axis`` and the like gather some rows of them.
     """
 
@@ -97,6 +99,7 @@ class ExpectedPath:
         frame = Frame() if absolute else moving[0][1].frame
         sections: list[Section] = []
         found: list[Hole] = []
+        hole_ends: list[int] = []
         first = 0
         spindle: ExpectedSpindle | None = None
         tool = ExpectedTool(None)
@@ -114,9 +117,11 @@ class ExpectedPath:
             if limit.deviations is not None and hole_rows.any():
                 limit = replace(limit, deviations=limit.deviations.without_rows(hole_rows))
             sections.append(Section(path.file, operation, first, limit, settings))
+            hole_ends.append(len(found))
             first += len(operation.moves)
         self.sections: tuple[Section, ...] = tuple(sections)
         self.holes: tuple[Hole, ...] = tuple(found)
+        self.hole_ends: tuple[int, ...] = tuple(hole_ends)
         self.first_rows: Ints = np.array([section.first for section in sections], np.int64)
 
     def __len__(self) -> int:

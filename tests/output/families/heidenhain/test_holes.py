@@ -97,6 +97,15 @@ def test_a_left_hand_tap_has_a_negative_pitch(post: Post) -> None:
     assert any("Q239=-1.25 ;" in block for block in blocks)
 
 
+def test_a_table_that_tilts_one_way_has_its_sign_in_every_plane(post: Post) -> None:
+    """A goes from -90 to 0: upright holes beside tilted ones are on its negative side as well."""
+    holes = ["10,0,0,0,0,1", "30,0,0,0.6,0,0.8", "0,30,0,0,0,1", "-30,0,0,-0.6,0,0.8"]
+    text = CLEAR + f"CYCLE/DRILL,{HEIGHTS},MMPM,250\n" + "".join(f"GOTO/{hole}\n" for hole in holes) + FOOT
+    planes = [block for block in post(text) if block.startswith("PLANE SPATIAL")]
+    assert len(planes) == 4
+    assert all(block.endswith("SEQ-") for block in planes)
+
+
 UNSAID = {
     "BORE,NODRAG,90,RAPTO,3.0,FEDTO,-20.0,MMPM,100": "--set disengage=1",
     "BORE,MANUAL,RAPTO,3.0,FEDTO,-20.0,MMPM,100": "no cycle of the control",

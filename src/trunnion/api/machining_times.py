@@ -1,0 +1,69 @@
+"""Machining times in the text of a program: those of its proof, so that program and report agree.
+
+In:     the files of a program that prints times, with a token for each; the times of the program as it was run.
+Out:    the same files, with times in place of the tokens. Tokens stand in comments: nothing else changes.
+"""
+
+import re
+from collections.abc import Sequence
+from typing import BinaryIO, Final
+
+from trunnion.files import OutputFiles
+from trunnion.machines.motion_time import format_duration
+from trunnion.output.program import Program
+from trunnion.output.template_values import TIME_TOKEN, TIME_TOKEN_LENGTH, estimated_seconds, prints_times
+from trunnion.reporting.usage import durations
+from trunnion.verification import Verification
+
+__all__ = ["operation_times", "prints_times", "write_times"]
+
+#: Bytes that are read at once.
+_PIECE: Final = 1 << 20
+
+_TOKEN: Final = re.compile(TIME_TOKEN.encode() + rb"(\d{%d})" % (TIME_TOKEN_LENGTH - len(TIME_TOKEN)))
+
+
+def operation_times(program: Program, verification: Verification | None) -> list[float]:
+    """Return the seconds of each operation as the report has them; without a proof as they were planned."""
+    if verification is None:
+        return estimated_seconds(program)
+    seconds, _ = durations(verification)
+    return [float(seconds[rows.first : rows.end].sum()) for rows in verification.operations]
+
+
+def write_times(files: OutputFiles, program: Program, seconds: Sequence[float]) -> None:
+    """Write times in place of their tokens into all files of a program.
+
+    Parameters
+    ----------
+    seconds
+        Of each operation, in their order; token 0 is the sum of all, token k the k-th.
+    """
+    times = [sum(seconds), *seconds]
+    texts = [program.control.family.escape_comment(format_duration(time)).encode() for time in times]
+    for sink in files.sinks():
+        _replace_tokens(sink, texts)
+
+
+def _replace_tokens(sink: BinaryIO, texts: Sequence[bytes]) -> None:
+    """Replace tokens in place, piece by piece: no text is longer than its token."""
+    read = write = 0
+    while True:
+        sink.seek(read)
+        piece = sink.read(_PIECE) + sink.readline()
+        if not piece:
+            break
+        read += len(piece)
+        changed = _TOKEN.sub(lambda match: _text_of(match, texts), piece)
+        if write < read - len(piece) or changed is not piece:
+            sink.seek(write)
+            sink.write(changed)
+        write += len(changed)
+    sink.truncate(write)
+    sink.seek(write)
+
+
+def _text_of(match: re.Match[bytes], texts: Sequence[bytes]) -> bytes:
+    """The time for a token; a text of the CL file that looks like one stays."""
+    number = int(match[1])
+    return texts[number][:TIME_TOKEN_LENGTH] if number < len(texts) else match[0]

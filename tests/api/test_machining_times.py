@@ -1,0 +1,56 @@
+"""Machining times in the comments of a program are those of its report."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from trunnion.machines.motion_time import format_duration
+
+OPERATION = """TOOL PATH/{name},TOOL,D10
+TLDATA/MILL,10,0,75,0,0
+MSYS/0,0,0,1,0,0,0,1,0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,{tool}
+SPINDL/RPM,1000,CLW
+RAPID
+GOTO/0,0,50,0,0,1
+FEDRAT/MMPM,200
+{rows}END-OF-PATH
+"""
+
+HOLES = "CYCLE/DRILL,DEEP,RAPTO,3,FEDTO,-20,STEP,5,MMPM,120\nGOTO/0,0,0\nGOTO/30,0,0\n"
+PLANES = HOLES + "GOTO/10,0,0,0.6,0,0.8\nCYCLE/OFF\n"
+CUT = "GOTO/0,0,5\nDELAY/2.5\nGOTO/90,0,5\n"
+TEXT = "".join(
+    OPERATION.format(name=f"OP{k}", tool=k, rows=rows)
+    for k, rows in enumerate([CUT, HOLES + "CYCLE/OFF\n", PLANES], start=1)
+)
+
+
+@pytest.mark.parametrize("settings", [{}, {"cycles": "off"}, {"programs": "operations"}])
+def test_times_in_comments_agree_with_the_report(settings: dict[str, str], tmp_path: Path) -> None:
+    cl, report = tmp_path / "part.cls", tmp_path / "report.json"
+    cl.write_text(TEXT, encoding="utf-8")
+    result = trunnion.post(cl, machine="dmu65", output=tmp_path / "PART.h", settings=settings, report=report)
+    assert result.passed
+    said = json.loads(report.read_text(encoding="utf-8"))
+    seconds = [operation["seconds"] for operation in said["operations"]]
+    assert sum(seconds) == pytest.approx(said["time"]["seconds"])
+    text = "".join(file.read_text(encoding="utf-8") for file in (tmp_path / "PART.h", *result.subprograms))
+    found = re.findall(r"; machining time (.+) of (.+)", text)
+    assert found == [(format_duration(each), format_duration(sum(seconds))) for each in seconds]
+    assert "ZZTIME" not in text
+    assert min(seconds) > 10.0
+
+
+def test_a_program_in_memory_has_its_times(tmp_path: Path) -> None:
+    cl = tmp_path / "part.cls"
+    cl.write_text(TEXT, encoding="utf-8")
+    text = trunnion.post(cl, machine="dmu65", columns=False).text
+    assert text is not None
+    assert len(re.findall(r"machining time [\d.:]+ (?:s|min) of [\d.:]+ (?:s|min)\n", text)) == 3
+    assert "END PGM" in text.splitlines()[-1]
