@@ -73,6 +73,22 @@ def test_rotary_words_stand_in_position_blocks_where_orientations_are_angles(pos
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("decimals", [4, 5, 7])
+def test_points_and_axes_of_few_decimals_prove_themselves(decimals: int, post: Post) -> None:
+    """Each is rounded by itself, so that a point is not quite along the axis over its hole."""
+
+    def said(*vectors: Floats) -> str:
+        return ",".join(f"{value:.{decimals}f}" for vector in vectors for value in vector)
+
+    turned = [
+        np.array([0.5778576 * np.cos(a), 0.5778576 * np.sin(a), 0.8161376]) for a in np.radians(range(0, 360, 45))
+    ]
+    points = "".join(f"GOTO/{said(axis * 150.0, axis)}\n" for axis in turned)
+    begin = f"RAPID\nGOTO/{said(turned[0] * 210.0, turned[0])}\nCYCLE/DRILL,RAPTO,3,FEDTO,-12,RTRCTO,50,MMPM,90\n"
+    lines = post(CLEAR + begin + points + "CYCLE/OFF\n" + FOOT, "--set", "holes=torot", "--set", "mode=tcp")
+    assert sum("CYCLE81" in line for line in lines) == 8
+
+
 def test_a_frame_is_turned_to_the_tool_for_each_hole(post: Post) -> None:
     lines = post(holes(ring()[:2]), "--set", "holes=torot", "--set", "orientation=vector")
     hole = ["TOROT", "CYCLE81(49.,40.,3.,28.)", "TOROTOF", "TRANS"]

@@ -169,8 +169,6 @@ def test_each_tool_axis_of_a_hole_pattern_has_its_plane(post: Post) -> None:
     at = frames.index(";Next Plane")
     assert frames[at : at + 4] == [";Next Plane", "TRANS", "TRAFOOF", "SUPA G0 Z=_Z_HOME D0"]
     assert edges_at(frames, "TRAORI") == {"1"}
-    _, motion, _ = post.all(text, "--set", "mode=tcp", "--set", "cycles=off")
-    assert edges_at(motion, "TRAORI") == {"1"}
 
 
 def edges_at(lines: list[str], statement: str) -> set[str]:

@@ -87,7 +87,7 @@ END-OF-PATH
 """
 
 
-@pytest.mark.parametrize("machine", ["matsuura_mx330", "hs664rt", "dmu65"])
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "dmu65"])
 def test_extents_are_those_of_the_travel_check(machine: str, tmp_path: Path) -> None:
     """The way down from home is none of the program's: its height there is not known."""
     cl, report = tmp_path / "part.cls", tmp_path / "report.json"

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS
 from trunnion.controls.vocabulary import SURFACE_NORMAL_WORDS
-from trunnion.model.frames import TURNING_NOISE
+from trunnion.model.frames import TURNING_NOISE, into_plane
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn
 from trunnion.output.coordinates.plane_from_pose import with_plane_inside_limits
@@ -54,7 +54,7 @@ def _motion_tolerances(program: Program, motion: Motion) -> Tolerances:
     control = program.control
     half = _half_digits(program, motion)
     tip, angle, normal = _in_program_frame(program, motion, half)
-    tip += _flattened_rise(motion)
+    tip += _flattened_rise(motion) + _closing_shift(motion)
     if "arc_angle" in half:
         tip += _helix_angle_error(motion, half["X"], half["arc_angle"])
     if motion.mode is MachiningMode.TCP and any(isinstance(event, CycleOn) for event in motion.operation.events):
@@ -118,6 +118,14 @@ def _flattened_rise(motion: Motion) -> float:
     travel = np.abs(tip[arcs.row] - tip[arcs.row - 1])
     rise = travel[np.arange(len(travel)), np.abs(arcs.normal).argmax(axis=1)]
     return float(rise[flat_arcs(operation)].max(initial=0.0))
+
+
+def _closing_shift(motion: Motion) -> float:
+    """How far the ends of full turns are moved over their starts, mm: by last digits of the CL file."""
+    if not len(motion.operation.arcs.row):
+        return 0.0
+    placed = motion.operation if motion.plane is None else into_plane(motion.operation, motion.plane)
+    return float(np.linalg.norm(motion.as_written().moves.tip - placed.moves.tip, axis=1).max())
 
 
 def _helix_angle_error(motion: Motion, half: float, angle: float) -> float:

@@ -7,10 +7,11 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats
 from trunnion.cl.builder import CircleStatement
 from trunnion.cl.diagnostics import Diagnostics
+from trunnion.model.arcs import ARC_POINT_TOLERANCE
 from trunnion.model.toolpath import Arcs, From, Kind
 
-#: How far start and end of an arc may be off its radius, mm: coordinates are printed with three or four decimals.
-RADIUS_TOLERANCE = 0.02
+#: How far start and end of an arc may be off its radius, mm.
+RADIUS_TOLERANCE = ARC_POINT_TOLERANCE
 
 #: An arc whose ends are as near to each other is a full circle, mm.
 _CLOSED = 1e-4

@@ -5,6 +5,7 @@ from enum import StrEnum
 
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
+from trunnion.model.arcs import with_closed_turns
 from trunnion.model.deviations import Deviations
 from trunnion.model.frames import into_plane
 from trunnion.model.toolpath import Frame, Operation
@@ -63,7 +64,8 @@ class Motion:
 
     def as_written(self) -> Operation:
         """The operation in the coordinates of its blocks: those of the tilted plane, or else the program's."""
-        return self.operation if self.plane is None else into_plane(self.operation, self.plane)
+        placed = self.operation if self.plane is None else into_plane(self.operation, self.plane)
+        return with_closed_turns(placed)
 
 
 class DecisionTopic(StrEnum):

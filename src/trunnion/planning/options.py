@@ -89,7 +89,7 @@ class ControlCapabilities:
     only_arcs_about_z     it takes arcs about Z only
     helices               it takes arcs that rise; False: they become lines
     helices_by_angle      it takes a helix by centre and angle, not by its end
-    multi_turn_arcs       it takes arcs of more than one turn; False: they become lines
+    multi_turn_arcs       it takes arcs of more than one turn; False: they become one arc a turn
     arcs_with_tcp         it takes arcs while TCP is on; False: they become lines
     planes_from_pose      it takes a tilted plane from the rotary positions: arcs there must turn about the tool axis
     plane_x_from_machine  X of a tilted plane is that of the machine after turning, unless the CL file gives an X

@@ -16,7 +16,13 @@ from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
 from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation
 from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, spindle_state_at
 from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
-from trunnion.planning.linearization.arc_chords import arcs_a_control_takes, arcs_about_tool, flat_arcs, lines_for_arcs
+from trunnion.planning.linearization.arc_chords import (
+    arcs_a_control_takes,
+    arcs_about_tool,
+    flat_arcs,
+    lines_for_arcs,
+    single_turns,
+)
 from trunnion.planning.machining_mode import (
     mode_conflicts,
     mode_of,
@@ -88,13 +94,13 @@ def _with_lines_for_arcs(prepared: PreparedOperation) -> PreparedOperation:
         written = into_plane(operation, tilted_plane(operation.moves.axis[0], prepared.own_frame))
     keep = arcs_a_control_takes(written, capabilities.only_arcs_about_z, capabilities.helices_by_angle)
     if not capabilities.helices:
-        keep &= flat_arcs(operation)
-    if not capabilities.multi_turn_arcs:
-        keep &= operation.arcs.full_turns == 0
+        keep &= flat_arcs(replace(operation, arcs=replace(operation.arcs, full_turns=0 * operation.arcs.full_turns)))
     if prepared.mode is MachiningMode.TCP and not capabilities.arcs_with_tcp:
         keep[:] = False
     if is_tilted and capabilities.planes_from_pose:
         keep &= arcs_about_tool(operation)
+    if not capabilities.multi_turn_arcs:
+        operation, keep = single_turns(operation, keep)
     return prepared.with_operation(lines_for_arcs(operation, keep, prepared.request.chord_tolerance))
 
 

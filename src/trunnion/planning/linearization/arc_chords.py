@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.model.arcs import CLOSED_ARC, FLAT_ARC, arc_gaps
 from trunnion.model.toolpath import Arcs, Kind, Operation
 from trunnion.planning.linearization.row_insertion import insert_rows
 
@@ -19,11 +20,12 @@ _PARALLEL_SINE: Final = 1e-6
 #: A start and an end nearer to each other than this, mm, could print as the same point.
 _DISTINCT: Final = 0.005
 
+#: Greatest difference of the radii at start and end of an arc that all controls take, mm: the strictest takes 0.005 of
+#: what is printed.
+_SAME_RADIUS: Final = 0.003
+
 #: Error of an arc's radius if start, end and centre have four decimals, mm.
 _PRINTED_RADIUS_ERROR: Final = 3e-4
-
-#: An arc that rises by less than this, mm, is flat: no control takes so many digits.
-_FLAT: Final = 1e-5
 
 
 def arc_sweeps(operation: Operation) -> Floats:
@@ -41,7 +43,7 @@ def arc_sweeps(operation: Operation) -> Floats:
     along = np.einsum("ij,ij->i", start_in_plane, end)
     angle = np.mod(np.arctan2(across, along), 2.0 * np.pi)
     # If start and end are the same in the plane it is a full circle; the file's rounding may part them a little.
-    closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < 1e-4
+    closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < CLOSED_ARC
     return np.asarray(np.where(closed, 2.0 * np.pi, angle) + 2.0 * np.pi * arcs.full_turns)
 
 
@@ -56,9 +58,9 @@ def radius_change(operation: Operation) -> Floats:
 def arcs_a_control_takes(operation: Operation, only_about_z: bool = False, by_angle: bool = False) -> Flags:
     """Arcs that a control can take, as far as their geometry goes.
 
-    They turn about X, Y or Z, and the tool axis is the same at start and end. They also end clear of their start or
-    exactly at it, because an arc whose end prints as its start becomes a full circle on the control, however short it
-    really is.
+    They turn about X, Y or Z, the tool axis is the same at start and end, and so is the radius. They also end clear of
+    their start or over it, because an arc whose end prints as its start becomes a full circle on the control, however
+    short it really is.
 
     Parameters
     ----------
@@ -79,20 +81,24 @@ def arcs_a_control_takes(operation: Operation, only_about_z: bool = False, by_an
     off_z = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
     fits = (off_z if only_about_z else np.sort(np.abs(arcs.normal), axis=1)[:, 1]) < _PARALLEL_SINE
     fits &= np.abs(axis[arcs.row] - axis[arcs.row - 1]).max(axis=1, initial=0.0) < _PARALLEL_SINE
+    change = np.abs(radius_change(operation))
+    fits &= change < _SAME_RADIUS
     if by_angle:
-        rises = (np.abs(tip[arcs.row, 2] - tip[arcs.row - 1, 2]) > 0.0) | (arcs.full_turns > 0)
-        fits &= ~rises | (np.abs(radius_change(operation)) < _PRINTED_RADIUS_ERROR)
-    distance = np.linalg.norm(tip[arcs.row] - tip[arcs.row - 1], axis=1)
-    in_plane = np.linalg.norm(np.cross(tip[arcs.row] - tip[arcs.row - 1], arcs.normal), axis=1)
-    fits &= (in_plane > _DISTINCT) | (distance == 0.0) | ((in_plane == 0.0) & (distance > _DISTINCT))
+        fits &= flat_arcs(operation) | (change < _PRINTED_RADIUS_ERROR)
+    gap, rise = arc_gaps(arcs, tip), _rises(operation)
+    fits &= (gap > _DISTINCT) | ((gap < CLOSED_ARC) & ((rise < FLAT_ARC) | (rise > _DISTINCT)))
     return np.asarray(fits)
 
 
 def flat_arcs(operation: Operation) -> Flags:
     """(m,) bool: the arc ends at the height of its start, along its normal, and makes no further whole turns."""
+    return np.asarray((_rises(operation) < FLAT_ARC) & (operation.arcs.full_turns == 0))
+
+
+def _rises(operation: Operation) -> Floats:
+    """(m,) float64: how far the end of each arc is from its start along its normal, mm."""
     arcs, tip = operation.arcs, operation.moves.tip
-    rise = np.einsum("ij,ij->i", tip[arcs.row] - tip[arcs.row - 1], arcs.normal)
-    return np.asarray((np.abs(rise) < _FLAT) & (arcs.full_turns == 0))
+    return np.asarray(np.abs(np.einsum("ij,ij->i", tip[arcs.row] - tip[arcs.row - 1], arcs.normal)))
 
 
 def arcs_about_tool(operation: Operation) -> Flags:
@@ -100,6 +106,42 @@ def arcs_about_tool(operation: Operation) -> Flags:
     arcs = operation.arcs
     across = np.cross(arcs.normal, operation.moves.axis[arcs.row])
     return np.asarray(np.linalg.norm(across, axis=1) < _PARALLEL_SINE)
+
+
+def single_turns(operation: Operation, keep: Flags) -> tuple[Operation, Flags]:
+    """Replace arcs of several turns that stay arcs by one arc a turn, for controls that have no word for turns.
+
+    Parameters
+    ----------
+    keep : (m,) bool
+        Arcs that stay arcs.
+
+    Returns
+    -------
+    operation, keep
+        ``keep`` with one entry for each arc of the operation.
+    """
+    arcs = operation.arcs
+    turns = np.where(keep, arcs.full_turns, 0)
+    if not turns.any():
+        return operation, keep
+    moves = operation.moves
+    copies = np.ones(len(moves), np.int64)
+    copies[arcs.row] += turns
+    source = np.repeat(np.arange(len(moves)), copies)
+    last = np.cumsum(copies) - 1
+    tip, sweep = moves.tip[source], arc_sweeps(operation)
+    for m in np.flatnonzero(turns).tolist():
+        row, count, normal = int(arcs.row[m]), int(turns[m]), arcs.normal[m]
+        rise = float((moves.tip[row] - moves.tip[row - 1]) @ normal) * 2.0 * np.pi / sweep[m]
+        steps = np.arange(1, count + 1)[:, None] * rise * normal
+        tip[last[row] - count : last[row]] = moves.tip[row - 1] + steps
+    inserted = insert_rows(operation, copies, tip, moves.axis[source], moves.kind[source])
+    which = np.repeat(np.arange(len(arcs.row)), turns + 1)
+    place = np.arange(len(which)) - np.repeat(np.cumsum(turns + 1) - 1, turns + 1)
+    whole = np.where(keep, 0, arcs.full_turns)[which]
+    single = Arcs(last[arcs.row][which] + place, arcs.centre[which], arcs.normal[which], arcs.radius[which], whole)
+    return replace(inserted, arcs=single), keep[which]
 
 
 def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:

@@ -77,7 +77,7 @@ def _stands_still(run: Run, row: int) -> bool:
 def check_kind(context: ComparedContext) -> Check:
     """Rapid, line or circle; and for circles centre, direction and turns."""
     run, expected, matching = context.run, context.expected, context.matching
-    by_lines = {segments.cl for segments in matching.arc_segments}
+    by_lines = {segments.cl for segments in matching.arc_segments if not segments.are_turns}
     places: list[Place] = []
     count = 0
     for nc, cl in matching.all_pair_chunks():
@@ -110,6 +110,8 @@ def _is_flat(context: ComparedContext, cl: int) -> bool:
 def _rapids_on_arcs(context: ComparedContext) -> Iterator[Place]:
     """Motions that replace an arc and are no lines."""
     for segments in context.matching.arc_segments:
+        if segments.are_turns:
+            continue
         for row in segments.nc[context.run.kind[segments.nc] != Kind.LINEAR].tolist():
             text = "moves at rapid along an arc that is to be cut"
             yield context.place_with_cl(row, 0.0, text, segments.cl)
@@ -120,29 +122,39 @@ def _wrong_circles(context: ComparedContext) -> Iterator[Place]:
     run, expected, matching = context.run, context.expected, context.matching
     if not len(run.arcs.row) or not len(expected.arcs.row):
         return
+    turn_rows = {segments.cl: segments.nc.tolist() for segments in matching.arc_segments if segments.are_turns}
     for k, row in enumerate(expected.arcs.row.tolist()):
         if row not in matching.cl:
             continue
         motion = matching.nc[matching.cl.count_before(row)]
         if run.kind[motion] != Kind.ARC or motion == 0:
             continue
-        m = int(np.searchsorted(run.arcs.row, motion))
-        normal, centre = expected.arcs.normal[k], expected.arcs.centre[k]
-        if float(run.arcs.normal[m] @ normal) < 1.0 - 1e-6:
-            text = "goes round the circle the other way, or in another plane"
-            yield context.place_with_cl(motion, 0.0, text, row)
-            continue
-        turns, should = run.arcs.full_turns[m], expected.arcs.full_turns[k]
+        before = turn_rows.get(row, [])
+        for circle in (*before, motion):
+            yield from _circle_faults(context, k, circle)
+        turns = len(before) + int(run.arcs.full_turns[np.searchsorted(run.arcs.row, motion)])
+        should = int(expected.arcs.full_turns[k])
         if turns != should:
             text = f"makes {turns} full turns before its end; the CL file wants {should}"
             yield context.place_with_cl(motion, 0.0, text, row)
-        start = run.positions(np.array([motion - 1])).tip[0]
-        off_from_start = run.arcs.centre[m] - start - (centre - expected.point(row - 1).tip)
-        off = run.arcs.centre[m] - centre
-        # A control takes the centre from the start or as a position: one of the two is exact but for rounding.
-        error = min(float(np.abs(each - (each @ normal) * normal).max()) for each in (off_from_start, off))
-        tolerances = expected.section_at(row).tolerances
-        limit = tolerances.tip + tolerances.centre
-        if error > limit + 1e-9:
-            text = f"the circle's centre is off by {error:.6f} mm, {limit:.6f} is allowed"
-            yield context.place_with_cl(motion, error, text, row)
+
+
+def _circle_faults(context: ComparedContext, k: int, motion: int) -> Iterator[Place]:
+    """A wrong direction, plane or centre of the circle in a row of the run, which belongs to arc ``k``."""
+    run, expected = context.run, context.expected
+    m, row = int(np.searchsorted(run.arcs.row, motion)), int(expected.arcs.row[k])
+    normal, centre = expected.arcs.normal[k], expected.arcs.centre[k]
+    if float(run.arcs.normal[m] @ normal) < 1.0 - 1e-6:
+        text = "goes round the circle the other way, or in another plane"
+        yield context.place_with_cl(motion, 0.0, text, row)
+        return
+    start = run.positions(np.array([motion - 1])).tip[0]
+    off_from_start = run.arcs.centre[m] - start - (centre - expected.point(row - 1).tip)
+    off = run.arcs.centre[m] - centre
+    # A control takes the centre from the start or as a position: one of the two is exact but for rounding.
+    error = min(float(np.abs(each - (each @ normal) * normal).max()) for each in (off_from_start, off))
+    tolerances = expected.section_at(row).tolerances
+    limit = tolerances.tip + tolerances.centre
+    if error > limit + 1e-9:
+        text = f"the circle's centre is off by {error:.6f} mm, {limit:.6f} is allowed"
+        yield context.place_with_cl(motion, error, text, row)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trunnion.model.arcs import ARC_POINT_TOLERANCE
 from trunnion.verification.context import MAX_PLACES, ComparedContext
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, misplaced_lean_positions
 from trunnion.verification.deviations.point_deviations import DeviationSummary
@@ -17,8 +18,8 @@ from trunnion.verification.results import Check, Place
 #: A point whose three coordinates are off by one each is off by this much.
 _DIAGONAL = math.sqrt(3.0) + 1e-6
 
-#: An arc may miss the end of its circle by this much for rounding, mm.
-_MAX_CLOSURE_ERROR = 1e-3
+#: An arc may miss the end of its circle by this much, mm: both its ends may be off the radius.
+_MAX_CLOSURE_ERROR = 2.0 * ARC_POINT_TOLERANCE
 
 
 def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
@@ -48,7 +49,9 @@ def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
 def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
     """Ends of lines that are off the arc that they replace."""
     arc, tolerances = segments.arc, context.expected.section_at(segments.cl).tolerances
-    away = np.sqrt((arc.deviation(context.run.positions(segments.nc).tip) ** 2).sum(axis=1))
+    tips = context.run.positions(segments.nc).tip
+    off = tips - arc.after_turns(len(tips)) if segments.are_turns else arc.deviation(tips)
+    away = np.sqrt((off**2).sum(axis=1))
     # A point that is off along the arc is off in height too, because the height is that at its own angle.
     limit = _DIAGONAL * tolerances.tip * math.hypot(1.0, arc.slope)
     for k in np.flatnonzero(away > limit + 1e-6 + min(arc.closure_error, _MAX_CLOSURE_ERROR)).tolist():

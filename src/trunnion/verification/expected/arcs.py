@@ -8,10 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.model.arcs import CLOSED_ARC
 from trunnion.verification.expected.path import ExpectedPath
-
-#: An arc whose end comes within this of its start, mm along the circle, is a full circle.
-_FULL_CIRCLE = 1e-4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +63,10 @@ class Arc:
         last = self.centre + height + np.cos(self.sweep) * radial + np.sin(self.sweep) * across
         return np.asarray(circle + fraction[:, None] * (self.end - last))
 
+    def after_turns(self, count: int) -> Floats:
+        """Points after each of the first whole turns, (count, 3)."""
+        return self.at(2.0 * np.pi * np.arange(1, count + 1) / self.sweep)
+
     def deviation(self, points: Floats) -> Floats:
         """From where points should be to where they are, (k, 3)."""
         return np.asarray(points - self.at(self.fractions(points)))
@@ -78,7 +80,7 @@ def arc_of(expected: ExpectedPath, row: int) -> Arc:
     centre, normal = arcs.centre[k], arcs.normal[k]
     a, b = start - centre, end - centre
     angle = float(np.arctan2(np.cross(a, b) @ normal, a @ b - (a @ normal) * (b @ normal))) % (2.0 * np.pi)
-    if min(angle, 2.0 * np.pi - angle) * float(arcs.radius[k]) < _FULL_CIRCLE:
+    if min(angle, 2.0 * np.pi - angle) * float(arcs.radius[k]) < CLOSED_ARC:
         angle = 2.0 * np.pi
     return Arc(start, end, centre, normal, angle + 2.0 * np.pi * float(arcs.full_turns[k]))
 

@@ -13,8 +13,9 @@ from trunnion.verification.matching.hole_matching import MatchedHole
 #: A motion is along the tool axis, or across it, when it is off by less than this, mm.
 _STRAIGHT = 1e-6
 
-#: With TCP, positions and axes are rounded each by itself: the same, mm, and by this share of its length.
-_STRAIGHT_TCP, _STRAIGHT_TCP_SHARE = 2e-5, 1e-6
+#: With TCP, points and axes of the CL file are rounded each by itself, to four decimals: the same, mm, and by this
+#: share of the height above the hole.
+_STRAIGHT_TCP, _STRAIGHT_TCP_SHARE = 2e-4, 1e-4
 
 #: Tool axes are the same when no component differs by more than this.
 _SAME_AXIS = 1e-6
@@ -63,7 +64,7 @@ def _approach_leg(run: Run, row: int, hole: MatchedHole, approaches: set[int], r
     up, left = float(step @ axis), float(rest @ axis)
     near, share = (_STRAIGHT_TCP, _STRAIGHT_TCP_SHARE) if run.state.tcp[row] else (_STRAIGHT, 0.0)
     near, level = max(near, rounding), max(_STRAIGHT, rounding)
-    straight = float(np.linalg.norm(step - up * axis)) < near + share * abs(up)
+    straight = float(np.linalg.norm(step - up * axis)) < near + share * (abs(up) + abs(left))
     over_hole = float(np.linalg.norm(rest - left * axis)) < near + share * abs(left) and left < near
     from_home = (
         row - 1 in approaches

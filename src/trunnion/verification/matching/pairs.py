@@ -17,15 +17,17 @@ _NONE = np.zeros(0, np.int64), np.zeros(0, np.int64)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ArcSegments:
-    """Lines of a program that together replace an arc.
+    """Lines of a program that together replace an arc, or circles of one turn that replace one of several.
 
-    nc   their rows, without the line to the end of the arc
-    cl   the CL row of the arc
+    nc         their rows, without the one to the end of the arc
+    cl         the CL row of the arc
+    are_turns  they are circles
     """
 
     nc: Ints
     cl: int
     arc: Arc
+    are_turns: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

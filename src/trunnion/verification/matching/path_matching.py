@@ -90,6 +90,7 @@ class _PathMatcher:
         self._missing: list[int] = []
         self._extra: list[int] = []
         self._arc_segments: list[ArcSegments] = []
+        self._turn_rows = expected.arcs.row[expected.arcs.full_turns > 0]
         self._intermediate_nc: list[Ints] = [np.zeros(0, np.int64)]
         self._intermediate_cl: list[Ints] = [np.zeros(0, np.int64)]
 
@@ -98,7 +99,14 @@ class _PathMatcher:
         i = j = 0
         size = _FEW
         while i < self._n and j < self._m:
-            count = min(size, self._n - i, self._m - j)
+            turns = self._match_turns(i, j)
+            if turns:
+                self._pair(i + turns, j, 1)
+                i, j = i + turns + 1, j + 1
+                continue
+            later = int(np.searchsorted(self._turn_rows, j, "right"))
+            last = self._turn_rows[later] if later < len(self._turn_rows) else self._m
+            count = min(size, self._n - i, int(last) - j)
             fits = self._fits(i, j, count)
             same = count if fits.all() else int(np.argmin(fits))
             self._pair(i, j, same)
@@ -191,6 +199,24 @@ class _PathMatcher:
             if self._fits(i, j + count, 1)[0] or self._expected.point(j + count).kind is Kind.ARC:
                 return count
         return 0
+
+    def _match_turns(self, i: int, j: int) -> int:
+        """How many circles of one turn from the i-th on are whole turns of the arc of CL row j before its last."""
+        k = int(np.searchsorted(self._turn_rows, j))
+        if j == 0 or k == len(self._turn_rows) or self._turn_rows[k] != j:
+            return 0
+        turns = int(self._expected.arcs.full_turns[np.searchsorted(self._expected.arcs.row, j)])
+        if i + turns >= self._n:
+            return 0
+        rows, circles = self._rows.rows(i, i + turns + 1), self._run.arcs
+        if (self._run.kind[rows] != Kind.ARC).any() or circles.full_turns[np.searchsorted(circles.row, rows)].any():
+            return 0
+        arc, (tip, _) = arc_of(self._expected, j), self._limits_at(j)
+        off = np.abs(self._run.positions(rows[:-1]).tip - arc.after_turns(turns))
+        if (off > tip).any() or not self._fits(i + turns, j, 1)[0]:
+            return 0
+        self._arc_segments.append(ArcSegments(rows[:-1], j, arc, are_turns=True))
+        return turns
 
     def _match_arc_segments(self, i: int, j: int) -> int:
         """How many lines from the i-th on lie on the arc of CL row j and lead to its end."""

@@ -278,13 +278,15 @@ def test_what_cannot_be_said_is_refused(text: str, what: str, folder: Path) -> N
         posted(read(UPRIGHT + text + END, folder), folder, load_machine("matsuura_mx330"))
 
 
-def test_a_helix_of_more_than_one_turn_becomes_lines_and_one_of_less_stays_a_circle(folder: Path) -> None:
+def test_a_helix_has_a_block_for_each_turn(folder: Path) -> None:
     helix = "CIRCLE/20.0,10.0,5.0,0.0,0.0,1.0,10.0,0.06,0.5,10.0,0.0{}\nGOTO/30,10,2\n"
     start = HEAD + "GOTO/20,0,5\n"
-    for turns, lines in (("", 1), (",TIMES,2", 0)):
+    for turns, wanted in (("", 1), (",TIMES,2", 2), (",TIMES,5", 5)):
         text = proven(read(start + helix.format(turns) + END, folder), folder, load_machine("matsuura_mx330"))
-        assert sum(line.startswith("G3 ") for line in body(text)) == lines
-        assert (len(body(text)) > 100) == (lines == 0)
+        blocks = body(text)
+        first = next(k for k, line in enumerate(blocks) if line.startswith("G3 "))
+        assert sum(" I" in line or line.startswith("I") for line in blocks[first:]) == wanted
+        assert len(blocks) < 30
 
 
 @pytest.mark.parametrize(("said", "code"), [("G55", 55), ("G54.1 P3", 603), ("G54.1P12", 612)])

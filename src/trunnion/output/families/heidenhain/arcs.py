@@ -11,6 +11,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS, ArcWords, Formats
 from trunnion.controls.words import ABSENT, round_to_counts
+from trunnion.model.arcs import FLAT_ARC
 from trunnion.model.toolpath import Arcs
 
 #: Sweeps nearer to half a turn are not programmed by a radius: both its signs give almost the same circle; degrees.
@@ -28,7 +29,8 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, formats: Formats, by_radius: 
     decimals, angle_decimals = formats["Z"].decimals, formats["arc_angle"].decimals
     rise = round_to_counts(np.ascontiguousarray(end[:, 2]), decimals)
     rise -= round_to_counts(np.ascontiguousarray(start[:, 2]), decimals)
-    helix = (rise != 0) | (arcs.full_turns[rows] > 0)
+    rises = (rise != 0) & (np.abs(end[:, 2] - start[:, 2]) >= FLAT_ARC)
+    helix = rises | (arcs.full_turns[rows] > 0)
     sweep = _sweep(start, end, centre, sense, arcs.full_turns[rows])
     radius = _radius(start, end, centre, sweep, decimals)
     # After a helix the control is where the angle has led it, and not at a printed point.
@@ -41,7 +43,7 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, formats: Formats, by_radius: 
         "helix": np.where(helix, 1, ABSENT),
         "arc_radius": np.where(use_radius, radius, ABSENT),
         "arc_angle": np.where(helix, round_to_counts(sweep, angle_decimals), ABSENT),
-        "arc_rise": np.where(helix & (rise != 0), rise, ABSENT),
+        "arc_rise": np.where(helix & rises, rise, ABSENT),
         "counterclockwise": np.where(sense > 0, 1, ABSENT),
         "clockwise": np.where(sense < 0, 1, ABSENT),
         "Z": np.full(len(rows), ABSENT),
