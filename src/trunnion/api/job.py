@@ -14,8 +14,10 @@ from trunnion.api.settings import (
     check_settings,
     number_setting,
     split_by_operation,
+    with_limit_margin,
 )
 from trunnion.controls import Control, load_control
+from trunnion.controls.vocabulary import PROGRAM_CHOICES
 from trunnion.errors import InputError, Problem
 from trunnion.files import OutputFiles
 from trunnion.machines import Machine
@@ -61,7 +63,12 @@ class PostJob:
     @property
     def printed(self) -> dict[str, str]:
         """The settings that templates print."""
-        return {key: value for key, value in self.settings.items() if key not in RUN_SETTINGS}
+        return {key: value for key, value in self.settings.items() if key not in RUN_SETTINGS or key in PROGRAM_CHOICES}
+
+    @property
+    def planned_machine(self) -> Machine:
+        """The machine with the margin to its limits that the planner keeps."""
+        return with_limit_margin(self.machine, self.settings)
 
     @property
     def has_normals(self) -> bool:

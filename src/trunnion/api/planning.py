@@ -70,7 +70,9 @@ def plan(
     """
     job = prepare(as_machine(machine), settings, explain=explain)
     toolpaths = load_toolpaths(cl, job, strict, observer)
-    return planning.plan(toolpaths, job.machine, job.control.arcs.chord_tolerance, job.options, job.capabilities)
+    return planning.plan(
+        toolpaths, job.planned_machine, job.control.arcs.chord_tolerance, job.options, job.capabilities
+    )
 
 
 def load_toolpaths(
@@ -88,6 +90,12 @@ def load_toolpaths(
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
+
+
+def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
+    """The plan, with the margin to limits that the job asks for."""
+    machine, chord_tolerance = job.planned_machine, job.control.arcs.chord_tolerance
+    return planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities)
 
 
 def plan_program(
@@ -113,7 +121,9 @@ def plan_program(
     """
     names = [operation.name for toolpath in toolpaths for operation in toolpath.operations if len(operation.moves)]
     check_operation_names(job.own_settings, job.settings, names)
-    planned = planning.plan(toolpaths, job.machine, job.control.arcs.chord_tolerance, job.options, job.capabilities)
+    planned = planning.plan(
+        toolpaths, job.planned_machine, job.control.arcs.chord_tolerance, job.options, job.capabilities
+    )
     observer.planned(planned)
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)

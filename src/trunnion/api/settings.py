@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import Final, TypeAlias
 
 from trunnion.controls import Control
+from trunnion.controls.vocabulary import PROGRAM_CHOICES
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.motion import PoleStrategy
@@ -34,6 +35,7 @@ _CHOICES: Final = {
     "pole": tuple(PoleStrategy),
     "lower_feed": ("no", "yes"),
     "cycles": ("on", "off"),
+    **PROGRAM_CHOICES,
 }
 
 #: Settings that are numbers: lowest and highest value, and what to write.
@@ -46,6 +48,7 @@ _NUMBERS: Final = {
         1e12,
         f"split=BYTES, the largest size of a subprogram, at least {MIN_SUBPROGRAM_BYTES}",
     ),
+    "limit_margin": (0.0, 1e3, "limit_margin=NUMBER, how far axes stay from their limits, mm and degrees, such as 0.5"),
     "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
 }
 
@@ -179,6 +182,27 @@ def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
         machine = replace(machine, workpiece_zero=_point_setting(settings["zero"]))
     length = number_setting(settings, "tool_length")
     return machine if length is None else replace(machine, tool_length=length)
+
+
+def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
+    """The machine for planning: every limit is nearer by the setting ``limit_margin``.
+
+    Raises
+    ------
+    InputError
+        If an axis has no travel left.
+    """
+    margin = number_setting(settings, "limit_margin")
+    if not margin:
+        return machine
+    axes = [
+        axis if axis.endless else replace(axis, low=axis.low + margin, high=axis.high - margin) for axis in machine.axes
+    ]
+    lost = [axis.name for axis in axes if not axis.low < axis.high]
+    if lost:
+        what = f"limit_margin is {margin:g}, and axis {lost[0]} has no travel left"
+        raise InputError(Problem("--set", 0, what, "write a smaller number"))
+    return replace(machine, axes=tuple(axes))
 
 
 def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> Machine:

@@ -85,6 +85,9 @@ class FamilyWriter(Protocol):
             If the control cannot call the tool so.
         """
 
+    def tool_preselection(self, call: str) -> list[str]:
+        """Return the lines that bring a tool to the changer, named as ``tool_call`` returned it; none if unknown."""
+
     def dwell(self, event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
         """Return the lines of a dwell; ``rpm`` is the spindle speed, None while the spindle is stopped.
 

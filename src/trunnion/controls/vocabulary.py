@@ -10,12 +10,21 @@ COMMON_TEMPLATE_FIELDS: Final = frozenset(
     {
         "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
         "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine", "gauge_length",
-        "zero_x", "zero_y", "zero_z", "time", "total_time",
+        "zero_x", "zero_y", "zero_z", "time", "total_time", "time_shown", "total_time_shown",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
         "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",
         "spindle_speed", "new_speed", "spindle_code", "subprogram",
     }
 )  # fmt: skip
+
+#: Settings of a program that every control has: what it says about times and tools, and which tools it calls. The
+#: default is the first value.
+PROGRAM_CHOICES: Final = {
+    "times": ("default", "on", "off"),
+    "tool_list": ("off", "on"),
+    "preselect": ("off", "on"),
+    "restart": ("off", "on"),
+}
 
 #: Templates that every definition must have.
 REQUIRED_TEMPLATES: Final = (

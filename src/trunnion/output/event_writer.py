@@ -22,6 +22,7 @@ from trunnion.model.toolpath import (
     Event,
     Insert,
     Message,
+    SelectTool,
     SpindleOff,
     SpindleOn,
     Stop,
@@ -132,7 +133,7 @@ class EventWriter:
             self._write_word_event(event, end_lines)
             if isinstance(event, SpindleOn | SpindleOff):
                 self._spindle_turns = isinstance(event, SpindleOn)
-        elif isinstance(event, Dwell | Stop | Message | Insert | BlockSkip):
+        elif isinstance(event, Dwell | Stop | Message | Insert | BlockSkip | SelectTool):
             self._finish_rows(event.row)
             self._write_line_event(event)
 
@@ -148,7 +149,7 @@ class EventWriter:
         elif not self._is_switched_in(end_lines, event):
             self._blocks.write_event(event)
 
-    def _write_line_event(self, event: Dwell | Stop | Message | Insert | BlockSkip) -> None:
+    def _write_line_event(self, event: Dwell | Stop | Message | Insert | BlockSkip | SelectTool) -> None:
         blocks = self._blocks
         if isinstance(event, Dwell):
             rpm = None if blocks.spindle is None else blocks.spindle.rpm
@@ -161,6 +162,10 @@ class EventWriter:
         elif isinstance(event, Insert):
             blocks.write_lines([event.text])
             blocks.writer.forget()  # the text may have changed anything
+        elif isinstance(event, SelectTool):
+            if self._program.effective_setting("preselect") != "on":  # else the next tool is selected after a change
+                call = self._family.tool_call(event.number, "", by_name=False)
+                blocks.write_lines(self._family.tool_preselection(call))
         else:
             self.set_block_skip(event.on, event.row)
 

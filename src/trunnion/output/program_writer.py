@@ -22,7 +22,7 @@ from trunnion.output.coordinates.turn_distance import is_clear_of_turn, part_of
 from trunnion.output.event_writer import EventWriter
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
-from trunnion.output.template_values import LoadedTool, TemplateValues
+from trunnion.output.template_values import LoadedTool, TemplateValues, tool_text
 from trunnion.output.template_writer import TemplateWriter
 
 
@@ -83,6 +83,9 @@ class _ProgramWriter:
         self._notices = [line for text in program.notices for line in program.control.family.comment(text)]
         self._loaded_tool = LoadedTool()
         self._called_tool = ""  # in the present file
+        self._tool_calls = self._calls_of_operations()
+        self._operation = 0
+        self._calls_each = program.effective_setting("restart") == "on"
         self._previous_motion: Motion | None = None
         self._part: SweptPart | None = None
         self._files: SubprogramFiles | None = None
@@ -96,7 +99,8 @@ class _ProgramWriter:
     def write(self) -> None:
         """Write the program."""
         motions = self._program.motions
-        self._templates.write("program_start", self._values(motions[0], 0), motions[0], self._notices)
+        head = [*self._notices, *self._tool_list()]
+        self._templates.write("program_start", self._values(motions[0], 0), motions[0], head)
         for k, motion in enumerate(motions):
             ends_program = k + 1 == len(motions)
             ends_operation = ends_program or motions[k + 1].starts_operation
@@ -158,6 +162,35 @@ class _ProgramWriter:
         self._templates.write_unskipped("subprogram_end", named, motion)
         self._blocks.writer.switch_file(self._files.main_sink)
 
+    # Tools
+
+    def _calls_of_operations(self) -> list[tuple[str, Operation]]:
+        """The tool of each operation as the program calls it."""
+        calls: list[tuple[str, Operation]] = []
+        loaded = LoadedTool()
+        for motion in self._program.motions:
+            if motion.starts_operation:
+                loaded = LoadedTool(
+                    self._template_values.tool_call(motion.operation, loaded), motion.operation.tool.name
+                )
+                calls.append((loaded.call, motion.operation))
+        return calls
+
+    def _tool_list(self) -> list[str]:
+        """Comment lines with the tools in the order of their calls, if they are asked for."""
+        if self._program.effective_setting("tool_list") != "on":
+            return []
+        texts = dict.fromkeys(tool_text(call, operation.tool) for call, operation in self._tool_calls)
+        return [line for text in ("TOOL LIST", *texts) for line in self._control.family.comment(text)]
+
+    def _preselect_next(self, tool: str) -> None:
+        """Select the next other tool, if that is asked for, as soon as ``tool`` is in the spindle."""
+        if self._program.effective_setting("preselect") != "on":
+            return
+        later = (call for call, _ in self._tool_calls[self._operation + 1 :] if call != tool)
+        following = next(later, "")
+        self._blocks.write_lines(self._control.family.tool_preselection(following) if following else [])
+
     # Operations
 
     def _write_motion(self, motion: Motion, number: int, ends_operation: bool) -> None:
@@ -187,9 +220,13 @@ class _ProgramWriter:
 
     def _change_tool(self, motion: Motion, values: Mapping[str, Value]) -> None:
         tool = str(values["tool"])
-        if tool != self._called_tool:
+        if self._calls_each:
+            self._templates.forget_speed()
+        if tool != self._called_tool or self._calls_each:
             self._templates.write("tool_change" if self._called_tool else "first_tool", values, motion)
+            self._preselect_next(tool)
         self._called_tool = tool
+        self._operation += 1
         self._loaded_tool = LoadedTool(tool, motion.operation.tool.name)
 
     def _approach(self, motion: Motion, suffix: str, values: Mapping[str, Value]) -> None:

@@ -14,7 +14,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.machines import inverse
 from trunnion.machines.motion_time import format_duration
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn
+from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn, Tool
 from trunnion.output.coordinates.extents import cut_extents
 from trunnion.output.coordinates.rotary_angles import rotary_counts
 from trunnion.output.program import Program
@@ -84,7 +84,7 @@ class TemplateValues:
             "operation": operation.name,
             "intol": operation.intol,
             "outtol": operation.outtol,
-            "tool": self._tool_call(operation, loaded),
+            "tool": self.tool_call(operation, loaded),
         }
         return {
             name: self._family.escape_comment(value) if isinstance(value, str) else value
@@ -126,14 +126,17 @@ class TemplateValues:
 
     def _time_values(self, number: int) -> dict[str, Value]:
         """Machining times of the operation and of the program; computed only if a template prints them."""
+        names = "time", "total_time", "time_shown", "total_time_shown"
         if not prints_times(self._program):
-            return {"time": None, "total_time": None}
+            return dict.fromkeys(names)
         operation = sum(motion.starts_operation for motion in self._program.motions[: number + 1 or None])
         if self._program.has_time_tokens:
-            return {"time": _time_token(operation), "total_time": _time_token(0)}
-        self._seconds = self._seconds or estimated_seconds(self._program)
-        seconds = self._seconds
-        return {"time": format_duration(seconds[operation - 1]), "total_time": format_duration(sum(seconds))}
+            own, total = _time_token(operation), _time_token(0)
+        else:
+            self._seconds = self._seconds or estimated_seconds(self._program)
+            own, total = format_duration(self._seconds[operation - 1]), format_duration(sum(self._seconds))
+        shown = (own, total) if self._program.effective_setting("times") == "on" else (None, None)
+        return dict(zip(names, (own, total, *shown), strict=True))
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
@@ -182,7 +185,7 @@ class TemplateValues:
             "tool_corner_radius": tool.corner_radius if known else None,
         }
 
-    def _tool_call(self, operation: Operation, loaded: LoadedTool) -> str:
+    def tool_call(self, operation: Operation, loaded: LoadedTool) -> str:
         """The tool as a tool change calls it: by the run's setting, the number of LOAD/TOOL, or else its name."""
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
         number, name = self._program.effective_setting("tool", operation), operation.tool.name
@@ -203,8 +206,10 @@ class TemplateValues:
 
 def prints_times(program: Program) -> bool:
     """Return whether a template of the control prints machining times."""
+    setting = program.effective_setting("times")
     fields = {name for template in program.control.templates.values() for name, _ in template.fields()}
-    return bool(fields & {"time", "total_time"})
+    wanted = {"time", "total_time"} | ({"time_shown", "total_time_shown"} if setting == "on" else set())
+    return setting != "off" and bool(fields & wanted)
 
 
 def estimated_seconds(program: Program) -> list[float]:
@@ -217,6 +222,14 @@ def estimated_seconds(program: Program) -> list[float]:
         else:
             seconds[-1] += own
     return seconds
+
+
+def tool_text(call: str, tool: Tool) -> str:
+    """Return a tool with its data, for the list of tools."""
+    known = tool.kind != "UNKNOWN"
+    data = f", diameter {tool.diameter:g}, corner {tool.corner_radius:g}, length {tool.length:g}" if known else ""
+    name = f" {tool.name}" if tool.name and tool.name != call.strip('"') else ""
+    return f"T{call}{name}{data}"
 
 
 def _time_token(number: int) -> str:

@@ -29,8 +29,8 @@ def event_problems(program: Program, motion: Motion, event: Event, rpm: float | 
             return [Problem(*location, what, "write CUTCOM without a register, or with the number of the tool")]
     if isinstance(event, GoHome) and event.row < len(motion.operation.moves):
         return [Problem(*location, "GOHOME before the operation's end", "begin a new operation after it")]
-    if isinstance(event, SelectTool):
-        what = f"SELECT/TOOL,{event.number} is not written: programs name a tool only when they change it"
+    if isinstance(event, SelectTool) and not control.family.tool_preselection("1"):
+        what = f"SELECT/TOOL,{event.number} is not written: how {control.name} preselects a tool is not known"
         return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING)]
     if isinstance(event, Coolant) and event.kind not in control.coolant:
         cure = (

@@ -96,6 +96,11 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
     return {**dict(zip(_PLANE_FIELDS, angles, strict=True)), **words}
 
 
+def tool_preselection(call: str) -> list[str]:
+    """Return ``T``; ``M6`` changes to it later."""
+    return [f"T{call}"]
+
+
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return ``G4 P`` with milliseconds."""
     return [f"G4 P{dwell_text(dwell_seconds(event, rpm), formats['dwell'], 1000.0)}"]

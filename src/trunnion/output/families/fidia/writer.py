@@ -70,6 +70,11 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
     return {}
 
 
+def tool_preselection(call: str) -> list[str]:
+    """Return nothing: the words of this control are not known."""
+    return []
+
+
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return ``G4 HD`` with seconds."""
     return [f"G4 HD{dwell_text(dwell_seconds(event, rpm), formats['dwell'])}"]

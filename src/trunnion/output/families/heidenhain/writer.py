@@ -90,6 +90,11 @@ def tool_call(number: int, name: str, by_name: bool) -> str:
     return f'"{name}"' if by_name else str(number)
 
 
+def tool_preselection(call: str) -> list[str]:
+    """Return ``TOOL DEF``."""
+    return [f"TOOL DEF {call}"]
+
+
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return cycle 9 with seconds."""
     return ["CYCL DEF 9.0 DWELL TIME", f"CYCL DEF 9.1 DWELL {dwell_text(dwell_seconds(event, rpm), formats['dwell'])}"]

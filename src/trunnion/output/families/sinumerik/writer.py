@@ -74,6 +74,11 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
     return interpolation | dict(zip(_PLANE_FIELDS, (*angles, mode), strict=True))
 
 
+def tool_preselection(call: str) -> list[str]:
+    """Return ``T=``; ``M6`` changes to it later."""
+    return [f"T={call}"]
+
+
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     """Return ``G4 F`` for seconds or ``G4 S`` for spindle revolutions, in a block of its own."""
     letter, unit = ("S", "turns") if event.revolutions else ("F", "s")

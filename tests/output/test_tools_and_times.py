@@ -1,0 +1,108 @@
+"""What a program says about its tools and times, and which tools it calls, by setting, on every control."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import trunnion
+
+OPERATION = """TOOL PATH/{name},TOOL,MILL_{tool}
+TLDATA/MILL,{tool}0,0,75,0,0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,{tool}
+{select}SPINDL/RPM,1000,CLW
+RAPID
+GOTO/0,0,50,0,0,1
+FEDRAT/MMPM,500
+GOTO/0,0,5
+GOTO/9,0,5
+END-OF-PATH
+"""
+
+MACHINES = ["yl569", "dmu65", "matsuura_mx330", "xyzac_trt", "hs664rt"]
+
+#: The word that selects a tool before its change, where it is known, and the call of the change.
+SELECTED = {"yl569": "T={}", "dmu65": "TOOL DEF {}", "matsuura_mx330": "T{}", "xyzac_trt": "T{}"}
+CALLED = {
+    "yl569": r"T=(\d)\n(?:N\d+ )?M6",
+    "dmu65": r"TOOL CALL (\d) Z",
+    "matsuura_mx330": r"T(\d) M6",
+    "xyzac_trt": r"T(\d) M6",
+    "hs664rt": r"M306 T\.(\d)",
+}
+
+
+def program(machine: str, folder: Path, tools: str = "1223", select: str = "", **settings: str) -> str:
+    """A proven program with an operation for each of the tools."""
+    cl = folder / "part.cls"
+    cl.write_text(
+        "".join(OPERATION.format(name=f"OP{k}", tool=tool, select=select) for k, tool in enumerate(tools)),
+        encoding="utf-8",
+    )
+    result = trunnion.post(cl, machine=machine, settings={"numbers": "off", **settings} if settings else None)
+    assert result.passed
+    return result.text or ""
+
+
+def calls(machine: str, text: str) -> list[str]:
+    return re.findall(CALLED[machine], text)
+
+
+@pytest.mark.parametrize("machine", SELECTED)
+def test_the_next_tool_is_selected_after_a_change(machine: str, tmp_path: Path) -> None:
+    text = program(machine, tmp_path, preselect="on")
+    assert calls(machine, text) == ["1", "2", "3"]
+    words = [SELECTED[machine].format(tool) for tool in "23"]
+    lines = [line for line in text.splitlines() if line.split(" ", 1)[-1] in words or line in words]
+    found = [line if line in words else line.split(" ", 1)[-1] for line in lines]
+    changes = [*words, *words] if machine == "yl569" else words  # a Sinumerik names the tool in a block of its own
+    assert sorted(found) == sorted(changes)
+    after = text.split("TOOL CALL 1 Z" if machine == "dmu65" else "M6")[1]
+    assert words[0] in after.split(";Initial Move" if machine == "yl569" else "X", 1)[0]
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_select_tool_is_written_or_told(machine: str, tmp_path: Path) -> None:
+    text = program(machine, tmp_path, "12", "SELECT/TOOL,7\n")
+    if machine in SELECTED:
+        assert SELECTED[machine].format(7) in text
+    else:
+        assert "T.7" not in text
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_tools_are_listed_once_at_the_head(machine: str, tmp_path: Path) -> None:
+    head = program(machine, tmp_path, tool_list="on").upper().split("OP0")[0]
+    assert "TOOL LIST" in head
+    for tool in "123":
+        assert len(re.findall(rf"T{tool} MILL_{tool}, DIAMETER {tool}0, CORNER 0, LENGTH 75", head)) == 1
+    assert "TOOL LIST" not in program(machine, tmp_path).upper()
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_every_operation_calls_its_tool_to_be_entered_there(machine: str, tmp_path: Path) -> None:
+    assert calls(machine, program(machine, tmp_path)) == ["1", "2", "3"]
+    assert calls(machine, program(machine, tmp_path, restart="on")) == ["1", "2", "2", "3"]
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_times_are_shown_by_setting(machine: str, tmp_path: Path) -> None:
+    shown = program(machine, tmp_path, times="on").lower()
+    assert len(re.findall(r"machining time\s?:? [\d.]+ s of [\d.]+ s", shown)) == 4
+    assert "machining time" not in program(machine, tmp_path, times="off").lower()
+    assert ("machining time" in program(machine, tmp_path).lower()) == (machine == "dmu65")
+
+
+def test_axes_stay_from_their_limits_by_a_margin(tmp_path: Path) -> None:
+    """C of this machine ends at 360 degrees; a margin makes it turn back before."""
+    machine, cl = tmp_path / "ends.toml", tmp_path / "part.cls"
+    machine.write_text('extends = "yl569"\n[[axis]]\nname = "B"\nlimits_deg = [-30, 60]\n', encoding="utf-8")
+    tilted = OPERATION.format(name="OP", tool=1, select="").replace("50,0,0,1", "50,0.8660254,0,0.5")
+    cl.write_text(tilted, encoding="utf-8")
+    assert trunnion.post(cl, machine=machine).passed
+    with pytest.raises(trunnion.RefusedError, match="B"):
+        trunnion.post(cl, machine=machine, settings={"limit_margin": "0.5"})
+    with pytest.raises(trunnion.InputError, match="no travel left"):
+        trunnion.post(cl, machine=machine, settings={"limit_margin": "45"})
