@@ -105,7 +105,7 @@ class ExpectedPath:
         tool = ExpectedTool(None)
         for (path, whole), limit in zip(moving, limits, strict=True):
             placed = transform_to_frame(frame, whole)
-            if (whole.frame.x, whole.frame.y) != (frame.x, frame.y):
+            if whole.frame != frame:  # points of another coordinate system have the noise of turning
                 limit = replace(limit, tip=limit.tip + TURNING_NOISE)
             operation, hole_rows = without_holes(placed)
             loads = [(event.number, event.adjust) for event in placed.events if isinstance(event, LoadTool)]
