@@ -3,9 +3,11 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import trunnion
+from trunnion.model.toolpath import Kind
 
 OPERATION = """TOOL PATH/{name},TOOL,MILL_{tool}
 TLDATA/MILL,{tool}0,0,75,0,0
@@ -106,3 +108,49 @@ def test_axes_stay_from_their_limits_by_a_margin(tmp_path: Path) -> None:
         trunnion.post(cl, machine=machine, settings={"limit_margin": "0.5"})
     with pytest.raises(trunnion.InputError, match="no travel left"):
         trunnion.post(cl, machine=machine, settings={"limit_margin": "45"})
+
+
+LEANING = """TOOL PATH/{name},TOOL,MILL
+TLDATA/MILL,10,0,75,0,0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,1
+SPINDL/RPM,1000,CLW
+RAPID
+GOTO/10,0,50,0.5,0,0.8660254
+FEDRAT/MMPM,500
+GOTO/10,0,5
+GOTO/30,0,5{more}
+COOLNT/OFF
+END-OF-PATH
+"""
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("more", ["", ",0.6,0,0.8"])
+def test_the_tool_leaves_along_its_axis_before_it_goes_home(machine: str, more: str, tmp_path: Path) -> None:
+    cl = tmp_path / "part.cls"
+    cl.write_text("".join(LEANING.format(name=name, more=more) for name in ("ONE", "TWO")), encoding="utf-8")
+    plain = trunnion.post(cl, machine=machine).run
+    result = trunnion.post(cl, machine=machine, settings={"tool_retract": "40"})
+    run = result.run
+    assert result.passed
+    assert plain is not None
+    assert run is not None
+    assert len(run) == len(plain) + 2
+    axis = np.array([0.6, 0.0, 0.8]) if more else np.array([0.5, 0.0, 0.8660254])
+    away = np.abs(run.tip - (np.array([30.0, 0.0, 5.0]) + 40.0 * axis)).max(axis=1)
+    rows = np.flatnonzero(away < 0.002)
+    assert len(rows) >= 2
+    assert (run.kind[rows] == Kind.RAPID).all()
+
+
+def test_a_retract_aside_is_no_retract(tmp_path: Path) -> None:
+    cl, program_file = tmp_path / "part.cls", tmp_path / "part.nc"
+    cl.write_text(LEANING.format(name="ONE", more=""), encoding="utf-8")
+    text = trunnion.post(cl, machine="xyzac_trt", settings={"tool_retract": "40"}).text or ""
+    for wrong in (text.replace("X50. ", "X51. "), text.replace("Z39.64102", "Z3.9")):
+        assert wrong != text
+        program_file.write_text(wrong, encoding="utf-8")
+        checks = trunnion.verify(program_file, cl=cl, machine="xyzac_trt").checks
+        assert "order" in [check.key for check in checks if not check.passed]

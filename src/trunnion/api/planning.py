@@ -9,12 +9,13 @@ from trunnion.api.inserts import insert_problems
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
-from trunnion.api.settings import Settings, check_operation_names
+from trunnion.api.settings import Settings, check_operation_names, number_setting
 from trunnion.errors import InputError, Problem, RefusedError, Severity, merge_repeated
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
+from trunnion.planning.retracts.tool_retract import with_tool_retract
 
 
 def plan(
@@ -70,9 +71,7 @@ def plan(
     """
     job = prepare(as_machine(machine), settings, explain=explain)
     toolpaths = load_toolpaths(cl, job, strict, observer)
-    return planning.plan(
-        toolpaths, job.planned_machine, job.control.arcs.chord_tolerance, job.options, job.capabilities
-    )
+    return _planned(toolpaths, job)
 
 
 def load_toolpaths(
@@ -93,9 +92,13 @@ def load_toolpaths(
 
 
 def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
-    """The plan, with the margin to limits that the job asks for."""
+    """The plan, with the margin to limits and the retracts that the job asks for."""
     machine, chord_tolerance = job.planned_machine, job.control.arcs.chord_tolerance
-    return planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities)
+    found = planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities)
+    distance = number_setting(job.settings, "tool_retract")
+    if not distance:
+        return found
+    return replace(found, motions=tuple(with_tool_retract(motion, distance) for motion in found.motions))
 
 
 def plan_program(
@@ -121,9 +124,7 @@ def plan_program(
     """
     names = [operation.name for toolpath in toolpaths for operation in toolpath.operations if len(operation.moves)]
     check_operation_names(job.own_settings, job.settings, names)
-    planned = planning.plan(
-        toolpaths, job.planned_machine, job.control.arcs.chord_tolerance, job.options, job.capabilities
-    )
+    planned = _planned(toolpaths, job)
     observer.planned(planned)
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)

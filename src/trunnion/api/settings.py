@@ -48,6 +48,7 @@ _NUMBERS: Final = {
         1e12,
         f"split=BYTES, the largest size of a subprogram, at least {MIN_SUBPROGRAM_BYTES}",
     ),
+    "tool_retract": (0.0, 1e4, "tool_retract=MM, how far along the tool axis before it goes home, such as 50"),
     "limit_margin": (0.0, 1e3, "limit_margin=NUMBER, how far axes stay from their limits, mm and degrees, such as 0.5"),
     "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
 }

@@ -15,6 +15,9 @@ from trunnion.verification.results import Check, Place
 
 _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
 
+#: Tool axes are the same when no component differs by more than this.
+_SAME_AXIS = 1e-6
+
 #: Axes that move by less than this, mm or degrees, stand still.
 _STILL = 1e-9
 
@@ -26,6 +29,7 @@ def check_order(context: ComparedContext) -> Check:
     retracts = find_rewind_retracts(run, matching.extra, tolerance)
     lawful = {row for retract in retracts for row in range(retract.first, retract.end)}
     lawful |= hole_approach_rows(run, matching.extra, match_holes(run, expected), tolerance)
+    lawful |= {row for row in matching.extra if _retracts_before_home(run, row, tolerance)}
     unexplained = [row for row in matching.extra if row not in lawful]
     stands_still = [_stands_still(run, row) for row in unexplained]
     still = [row for row, stands in zip(unexplained, stands_still, strict=True) if stands]
@@ -67,6 +71,20 @@ def _in_order(context: ComparedContext, retracts: list[RewindRetract], still: li
         summary += f", {len(still)} blocks that move nothing"
     title = "every CL point has its block, every block its point"
     return Check("order", title, True, summary, places=tuple(notes[:MAX_PLACES]))
+
+
+def _retracts_before_home(run: Run, row: int, tolerance: float) -> bool:
+    """Whether a rapid only draws the tool back along its axis, and the next motion goes to a machine position."""
+    retracts = any(event.kind == "retract" and event.before_row == row + 1 for event in run.events)
+    goes_home = row + 1 < len(run) and bool(run.state.machine_frame[row + 1])
+    if row == 0 or run.kind[row] != Kind.RAPID or not (retracts or goes_home):
+        return False
+    positions = run.positions(np.array([row - 1, row]))
+    step, axis = positions.tip[1] - positions.tip[0], positions.axis[1]
+    back = float(step @ axis)
+    straight = float(np.linalg.norm(step - back * axis)) <= 4.0 * tolerance
+    turned = float(np.abs(positions.axis[0] - axis).max()) > _SAME_AXIS
+    return back > 0.0 and straight and not turned
 
 
 def _stands_still(run: Run, row: int) -> bool:

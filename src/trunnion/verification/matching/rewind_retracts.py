@@ -85,9 +85,17 @@ def rewind_retract_length(run: Run, first: int, tip_tolerance: float) -> int:
         back = (np.abs(positions.tip - start.tip[0]).max(axis=1) <= near) & _same_axis(positions.axis, start.axis[0])
         if back.any():
             count = int(np.argmax(back)) + 1
+            if _goes_home(run, first, first + count):
+                return 0
             turned = np.ptp(positions.joints[:count, list(run.machine.rotary)], axis=0).max()
             return count if turned > _MIN_TURN else 0
     return 0
+
+
+def _goes_home(run: Run, first: int, end: int) -> bool:
+    """Whether rows go to machine positions, or M codes draw the tool back between them."""
+    retracts = any(event.kind == "retract" and first < event.before_row < end for event in run.events)
+    return retracts or bool(run.state.machine_frame.at(np.arange(first, end)).any())
 
 
 def _near(tip_tolerance: float) -> float:
