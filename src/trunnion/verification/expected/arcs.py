@@ -65,7 +65,7 @@ class Arc:
 
     def after_turns(self, count: int) -> Floats:
         """Points after each of the first whole turns, (count, 3)."""
-        return self.at(2.0 * np.pi * np.arange(1, count + 1) / self.sweep)
+        return self.at(np.asarray(2.0 * np.pi * np.arange(1, count + 1) / self.sweep, np.float64))
 
     def deviation(self, points: Floats) -> Floats:
         """From where points should be to where they are, (k, 3)."""
