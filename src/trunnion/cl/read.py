@@ -16,10 +16,10 @@ from trunnion.arrays import Ints
 from trunnion.cl.assemble import assemble_operation
 from trunnion.cl.builder import MoveColumns
 from trunnion.cl.diagnostics import Diagnostics
-from trunnion.cl.encoding import EncodingDetector
 from trunnion.cl.nx import ClsfInterpreter
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.cl.unknown import unknown_statement_problems
+from trunnion.encoding import EncodingDetector
 from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time.

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from trunnion.cl.arcs import RADIUS_TOLERANCE, distance_from_line
-from trunnion.cl.encoding import EncodingDetector
+from trunnion.encoding import EncodingDetector
 from trunnion.errors import Problem
 from trunnion.model.toolpath import (
     CycleOn,

@@ -3,6 +3,7 @@
 Lines count from 1. Buffers always hold whole lines: the last one ends in a line feed even if the file does not.
 """
 
+import codecs
 import os
 from copy import copy
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Final, Self
 import numpy as np
 
 from trunnion.arrays import Bytes, Ints
+from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem
 from trunnion.files import WriteProgress
 
@@ -22,6 +24,9 @@ MAX_LINE_LENGTH: Final = 1 << 16
 
 #: The shortest block that makes a row.
 _SHORTEST_ROW: Final = len("X1\n")
+
+#: Bytes at the beginning of a file in which zeros are looked for.
+_PROBED: Final = 4096
 
 #: Bytes in which the end of a line is looked for first.
 _LINE_WINDOW: Final = 256
@@ -138,6 +143,8 @@ class SourceText:
             got = self._file.readinto(memoryview(self._chunk)[filled : filled + CHUNK])
         except OSError as error:
             raise self.problem(0, f"cannot be read: {error}") from None
+        if not self._filled:
+            self._chunk[:got] = self._as_text(bytes(self._chunk[:got]))
         if not got:
             self._ended = True
             self._chunk[filled : filled + 1] = b"\n"
@@ -176,12 +183,19 @@ class SourceText:
         except OSError as error:
             raise self.problem(0, f"cannot be read: {error}") from None
         self._file.close()
+        data = self._as_text(data)
         if not data.endswith(b"\n"):
             data += b"\n"
         self.whole = True
         self.buffer = np.frombuffer(data, np.uint8)
         self._starts = np.concatenate((np.zeros(1, np.int64), np.flatnonzero(self.buffer == 10) + 1))
         self.jump(self.line)
+
+    def _as_text(self, data: bytes) -> bytes:
+        """Return the beginning of the file with blanks in place of a byte order mark; text of two bytes is refused."""
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\0" in data[:_PROBED]:
+            raise self.problem(0, "is UTF-16 or no text", "save it as UTF-8 or plain ASCII: no control reads this")
+        return data.replace(codecs.BOM_UTF8, b"   ", 1) if data.startswith(codecs.BOM_UTF8) else data
 
     def whole_bytes(self) -> bytes:
         """Return the bytes of the whole program."""
@@ -218,8 +232,13 @@ class SourceText:
 
 
 def decode(data: bytes) -> str:
-    """Return bytes as text: UTF-8, or Latin-1 where they are not."""
+    """Return bytes as text: UTF-8, or where they are not, GB18030 (GBK) or Latin-1, whichever is likelier."""
     try:
         return data.decode()
+    except UnicodeDecodeError:
+        detector = EncodingDetector()
+        detector.add(data)
+    try:
+        return data.decode(detector.encoding())
     except UnicodeDecodeError:
         return data.decode("latin-1")

@@ -1,6 +1,6 @@
-"""The encoding of the names in a CL file: UTF-8, the Chinese GB18030 (which contains GBK), or Latin-1.
+"""The encoding of the names in a CL file or NC program: UTF-8, the Chinese GB18030 (which contains GBK), or Latin-1.
 
-CL files do not declare it. Numbers and words are ASCII in all three encodings; only names and texts are not.
+Neither declares it. Numbers and words are ASCII in all three encodings; only names and texts are not.
 """
 
 import codecs
