@@ -224,3 +224,30 @@ def test_work_offsets_that_change_are_found_without_a_cl_file(verified: Verifier
     found = check(verified(program), "offset")
     assert not found.passed
     assert "G55" in found.summary
+
+
+def test_a_program_may_use_several_work_offsets(verified: Verifier) -> None:
+    program = HEAD + "G0 X0 Y0 Z50\nG1 Z5 F500\nG0 Z50\nG55 X20\nG1 Z5\nG0 Z50\n" + FOOT
+    found = check(verified(program), "offset")
+    assert found.passed
+    assert found.summary == "G54, then G55, each as the program chooses"
+    assert not check(verified(program, settings=Settings(work_offset=54)), "offset").passed
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        # Up at feed to where the rapid before had ended, and up in a cycle that ends at its reference plane.
+        "G0 X0 Y0 Z50\nG0 Z2\nG1 Z-5 F500\nG1 X10\nG1 Z2 F2000\nG0 X40\nG1 Z-5\n",
+        "G0 X0 Y0 Z50\nMCALL CYCLE81(5,0,2,-10)\nX10 F100\nMCALL\nG0 X40\n",
+    ],
+)
+def test_a_retract_at_feed_or_in_a_cycle_is_a_retract(text: str, verified: Verifier) -> None:
+    assert check(verified(HEAD + text + FOOT), "modal").passed
+
+
+def test_a_motion_at_feed_that_ends_below_the_last_rapid_is_no_retract(verified: Verifier) -> None:
+    text = "G0 X0 Y0 Z50\nG0 Z2\nG1 Z-5 F500\nG1 X10\nG1 Z-3\nG0 X40\nG1 Z-5\n"
+    found = check(verified(HEAD + text + FOOT), "modal")
+    assert not found.passed
+    assert "sideways" in found.summary

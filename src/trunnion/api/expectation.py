@@ -7,8 +7,9 @@ Out:    tolerances and settings for ``trunnion.verification.verify``.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
-from trunnion.api.settings import work_offset_number
+from trunnion.api.settings import m_code, work_offset_number
 from trunnion.api.tolerances import program_tolerances
 from trunnion.model.motion import MachiningMode
 from trunnion.output.program import Program
@@ -28,6 +29,11 @@ class Expectation:
     settings: Settings
 
 
+#: Settings for the tolerance of the control's own smoothing, and for what tool calls add to the tool, by their words.
+_SMOOTHING: Final = ("tolerance", "three_axis_tolerance", "fallback_tolerance")
+_TOOL_DELTAS: Final = {"delta_length": "DL", "delta_radius": "DR"}
+
+
 def expectation(program: Program, options: PlanOptions | None = None) -> Expectation:
     """What the proof holds against a program that was planned with these options."""
     return Expectation(program_tolerances(program), _expected_settings(program, options or PlanOptions()))
@@ -43,6 +49,7 @@ def _expected_settings(program: Program, options: PlanOptions) -> Settings:
         for motion in program.motions
         if motion.operation.name in program.own_settings
     }
+    every = [values, *(program.effective_settings(motion.operation) for motion in program.motions)]
     tool, work_offset, edge = _operation_settings(values)
     inverse_time = program.control.formats.get("inverse_time")
     return Settings(
@@ -56,6 +63,11 @@ def _expected_settings(program: Program, options: PlanOptions) -> Settings:
         max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,
         max_feed=program.control.formats["feed"].five_axis.greatest,
         rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
+        smoothing=max(float(each.get(key) or 0.0) for each in every for key in _SMOOTHING),
+        rigid_tap=m_code(values.get("rigid_tap", "")),
+        tool_deltas={
+            word: tuple({float(each[key]) for each in every if each.get(key)}) for key, word in _TOOL_DELTAS.items()
+        },
     )
 
 

@@ -218,6 +218,11 @@ def check_tolerance(option: str, value: float | None) -> None:
         raise InputError(Problem(option, 0, f"is {value!r}", "give a number above 0, such as 0.001"))
 
 
+def m_code(text: str) -> int | None:
+    """Return the number of an M word; None where there is none."""
+    return int(text[1:]) if text[:1] == "M" and text[1:].isdigit() else None
+
+
 def work_offset_number(text: str) -> int | None:
     """The number of a work offset: 54 for ``G54``, 603 for ``G54.1 P3``, 501 for ``G55 O1``; None for other names."""
     code = text.strip().upper().removeprefix("G")

@@ -8,7 +8,7 @@ from trunnion.api import kernels
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
-from trunnion.api.settings import check_tolerance, set_up_machine, work_offset_number
+from trunnion.api.settings import check_tolerance, m_code, set_up_machine, work_offset_number
 from trunnion.controls import Control, load_control
 from trunnion.errors import InputError, Problem
 from trunnion.jit import compile_ahead
@@ -126,6 +126,7 @@ def verify(
             span_tip=span_tip,
             absolute=frame == "absolute",
             rapid_feed=rapid_feed_of(loaded),
+            rigid_tap=m_code(defaults.get("rigid_tap", "")),
         ),
         columns=columns,
     )

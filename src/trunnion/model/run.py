@@ -195,6 +195,8 @@ class Run:
     rotary         (n, 2) float64  positions of the rotary axes with all their turns, deg, order of ``machine.rotary``
     start          (5,)   float64  axis values before row 0
     normals                        a ``SurfaceNormals``: those of blocks that program them (LN)
+    units_from                     row from which on the program has said mm or inches, or its control is known to
+                                   count so; None: never
     uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
 
     Computed on first access:
@@ -236,6 +238,7 @@ class Run:
     events: list[RunEvent] = field(default_factory=list)
     diagnostics: tuple[Diagnostic, ...] = ()
     uses_length_numbers: bool = False
+    units_from: int | None = 0
 
     def __post_init__(self) -> None:
         for each in fields(self):

@@ -32,6 +32,9 @@ class Settings:
                            operation
     rapid_feed             feed of lines that replace rapids, mm/min; None: rapids are rapids
     max_inverse_time_feed  largest inverse-time F of the control: no block need be quicker; None: no limit
+    smoothing              widest tolerance for the control's own smoothing that the settings ask for, mm
+    rigid_tap              M code before threads that are cut without a compensating chuck; None: the control has none
+    tool_deltas            what the program may add to a tool, mm, by word (DL, DR)
     max_feed               largest F per minute of the control: no block need be faster; None: no limit
     by_operation           tool, work offset and edge of single operations, by their names
     """
@@ -45,6 +48,9 @@ class Settings:
     rapid_feed: float | None = None
     max_inverse_time_feed: float | None = None
     max_feed: float | None = None
+    smoothing: float | None = None
+    rigid_tap: int | None = None
+    tool_deltas: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
 
     def for_operation(self, name: str) -> OperationSettings:

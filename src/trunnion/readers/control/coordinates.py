@@ -175,6 +175,8 @@ class CoordinateControl(RowRecorder):
         self.length_unit = INCH if inches else 1.0
         self.feed_unit = INCH if inches and feeds_too else 1.0
         self.modal.inches.set(self.row, inches)
+        if self.units_from is None:
+            self.units_from = self.row
 
 
 class _FrameChange:
@@ -186,6 +188,7 @@ class _FrameChange:
 
     def __enter__(self) -> None:
         control = self._control
+        control.resolutions += 1
         self._programmed = control.programmed_position.copy()
         self._base = dict(control._increment_base)
         if self._keep_base:

@@ -67,17 +67,22 @@ class RowRecorder:
     position_map         (3, 4)  from programmed position to the tool tip in the workpiece frame, or to the slides
     vector_map           (3, 3)  from programmed vector to the workpiece frame
     tip_programmed               whether ``position_map`` gives the tool tip
+    resolutions                  how often the axes have been worked out
     current_joints       (5,)    axis values after the rows that are resolved
     """
 
     #: The rotary axis that decides between two solutions for a vector, as in ``resolve_rotary``.
     deciding_axis = TOTAL_ROTATION
 
+    #: Whether the control counts in millimetres unless the program says otherwise.
+    knows_units = False
+
     def __init__(self, machine: Machine, note: Note) -> None:
         self.machine = machine
         self.note = note
         self.line = 0
         self.block_number = -1
+        self.units_from: int | None = 0 if self.knows_units else None
         self.columns = RowBuffer()
         self.modal = ModalBuilder()
         self.events: list[RunEvent] = []
@@ -91,6 +96,7 @@ class RowRecorder:
         self.start = machine.home.copy()
         self.current_joints = machine.home.copy()
         self._rotary_unresolved = False
+        self.resolutions = 0
         # X, Y, Z, the feed, and the feed of the row before: the kernel needs one array.
         self._commanded = np.array([0.0, 0.0, 0.0, math.nan, math.nan])
         self.position_map = affine_matrix(np.eye(3), np.zeros(3))
@@ -140,6 +146,15 @@ class RowRecorder:
         """Change to the selected tool."""
         self.modal.tool.set(self.row, self._selected_tool)
         self.add_event("tool_change", self._tool_names[self._selected_tool])
+
+    def add_tolerance(self, tolerance: float) -> None:
+        """Record within which tolerance the control may round off the path from now on, mm; 0: none."""
+        self.add_event("tolerance", tolerance)
+
+    def add_tool_delta(self, name: str, value: float) -> None:
+        """Record that the program adds to the length or the radius of the tool, mm: the path does not show it."""
+        self.add_event("delta", (name, value))
+        self.note(f"{name} adds {value:g} mm to the tool: the path is that without it", Severity.WARNING)
 
     @property
     def tool_in_spindle(self) -> str:
@@ -228,6 +243,7 @@ class RowRecorder:
         c = self.columns
         if c.resolved == c.n:
             return
+        self.resolutions += 1
         rows, pending = slice(c.resolved, c.n), slice(c.resolved - c.base, c.n - c.base)
         xyz, words = c.xyz[rows], RotaryWords(c.rotary[rows], c.turn_rule[pending], c.vector[pending])
         status = resolve_rotary(
@@ -292,6 +308,7 @@ class RowRecorder:
             comments=comments,
             events=self.events,
             diagnostics=tuple(diagnostics),
+            units_from=self.units_from,
         )
 
     def _normal_columns(self) -> SurfaceNormals:

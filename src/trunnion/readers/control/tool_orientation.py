@@ -1,6 +1,7 @@
 """Tool orientation and rotary positions: the tool's frame at a position, and the positions for a tilted plane."""
 
 import math
+from typing import Final
 
 import numpy as np
 
@@ -9,6 +10,10 @@ from trunnion.machines import Machine, inverse
 from trunnion.machines.inverse import POLE_TOLERANCE
 from trunnion.model.axis_positions import TRAVEL_TOLERANCE, nearest_turn
 from trunnion.readers.control.affine_map import rotation_about
+
+#: The tool stands along a direction within this difference of unit vectors; axes turn if by more, degrees.
+_STANDS: Final = 2e-4
+_TURNED: Final = 0.5
 
 
 def tool_frame(machine: Machine, rotary: tuple[float, float]) -> Floats:
@@ -51,6 +56,20 @@ def first_axis_is_free(machine: Machine, rotary: tuple[float, float]) -> bool:
     """Whether the tool axis is parallel to the first rotary axis, so that this one does not tilt it."""
     tool = tool_frame(machine, rotary) @ np.array(machine.spindle_direction)
     return float(np.linalg.norm(np.cross(tool, np.array(machine.axes[machine.rotary[0]].direction)))) < POLE_TOLERANCE
+
+
+def is_other_solution(machine: Machine, target: tuple[float, float], current_joints: Floats, normal: Floats) -> bool:
+    """Whether the tool stands along ``normal`` (3,) already, and ``target`` is the other position with that tool axis.
+
+    A program that has positioned the axes and then asks for the other position contradicts itself.
+    """
+    columns = list(machine.rotary)
+    now = float(current_joints[columns[0]]), float(current_joints[columns[1]])
+    if first_axis_is_free(machine, target) or first_axis_is_free(machine, now):
+        return False
+    stands = tool_frame(machine, now) @ np.array(machine.spindle_direction)
+    turned = [(goal - at + 180.0) % 360.0 - 180.0 for goal, at in zip(target, now, strict=True)]
+    return float(np.linalg.norm(stands - normal)) < _STANDS and max(map(abs, turned)) > _TURNED
 
 
 def is_in_travel(machine: Machine, rotary: tuple[float, float]) -> bool:

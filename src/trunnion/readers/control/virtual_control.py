@@ -22,6 +22,7 @@ from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, AxisWord, PositionMode, RotaryTarget
 from trunnion.readers.control.coordinates import CoordinateControl
 from trunnion.readers.control.hole_motion import HoleMotion
+from trunnion.readers.control.preconditions import Preconditions
 from trunnion.readers.control.row_recorder import Note, ScannedRows, within_limits
 from trunnion.readers.scan.buffers import ScanSettings
 
@@ -39,13 +40,15 @@ Circle = Callable[[Floats, Floats], arcs.Arc]
 class VirtualControl(CoordinateControl, ABC):
     """A control that executes motions on a machine.
 
-    motion        the motion in force: ``RAPID``, ``LINEAR`` or one of the circles of the family
-    shortest      how endless rotary axes reach plain words: True by the shorter way, False not so, None as the control
-    rotary_names  letters of the rotary axes
+    preconditions  what the program must say before the tool moves at the part
+    motion         the motion in force: ``RAPID``, ``LINEAR`` or one of the circles of the family
+    shortest       how endless rotary axes reach plain words: True by the shorter way, False not so, None as the control
+    rotary_names   letters of the rotary axes
     """
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note)
+        self.preconditions = Preconditions(note)
         self.motion = LINEAR
         self.shortest = shortest
         self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.rotary)
@@ -145,6 +148,8 @@ class VirtualControl(CoordinateControl, ABC):
         if machine_frame:
             self._machine_move(axes, bits, circle is not None)
             return
+        if circle is not None or vector is not None or axes.keys() & {"X", "Y", "Z"}:
+            self.preconditions.report_motion()
         end, written = self._end_position(axes)
         arc = None
         if circle is not None and within_limits(end):
@@ -257,6 +262,7 @@ class VirtualControl(CoordinateControl, ABC):
 
     def drill(self, motions: Sequence[HoleMotion]) -> None:
         """Execute the motions of a drilling cycle at the present position."""
+        self.preconditions.report_motion()
         hole = self.programmed_position.copy()
         feed, first_row = self.programmed_feed, self.row
         u, v = (self.plane_axis + 1) % 3, (self.plane_axis + 2) % 3

@@ -33,6 +33,11 @@ _RESERVED_ROWS: Final = 65536
 _MIN_FREE_ROWS: Final = 4096
 
 
+#: A scan of fewer blocks takes longer than their interpretation; then so many lines are interpreted.
+_FEW_BLOCKS: Final = 4
+_LINES_WITHOUT_SCAN: Final = 16
+
+
 class ProgramEnd(Exception):  # noqa: N818 - the end of a program is no error
     """The program has ended."""
 
@@ -80,6 +85,7 @@ class Interpreter(ABC, Generic[A]):
         self._sources: dict[Path, tuple[SourceText, int]] = {}
         self._files = [str(path)]
         self._stack: list[A] = []
+        self._lines_without_scan = 0
         self.control = self._make_control()
 
     @abstractmethod
@@ -145,8 +151,10 @@ class Interpreter(ABC, Generic[A]):
             if not source.fill():
                 self._leave_program()
                 continue
-            if self._may_scan(source):
-                self._scan(source)
+            if self._lines_without_scan:
+                self._lines_without_scan -= 1
+            elif not control.preconditions and self._may_scan(source):
+                self._lines_without_scan = _LINES_WITHOUT_SCAN if self._scan(source) < _FEW_BLOCKS else 0
                 if not source.fill():
                     continue
             line = source.line
@@ -155,10 +163,11 @@ class Interpreter(ABC, Generic[A]):
             self._counter.count_blocks(1, len(raw))
             self._execute_line(active, line, raw)
             self._counter.count_events(control.events)
+            self._counter.check_resolutions(control.resolutions)
 
-    def _scan(self, source: SourceText) -> None:
-        """Execute plain blocks, as many as follow each other."""
-        control = self.control
+    def _scan(self, source: SourceText) -> int:
+        """Execute plain blocks, as many as follow each other; returns how many."""
+        control, begin = self.control, source.line
         while source.fill():
             self._reserve_rows(source)
             limit = control.scan_limit()
@@ -173,7 +182,8 @@ class Interpreter(ABC, Generic[A]):
             control.line = source.line
             self._counter.count_blocks(count, size - CHARACTERS_PER_STEP * count)
             if count < limit and position < len(source.buffer):
-                return
+                break
+        return source.line - begin
 
     def _reserve_rows(self, source: SourceText) -> None:
         columns = self.control.columns

@@ -13,6 +13,11 @@ MAX_DIAGNOSTICS: Final = 10_000
 #: Longer blocks and texts count once more for every so many characters; real ones are shorter.
 CHARACTERS_PER_STEP: Final = 128
 
+#: Working out the axes for a plane, a frame or a position takes as long as so many blocks; and how often a line may ask
+#: for it.
+BLOCKS_PER_RESOLUTION: Final = 16
+RESOLUTIONS_PER_LINE: Final = 4
+
 #: Subprograms that one program may call.
 MAX_SUBPROGRAMS: Final = 1000
 
@@ -49,6 +54,12 @@ class StepCounter:
         allowed += sum(source.size // CHARACTERS_PER_STEP for source in sources)
         if self._blocks > allowed:
             raise self._fail(f"executes more than {self._limit} blocks")
+
+    def check_resolutions(self, resolutions: int) -> None:
+        """Check how often the control has worked out its axes, which takes as long as many blocks."""
+        least = self._limit // BLOCKS_PER_RESOLUTION
+        if resolutions > least + RESOLUTIONS_PER_LINE * sum(source.known_lines for source in self._sources()):
+            raise self._fail(f"makes the control work out its axes more than {least} times")
 
     def count_records(self, records: int, characters: int) -> None:
         """Count comments or events with so many characters."""

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Final
 
 #: Blocks that a program may execute besides going once through its files.
-DEFAULT_STEP_LIMIT: Final = 2_000_000
+DEFAULT_STEP_LIMIT: Final = 50_000
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,5 +19,10 @@ def reading_of(machine: Machine) -> Table:
     return _control(machine).table("reading")
 
 
+def unit_of(table: Table) -> str:
+    """Return the unit in which a control counts before a program states one: ``mm``, ``inch``, or nothing."""
+    return table.text("units", "", one_of=("", "mm", "inch"))
+
+
 def _control(machine: Machine) -> Table:
     return resolve_extends(machine.control.unread_copy(), files("trunnion").joinpath("controls", "library"))

@@ -29,6 +29,11 @@ class Rs274Control(VirtualControl):
     #: Whether the tool length counts along Z.
     length_active = False
 
+    def count_in(self, unit: str) -> None:
+        """Count in a unit that the definition of the control states: ``mm`` or ``inch``; empty: it states none."""
+        if unit:
+            self.set_units(unit == "inch", True)
+
     @property
     def _length_offset(self) -> Floats:
         return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self.length_active else np.zeros(3)

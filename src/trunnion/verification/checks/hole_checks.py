@@ -1,6 +1,6 @@
 """The holes of a program against the cycles of the CL files."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from trunnion.model.run import Run
@@ -47,6 +47,8 @@ def check_holes(context: ComparedContext) -> Check:
         for fault in faults[: max(MAX_PLACES - len(places), 0)]:
             at = context.place(fault.row, fault.value, fault.text)
             places.append(Place(at.nc_line, at.number, at.value, at.text, hole.file, hole.line))
+    soft = list(_floating_threads(context, by_index))
+    count, places = count + len(soft), places + soft[: max(MAX_PLACES - len(places), 0)]
     for match in (match for match in matches if match.index >= len(expected.holes)):
         count += 1
         places.append(context.place(match.first, 0.0, "drills where the CL file has no more holes"))
@@ -54,6 +56,28 @@ def check_holes(context: ComparedContext) -> Check:
     by_motion = sum(match.by_motion for match in matches)
     good += f", {by_motion} of them by motion" if by_motion else ""
     return check_from_places("holes", "holes as the cycles of the CL file ask", places, good, count)
+
+
+def _floating_threads(context: ComparedContext, matches: Mapping[int, MatchedHole]) -> Iterator[Place]:
+    """Threads for a tap that is held rigidly, in a series of holes that no word for that begins."""
+    code = context.settings.rigid_tap
+    if code is None:
+        return
+    words = [event.before_row for event in context.run.events if event.kind == "m" and event.value == code]
+    before, rigid = 0, False
+    for index, match in sorted(matches.items()):
+        if index >= len(context.expected.holes):
+            continue
+        hole = context.expected.holes[index]
+        if any(before <= row <= match.first + 1 for row in words):
+            rigid = True
+        elif match.first > before:
+            rigid = False
+        if hole.cycle.mode[:1] == ("TAP",) and "OPTION" not in hole.cycle.mode and not (rigid or match.by_motion):
+            text = f"cuts a thread as with a compensating chuck: M{code} is missing"
+            place = context.place(match.first, 0.0, text)
+            yield Place(place.nc_line, place.number, 0.0, place.text, hole.file, hole.line)
+        before = match.end
 
 
 def _dwells_by_row(run: Run) -> dict[int, list[float]]:

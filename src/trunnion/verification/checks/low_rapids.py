@@ -1,10 +1,12 @@
 """Rapids that go sideways below the height to which the tool was last retracted."""
 
+import math
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags
+from trunnion.arrays import Flags, Floats
+from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, approach_rows
@@ -25,20 +27,22 @@ def low_rapids(context: Context) -> list[Place]:
     rapids = np.flatnonzero((run.kind == Kind.RAPID) & ((run.programmed & int(POSITION_WORDS)) != 0))
     rapids = rapids[~run.state.machine_frame.at(rapids)]
     before, after, tools = run.positions(np.maximum(rapids - 1, 0)), run.positions(rapids), run.state.tool.at(rapids)
-    retracts = np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64)
+    retracts = np.sort(np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64))
+    count = np.searchsorted(retracts, rapids, side="right")  # retracts up to each rapid
+    retracted_before = np.diff(count, prepend=0) > 0
     places: list[Place] = []
     height: float | None = None
-    axis, tool = np.zeros(3), -1
+    axis, tool, entry = np.zeros(3), -1, -math.inf
     for k, row in enumerate(rapids.tolist()):
-        last = rapids[k - 1] if k else -1
-        retracted = bool(((retracts > last) & (retracts <= row)).any())
-        if np.abs(after.axis[k] - axis).max() > 1e-6 or tools[k] != tool or retracted:
+        if np.abs(after.axis[k] - axis).max() > 1e-6 or tools[k] != tool or retracted_before[k]:
             height, axis, tool = None, after.axis[k], int(tools[k])
         start, end = before.tip[k], after.tip[k]
         step = end - start
         up = float(step @ axis)
         aside = float(np.linalg.norm(step - up * axis))
         highest = max(float(start @ axis), float(end @ axis))
+        if height is not None and (left := _height_left_at(run, row, axis, entry)) is not None:
+            height = min(height, left)
         if suspects[row] and height is not None and aside > _STILL and highest < height - _STILL:
             text = f"rapid goes sideways {height - highest:.3f} mm below the retract height"
             places.append(context.place(row, height - highest, text))
@@ -46,7 +50,24 @@ def low_rapids(context: Context) -> list[Place]:
                 break
         elif height is None or (aside <= _STILL and up > _STILL):
             height = float(end @ axis)
+        entry = float(end @ axis)
     return places
+
+
+def _height_left_at(run: Run, row: int, axis: Floats, entry: float) -> float | None:
+    """The height to which a cycle, or a motion at feed, has retracted the tool straight up right before a rapid.
+
+    A motion at feed is a retract if it ends no lower than the last rapid before it did (``entry``).
+    """
+    if row < 2 or (run.kind[row - 1] == Kind.RAPID and run.programmed[row - 1]):
+        return None
+    tip = run.positions(np.array([row - 2, row - 1])).tip
+    step = tip[1] - tip[0]
+    up = float(step @ axis)
+    height = float(tip[1] @ axis)
+    straight = up > _STILL and float(np.linalg.norm(step - up * axis)) <= _STILL
+    by_cycle = not run.programmed[row - 1]
+    return height if straight and (by_cycle or height >= entry - _STILL) else None
 
 
 def _suspects(context: Context) -> Flags:

@@ -5,9 +5,10 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.low_rapids import low_rapids
+from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
 from trunnion.verification.results import Check, Place
@@ -33,12 +34,12 @@ def check_modal_state(context: Context) -> Check:
     places += _tcp_left_on(context)
     places += _turned_under_tcp(context)
     places += low_rapids(context)
+    places += wide_tolerances(context)
+    places += _without_units(context)
     if len(run) and not any(event.kind == "end" for event in run.events):
         last = max(context.last_line, run.lines[-1])
         places.append(Place(last, -1, 0.0, "the program has no end (M30 or M2) after this"))
-    for event in run.events:
-        if event.kind == "tool_change" and 0 < event.before_row <= len(run) and _spindle_turns(run, event.before_row):
-            places.append(context.place_of_event(event, 0.0, "changes the tool while the spindle turns"))
+    places += _changed_while_turning(context)
     places.sort(key=lambda place: place.nc_line)
     # With a CL file, the check "spindle" has the spindle.
     at_cuts = "feed" if isinstance(context, ComparedContext) else "feed and spindle"
@@ -46,15 +47,26 @@ def check_modal_state(context: Context) -> Check:
     return check_from_places("modal", "modal state", places, good)
 
 
-def _spindle_turns(run: Run, before_row: int) -> bool:
-    """Whether the spindle turns before a tool change at a row, according to the events."""
+def _without_units(context: Context) -> Iterator[Place]:
+    """The first motion, if the program never said before whether its lengths are millimetres or inches."""
+    run = context.run
+    if not len(run) or (run.units_from is not None and run.units_from == 0):
+        return
+    positions = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
+    first = np.flatnonzero((run.programmed[: run.units_from] & positions) != 0)
+    if len(first):
+        yield context.place(int(first[0]), 0.0, "moves before the program says whether it counts in mm or inches")
+
+
+def _changed_while_turning(context: Context) -> Iterator[Place]:
+    """Tool changes while the spindle turns, according to the events up to the row before which they happen."""
+    events = sorted(context.run.events, key=lambda event: event.before_row)  # stable
     turning = False
-    for event in run.events:
-        if event.kind == "spindle" and event.before_row <= before_row:
+    for event in events:
+        if event.kind == "spindle":
             turning = event.value not in (0, 0.0, "off", "oriented", None)
-        if event.kind == "tool_change" and event.before_row == before_row:
-            return turning
-    return turning
+        elif event.kind == "tool_change" and turning and 0 < event.before_row <= len(context.run):
+            yield context.place_of_event(event, 0.0, "changes the tool while the spindle turns")
 
 
 def _without_feed_or_spindle(context: Context) -> list[Place]:

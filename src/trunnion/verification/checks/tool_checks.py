@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from functools import partial
+from typing import Final
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.spindle_and_tool import names_tool
 from trunnion.verification.expected.states import tool_states
 from trunnion.verification.results import Check, Place
+
+#: Half the last digit of what a program adds to a tool, mm.
+_DELTA: Final = 6e-5
 
 
 def check_tool(context: ComparedContext) -> Check:
@@ -35,6 +39,7 @@ def check_tool(context: ComparedContext) -> Check:
         places += _wrong_lengths(context)
     unnumbered = next((state.first for state in states if state.value.is_known), 0)
     places += _foreign_changes(context, asked, unnumbered) if asked else ()
+    places += _foreign_deltas(context)
     good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in asked)) or "the CL file names no tool"
     return check_from_places("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
 
@@ -66,6 +71,17 @@ def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]], unn
             if tool and tool != "0" and not any(names_tool(tool, names) for names in asked):
                 text = f"changes to tool {tool}, which the CL file never asks for"
                 yield context.place_of_event(event, 0.0, text)
+
+
+def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
+    """What the program adds to the length or the radius of a tool, unless the settings ask for it."""
+    for event in context.run.events:
+        if event.kind != "delta" or not isinstance(event.value, tuple):
+            continue
+        name, value = str(event.value[0]), float(event.value[1] or 0.0)
+        if not any(abs(value - wanted) <= _DELTA for wanted in context.settings.tool_deltas.get(name, ())):
+            text = f"{name} adds {value:g} mm to the tool, which nothing asks for"
+            yield context.place_of_event(event, value, text)
 
 
 def tool_fault(has: str, names: tuple[str, ...]) -> str:

@@ -110,12 +110,11 @@ def _turned_without_plane(context: ComparedContext) -> list[Place]:
 
 def _planes_left_on(context: Context, changes: list[_PlaneChange]) -> Iterator[Place]:
     """Tool changes and ends of the program in a plane or with a shifted zero."""
-    order = {id(event): n for n, event in enumerate(context.run.events)}
+    by_event = {id(change.event): change for change in changes}
+    last: _PlaneChange | None = None
     for event in context.run.events:
-        if event.kind not in ("tool_change", "end"):
-            continue
-        last = next((change for change in reversed(changes) if order[id(change.event)] < order[id(event)]), None)
-        if last is not None and (last.on or last.shifted):
+        last = by_event.get(id(event), last)
+        if event.kind in ("tool_change", "end") and last is not None and (last.on or last.shifted):
             what = "changes the tool" if event.kind == "tool_change" else "ends the program"
             state = "in a tilted plane" if last.on else "with a frame on"
             text = f"{what} {state}, which was switched on in line {last.event.line}"

@@ -66,11 +66,12 @@ class _Judge:
     def __init__(self, context: Context) -> None:
         self._context, self._run = context, context.run
         self._machine = context.run.machine
-        self._retracts = np.array([e.before_row for e in self._run.events if e.kind == "retract"], np.int64)
+        self._retracts = np.sort(np.array([e.before_row for e in self._run.events if e.kind == "retract"], np.int64))
         self._along, self._outward = _spindle_slide(self._machine)
         frame = self._run.state.machine_frame.rows_with(True)
         self._frame = frame[~np.isin(frame, self._retracts)]
         self._safe_height = self._height_of_retract()
+        self._homes = self._rows_home()
         self._part: SweptPart | None = None
         self._part_is_known = False
 
@@ -80,11 +81,12 @@ class _Judge:
         positioning = _positioning_rows(run)
         rows = positioning[positioning > 0]
         rows = rows[turn_flags(run, rows)]
-        every = set(positioning.tolist())
-        for row in rows.tolist():
+        before_of: dict[int, int] = {}  # the last row before each that does more, or leads home
+        for row in positioning.tolist():
             before = row - 1
-            while before in every and not self._is_home(before):
-                before -= 1
+            before_of[row] = before if self._is_home(before) else before_of.get(before, before)
+        for row in rows.tolist():
+            before = before_of[row]
             if before < 0:
                 continue  # from where the program starts, which is home
             if self._is_retracted(before, row):
@@ -99,13 +101,19 @@ class _Judge:
     def _is_retracted(self, before: int, row: int) -> bool:
         """Whether a word has retracted the tool between two rows; if that word is a motion, it is ``before``."""
         first = before if self._run.state.machine_frame[before] else before + 1
-        return bool(((self._retracts >= first) & (self._retracts <= row)).any())
+        begin, end = np.searchsorted(self._retracts, (first, row + 1))
+        return bool(end > begin)
 
     def _is_home(self, row: int) -> bool:
         """Whether a row leads to the height to which this program retracts, or above, in machine coordinates."""
-        if not self._run.state.machine_frame[row] or self._safe_height is None:
-            return False
-        return float(self._height(np.array([row]))[0]) >= self._safe_height - HOME_TOLERANCE
+        return row in self._homes
+
+    def _rows_home(self) -> set[int]:
+        """Return the rows in machine coordinates that lead to that height or above."""
+        rows = self._run.state.machine_frame.rows_with(True)
+        if self._safe_height is None or not len(rows):
+            return set()
+        return set(rows[self._height(rows) >= self._safe_height - HOME_TOLERANCE].tolist())
 
     def _height_of_retract(self) -> float | None:
         """The height of home, along the spindle; the highest machine position of a program that never goes there."""

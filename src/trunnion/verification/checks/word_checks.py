@@ -39,18 +39,22 @@ def _compared_errors(
     """
     inserted = expected.insert_texts
     if errors and inserted:
-        errors = [error for error in errors if not _is_inserted(error, inserted)]
+        lines = {file: _lines_of(file) for file in {error.file for error in errors}}
+        errors = [error for error in errors if not _is_inserted(error, lines[error.file], inserted)]
     foreign = ("G96",) if expected.uses_compensation else ("G96", "G41", "G42")
     return errors + [each for each in diagnostics if each not in errors and each.text.startswith(foreign)]
 
 
-def _is_inserted(diagnostic: Diagnostic, texts: set[str]) -> bool:
-    """Whether the block is a text that the CL file inserts; its block number may precede it."""
+def _lines_of(file: str) -> list[str]:
     try:
-        lines = Path(diagnostic.file).read_text(encoding="utf-8", errors="replace").splitlines()
+        return Path(file).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError as error:
         what = f"cannot be read again: {error.strerror}"
-        raise InputError(Problem(diagnostic.file, 0, what, "keep the program until it has been verified")) from error
+        raise InputError(Problem(file, 0, what, "keep the program until it has been verified")) from error
+
+
+def _is_inserted(diagnostic: Diagnostic, lines: Sequence[str], texts: set[str]) -> bool:
+    """Whether the block is a text that the CL file inserts; its block number may precede it."""
     if not 0 < diagnostic.line <= len(lines):
         return False
     line = lines[diagnostic.line - 1].lstrip("/").strip()

@@ -3,19 +3,25 @@
 from collections.abc import Iterator
 from typing import Final
 
+import numpy as np
+
 from trunnion.model.run import Run, offset_name
+from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import CHUNK, RowRanges, chunk_bounds
 
-_TITLE: Final = "one work offset throughout"
+_TITLE: Final = "work offsets"
 
 
 def check_work_offset(context: Context) -> Check:
-    """The work offset of the settings wherever the tool works, or the same one throughout if they name none.
+    """With a CL file the work offset of the settings wherever the tool works, or the same one if they name none.
 
-    Without a CL file, rows with no work offset and TCP off may lead to or from the work.
+    Without a CL file, rows with no work offset and TCP off may lead to or from the work. A program of which nothing is
+    known may use several, one after the other: it must not change them in a cut, nor work without one.
     """
+    if not isinstance(context, ComparedContext) and context.settings.work_offset is None:
+        return _check_changes(context, _workpiece_frame_rows(context.run))
     stretches = list(_stretches(context))
     if not stretches:
         return Check("offset", _TITLE, True, "nothing moves")
@@ -45,13 +51,39 @@ def check_work_offset(context: Context) -> Check:
     return check_from_places("offset", _TITLE, places, good, count or None)
 
 
+def _check_changes(context: Context, rows: RowRanges) -> Check:
+    """The work offsets that a program chooses by itself."""
+    run = context.run
+    if not len(rows):
+        return Check("offset", _TITLE, True, "nothing moves")
+    used = run.state.work_offset
+    codes: list[int] = []
+    places: list[Place] = []
+    last = -1
+    for start in range(0, len(rows), CHUNK):
+        part = rows.rows(start, start + CHUNK)
+        here = used.at(part)
+        for k in np.flatnonzero(np.diff(here, prepend=last)).tolist():
+            row, code = int(part[k]), int(here[k])
+            if codes and codes[-1] and run.kind[row] != Kind.RAPID:
+                what = f"changes from {_name(codes[-1])} to {_name(code)} in a cut"
+                places.append(context.place(row, 0.0, f"{what}: go there at rapid first"))
+            elif code == 0 and run.state.tcp[row] and used.distinct().any():
+                places.append(context.place(row, 0.0, "works in no work offset"))
+            codes.append(code)
+        last = int(here[-1])
+    names = list(dict.fromkeys(_name(code) for code in codes if code)) or [_name(0)]
+    good = f"{names[0]} throughout" if len(names) == 1 else f"{', then '.join(names)}, each as the program chooses"
+    return check_from_places("offset", _TITLE, places, good)
+
+
 def _stretches(context: Context) -> Iterator[tuple[RowRanges, int]]:
     """Rows with the work offset that they should have: those of each operation, or all without CL files."""
     used = context.run.state.work_offset
     if not isinstance(context, ComparedContext):
         rows, should = _workpiece_frame_rows(context.run), context.settings.work_offset
-        if len(rows):
-            yield rows, used[rows[-1]] if should is None else should
+        if len(rows) and should is not None:
+            yield rows, should
         return
     matching = context.matching
     if not len(matching.nc):

@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Ints
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.row_ranges import chunk_bounds
 
 #: Words that position the tip or the tool axis.
 POSITION_WORDS = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.VECTOR
@@ -62,18 +63,18 @@ def approach_rows(run: Run) -> Ints:
     The tool was retracted before, or comes from a machine position. How high it is then is not known where the
     machine's travel is not known.
     """
-    found = []
     starts = {event.before_row for event in run.events if event.kind == "retract"}
     starts.update(row for row in run.state.machine_frame.rows_changing_to(False) if row > 0)
-    for start in sorted(starts):
-        row = start
-        while row + 1 < len(run) and (
-            run.state.machine_frame[row] or not int(run.programmed[row]) & int(POSITION_WORDS)
-        ):
-            row += 1
+    positions = (run.programmed & int(POSITION_WORDS)) != 0
+    for first, end in chunk_bounds(len(run)):
+        positions[first:end] &= ~run.state.machine_frame.part(first, end)
+    rows = np.flatnonzero(positions)
+    at = np.searchsorted(rows, sorted(starts))
+    found = []
+    for row in np.unique(rows[at[at < len(rows)]]).tolist():
         if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any() or run.state.tcp[row]:
             continue
         across, along = (int(bits) & int(POSITION_WORDS) for bits in run.programmed[row : row + 2])
         if not across & ~int(ProgrammedWord.X | ProgrammedWord.Y) and along == int(ProgrammedWord.Z):
             found.append(row)
-    return np.unique(np.array(found, np.int64))
+    return np.array(found, np.int64)

@@ -131,7 +131,8 @@ def test_circles_in_the_planes_of_other_tool_axes(run: Runner) -> None:
     found = run(
         "TOOL CALL 1 Y S1\nL X+10 Y+0 Z+0\nCC X+0 Z+0\nC X+0 Z+10 DR-\nTOOL CALL 1 X\nCC Y+5 Z+10\nC Y+10 Z+10 DR+"
     )
-    assert found.diagnostics == ()
+    # The length of the tool would count along them, and the spindle of this machine is along Z.
+    assert [each.line for each in found.errors] == [1, 5]
     # Seen from the tool, Y+: from Z to X is counter-clockwise.
     close(found.arcs.normal, [[0, -1, 0], [1, 0, 0]], atol=1e-12)
     close(found.arcs.centre, [[0, 0, 0], [0, 5, 10]], atol=1e-12)
@@ -182,10 +183,10 @@ def test_tools(run: Runner) -> None:
         "TOOL CALL Z S9000\nL X+3\nTOOL DEF 9 L+80 R+5\nTOOL CALL 0\nL X+4"
     )
     found = run(text)
-    assert found.diagnostics == ()
+    assert [(each.line, each.severity) for each in found.diagnostics] == [(2, Severity.WARNING)] * 2
     assert [found.tools[k] for k in found.tool] == ["5", "D10R05", "D10R05", "0"]
     assert found.rpm.tolist() == [3500, 8000, 9000, 9000]
-    assert [e.value for e in found.events if e.kind == "delta"] == [(0.1, -0.05, None)]
+    assert [e.value for e in found.events if e.kind == "delta"] == [("DL", 0.1), ("DR", -0.05)]
     assert [e.value for e in found.events if e.kind == "tool"] == ["7", "5", "D10R05", "0"]
 
 
@@ -228,7 +229,7 @@ def test_tolerance_and_dwell(run: Runner) -> None:
     found = run(tolerance + "CYCL DEF 9.0 DWELL TIME\nCYCLE DEF 9.1 5")
     assert found.diagnostics == ()
     assert [(e.kind, e.value) for e in found.events] == [
-        ("cycle32", "T0.02"), ("cycle32", "HSC-MODE:0 TA0.5"), ("dwell", 5.0),
+        ("tolerance", 0.02), ("cycle32", "T0.02"), ("cycle32", "HSC-MODE:0 TA0.5"), ("dwell", 5.0),
     ]  # fmt: skip
 
 

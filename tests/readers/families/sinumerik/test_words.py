@@ -349,7 +349,14 @@ def test_transfer_header_and_words_without_effect(run: Runner) -> None:
         "CYCLE832(0.02,_ORI_ROUGH,0.5)\nCYCLE832()\nG64 ADIS=0.1\nTCARR=0\nM17"
     )
     assert result.diagnostics == ()
-    assert result.events[1].value == (0.02, "_ORI_ROUGH", 0.5)
+    assert [e.value for e in result.events if e.kind == "cycle832"] == [(0.02, "_ORI_ROUGH", 0.5), ()]
+    assert [e.value for e in result.events if e.kind == "tolerance"] == [0.01, 0.2, 0.02, 0.0, 0.1]
+
+
+def test_what_is_added_to_the_tool_is_named(run: Runner) -> None:
+    result = run("TOFFL=-5\nG0 X1\nTOFF[Z]=0\nTOFFR=.5")
+    assert [(e.line, e.severity) for e in result.diagnostics] == [(1, Severity.WARNING), (4, Severity.WARNING)]
+    assert [e.value for e in result.events] == [("TOFFL", -5.0), ("TOFFR", 0.5)]
 
 
 def test_a_limit_of_the_spindle_is_no_programmed_speed(run: Runner) -> None:

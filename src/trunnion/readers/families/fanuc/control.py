@@ -42,6 +42,7 @@ class FanucControl(Rs274Control):
         self.local = np.zeros(3)
         self.rotation = AffineMap()
         self.vectors = False
+        self.count_in(settings.unit)
         # Of two axes in one table or one head the one that carries the other decides, on mixed machines the table.
         self.deciding_axis = 1 if all(machine.axes[k].mount is Mount.PART for k in machine.rotary) else 0
 
@@ -52,8 +53,10 @@ class FanucControl(Rs274Control):
     def _make_table(self, whole_feeds: bool, vectors: bool) -> Codes:
         """Return a letter table; ``whole_feeds`` if a whole number after F counts as it is."""
         first, second = self.rotary_names
+        # Rotary words are no plain words where the tool axis is a vector.
+        plain = ("", "") if vectors else (first, second)
         need_point = "" if self.settings.calculator else f"XYZ{first}{second}IJK" + ("" if whole_feeds else "F")
-        return letter_table((first, second), gaps=True, need_point=need_point, vector="IJK" if vectors else "")
+        return letter_table(plain, gaps=True, need_point=need_point, vector="IJK" if vectors else "")
 
     @property
     def letter_table(self) -> Codes:
@@ -105,10 +108,15 @@ class FanucControl(Rs274Control):
         self.rotation = AffineMap()
         self.set_plane(AffineMap(linear, self._shift + origin))
         self.add_event("tilt", "G68.2")
+        if np.allclose(linear[:, 2], (0.0, 0.0, 1.0), rtol=0.0, atol=1e-9):
+            self.preconditions.meet("G53.1")
+        else:
+            self.preconditions.require("G53.1", "moves in the plane of G68.2 before G53.1 has turned the tool to it")
 
     def cancel_rotation(self) -> None:
         """G69: cancel rotations and the tilted plane."""
         self.rotation = AffineMap()
+        self.preconditions.meet("G53.1")
         if self.tilted:
             self.set_plane(None)
             self.add_event("tilt", "")
@@ -119,6 +127,7 @@ class FanucControl(Rs274Control):
         if not self.tilted:
             self.note("G53.1 without a plane of G68.2: it is not executed", Severity.ERROR)
             return
+        self.preconditions.meet("G53.1")
         self.resolve_rows()
         pairs = tool_orientation.solutions(self.machine, self.frame.linear[:, 2], self.current_joints)
         inside = [

@@ -158,7 +158,7 @@ class FanucInterpreter(CycleInterpreter):
             control.set_tcp(False)
             control.set_length(code != words.LENGTH_OFF)
             if code == 440:
-                self._note("G44: taken as G43, the length with the other sign is not simulated", Severity.WARNING)
+                self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR)
         elif code == words.ROTATION_OFF:
             control.cancel_rotation()
         elif code in (980, 990):
@@ -218,6 +218,8 @@ class FanucInterpreter(CycleInterpreter):
         control = self.control
         axes = self._axis_words(block)
         vector = self._vector(block) if control.vectors and self.motion_code in (0, 10) else None
+        if control.vectors and axes.keys() & set(control.rotary_names) and words.MACHINE not in block.g:
+            self._note("rotary words under G43.5, which takes I J K: an alarm (PS5421)", Severity.ERROR)
         if self.motion_code in cycles.CYCLES:
             self._cycle(block, axes)
             if axes:

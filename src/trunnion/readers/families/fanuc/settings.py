@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.machines import Machine
-from trunnion.readers.program.settings import reading_of
+from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number
 
 #: Letters whose whole numbers count in least increments: lengths, and angles.
@@ -22,11 +22,13 @@ class Settings:
     """The settings of a control.
 
     calculator   numbers without a point are millimetres, inches and degrees, not least increments
+    unit         mm or inch, as long as a program states none; empty: not known
     increment    the least increment, mm and degrees; a tenth of it for inches
     """
 
     calculator: bool = False
     increment: float = 0.001
+    unit: str = ""
 
     def length(self, inches: bool) -> float:
         """Return the unit of whole numbers that are lengths, in mm or inches."""
@@ -71,6 +73,7 @@ def settings_of(machine: Machine) -> Settings:
     table = reading_of(machine)
     numbers = table.text("whole_numbers", "increments", one_of=("increments", "calculator"))
     increment = table.number("least_increment_mm", 0.001, above=0.0)
+    unit = unit_of(table)
     table.report_unread_keys()
     table.raise_problems()
-    return Settings(numbers == "calculator", increment)
+    return Settings(numbers == "calculator", increment, unit)

@@ -1,7 +1,7 @@
 """Targets of jumps and calls in a Fanuc program: O numbers, block numbers and loops."""
 
 import re
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -25,9 +25,10 @@ _LOOP = re.compile(
 
 @dataclass(slots=True)
 class _JumpTargets:
-    """Lines of O numbers, of block numbers, and of the counterparts of DO and END; each found on first use."""
+    """Lines of O numbers, also in order, of block numbers, and of the other ends of DO and END; found on first use."""
 
     programs: dict[int, int] | None = None
+    begins: list[int] | None = None
     numbers: dict[int, list[int]] | None = None
     loops: dict[int, int] | None = None
 
@@ -54,7 +55,9 @@ class FanucText(SourceText):
 
     def _program_lines(self, line: int) -> tuple[int, int]:
         """Return the first line of the O program of a line, and the line after its last."""
-        begins = sorted(self._programs().values())
+        begins = self._jump_targets.begins
+        if begins is None:
+            begins = self._jump_targets.begins = sorted(self._programs().values())
         at = bisect_right(begins, line)
         return begins[at - 1] if at else 1, begins[at] if at < len(begins) else self.lines + 1
 
@@ -66,8 +69,11 @@ class FanucText(SourceText):
                 numbers.setdefault(int(match.group(1)), []).append(self.line_of(match.start(1)))
             self._jump_targets.numbers = numbers
         first, end = self._program_lines(here)
-        lines = [line for line in self._jump_targets.numbers.get(number, []) if first <= line < end]
-        return next((line for line in lines if line > here), lines[0] if lines else None)
+        lines = self._jump_targets.numbers.get(number, [])
+        for at in (bisect_right(lines, here), bisect_left(lines, first)):
+            if at < len(lines) and first <= lines[at] < end:
+                return lines[at]
+        return None
 
     def partner(self, line: int) -> int:
         """Return the line of the END of a DO, or of the DO of an END."""

@@ -11,18 +11,19 @@ from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
-from trunnion.readers.program.settings import reading_of
+from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.scan.letter_blocks import letter_table
 
 
-def feed_path_of(machine: Machine) -> FeedPath:
-    """Return what F refers to where rotary axes turn without TCP: a setting of the definition, slides by default."""
+def settings_of(machine: Machine) -> tuple[FeedPath, str]:
+    """Return what F refers to where rotary axes turn without TCP, slides by default; and the unit, as ``unit_of``."""
     table = reading_of(machine)
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
+    unit = unit_of(table)
     table.report_unread_keys()
     table.raise_problems()
-    return FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES
+    return FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit
 
 
 class FidiaControl(Rs274Control):
@@ -33,11 +34,19 @@ class FidiaControl(Rs274Control):
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
-        self.modal.feed_path.set(0, int(feed_path_of(machine)))
+        feed_path, unit = settings_of(machine)
+        self.modal.feed_path.set(0, int(feed_path))
+        self.count_in(unit)
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """Always (unconfirmed), except for axes whose output has all turns."""
         return axis.output is not AngleOutput.NONE
+
+    def change_tool(self) -> None:
+        """Change to the selected tool, whose length counts from the next G55 on."""
+        super().change_tool()
+        if self.tool_in_spindle.strip("0"):
+            self.preconditions.require("G55", "moves with another tool before G55 has taken up its length")
 
     def take_plane(self) -> None:
         """G154: the plane normal to the tool as it stands, about the zero of the work offset."""

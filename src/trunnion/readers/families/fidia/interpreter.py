@@ -122,6 +122,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
                 raise BlockError("G55 needs O from 1 to 99")
             control.set_offset(ORIGIN_OFFSET_BASE + int(number), f"G55 O{number:g}")
             control.set_length(True)
+            control.preconditions.meet("G55")
         elif code == words.TAKE_PLANE:
             control.take_plane()
         elif code == words.NO_PLANE:

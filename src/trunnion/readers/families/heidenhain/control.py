@@ -1,6 +1,6 @@
 """The virtual control of a TNC."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.axis_word import NO_ROTARY, AxisWord, RotaryTarget
-from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.control.virtual_control import Circle
 from trunnion.readers.families.heidenhain.plane_control import PlaneControl
@@ -126,8 +125,6 @@ class HeidenhainControl(PlaneControl):
 
         In a tilted plane without TCP a rotary axis turns alone, and the programmed positions turn with it.
         """
-        if not machine_frame:
-            self.report_datum_in_doubt()
         if self.spatial_angles_active and vector is None and not machine_frame and axes.keys() & {"A", "B", "C"}:
             vector = self._vector_of_angles(axes)
             axes = {name: word for name, word in axes.items() if name not in ("A", "B", "C")}
@@ -138,11 +135,6 @@ class HeidenhainControl(PlaneControl):
         if circle is not None:
             self.note("rotary axes turn during a circle of a tilted plane: taken as a straight line", Severity.ERROR)
         self._turn_in_plane(axes, int(ProgrammedWord.FEED) if feed_written else 0)
-
-    def drill(self, motions: Sequence[HoleMotion]) -> None:
-        """Execute the motions of a drilling cycle; see ``VirtualControl.drill``."""
-        self.report_datum_in_doubt()
-        super().drill(motions)
 
     def _vector_of_angles(self, axes: Mapping[str, AxisWord]) -> Floats:
         for axis, name in enumerate("ABC"):
@@ -162,6 +154,7 @@ class HeidenhainControl(PlaneControl):
         rotary = self.rotary_target(axes)
         slides: Floats | None = self.current_joints[self._slides].copy()
         if bits & int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z):
+            self.preconditions.report_motion()
             joints = self._joints_after(rotary)
             reachable = not np.abs(goal).max() > MAX_POSITION
             slides = self._slides_for(self._mapped(goal), joints) if reachable else None

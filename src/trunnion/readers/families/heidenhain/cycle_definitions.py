@@ -124,6 +124,7 @@ class Definitions:
             case 19:
                 self._tilt(words(rest), parameters)
             case 32:
+                self._tolerance(line, words(rest), parameters)
                 control.add_event("cycle32", rest)
             case _:
                 self._note(f"a line of cycle {number}, which is unknown", Severity.ERROR)
@@ -186,6 +187,13 @@ class Definitions:
             self._control.datum, scale=(scale[0], scale[1], scale[2]), centre=(centre[0], centre[1], centre[2])
         )
         self._control.set_datum(datum, {plane_datums.SCALE})
+
+    def _tolerance(self, line: int, block_words: list[Word], parameters: Parameters) -> None:
+        """Cycle 32: the tolerance T of its first line; without one the machine's own holds again."""
+        if line == 1:
+            operands = [word.operand for word in block_words if word.name == "T" and word.operand is not None]
+            tolerance = value_of(operands[0], parameters) if operands else 0.0
+            self._control.add_tolerance(tolerance * self._control.length_unit)
 
     def _tilt(self, block_words: list[Word], parameters: Parameters) -> None:
         """Cycle 19: tilt by spatial angles, without a motion; that the angles are spatial ones is unconfirmed."""

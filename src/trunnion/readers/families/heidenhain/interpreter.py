@@ -54,6 +54,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         self._tool_feed: float | None = None
         # The lines so far of a block that continues over several lines, and its first line and number.
         self._block_parts: list[str] = []
+        self._block_length = 0
         self._block_start = 0, -1
         # The first corner of the stock (BLK FORM 0.1).
         self._stock_corner: dict[str, float] = {}
@@ -81,10 +82,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        control = self.control
-        if self._block_parts or self._m_functions.modal_call or control.modal.compensation.current:
-            return False
-        if control.is_datum_in_doubt:
+        if self._block_parts or self._m_functions.modal_call or self.control.modal.compensation.current:
             return False
         beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH]
         return _PLAIN_START.match(beginning.tobytes()) is not None
@@ -111,12 +109,14 @@ class HeidenhainInterpreter(FlowInterpreter):
             parts = Line(parts.number, True, "", parts.comment, False)
         if not self._block_parts:
             self._block_start = line, parts.number
+            self._block_length = 0
         if parts.statement:
             self._block_parts.append(parts.statement)
+            self._block_length += len(parts.statement)
         try:
             if not (parts.continues and self._block_parts):
                 self._finish_block(active)
-            elif sum(map(len, self._block_parts)) > MAX_LENGTH:
+            elif self._block_length > MAX_LENGTH:
                 self._block_parts.clear()
                 self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
         finally:
@@ -181,7 +181,7 @@ class HeidenhainInterpreter(FlowInterpreter):
             raise KlartextError("BEGIN needs PGM")
         unit = rest.split()[-1]
         if unit not in ("MM", "INCH"):
-            self._note("BEGIN PGM without MM or INCH: taken as millimetres", Severity.WARNING)
+            self._note("BEGIN PGM without MM or INCH", Severity.ERROR)
         self.control.set_units(unit == "INCH", False)
         self.control.feed_unit = _TENTH if unit == "INCH" else 1.0
 

@@ -36,6 +36,9 @@ from trunnion.readers.program.interpreter import ProgramEnd
 #: M functions that are executed elsewhere, or that the path does not depend on.
 _HANDLED_ELSEWHERE: Final = frozenset({M_MACHINE, M_SECOND_MACHINE, M_CALL, *M_EVENTS, *M_WITHOUT_PATH_EFFECT})
 
+#: The axis of the spindle has at least this component of its direction.
+_ALONG: Final = 0.9
+
 _TOOL = re.compile(
     r"[ \t]*(?P<kind>CALL|DEF)[ \t]*"
     r'(?:"(?P<name>[^"]*)"|(?P<number>[0-9]+(?:[.,][0-9]+)?)|(?P<parameter>Q[LR]?[0-9]{1,4}))?(?![0-9.,])'
@@ -129,13 +132,17 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     feed = values.get("F")
     if feed is not None and not 0.0 <= feed <= MAX_FEED:
         raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}")
-    control.call_tool(name, "XYZ".index(tool_axes[-1]) if tool_axes else None)
+    along = "XYZ".index(tool_axes[-1]) if tool_axes else None
+    if along is not None and abs(control.machine.spindle_direction[along]) < _ALONG:
+        text = f"TOOL CALL with {tool_axes[-1]}: the length of the tool does not count along the spindle"
+        control.note(text, Severity.ERROR)
+    control.call_tool(name, along)
     if "S" in values:
         control.modal.rpm.set(control.row, abs(values["S"]))
         control.add_event("speed", abs(values["S"]))
-    deltas = tuple(values.get(key) for key in ("DL", "DR", "DR2"))
-    if any(deltas):
-        control.add_event("delta", deltas)
+    for key in ("DL", "DR", "DR2"):
+        if values.get(key):
+            control.add_tool_delta(key, values[key] * control.length_unit)
     if feed is None:
         return None
     control.programmed_feed = feed * control.feed_unit

@@ -51,7 +51,6 @@ class PlaneControl(VirtualControl):
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self._datums = PlaneDatums()
-        self._doubt_reported = False
 
     # Datum shift, mirror, rotation, scale
 
@@ -74,25 +73,18 @@ class PlaneControl(VirtualControl):
             self._datums.set_in_plane(datum, parts)
         else:
             self._datums.set_base(datum, frozenset() if incremental else parts)
+        self._require_settled_datum()
 
-    @property
-    def is_datum_in_doubt(self) -> bool:
-        """The datum is unsettled, and no motion has reported it."""
-        if not self._datums.unsettled:
-            self._doubt_reported = False
-        return bool(self._datums.unsettled) and not self._doubt_reported
-
-    def report_datum_in_doubt(self) -> None:
-        """Report, once, that a motion depends on a datum that is unsettled."""
-        if self.is_datum_in_doubt:
-            parts = ", ".join(sorted(self._datums.unsettled))
-            what = f"which {parts} counts here is unconfirmed: it was set before the tilted plane and again in it"
-            if not self.tilted:
-                what = f"whether the {parts} of the tilted plane ends with it is unconfirmed"
-            self.note(
-                f"{what}; reset what is set in a plane before it ends, and set it anew without one", Severity.ERROR
-            )
-            self._doubt_reported = True
+    def _require_settled_datum(self) -> None:
+        """Let no motion depend on a datum that is unsettled."""
+        parts = ", ".join(sorted(self._datums.unsettled))
+        if not parts:
+            self.preconditions.meet("datum")
+            return
+        what = f"which {parts} counts here is unconfirmed: set before the tilted plane and again in it"
+        if not self.tilted:
+            what = f"whether the {parts} of the tilted plane ends with it is unconfirmed"
+        self.preconditions.require("datum", f"{what}; reset in the plane what is set in it, before the plane ends")
 
     # Planes
 
@@ -129,6 +121,7 @@ class PlaneControl(VirtualControl):
         if self.tilted:
             self._datums.leave_plane()
             self.set_plane(None, self._base_frame)
+            self._require_settled_datum()
 
     @property
     def _base_frame(self) -> AffineMap:
@@ -138,6 +131,7 @@ class PlaneControl(VirtualControl):
     def _enter_plane(self, plane: AffineMap, *, on_top: bool = False) -> None:
         self._datums.enter_plane(on_top=on_top)
         self.set_plane(plane)
+        self._require_settled_datum()
 
     def _rotary_solution(self, normal: Floats, positioning: Positioning) -> tuple[float, float] | None:
         """Return the rotary position with the tool normal to a plane that the block selects."""

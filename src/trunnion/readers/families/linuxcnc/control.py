@@ -12,6 +12,7 @@ from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.scan.letter_blocks import letter_table
 
@@ -51,6 +52,11 @@ class LinuxcncControl(Rs274Control):
         self._offset_values: dict[int, Offset] = {}
         self.axis_offset = np.zeros(6)
         self.axis_offset_active = False
+        table = reading_of(machine)
+        unit = unit_of(table)
+        table.report_unread_keys()
+        table.raise_problems()
+        self.count_in(unit)
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """Never: rotary axes take the number as it is."""

@@ -16,7 +16,7 @@ from trunnion.readers.families.linuxcnc.offsets_and_frames import SPECIAL, TAKIN
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC
 from trunnion.readers.families.linuxcnc.text import LinuxcncText
 from trunnion.readers.program.source_text import SourceText
-from trunnion.readers.rs274.block import Block, block_reader, read_block
+from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
 
@@ -155,12 +155,20 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     def _g_code(self, code: int, block: Block) -> None:
         control = self.control
+        if code in words.ADDED_LENGTHS:
+            self._added_length(code, block)
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in words.OFFSETS:
             control.system = words.OFFSETS.index(code) + 1
             control.set_offset(_offset_code(control.system), f"G{code / 10:g}")
             control.update_frame()
+        elif code == words.CONTINUOUS:
+            tolerance = block.take("P")
+            block.take("Q")
+            control.add_tolerance(np.inf if tolerance is None else tolerance * control.length_unit)
+        elif code in (610, 611):
+            control.add_tolerance(0.0)
         elif code in (980, 990):
             self._to_initial = code == 980
         elif code in words.LENGTHS:
@@ -178,6 +186,15 @@ class LinuxcncInterpreter(CycleInterpreter):
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
         elif not self._modal_g_code(code):
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
+
+    def _added_length(self, code: int, block: Block) -> None:
+        """G43.1 and G43.2: what they add to the length of the tool, which the path does not show."""
+        name = g_code_text(code)
+        for letter in "XYZ":
+            if value := block.take(letter):
+                self.control.add_tool_delta(f"{name} {letter}", value * self.control.length_unit)
+        if block.take("H"):
+            self._note(f"{name} H: the length of another tool is not simulated", Severity.ERROR)
 
     def _length_number(self, block: Block) -> int:
         """Return which length G43 takes: that of H, or of the tool in the spindle; 0 if its number is unknown."""

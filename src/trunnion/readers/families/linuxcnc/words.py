@@ -7,6 +7,12 @@ OFFSETS: Final = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 
 MACHINE: Final = 530
 
+#: G codes that add to the tool length.
+ADDED_LENGTHS: Final = frozenset({431, 432})
+
+#: Continuous path, within the tolerance P.
+CONTINUOUS: Final = 640
+
 #: G codes of the tool length: whether it counts.
 LENGTHS: Final = {430: True, 490: False}
 
@@ -63,7 +69,6 @@ WORDS_OF_CODE: Final = {
     411: "DL",
     420: "D",
     421: "DL",
-    640: "PQ",
     960: "DS",
     330: "K",
     50: "XYIJPQ",

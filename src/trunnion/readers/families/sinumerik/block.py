@@ -20,6 +20,8 @@ from trunnion.readers.families.sinumerik.words import (
     NOT_SIMULATED,
     ORIENTATION,
     POSITION_MODES,
+    TOLERANCES,
+    TOOL_DELTAS,
     TOOL_FRAMES,
     TYPES,
     WITHOUT_PATH_EFFECT,
@@ -61,6 +63,8 @@ class Block:
     vector   A3, B3, C3 by letter
     params   I, J, K, I1, J1, K1, CR, AR, TURN, RPL
     words    words without a value
+    tolerances  within which the control may round off the path
+    deltas   what the program adds to length and radius of the tool, other than 0
     """
 
     axes: dict[str, AxisWord] = field(default_factory=dict)
@@ -76,6 +80,8 @@ class Block:
     tool: str | None = None
     edge: int | None = None
     traori: float = 1.0
+    deltas: dict[str, float] = field(default_factory=dict)
+    tolerances: list[float] = field(default_factory=list)
 
     @property
     def tool_axis(self) -> Floats | None:
@@ -251,7 +257,7 @@ class BlockReader:
             if follows == "[":
                 _skip(reader, "[", "]")
             if reader.accept("="):
-                self._value(reader)
+                self._without_path_effect(block, name, self._value(reader)[0])
         elif name == "SPOS" and follows in ("=", "["):
             if follows == "[":
                 _skip(reader, "[", "]")
@@ -277,6 +283,14 @@ class BlockReader:
             raise ExpressionError(f"{name} needs a value")
         else:
             block.calls.append(read_call(reader, name))
+
+    @staticmethod
+    def _without_path_effect(block: Block, name: str, value: Value) -> None:
+        """Keep values of words that leave the programmed path as it is, and still move the tool elsewhere."""
+        if name in TOOL_DELTAS and value:
+            block.deltas[name] = _number(value)
+        elif name in TOLERANCES:
+            block.tolerances.append(_number(value))
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read and report a word that is not simulated, with everything that belongs to it."""

@@ -38,6 +38,7 @@ class SinumerikControl(VirtualControl):
     """
 
     no_offset = NO_OFFSET
+    knows_units = True
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         self._machine_vectors = False
@@ -223,6 +224,9 @@ class SinumerikControl(VirtualControl):
             return None
         chosen = sorted(pairs, key=lambda pair: pair[1], reverse=direction > 0)[0]
         if chosen not in inside:
-            self.note("CYCLE800: the solution asked for is outside the travel, the other is taken", Severity.WARNING)
+            self.note("CYCLE800: the solution that _DIR asks for is outside the travel", Severity.ERROR)
             chosen = inside[0]
-        return tool_orientation.nearest_in_travel(self.machine, chosen, self.current_joints)
+        target = tool_orientation.nearest_in_travel(self.machine, chosen, self.current_joints)
+        if tool_orientation.is_other_solution(self.machine, target, self.current_joints, normal):
+            self.note("CYCLE800 turns the tool, which stands on the plane, to the other solution", Severity.ERROR)
+        return target

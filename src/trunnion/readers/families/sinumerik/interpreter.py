@@ -182,6 +182,10 @@ class SinumerikInterpreter(CallInterpreter):
             control.select_tool(block.tool)
         if block.edge is not None:
             control.set_edge(block.edge)
+        for tolerance in block.tolerances:
+            control.add_tolerance(tolerance * control.length_unit)
+        for name, delta in block.deltas.items():
+            control.add_tool_delta(name, delta * control.length_unit)
 
     def _execute_motion(self, block: Block) -> bool:
         """Execute the frame statement or the motion of a block; returns whether it was a motion."""
@@ -326,6 +330,8 @@ class SinumerikInterpreter(CallInterpreter):
                 for text, value in zip(call.argument_texts, call.arguments, strict=True)
             )
             control.add_event("cycle832", values)
+            first = call.arguments[0] if call.arguments else None
+            control.add_tolerance(first * control.length_unit if isinstance(first, float) else 0.0)
         elif name == "CYCLE800":
             swivel(control, call)
         elif name == "MSG":

@@ -128,6 +128,12 @@ WITHOUT_PATH_EFFECT_VALUES: Final = _words("""
     TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA SPCON DITS DITE FZ SVC
     """)
 
+#: Those within which the control may round off the path, mm.
+TOLERANCES: Final = frozenset({"ADIS", "CTOL", "ATOL"})
+
+#: Those that add to the length or the radius of the tool.
+TOOL_DELTAS: Final = frozenset({"TOFFL", "TOFFR", "TOFF", "TOFFLR"})
+
 #: Words with arguments that the path does not depend on.
 WITHOUT_PATH_EFFECT_CALLS: Final = _words("""
     FGROUP WORKPIECE EXTERN SOFTA BRISKA DRIVEA FIFOCTRL SPCOF GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS

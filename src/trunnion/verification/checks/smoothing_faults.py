@@ -1,0 +1,44 @@
+"""Tolerances within which the control may round off the path (CYCLE832, cycle 32, G64 P), against those of the CAM."""
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from trunnion.verification.context import ComparedContext, Context
+from trunnion.verification.results import Place
+
+#: Nothing is cut within a wider tolerance, mm.
+WIDEST: Final = 0.5
+
+#: With a CL file: so many times INTOL and OUTTOL together, or this much, mm.
+CAM_TOLERANCES: Final = 3.0
+LEAST: Final = 0.05
+
+
+def wide_tolerances(context: Context) -> Iterator[Place]:
+    """Places that let the control leave the path farther than the work can want."""
+    for event in context.run.events:
+        if event.kind != "tolerance" or not isinstance(event.value, float):
+            continue
+        limit = _limit(context, event.before_row)
+        if math.isinf(event.value) and not isinstance(context, ComparedContext):
+            continue  # a program's own choice, which nothing contradicts
+        if event.value > limit:
+            what = "without a limit" if math.isinf(event.value) else f"by {event.value:g} mm"
+            text = f"lets the control round off the path {what}; the work wants at most {limit:g} mm"
+            yield context.place_of_event(event, event.value, text)
+
+
+def _limit(context: Context, row: int) -> float:
+    """The widest tolerance for the motions from a row on, mm."""
+    if not isinstance(context, ComparedContext):
+        return WIDEST
+    asked = context.settings.smoothing or 0.0
+    matching = context.matching
+    k = matching.nc.count_before(row)
+    if k >= len(matching.nc):
+        return max(WIDEST, asked)
+    operation = context.expected.section_at(matching.cl[k]).operation
+    if operation.intol is None or operation.outtol is None:
+        return max(WIDEST, asked)
+    return max(CAM_TOLERANCES * (operation.intol + operation.outtol), LEAST, asked)

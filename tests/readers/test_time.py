@@ -1,0 +1,61 @@
+"""Programs that never end, or that are made to take long, end by a limit: counted in blocks, not in seconds."""
+
+from pathlib import Path
+
+import pytest
+
+from trunnion.errors import InputError
+from trunnion.machines import load_machine
+from trunnion.readers import run_program
+from trunnion.readers.program.options import DEFAULT_STEP_LIMIT
+
+KLARTEXT = "0 BEGIN PGM A MM\n"
+FANUC = "%\nO1\nG21 G90 G94 F100.\n"
+
+#: Machine and text of programs that go on without end.
+ENDLESS = {
+    "loop": ("yl569", "LOOP\nG0 X1\nENDLOOP\n"),
+    "while": ("yl569", "WHILE 1==1\nR1=R1+SIN(R1)\nENDWHILE\n"),
+    "goto": ("yl569", "MARK:\nG0 X1\nGOTOB MARK\n"),
+    "for in for": ("yl569", "FOR R1=1 TO 1000000\nFOR R2=1 TO 1000000\nX1\nENDFOR\nENDFOR\n"),
+    "messages": ("yl569", 'LOOP\nMSG("' + 300 * "A" + '")\nENDLOOP\n'),
+    "swivel": ("yl569", 'LOOP\nCYCLE800(0,"",0,57,0,0,0,10,20,30,0,0,0,0,0,1)\nX1\nENDLOOP\n'),
+    "frames": ("yl569", "LOOP\nAROT X10\nX1 Y2\nENDLOOP\n"),
+    "transformation": ("yl569", "LOOP\nTRAORI\nX1\nTRAFOOF\nX2 B3\nENDLOOP\n"),
+    "labels": ("dmu65", KLARTEXT + "LBL 1\nL IX+0.001 FMAX\nCALL LBL 1 REP 65534\nCALL LBL 1 REP 65534\n"),
+    "labels in labels": (
+        "dmu65",
+        KLARTEXT
+        + "CALL LBL 1\nM30\n"
+        + "".join(f"LBL {k}\n" + 2 * f"CALL LBL {k + 1}\n" + "LBL 0\n" for k in range(1, 19))
+        + "LBL 19\nL X+1 FMAX\nLBL 0\n",
+    ),
+    "planes": (
+        "dmu65",
+        KLARTEXT + "LBL 1\nPLANE SPATIAL SPA-9 SPB+0 SPC+9 TURN FMAX SEQ-\nL X+1\nCALL LBL 1 REP 65534\n",
+    ),
+    "jumps": ("dmu65", KLARTEXT + "LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1\n"),
+    "while of a Fanuc": ("matsuura_mx330", FANUC + "WHILE[1EQ1]DO1\nG1X1.\nEND1\n"),
+    "goto of a Fanuc": ("matsuura_mx330", FANUC + "N1 G1X1.\nGOTO1\n"),
+    "holes of a Fanuc": ("matsuura_mx330", FANUC + "G83 X0. Y0. Z-9. R0. Q.01\n" + 10 * "X1. K9999\n"),
+    "while of LinuxCNC": ("xyzac_trt", "G21 F100\no1 while [1]\nG1 X1\no1 endwhile\n"),
+    "repeat of LinuxCNC": (
+        "xyzac_trt",
+        "G21\no1 repeat [1000000]\no2 repeat [1000000]\nG0 X1\no2 endrepeat\no1 endrepeat\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ENDLESS)
+def test_what_never_ends_is_ended_with_its_line(name: str, tmp_path: Path) -> None:
+    machine, text = ENDLESS[name]
+    path = tmp_path / ("A.H" if machine == "dmu65" else "A.MPF" if machine == "yl569" else "A.NC")
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="does it end") as raised:
+        run_program(path, load_machine(machine))
+    assert all(problem.line > 0 for problem in raised.value.problems)
+
+
+def test_the_limit_is_a_few_seconds_of_blocks() -> None:
+    # An interpreter executes 20,000 to 50,000 blocks a second.
+    assert DEFAULT_STEP_LIMIT <= 50_000

@@ -1,0 +1,143 @@
+"""Faults that a hand makes in a program of each family, one at a time: each is caught, with the block."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from trunnion.cli import main
+
+#: Two tapped holes on a slope, and a ball mill that swings; the second for a control that taps along Z only.
+JOB = """TOOL PATH/HOLES,TOOL,D10
+TLDATA/DRILL,10.0,0.0,75.0,0.0,0.0
+MSYS/0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0,0.0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,1,ADJUST,1
+SPINDL/RPM,500,CLW
+RAPID
+GOTO/0.0,0.0,80.0,{axis}
+RAPID
+GOTO/{above},{axis}
+CYCLE/TAP,RAPTO,5,FEDTO,-12,MMPR,1.5,RTRCTO,5
+GOTO/10.0,5.0,10.0,{axis}
+GOTO/30.0,5.0,10.0,{axis}
+CYCLE/OFF
+RAPID
+GOTO/{back},{axis}
+END-OF-PATH
+TOOL PATH/SWARF,TOOL,D6
+TLDATA/MILL,6.0,3.0,75.0,0.0,0.0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,2,ADJUST,2
+SPINDL/RPM,4000,CLW
+RAPID
+GOTO/0.0,0.0,60.0,0.0,0.5,0.8660254
+FEDRAT/MMPM,500.0
+GOTO/0.0,0.0,10.0
+GOTO/10.0,0.0,10.0,0.0,0.6,0.8
+GOTO/20.0,3.0,10.0,0.1,0.6,0.79372539
+GOTO/20.0,33.0,60.0
+END-OF-PATH
+"""
+TILTED = JOB.format(axis="0.0,0.6,0.8", above="10.0,5.0,30.0", back="30.0,41.0,58.0")
+UPRIGHT = JOB.format(axis="0.0,0.0,1.0", above="10.0,5.0,30.0", back="30.0,5.0,58.0")
+
+JOBS = {
+    "yl569": TILTED,
+    "dmu65": TILTED,
+    "matsuura_mx330": TILTED,
+    "hs664rt": TILTED,
+    "xyzac_trt": UPRIGHT,
+}
+
+#: Machine, what is written, what it becomes (nothing: the block goes), and the check that fails.
+FAULTS = [
+    # Sinumerik
+    ("yl569", "-36.8698976,0.,0.,0,0,0,1,0,1)", "-36.8698976,0.,0.,0,0,0,-1,0,1)", "words"),
+    ("yl569", "CYCLE832(0.01,", "CYCLE832(1,", "modal"),
+    ("yl569", "CYCLE832(_camtolerance,", "CYCLE832(100*_camtolerance,", "modal"),
+    ("yl569", "G1 Z10. F500.", "G1 Z10. F500. CTOL=2", "modal"),
+    ("yl569", "G1 Z10. F500.", "G1 Z10. F500. TOFFL=-5", "tool"),
+    ("yl569", "G1 Z10. F500.", "G1 Z10. F500. TOFF[Z]=-5", "tool"),
+    ("yl569", "G1 Z10. F500.", "G1 Z10. F500. TOFFR=.5", "tool"),
+    ("yl569", "G0 X0.0 Y0.0 Z60. S4000 D1 M3", "G0 X0.0 Y0.0 Z60. S4000 D2 M3", "tool"),
+    ("yl569", "CYCLE84(16.,11.,5.,-1.,", "CYCLE84(16.,11.,5.,1.,", "holes"),
+    ("yl569", " TRAORI\n", "\n", "turns"),
+    # Klartext
+    ("dmu65", "TOOL CALL 2 Z S4000", "TOOL CALL 2 Z S4000 DL-5", "tool"),
+    ("dmu65", "TOOL CALL 2 Z S4000", "TOOL CALL 2 Z S4000 DR+0.5", "tool"),
+    ("dmu65", "TOOL CALL 2 Z S4000", "TOOL CALL 2 X S4000", "words"),
+    ("dmu65", "CYCL DEF 32.1 T0.02", "CYCL DEF 32.1 T2", "modal"),
+    ("dmu65", "TURN FMAX SEQ-", "TURN FMAX SEQ+", "words"),
+    ("dmu65", "CYCL DEF 7.2 Y+0", "CYCL DEF 7.2 Y+5", "tip"),
+    ("dmu65", "BEGIN PGM PART MM", "BEGIN PGM PART", "words"),
+    ("dmu65", " M128\n", " M3\n", "turns"),
+    ("dmu65", " PLANE SPATIAL SPA-36.87 SPB+0.0 SPC+0.0 TURN FMAX SEQ-", " M3", "turns"),
+    # Fanuc
+    ("matsuura_mx330", " G53.1\n", "\n", "words"),
+    ("matsuura_mx330", "G43.4 H2", "G43.5 H2", "words"),
+    ("matsuura_mx330", "G43 H1", "G44 H1", "words"),
+    ("matsuura_mx330", "G43 H1 ", "", "holes"),
+    ("matsuura_mx330", "N10 G21 G17", "N10 G17", "modal"),
+    ("matsuura_mx330", "N10 G21 G17", "N10 G20 G17", "tip"),
+    ("matsuura_mx330", "T2 M6", "T2", "tool"),
+    ("matsuura_mx330", " M29 S500", "", "holes"),
+    ("matsuura_mx330", "\nN210 G69", "\nN210", "turns"),
+    # Fidia
+    ("hs664rt", "N160 G55 O1", "N160", "words"),
+    ("hs664rt", "N360 G55 O1", "N360", "words"),
+    ("hs664rt", "N360 G55 O1", "N360 G55 O2", "offset"),
+    ("hs664rt", " G71\n", "\n", "modal"),
+    ("hs664rt", "N180 G154", "N180", "turns"),
+    ("hs664rt", " G196\n", "\n", "turns"),
+    ("hs664rt", "N340 M306 T.2", "N340 T.2", "tool"),
+    # LinuxCNC
+    ("xyzac_trt", "G64 P0.02", "G64 P2", "modal"),
+    ("xyzac_trt", "G64 P0.02", "G64", "modal"),
+    ("xyzac_trt", "G43 H2", "G43 H1", "tool"),
+    ("xyzac_trt", "T2 M6", "T2", "tool"),
+    ("xyzac_trt", "G21 ", "", "modal"),
+    ("xyzac_trt", "M428", "", "turns"),
+]
+
+Posted = Callable[[str], tuple[Path, Path]]
+
+
+@pytest.fixture(scope="module")
+def posted(tmp_path_factory: pytest.TempPathFactory) -> Posted:
+    """CL file and program of a machine's job; written once."""
+    folder = tmp_path_factory.mktemp("faults")
+    done: dict[str, tuple[Path, Path]] = {}
+
+    def post(machine: str) -> tuple[Path, Path]:
+        if machine not in done:
+            cl, program = folder / f"{machine}.cls", folder / f"{machine}.nc"
+            cl.write_text(JOBS[machine], encoding="utf-8")
+            assert main(["post", str(cl), "--machine", machine, "--output", str(program), "--set", "part=PART"]) == 0
+            done[machine] = cl, program
+        return done[machine]
+
+    return post
+
+
+@pytest.mark.parametrize(("machine", "written", "becomes", "check"), FAULTS)
+def test_a_fault_made_by_hand_is_caught(
+    machine: str, written: str, becomes: str, check: str, posted: Posted, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cl, program = posted(machine)
+    text = program.read_text(encoding="utf-8")
+    assert written in text
+    changed = program.with_name(f"changed_{machine}.nc")
+    changed.write_text(text.replace(written, becomes, 1), encoding="utf-8")
+    capsys.readouterr()
+    arguments = ["verify", str(changed), "--machine", machine, "--cl", str(cl), "--tolerance", "0.005"]
+    assert main(arguments) == 1
+    lines = capsys.readouterr().out.splitlines()
+    failed = [line.split()[0] for line in lines if line.split()[1:2] == ["FAIL"]]
+    assert check in failed
+    places = [int(match[1]) for line in lines if (match := re.match(rf"[^:]*:(\d+)\b.*\[{check}\]$", line))]
+    line = text[: text.index(written)].count("\n") + 1
+    assert any(line - 1 <= place <= line + 40 for place in places), (line, places)
