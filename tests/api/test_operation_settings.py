@@ -97,6 +97,8 @@ def test_the_proof_wants_each_operation_in_its_own_work_offset(cl: Path, tmp_pat
         ({"work_offset": "G54,G55,SIDES:G56"}, "work_offset has two values for all operations"),
         ({"title": "SIDES:FINISH"}, "title is 'SIDES:FINISH', and it cannot differ by operation"),
         ({"orientation": "SIDES:vector"}, "orientation is 'SIDES:vector'"),
+        ({"restart": "SIDES:on"}, "restart is 'SIDES:on'"),
+        ({"tool_list": "SIDES:on"}, "tool_list is 'SIDES:on'"),
         ({"edge": "SIDES:x"}, "edge is 'x'"),
     ],
 )

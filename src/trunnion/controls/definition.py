@@ -14,6 +14,7 @@ from trunnion.controls.vocabulary import (
     HOLES_IN_PLANES,
     HOLES_SETTING,
     ORIENT_BY_VECTOR_WORD,
+    PROGRAM_CHOICES,
     PROGRAM_SETTINGS,
     PROGRAM_TEMPLATES,
     THREE_AXIS,
@@ -158,7 +159,7 @@ class Control:
 
     def differs_by_operation(self, setting: str) -> bool:
         """Whether operations of one program can have different values of a setting."""
-        if setting not in self.settings or setting in PROGRAM_SETTINGS:
+        if setting not in self.settings or setting in PROGRAM_SETTINGS or setting in PROGRAM_CHOICES:
             return False
         templates = [self.templates[name] for name in PROGRAM_TEMPLATES if name in self.templates]
         return all(name != setting for template in templates for name, _ in template.fields())
