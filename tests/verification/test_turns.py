@@ -157,3 +157,18 @@ def test_a_program_with_positions_of_its_own_retracts_to_the_highest(program: Pr
     k = between_planes(lines, "L Z+540 R0 FMAX M91")[0]
     for low in ("L Z+200 R0 FMAX M91", "L Z+31 R0 FMAX"):
         assert not turns([*lines[:k], low, *lines[k + 1 :]], "dmu65")[0]
+
+
+def test_a_tool_change_in_a_klartext_plane_is_found(tmp_path: Path) -> None:
+    file = tmp_path / "block.h"
+    again = "TOOL PATH/AGAIN,TOOL,DRILL_6\n" + BLOCK.split("\n", 1)[1].replace("LOAD/TOOL,1", "LOAD/TOOL,2")
+    (tmp_path / "block.cls").write_text(BLOCK + again)
+    assert main(["post", str(tmp_path / "block.cls"), "--machine", "dmu65", "--output", str(file)]) == 0
+    lines = file.read_text().splitlines()
+    changes = [n for n, line in enumerate(lines) if "TOOL CALL 2" in line]
+    planes = [n for n, line in enumerate(lines) if "PLANE RESET" in line and n < changes[0]]
+    file.write_text("\n".join(line for n, line in enumerate(lines) if n != planes[-1]) + "\n")
+    found = verify(file, machine="dmu65")
+
+    assert not found.passed
+    assert "changes the tool in a tilted plane" in " ".join(place.text for place in check(found, "turns").places)

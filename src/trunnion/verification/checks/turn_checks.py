@@ -23,11 +23,16 @@ from trunnion.verification.results import Check, Place
 
 @dataclass(frozen=True, slots=True)
 class _PlaneChange:
-    """An event after which a tilted plane is on or off; ``shifted``: frames shift the zero without rotating it."""
+    """An event after which a tilted plane is on or off; ``shifted``: frames shift the zero without rotating it.
+
+    ``follows`` the rotary axes: they may turn while it is on, and it is not judged at the end, where a third of the
+    programs of other CAM systems leave it on (PLANE of Klartext). Otherwise a plane holds for one rotary position.
+    """
 
     event: RunEvent
     on: bool
     shifted: bool
+    follows: bool = False
 
 
 def check_turns(context: Context) -> Check:
@@ -44,7 +49,7 @@ def check_turns(context: Context) -> Check:
 
 
 def _plane_changes(run: Run) -> list[_PlaneChange]:
-    """What CYCLE800, G68.2 and frame words switch on and off."""
+    """What CYCLE800, G68.2, PLANE and frame words switch on and off."""
     found: list[_PlaneChange] = []
     tilted = rotated = shifted = False
     for event in run.events:
@@ -59,6 +64,10 @@ def _plane_changes(run: Run) -> list[_PlaneChange]:
             adds = word.startswith("A")
             rotated = "ROT" in word or (rotated and adds)
             shifted = word != "" and (not rotated or adds)
+        elif event.kind == "plane":
+            on = not str(event.value).startswith("RESET")
+            found.append(_PlaneChange(event, on, False, follows=True))
+            continue
         else:
             continue
         found.append(_PlaneChange(event, tilted or rotated, shifted))
@@ -70,7 +79,7 @@ def _turns_in_a_plane(context: Context, changes: list[_PlaneChange]) -> list[Pla
     run = context.run
     places = []
     for k, change in enumerate(changes):
-        if not change.on:
+        if not change.on or change.follows:
             continue
         event = change.event
         first = max(event.before_row, 1)
@@ -114,7 +123,9 @@ def _planes_left_on(context: Context, changes: list[_PlaneChange]) -> Iterator[P
     last: _PlaneChange | None = None
     for event in context.run.events:
         last = by_event.get(id(event), last)
-        if event.kind in ("tool_change", "end") and last is not None and (last.on or last.shifted):
+        if event.kind not in ("tool_change", "end") or last is None or (last.follows and event.kind == "end"):
+            continue
+        if last.on or last.shifted:
             what = "changes the tool" if event.kind == "tool_change" else "ends the program"
             state = "in a tilted plane" if last.on else "with a frame on"
             text = f"{what} {state}, which was switched on in line {last.event.line}"
