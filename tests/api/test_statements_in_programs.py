@@ -133,6 +133,6 @@ def test_a_tilted_msys_of_the_first_operation_is_named_where_axes_are_out_of_rea
 
 
 def test_a_warning_comes_once_with_its_number(tmp_path: Path) -> None:
-    result = posted(tmp_path, HEAD + "SELECT/TOOL,8\nGOTO/20,0,5\n" * 62 + FOOT)
-    (warning,) = (problem.what for problem in result.problems if "SELECT" in problem.what)
+    result = posted(tmp_path, HEAD + "FEDRAT/MMPM,0\nFEDRAT/MMPM,500\nGOTO/20,0,5\n" * 62 + FOOT)
+    (warning,) = (problem.what for problem in result.problems if "FEDRAT is 0" in problem.what)
     assert "(62 times, first here)" in warning
