@@ -2,12 +2,15 @@
 
 import os
 from collections.abc import Iterable, Sequence
+from dataclasses import fields
 from pathlib import Path
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from trunnion import machines, readers
 from trunnion.api.observer import SILENT, Observer
 from trunnion.cl import read_cl as read_cl_file
+from trunnion.controls.loading import control_library
+from trunnion.definitions import resolve_extends
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.run import Run
@@ -21,6 +24,9 @@ MachineLike: TypeAlias = str | os.PathLike[str] | Machine
 
 #: A CL file by its path, or already read.
 ToolpathLike: TypeAlias = FilePath | Toolpath
+
+#: Fields of a ``Machine`` that do not say how it moves: its names, its setup, and its control, which is a table.
+_NO_CONTENT: Final = {"key", "name", "description", "files", "workpiece_zero", "tool_length", "control"}
 
 
 def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, observer: Observer = SILENT) -> Toolpath:
@@ -148,16 +154,24 @@ def as_run(nc: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath]
     if subprograms:
         raise InputError(Problem(nc.files[0], 0, "has already been read", "give the subprograms to read_program"))
     own = nc.machine
-    if (own.key, own.axes, own.spindle_direction, own.spindle_point) != (
-        machine.key, machine.axes, machine.spindle_direction, machine.spindle_point,
-    ):  # fmt: skip
-        what = f"was read for {own.key}, and not for {machine.key} as it is defined here"
+    if not _are_defined_alike(own, machine):
+        what = f"was read for {own.key}, whose definition differs from that of {machine.key} here"
         raise InputError(Problem(nc.files[0], 0, what, "give the path of the program, or the machine that ran it"))
     given = ((machine.workpiece_zero, own.workpiece_zero), (machine.tool_length, own.tool_length))
     if any(new is not None and new != old for new, old in given):
         what = "has already been read with another workpiece zero or tool length"
         raise InputError(Problem(nc.files[0], 0, what, "give the path of the program"))
     return nc
+
+
+def _are_defined_alike(one: Machine, other: Machine) -> bool:
+    """Whether two definitions say the same of machine and control; names and setup may differ."""
+    content = (field.name for field in fields(Machine) if field.name not in _NO_CONTENT)
+    return all(getattr(one, name) == getattr(other, name) for name in content) and _control(one) == _control(other)
+
+
+def _control(machine: Machine) -> dict[str, object]:
+    return resolve_extends(machine.control.unread_copy(), control_library()).to_dict()
 
 
 def as_machine(machine: MachineLike) -> Machine:
