@@ -153,6 +153,7 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         lower_feed=settings.get("lower_feed", "no") == "yes",
         tcp=tcp,
         holes_as_motion=settings.get("cycles", "on") == "off",
+        default_axis_tolerance=control.axis_tolerance,
         **known,
     )
 

@@ -13,6 +13,7 @@ from trunnion.controls import Control, load_control
 from trunnion.errors import InputError, Problem
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
+from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import Run
 from trunnion.verification import Settings, Tolerances, Verification
 
@@ -55,7 +56,7 @@ def verify(
     tolerance
         How far coordinates may be off, mm, and rotary axes, degrees.
     span
-        How far the tool axis may be off its way between points, degrees; by default it is measured, not judged.
+        How far the tool axis may be off its way between points, degrees; by default as the control's definition says.
     span_tip
         The same for the tip without TCP, mm.
     tool
@@ -127,6 +128,7 @@ def verify(
             absolute=frame == "absolute",
             rapid_feed=rapid_feed_of(loaded),
             rigid_tap=m_code(defaults.get("rigid_tap", "")),
+            axis_tolerance=control.axis_tolerance if control else AxisTolerance(),
         ),
         columns=columns,
     )

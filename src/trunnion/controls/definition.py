@@ -24,6 +24,7 @@ from trunnion.controls.vocabulary import (
     WITHOUT_TCP,
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat, Word
+from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.motion import MachiningMode
 
 #: The format of words without a number.
@@ -120,7 +121,8 @@ class Control:
     shorter_way           endless axes take the shorter way, so that none crosses the end of its displayed turn
     own_blocks            spindle, coolant and radius compensation have blocks of their own
     first_lines           lines at the start of a program before which nothing may be written, not even a comment
-    level_approach        after a retract the tool goes to X and Y first, then to Z
+    axis_tolerance        how far the tool axis may leave its path between CL points where no setting says it
+    level_approach        after a retract the tool goes to X and Y first, then to Z, not only in tilted planes
     plane_from_pose       a tilted plane is taken from the rotary position, without angles: its origin is the work
                           offset's, its axes are those of the tool
     holes_from            one of ``HOLE_APPROACH_HEIGHTS``
@@ -151,6 +153,7 @@ class Control:
     shorter_way: bool
     own_blocks: bool
     first_lines: int
+    axis_tolerance: AxisTolerance
     level_approach: bool
     plane_from_pose: bool
     holes_from: str

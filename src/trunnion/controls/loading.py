@@ -25,6 +25,7 @@ from trunnion.controls.vocabulary import (
 from trunnion.controls.words import BlockNumbers, NumberFormat
 from trunnion.definitions import Table, resolve_extends
 from trunnion.families import FAMILIES, load_writer
+from trunnion.model.axis_tolerance import AxisTolerance
 
 
 def control_library() -> Traversable:
@@ -75,6 +76,7 @@ def load_control(own: Table) -> Control:
         shorter_way=table.flag("shorter_way", False),
         own_blocks=table.flag("own_blocks", False),
         first_lines=table.integer("first_lines", 0, at_least=0, at_most=9),
+        axis_tolerance=_read_axis_tolerance(table.table("between_points")),
         level_approach=table.flag("level_approach", False),
         plane_from_pose=plane_from_pose,
         holes_from=table.text("holes_from", "above", one_of=HOLE_APPROACH_HEIGHTS),
@@ -211,6 +213,16 @@ def _read_arc_rules(table: Table, words: Sequence[str]) -> ArcRules:
         table.add_problem("by", "is 'radius', and the control's family has no words for that", "leave it out")
     table.report_unread_keys()
     return rules
+
+
+def _read_axis_tolerance(table: Table) -> AxisTolerance:
+    default = AxisTolerance()
+    tolerance = AxisTolerance(
+        cutting=table.number("axis_tolerance_deg", default.cutting, at_least=0.001, at_most=10.0),
+        finishing=table.number("finishing_axis_tolerance_deg", default.finishing, at_least=0.001, at_most=10.0),
+    )
+    table.report_unread_keys()
+    return tolerance
 
 
 def _read_subprogram_naming(table: Table) -> SubprogramNaming:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from trunnion.controls.definition import Control
 from trunnion.conversion.unsupported import Warnings
-from trunnion.output.machining_method import machining_method
+from trunnion.model.machining_method import machining_method
 
 #: Settings that mean the same on every control; the others are words and habits of a family.
 _COMMON_SETTINGS = frozenset(

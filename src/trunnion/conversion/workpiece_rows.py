@@ -28,7 +28,7 @@ def workpiece_stretches(
     first, end
         Rows of a section.
     level_approach
-        The control approaches X and Y first, then Z (``Control.level_approach``).
+        The control approaches X and Y first, then Z, not only in planes (``Control.level_approach``).
     warn
         Hears of the places where the rows are divided, and of cuts that would be lost.
 
@@ -38,7 +38,8 @@ def workpiece_stretches(
         Row numbers of each stretch, in order; empty without a position at the workpiece.
     """
     rows = np.arange(first, end)
-    approach = _level_approaches(run, rows) if level_approach else np.zeros(len(rows), np.bool_)
+    in_plane = _in_plane(run, rows)
+    approach = _level_approaches(run, rows, in_plane) & (in_plane | level_approach)
     at_part = known[rows] & ~run.machine_frame[rows] & ~approach
     positions = at_part & ((run.programmed[rows] & _XYZ) != 0)
     begin = int(np.argmax(positions)) if positions.any() else len(rows)
@@ -121,11 +122,18 @@ def _rotary_positioning(run: Run, rows: Ints) -> Flags:
     return np.asarray(alone & ((_latest(run.machine_frame[rows]) > _latest(works)) | after_last))
 
 
-def _level_approaches(run: Run, rows: Ints) -> Flags:
+def _in_plane(run: Run, rows: Ints) -> Flags:
+    """(n,) bool: a tilted plane or a frame is on."""
+    changes = [event for event in run.events if event.kind in ("tilt", "cycle800", "frame")]
+    at = np.searchsorted([event.before_row for event in changes], rows, "right")
+    return np.array([False, *(bool(event.value) for event in changes)])[at]
+
+
+def _level_approaches(run: Run, rows: Ints, in_plane: Flags) -> Flags:
     """(n,) bool: the first leg of an approach, in X and Y from home, before a second one in Z alone."""
     words = run.programmed[rows] & _POSITION
     works = ~run.machine_frame[rows] & (words != 0)
-    rapid = (run.kind[rows] == Kind.RAPID) & ~run.tcp[rows]
+    rapid = (run.kind[rows] == Kind.RAPID) & (in_plane | ~run.tcp[rows])
     worked_before = np.concatenate(([-1], _latest(works)[:-1]))
     from_home = (_latest(run.machine_frame[rows]) >= worked_before) & (worked_before < np.arange(len(rows)))
     first_leg = works & rapid & ((words & ~np.uint8(_XY)) == 0) & from_home

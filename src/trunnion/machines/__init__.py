@@ -23,6 +23,7 @@ from trunnion.machines.machine import (
     PositiveDirection,
     PreferredSign,
 )
+from trunnion.machines.spindle_range import spindle_speed_fault, states_spindle_range
 from trunnion.machines.turn_clearance import SAFE_DISTANCE, SweptPart, turn_clearance, turns_part_alone
 
 __all__ = [
@@ -44,6 +45,8 @@ __all__ = [
     "load_machine",
     "shipped_machines",
     "slide_positions",
+    "spindle_speed_fault",
+    "states_spindle_range",
     "tool_axes",
     "turn_clearance",
     "turns_part_alone",

@@ -178,10 +178,20 @@ def _check_winding(entry: Table, endless: bool, output: AngleOutput) -> None:
         entry.add_problem("output", f'is "{output}" for an axis with limits', cure)
 
 
+def _gear(table: Table) -> tuple[float, float]:
+    """The least and the greatest speed of a gear, rev/min."""
+    least, greatest = table.number("min_rpm", at_least=0), table.number("max_rpm", above=0)
+    if least > greatest:
+        table.add_problem("min_rpm", f"is {least:g}, above max_rpm {greatest:g}", "write the lower speed here")
+    table.report_unread_keys()
+    return least, greatest
+
+
 def _facts(spindle: Table, facts: Table) -> MachineFacts:
     size = facts.vector("table_size_mm", 2, None)
     result = MachineFacts(
         spindle_min_rpm=spindle.number("min_rpm", None, at_least=0),
+        spindle_gears_rpm=tuple(_gear(gear) for gear in spindle.tables("gear")),
         spindle_power_kw=spindle.number("power_kw", None, above=0),
         spindle_torque_nm=spindle.number("torque_nm", None, above=0),
         tool_holder=facts.text("tool_holder", None),

@@ -115,9 +115,13 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class MachineFacts:
-    """What a definition states about a machine besides its motion; None where it does not."""
+    """What a definition states about a machine besides its motion; None where it does not.
+
+    ``spindle_gears_rpm`` are the least and the greatest speed of each gear.
+    """
 
     spindle_min_rpm: float | None = None
+    spindle_gears_rpm: tuple[tuple[float, float], ...] = ()
     spindle_power_kw: float | None = None
     spindle_torque_nm: float | None = None
     tool_holder: str | None = None

@@ -7,9 +7,9 @@ from typing import NamedTuple
 from trunnion.controls.definition import Control
 from trunnion.controls.words import Word
 from trunnion.machines import Machine
+from trunnion.model.machining_method import machining_method
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Operation
-from trunnion.output.machining_method import machining_method
 
 
 class RotaryWord(NamedTuple):

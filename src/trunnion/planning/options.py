@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Final, TypeAlias
 
+from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.motion import MachiningMode, PoleStrategy
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 from trunnion.planning.retracts.clearance import Clearance
@@ -37,8 +38,9 @@ class PlanOptions:
     pole_angle           the most the tool axis may lean for that, degrees
     lower_feed           lower the feed where a rotary axis would have to be too fast
     tip_tolerance        without TCP: how far the tip may leave its line between CL points, mm
-    axis_tolerance       how far the tool axis may leave its great circle between CL points, degrees; None: with TCP any
-                         distance, without TCP ``AXIS_TOLERANCE_WITHOUT_TCP``
+    axis_tolerance       how far the tool axis may leave its great circle between CL points, degrees; None: with TCP
+                         ``default_axis_tolerance``, without TCP ``AXIS_TOLERANCE_WITHOUT_TCP``
+    default_axis_tolerance  that of the control's definition
     explain              record decisions and their reasons, what the nearest neighbour would have done, and where a
                          rotary axis is too fast
     """
@@ -56,6 +58,7 @@ class PlanOptions:
     lower_feed: bool = False
     tip_tolerance: float = 0.005
     axis_tolerance: float | None = None
+    default_axis_tolerance: AxisTolerance = field(default_factory=AxisTolerance)
     explain: bool = False
 
     def mode_for(self, operation: str) -> MachiningMode | None:
@@ -69,7 +72,7 @@ class PlanOptions:
 
     @property
     def axis_tolerance_between_points(self) -> float:
-        """How far the tool axis may leave its great circle between CL points, degrees; infinite: any distance."""
+        """How far the tool axis may leave its great circle between CL points, degrees; infinite: as by default."""
         if self.axis_tolerance is not None:
             return self.axis_tolerance
         return math.inf if self.tcp else AXIS_TOLERANCE_WITHOUT_TCP

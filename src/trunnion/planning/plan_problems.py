@@ -7,9 +7,9 @@ from typing import Final
 import numpy as np
 
 from trunnion.errors import Problem, Severity
-from trunnion.machines import Machine, inverse
+from trunnion.machines import Machine, inverse, spindle_speed_fault
 from trunnion.model.motion import PoleStrategy
-from trunnion.model.toolpath import Moves
+from trunnion.model.toolpath import Moves, Operation, SpindleOn
 from trunnion.planning.axis_limits import exceeds_travel, limit_remedy, limit_violation_text, limits_of, outside_limits
 from trunnion.planning.poses.decision_log import ChosenPoses, describe_pose
 from trunnion.planning.poses.limit_lookahead import degrees_out_of_reach
@@ -29,6 +29,13 @@ def unknown_speed_problems(file: str, request: PlanRequest) -> Iterable[Problem]
     if names and (options.pole_strategy is not PoleStrategy.OFF or options.lower_feed):
         what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: its speed is not limited"
         yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING)
+
+
+def spindle_speed_problems(file: str, operation: Operation, machine: Machine) -> Iterable[Problem]:
+    """Spindle speeds that the machine does not have."""
+    for event in operation.events:
+        if isinstance(event, SpindleOn) and (fault := spindle_speed_fault(machine, event.rpm)):
+            yield Problem(file, event.line, fault, "program a speed that the machine has")
 
 
 def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: PlanRequest) -> Iterable[Problem]:

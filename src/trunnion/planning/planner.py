@@ -12,7 +12,7 @@ from trunnion.planning.linearization.point_insertion import LinearizedMotion, li
 from trunnion.planning.linearization.slide_requirements import check_slides_are_known
 from trunnion.planning.operation_plan import PlannedOperation, plan_operation
 from trunnion.planning.options import ControlCapabilities, PlanOptions
-from trunnion.planning.plan_problems import travel_problems, unknown_speed_problems
+from trunnion.planning.plan_problems import spindle_speed_problems, travel_problems, unknown_speed_problems
 from trunnion.planning.preparation import prepare_operations
 from trunnion.planning.request import PlanRequest
 
@@ -84,6 +84,8 @@ def _check_reach_and_travel(planned: Sequence[PlannedOperation], request: PlanRe
     """Problems so far, warnings included. Raises ``RefusedError`` with them if some tool axis is out of reach."""
     problems = [warning for operation in planned for warning in operation.prepared.warnings]
     problems += unknown_speed_problems(planned[0].prepared.file, request)
+    for one in planned:
+        problems += spindle_speed_problems(one.prepared.file, one.prepared.original, request.machine)
     problems += [problem for operation in planned for problem in operation.problems]
     if any(operation.is_out_of_reach for operation in planned):
         raise RefusedError(problems)

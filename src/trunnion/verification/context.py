@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.verification.expected.path import ExpectedPath, OperationSettings
 from trunnion.verification.matching.pairs import Matching
@@ -25,7 +26,7 @@ class Settings:
     tool                   tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
     work_offset            54..59, 505..599, or 600 plus the P of G54.1; None: any, but the same throughout
     edge                   number of the cutting edge (D); None: any
-    span                   how far the tool axis may be off between points, degrees; None: reported, not checked
+    span                   how far the tool axis may be off between points, degrees; None: ``axis_tolerance``
     span_tip               how far the tip may be off its line between points without TCP, mm; None: reported, not
                            checked
     absolute               the program's coordinate system is the absolute one of the CAM, not that of the first
@@ -35,6 +36,7 @@ class Settings:
     smoothing              widest tolerance for the control's own smoothing that the settings ask for, mm
     rigid_tap              M code before threads that are cut without a compensating chuck; None: the control has none
     tool_deltas            what the program may add to a tool, mm, by word (DL, DR)
+    axis_tolerance         how far the tool axis may be off between points of a cut where ``span`` does not say it
     max_feed               largest F per minute of the control: no block need be faster; None: no limit
     by_operation           tool, work offset and edge of single operations, by their names
     """
@@ -51,6 +53,7 @@ class Settings:
     smoothing: float | None = None
     rigid_tap: int | None = None
     tool_deltas: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    axis_tolerance: AxisTolerance = field(default_factory=AxisTolerance)
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
 
     def for_operation(self, name: str) -> OperationSettings:

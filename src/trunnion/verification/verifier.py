@@ -21,6 +21,7 @@ from trunnion.verification.checks.motion_checks import check_kind, check_order
 from trunnion.verification.checks.normal_checks import check_normals
 from trunnion.verification.checks.position_checks import check_axis, check_tip
 from trunnion.verification.checks.spindle_checks import check_spindle
+from trunnion.verification.checks.spindle_range_check import check_spindle_range
 from trunnion.verification.checks.stop_checks import check_stops
 from trunnion.verification.checks.tool_checks import check_tool
 from trunnion.verification.checks.turn_checks import check_turns
@@ -28,7 +29,7 @@ from trunnion.verification.checks.word_checks import check_words
 from trunnion.verification.checks.work_offset_checks import check_work_offset
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, Settings
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, accept_deviations
-from trunnion.verification.deviations.linearization import LinearizationErrors
+from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors
 from trunnion.verification.deviations.point_deviations import PointDeviations
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import Tolerances
@@ -96,7 +97,7 @@ class _Checked:
     """The checks of a program but those of its axis motion; ``general`` are those of any program."""
 
     context: Context
-    errors: LinearizationErrors | None
+    errors: LinearizationErrors
     checks: list[Check]
     general: list[Check]
 
@@ -129,9 +130,15 @@ def _check_against(expected: ExpectedPath, run: Run, settings: Settings, analyze
 
 
 def _match_by_position(expected: ExpectedPath, run: Run, settings: Settings) -> Matching:
-    """With intermediate points if the settings give a limit for the tool between points."""
-    axis_deviation = 180.0 if settings.span is None and settings.span_tip is not None else settings.span
-    return match_by_position(run, expected, axis_deviation=axis_deviation)
+    """With intermediate points within the limits for the tool between points.
+
+    By default only where rotary axes turn so far that the tool axis may need them.
+    """
+    if settings.span is None and settings.span_tip is None:
+        tolerance = settings.axis_tolerance
+        least = math.degrees(2.0 * math.sqrt(math.radians(0.5 * min(tolerance.cutting, tolerance.finishing))))
+        return match_by_position(run, expected, axis_deviation=tolerance.cutting, least_turn=least)
+    return match_by_position(run, expected, axis_deviation=180.0 if settings.span is None else settings.span)
 
 
 def _checks_without_positions(
@@ -156,12 +163,12 @@ def _checks_without_positions(
 
 def _general_checks(context: Context) -> list[Check]:
     """Checks of any program."""
-    return [check_turns(context), check_modal_state(context), check_words(context)]
+    return [check_spindle_range(context), check_turns(context), check_modal_state(context), check_words(context)]
 
 
 def _measure(
     context: ComparedContext, analyzer: AxisMotionAnalyzer | None = None
-) -> tuple[LinearizationErrors | None, PointDeviations]:
+) -> tuple[LinearizationErrors, PointDeviations]:
     """Errors between points and deviations at points; the analyzer gets the same rows."""
     run, sections = context.run, context.expected.sections
     errors = _linearization_errors(context, [section.tolerances for section in sections])
@@ -170,16 +177,16 @@ def _measure(
     return errors, deviations
 
 
-def _linearization_errors(context: Context, tolerances: Sequence[Tolerances]) -> LinearizationErrors | None:
-    """The collector of errors between points; None if the settings give no limit."""
+def _linearization_errors(context: Context, tolerances: Sequence[Tolerances]) -> LinearizationErrors:
+    """The collector of errors between points."""
     settings = context.settings
-    if settings.span is None and settings.span_tip is None:
-        return None
     tolerance = max(each.tip for each in tolerances)
+    rounding = 2.0 * max(each.angle for each in tolerances)
     tip = math.inf if settings.span_tip is None else settings.span_tip + tolerance
-    axis = math.inf if settings.span is None else settings.span + 2.0 * max(each.angle for each in tolerances)
+    axis = None if settings.span is None else settings.span + rounding
+    by_default = None if settings.span is not None else DefaultLimits(settings.axis_tolerance, rounding)
     path = (context.expected, context.matching) if isinstance(context, ComparedContext) else (None, None)
-    return LinearizationErrors(context.run, MAX_PLACES, tip, axis, tolerance, *path)
+    return LinearizationErrors(context.run, MAX_PLACES, tip, axis, tolerance, *path, by_default=by_default)
 
 
 def _add_rows(run: Run, *collectors: AxisMotionAnalyzer | PointDeviations | LinearizationErrors | None) -> None:

@@ -112,14 +112,16 @@ class MotionBlockWriter:
         from_plane
             The tool comes from another plane of the operation, and not from home.
         retracted
-            The tool has been retracted, so that it goes to X and Y before it goes down, on controls with
-            ``level_approach``.
+            The tool has been retracted, so that it goes to X and Y before it goes along the tool axis: in planes, and
+            in three-axis operations on controls with ``level_approach``.
         """
         self._tool = tool
         loads = [event for event in motion.operation.events if isinstance(event, LoadTool)]
         if loads:  # a tool that the run's settings name has its own register
             self._length_register = 0 if self.program.effective_setting("tool", motion.operation) else loads[-1].adjust
-        self.xy_before_z = retracted and self.control.level_approach and motion.mode in _Z_ALONG_TOOL
+        in_plane = motion.mode is MachiningMode.TILTED
+        level = in_plane or (self.control.level_approach and motion.mode is MachiningMode.THREE_AXIS)
+        self.xy_before_z = retracted and level
         self._words = self.program.block_words(motion)
         self.writer.use_words(self._words)
         if from_plane:

@@ -1,8 +1,10 @@
 """Last stage: points between CL points, where the control would otherwise lead the tool off its path.
 
-With TCP the control keeps the tip on its line, so points are inserted only if there is a tolerance for the tool axis,
-and only in cuts. Without TCP every axis moves evenly from point to point, and the tool leaves its line wherever a
-rotary axis turns, in rapids too; arcs stay arcs only where the slides make them by themselves.
+With TCP the control keeps the tip on its line, so points are inserted only for the tool axis, and only in cuts; without
+a requested tolerance only in few steps (``trunnion.planning.linearization.default_points``).
+
+Without TCP every axis moves evenly from point to point, and the tool leaves its line wherever a rotary axis turns, in
+rapids too; arcs stay arcs only where the slides make them by themselves.
 
 Where the rotary axes change to their other branch, through the pole in a cut or anywhere in a rapid, they turn evenly
 and points only keep the tip on its line. In a cut the tool axis must stay within its tolerance there. The turn of a
@@ -22,6 +24,7 @@ from trunnion.machines import Machine, forward, slide_positions
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Operation
 from trunnion.planning.axis_limits import limit_remedy, limit_violation_text, limits_of, outside_limits
+from trunnion.planning.linearization.default_points import default_points
 from trunnion.planning.linearization.intermediate_points import USABLE_SHARE, DividedPath, divide_path
 from trunnion.planning.linearization.rotary_motion import rotary_motion
 from trunnion.planning.linearization.row_insertion import insert_rows
@@ -63,9 +66,14 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
     options, machine = request.options, request.machine
     without_tcp = motion.mode is MachiningMode.WITHOUT_TCP
     tolerance = options.axis_tolerance_between_points
-    if not without_tcp and (motion.mode is not MachiningMode.TCP or math.isinf(tolerance)):
+    if not without_tcp and motion.mode is not MachiningMode.TCP:
         return LinearizedMotion(motion)
     operation, rotary = motion.operation, motion.rotary
+    if math.isinf(tolerance):
+        found = default_points(file, machine, motion, options.default_axis_tolerance.of(operation))
+        if found.path is None:
+            return LinearizedMotion(motion, found.problems)
+        return _with_points(file, motion, operation, machine, found.path, list(found.problems))
     if without_tcp:
         operation, rotary = keep_slide_arcs(machine, operation, rotary, request.chord_tolerance)
     moves = operation.moves
@@ -85,11 +93,18 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
     problems = [*_bend_problems(file, operation, np.flatnonzero(is_bent & (moves.kind == Kind.LINEAR)), options)]
     if len(path.source) == len(moves):
         return LinearizedMotion(replace(motion, operation=operation, rotary=rotary), tuple(problems))
-    copies = np.bincount(path.source, minlength=len(moves))
+    return _with_points(file, motion, operation, machine, path, problems)
+
+
+def _with_points(
+    file: str, motion: Motion, operation: Operation, machine: Machine, path: DividedPath, problems: list[Problem]
+) -> LinearizedMotion:
+    """The motion along a path with points between the rows of its ``operation``."""
+    copies = np.bincount(path.source, minlength=len(operation.moves))
     problems += _limit_problems(file, operation, machine, path)
     linearized = replace(
         motion,
-        operation=insert_rows(operation, copies, path.tip, path.axis, moves.kind[path.source]),
+        operation=insert_rows(operation, copies, path.tip, path.axis, operation.moves.kind[path.source]),
         rotary=displayed_positions(machine, path.rotary),
     )
     return LinearizedMotion(linearized, tuple(problems), tuple(_decisions(file, operation, copies)))

@@ -2,22 +2,22 @@
 
 import numpy as np
 
-from trunnion.verification.context import ComparedContext, Context
+from trunnion.verification.context import ComparedContext, Context, Settings
 from trunnion.verification.deviations.linearization import LinearizationErrors
 from trunnion.verification.kinematics.axis_motion import AxisMotion
 from trunnion.verification.results import Check
 
 
-def check_between_points(context: Context, motion: AxisMotion, errors: LinearizationErrors | None) -> Check:
+def check_between_points(context: Context, motion: AxisMotion, errors: LinearizationErrors) -> Check:
     """Tip and tool axis between the points: at several positions of each motion, or else half-way.
 
-    Parameters
-    ----------
-    errors
-        None where the settings give no limit; then nothing fails.
+    Where the settings give no limit, the tool axis is judged by that of the control's definition.
     """
-    axis, tip = (motion.axis_deviation, motion.tip_deviation) if errors is None else (errors.axis, errors.tip)
-    where = "half-way" if errors is None else "on the way"
+    settings = context.settings
+    asked = settings.span is not None or settings.span_tip is not None
+    axis = errors.axis if settings.span is not None or errors.axis.count else motion.axis_deviation
+    tip = errors.tip if asked else motion.tip_deviation
+    where = "on the way" if axis is errors.axis else "half-way"
     sagitta, sagitta_row = _largest_sagitta(context)
     off_tip, row = (tip.value, tip.row) if tip.value > sagitta else (sagitta, sagitta_row)
     places = []
@@ -32,14 +32,20 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off {where}"
     if axis.row >= 0:
         summary += f", in {context.block_name(axis.row)}"
-    settings = context.settings
-    limits = [
-        f"{limit:g} {unit}" for limit, unit in ((settings.span_tip, "mm"), (settings.span, "deg")) if limit is not None
-    ]
-    summary += f", allowed {' and '.join(limits)}" if limits else ""
-    passed = not axis.count + tip.count
+    summary += f", allowed {_allowed(settings)}"
+    passed = not errors.axis.count + errors.tip.count
     title = "tool between the points"
     return Check("span", title, passed, summary, axis.value, settings.span, "deg", tuple(places))
+
+
+def _allowed(settings: Settings) -> str:
+    """What is allowed, in words."""
+    tip = [] if settings.span_tip is None else [f"{settings.span_tip:g} mm"]
+    if settings.span is not None:
+        return " and ".join([*tip, f"{settings.span:g} deg"])
+    default = settings.axis_tolerance
+    axis = f"{default.cutting:g} deg, {default.finishing:g} in finishing, a sixth of a coarse turn"
+    return " and ".join([*tip, axis])
 
 
 def _largest_sagitta(context: Context) -> tuple[float, int]:

@@ -8,6 +8,7 @@ Each motion is sampled at several positions on its way.
 """
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -15,8 +16,9 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Floats2, Floats3, Ints
 from trunnion.jit import inner, kernel
 from trunnion.machines.forward import KinematicChain, forward_row, kinematic_chain
+from trunnion.model.axis_tolerance import AxisTolerance, allowed_deviation
 from trunnion.model.run import Orientation, RowPositions, Run
-from trunnion.model.toolpath import Kind
+from trunnion.model.toolpath import Kind, Phase
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
@@ -29,8 +31,22 @@ _SHORT: Final = 1e-3
 #: Smaller rotary motion, degrees, makes no error.
 _STILL: Final = 1e-9
 
+#: Phases in which the tool does not touch the part.
+_FREE_PHASES: Final = (Phase.RAPID, Phase.APPROACH, Phase.DEPARTURE, Phase.TRAVERSE)
+
 #: Positions within a motion at which it is sampled.
 _SAMPLES: Final = 7
+
+
+@dataclass(frozen=True, slots=True)
+class DefaultLimits:
+    """Limits of the tool axis in cuts where no setting gives one, by operation and by the turn of each step.
+
+    rounding  is allowed in addition, degrees
+    """
+
+    tolerance: AxisTolerance
+    rounding: float
 
 
 class LinearizationErrors:
@@ -49,23 +65,26 @@ class LinearizationErrors:
         run: Run,
         max_rows: int,
         tip_limit: float,
-        axis_limit: float,
+        axis_limit: float | None,
         tip_tolerance: float = 0.0,
         expected: ExpectedPath | None = None,
         matching: Matching | None = None,
+        *,
+        by_default: DefaultLimits | None = None,
     ) -> None:
         self._run = run
         self._tip_uncertainty = 2.0 * math.sqrt(3.0) * tip_tolerance
         self._chain = kinematic_chain(run.machine)
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._expected = expected
-        self._cl_row = np.full(len(run), -1, np.int64)
+        self._by_default = by_default
+        self._cl_row = np.full(len(run), -1, np.int32)
         if expected is not None and matching is not None:
             for nc, cl in matching.all_pair_chunks():
                 no_line = np.isin(cl, expected.first_rows) | (expected.kind(cl) == Kind.ARC)
                 self._cl_row[nc] = np.where(no_line, -1, cl)
         self.tip = WorstRows(tip_limit, max_rows)
-        self.axis = WorstRows(axis_limit, max_rows)
+        self.axis = WorstRows(0.0 if by_default else math.inf if axis_limit is None else axis_limit, max_rows)
 
     def add(self, first: int, end: int, positions: RowPositions) -> None:
         """Add rows, in order; ``positions`` is the ``Run.chunk`` of them."""
@@ -79,7 +98,26 @@ class LinearizationErrors:
             tcp, self._tip_uncertainty, off_tip, off_axis,
         )  # fmt: skip
         self.tip.add(first, off_tip)
+        if self._by_default is not None:
+            off_axis[rows] = np.where(
+                off_axis[rows] > self._allowed(self._by_default, first, rows, axes), off_axis[rows], 0.0
+            )
         self.axis.add(first, off_axis)
+
+    def _allowed(self, limits: DefaultLimits, first: int, rows: Ints, axes: Floats) -> Floats:
+        """How far the tool axis may be off within rows, (k,) degrees; infinite where they do not cut.
+
+        ``axes`` (k, 2, 3) are the tool axes at both ends of the paths that the rows are on.
+        """
+        turn = np.degrees(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(axes[:, 1] - axes[:, 0], axis=1), 1.0)))
+        tolerance = np.full(len(rows), limits.tolerance.cutting)
+        cl = self._cl_row[first + rows]
+        for section in self._expected.sections if self._expected is not None else ():
+            moves = section.operation.moves
+            here = np.flatnonzero((cl >= section.first) & (cl < section.end))
+            free = np.isin(moves.phase[cl[here] - section.first], _FREE_PHASES)
+            tolerance[here] = np.where(free, math.inf, limits.tolerance.of(section.operation))
+        return allowed_deviation(tolerance, turn) + limits.rounding
 
     def _rows_to_sample(self, first: int, end: int, positions: RowPositions, tcp: Flags) -> Ints:
         """Rows, counted from ``first``, in which rotary motion may lead the tool off its path.
@@ -91,6 +129,9 @@ class LinearizationErrors:
         moves_tip = (run.programmed[first:end] & int(POSITION_WORDS)) != 0
         turned = np.abs(np.diff(positions.joints[:, self._rotary], axis=0)).max(axis=1) > _STILL
         sampled = turned & ~frame & (kind != Kind.ARC)
+        if self._by_default is not None and math.isinf(self.tip.limit):
+            total = np.radians(np.abs(np.diff(positions.joints[:, self._rotary], axis=0)).sum(axis=1))
+            sampled &= 0.25 * total * total > math.radians(self._by_default.tolerance.finishing)
         sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & math.isfinite(self.tip.limit))
         sampled &= ~tcp | (run.orientation_between(first, end) == Orientation.ANGLES)
         return np.flatnonzero(sampled)
@@ -101,7 +142,7 @@ class LinearizationErrors:
         axes = np.stack((positions.axis[rows], positions.axis[rows + 1]), axis=1)
         matched = np.flatnonzero(self._cl_row[first + rows] >= 0)
         if self._expected is not None and len(matched):
-            cl = self._cl_row[first + rows[matched]]
+            cl = self._cl_row[first + rows[matched]].astype(np.int64)
             order = np.argsort(cl, kind="stable")
             matched, cl = matched[order], cl[order]
             tips[matched] = np.stack((self._expected.tip(cl - 1), self._expected.tip(cl)), axis=1)

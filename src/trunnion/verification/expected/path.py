@@ -163,7 +163,8 @@ class ExpectedPath:
         if len(rows) and rows[-1] < (section := self.section_at(int(rows[0]))).end:
             column: NDArray[Any] = getattr(section.operation.moves, name)
             first, last = int(rows[0]) - section.first, int(rows[-1]) - section.first
-            if column.ndim == 1 and last - first == len(rows) - 1:
+            # A row with intermediate points stands several times, and others may be missing.
+            if column.ndim == 1 and last - first == len(rows) - 1 and (np.diff(rows) == 1).all():
                 return column[first : last + 1]
             return column[rows - section.first]
         by_section = zip(self.sections, np.split(rows, np.searchsorted(rows, self.first_rows[1:])), strict=True)

@@ -72,7 +72,9 @@ def approach_rows(run: Run) -> Ints:
     at = np.searchsorted(rows, sorted(starts))
     found = []
     for row in np.unique(rows[at[at < len(rows)]]).tolist():
-        if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any() or run.state.tcp[row]:
+        if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any():
+            continue
+        if run.state.tcp[row] and int(run.programmed[row]) & int(ROTARY_WORDS):
             continue
         across, along = (int(bits) & int(POSITION_WORDS) for bits in run.programmed[row : row + 2])
         if not across & ~int(ProgrammedWord.X | ProgrammedWord.Y) and along == int(ProgrammedWord.Z):

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.expected.arcs import arc_of
@@ -20,7 +20,7 @@ from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.axis_difference import RotaryGeometry
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import match_holes
-from trunnion.verification.matching.intermediate_points import FollowLimits, PathPoints, follow_path
+from trunnion.verification.matching.intermediate_points import FollowedPath, FollowLimits, PathPoints, follow_path
 from trunnion.verification.matching.pairs import ArcSegments, Matching
 from trunnion.verification.matching.resync import find_resync
 from trunnion.verification.matching.rewind_retracts import rewind_retract_length
@@ -53,7 +53,9 @@ def match_by_count(run: Run, expected: ExpectedPath) -> Matching | None:
     return Matching(rows, distinct) if len(rows) == len(distinct) else None
 
 
-def match_by_position(run: Run, expected: ExpectedPath, *, axis_deviation: float | None = None) -> Matching:
+def match_by_position(
+    run: Run, expected: ExpectedPath, *, axis_deviation: float | None = None, least_turn: float = 0.0
+) -> Matching:
     """Match by position, whatever was dropped, doubled or swapped.
 
     Parameters
@@ -62,7 +64,7 @@ def match_by_position(run: Run, expected: ExpectedPath, *, axis_deviation: float
         How far the tool axis may be off the great circle at intermediate points, degrees; None: there may be no
         intermediate points.
     """
-    return _PathMatcher(run, expected, axis_deviation).match()
+    return _PathMatcher(run, expected, axis_deviation, least_turn).match()
 
 
 class _PathMatcher:
@@ -71,8 +73,9 @@ class _PathMatcher:
     ``i`` counts the motions that take part, ``j`` is a CL row.
     """
 
-    def __init__(self, run: Run, expected: ExpectedPath, axis_deviation: float | None) -> None:
+    def __init__(self, run: Run, expected: ExpectedPath, axis_deviation: float | None, least_turn: float) -> None:
         self._run, self._expected, self._axis_deviation = run, expected, axis_deviation
+        self._least_turn = least_turn
         self._rows = rows_to_match(run, expected)
         self._geometry = RotaryGeometry.of(run.machine)
         holes = match_holes(run, expected)
@@ -260,7 +263,8 @@ class _PathMatcher:
         )
         cl_points = PathPoints(expected.tip(points), expected.axis(points), expected.kind(points))
         found = follow_path(self._geometry, self._run.positions(rows), self._run.kind[rows], cl_points, limits)
-        nc, cl, arrives = rows[: found.motions], j + found.cl_point, found.arrives
+        motions, new_points = self._justified(rows, found, cl_points.kind)
+        nc, cl, arrives = rows[:motions], j + found.cl_point[:motions], found.arrives[:motions]
         at_points = np.flatnonzero(arrives)
         edges = np.flatnonzero((np.diff(nc[at_points]) != 1) | (np.diff(cl[at_points]) != 1))
         for unbroken in np.split(at_points, edges + 1):
@@ -269,6 +273,23 @@ class _PathMatcher:
                 self._cl.append((int(cl[unbroken[0]]), len(unbroken)))
         self._intermediate_nc.append(nc[~arrives])
         self._intermediate_cl.append(cl[~arrives])
+        return motions, new_points
+
+    def _justified(self, rows: Ints, found: FollowedPath, kind: Codes) -> tuple[int, int]:
+        """How many motions and points go together up to an intermediate point that nothing asks for.
+
+        The rotary axes must turn by ``least_turn`` on its step, and it must move as its step does. ``kind`` is that of
+        the CL points, led by the one from which the first motion starts.
+        """
+        if self._least_turn == 0.0:
+            return found.motions, found.points
+        for k in np.flatnonzero(~found.arrives).tolist():
+            step = np.flatnonzero(found.cl_point == found.cl_point[k])
+            each = np.concatenate(([rows[step[0]] - 1], rows[step]))
+            turn = np.abs(np.diff(self._run.rotary[np.maximum(each, 0)], axis=0)).sum()
+            same_kind = self._run.kind[rows[k]] == kind[int(found.cl_point[k]) + 1]
+            if turn < self._least_turn or not same_kind:
+                return int(step[0]), int(found.cl_point[k])
         return found.motions, found.points
 
     def _find_resync(self, i: int, j: int) -> tuple[int, int]:

@@ -79,9 +79,10 @@ STATEMENTS = {
 def test_cycle800_stands_between_the_turn_and_the_approach(post: Post) -> None:
     lines = post(OFF_AXIS + FOOT)
     begin = lines.index(";Initial Move")
-    assert lines[begin + 1 : begin + 8] == [
+    assert lines[begin + 1 : begin + 9] == [
         *STATEMENTS["cycle800"],
         'CYCLE800(0,"",0,57,0.0,0.0,0.0,0.,30.,0.,0,0,0,1,0,1)',
+        "G0 X-25. Y0.0",
         ";Rapid Move",
     ]
     end = lines.index(";End of Path")
