@@ -128,7 +128,7 @@ def test_phases_that_no_colours_say_are_remarked_upon(body: Body) -> None:
     phase = np.array([Phase.CUT, Phase.APPROACH, Phase.INITIAL, Phase.CUT], np.uint8)
     remarks = write_cl(Toolpath("a", (replace(operation, moves=replace(moves, phase=phase)),)), io.BytesIO())
     assert len(remarks) == 1
-    assert "2 points of operation OP change their phase, the first from approach to departure" in remarks[0].what
+    assert "OP: 2 points in another phase, the first in departure instead of approach" in remarks[0].what
 
 
 def test_the_head_has_comments_and_the_part(body: Body, tmp_path: Path) -> None:

@@ -145,7 +145,7 @@ def test_a_rewind_without_tcp_is_followed_by_the_slides(shop: Shop, tmp_path: Pa
     assert ";Rewind" in shop.program.read_text(encoding="utf-8")
     code, err = shop.post(turning, str(own), "zero=0,0,0", "tool_length=90", "tcp=off")
     assert code == 0, err
-    assert "1 retreat along the tool axis to turn" in err
+    assert "1 retract along the tool axis to turn" in err
     assert ";Rewind" in shop.program.read_text(encoding="utf-8")
     code, err = shop.post(turning, str(own), "zero=0,0,0", "tool_length=90", "tcp=off", "rewind=none")
     assert code == 1

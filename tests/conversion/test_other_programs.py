@@ -178,7 +178,7 @@ def test_words_that_only_drive_the_machine_are_remarked_upon(programs: Programs)
 def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> None:
     remarks = programs.all("TRAORI", "G0 X0 Y0 Z0 B0 C0", "G1 X1 C90 F1", "X2").warnings
     assert [(remark.line, remark.what) for remark in remarks] == [
-        (3, "2 points have other rotary positions than their tool axis gives, the first in C")
+        (3, "other rotary positions than the tool axis gives at 2 points, the first in C")
     ]
 
 
@@ -206,7 +206,7 @@ def warnings_for(programs: Programs, *lines: str) -> list[tuple[int, str]]:
         (
             ["TRAORI", "ORIWKS", "ORIVECT", "G0 X0 Y0 Z0 B0 C0", "G1 X1 B30 F1"],
             5,
-            "1 points turn the tool on a great circle, which is not carried over",
+            "the tool turns on a great circle to 1 point, which is not carried over",
         ),
     ],
 )

@@ -60,7 +60,7 @@ def test_the_boat_is_one_path_on_two_machines_but_for_what_its_generator_does() 
     assert found.axis <= 1e-9
     assert found.count == 14
     assert found.first is not None
-    assert re.search("the first program has 303 points more", found.first.text)
+    assert re.search("the first program has 303 more points", found.first.text)
 
 
 def test_the_boats_differ_in_more_than_that_when_the_tool_axis_does(tmp_path: Path) -> None:

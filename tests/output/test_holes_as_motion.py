@@ -105,14 +105,14 @@ def test_what_is_made_as_motion_is_said_once_for_each_kind(post: Post) -> None:
     code, _, err = post.all(text, "--explain")
     assert code == 0
     why = "strokes that become shorter, where Q is one stroke"
-    assert f"part.cls:10: warning: {why}; 2 holes of CYCLE/DRILL,DEEP made as motion" in err
-    assert f"part.cls:10: OP1: 2 holes of CYCLE/DRILL,DEEP made as motion: {why}" in err
+    assert f"part.cls:10: warning: {why}; CYCLE/DRILL,DEEP expanded to rapids and lines for 2 holes" in err
+    assert f"part.cls:10: OP1: CYCLE/DRILL,DEEP expanded to rapids and lines for 2 holes: {why}" in err
     code, _, err = post.all(
         CLEAR + f"CYCLE/DRILL,{HEIGHTS}MMPM,250\nGOTO/10,0,0\n" + FOOT, "--set", "cycles=off", "--explain"
     )
     assert code == 0
     assert "warning" not in err
-    assert "1 hole of CYCLE/DRILL made as motion: as requested" in err
+    assert "CYCLE/DRILL expanded to rapids and lines for 1 hole: as requested" in err
 
 
 def test_cycles_that_can_be_said_stay_beside_those_that_cannot(post: Post) -> None:
@@ -143,7 +143,7 @@ def test_what_the_words_of_a_cycle_lack_is_made_as_motion(control: str, words: s
     text = simplest("DRILL").replace(CYCLES["DRILL"], words.format(h=HEIGHTS))
     done = posted(text, pair, tmp_path, ())
     check_proven(done, pair, ())
-    assert f"2 holes of CYCLE/{words.partition(',{h}')[0]} made as motion" in done.err
+    assert f"CYCLE/{words.partition(',{h}')[0]} expanded to rapids and lines for 2 holes" in done.err
 
 
 def test_strokes_and_dwells_count_in_the_time_of_an_operation(tmp_path: Path) -> None:

@@ -119,7 +119,7 @@ def test_with_a_known_workpiece_zero_a_retract_keeps_the_limits_of_the_slides() 
     found = planned(operation_of(round_part()), known, PlanOptions(clearance=Clearance(1800.0))).problems
     errors = [p for p in found if p.severity is Severity.ERROR]
     assert len(errors) == 1
-    assert "on the retreat for a rewind axis" in errors[0].what
+    assert "on the retract for a rewind axis" in errors[0].what
     assert "--set clearance=MM" in errors[0].cure
 
 
@@ -166,7 +166,7 @@ def test_a_program_with_a_rewind_is_proven(tmp_path: Path, capfd: pytest.Capture
     code, program = posted(tmp_path, round_part(), "--explain")
     err = capfd.readouterr().err
     assert code == 0, err
-    assert "1 retreat along the tool axis to turn" in err
+    assert "1 retract along the tool axis to turn" in err
     assert "1 rewind and" in err
     assert "from point to point the nearest pose would have had" in err
     assert "starts at C -350.000 A -40.000; nearest to home is C 10.000 A -40.000, but from there axis C" in err
@@ -253,7 +253,7 @@ def test_the_same_program_without_a_fault_is_proven(tmp_path: Path, capfd: pytes
                  "--cl", str(tmp_path / "part.cls")])  # fmt: skip
     said = capfd.readouterr()
     assert code == 0, said.out + said.err
-    assert "1 retreat along the tool axis to turn" in said.out + said.err
+    assert "1 retract along the tool axis to turn" in said.out + said.err
 
 
 def test_a_move_into_the_part_is_no_retract(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

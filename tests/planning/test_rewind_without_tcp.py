@@ -42,7 +42,7 @@ def test_the_slides_keep_the_tip_at_the_clearance_while_the_axes_turn() -> None:
     moves = round_part()
     done = posted(moves)
     assert [str(check) for check in done.found.checks if not check.passed] == []
-    assert "1 retreat along the tool axis to turn" in next(c.summary for c in done.found.checks if c.key == "order")
+    assert "1 retract along the tool axis to turn" in next(c.summary for c in done.found.checks if c.key == "order")
     rows = turning_rows(done)
     left = done.run.tip[rows.start - 2]
     (point,) = np.flatnonzero(np.abs(moves.tip - left).max(axis=1) < 3e-5)
@@ -71,7 +71,7 @@ def test_a_retract_beyond_the_limits_of_slides_is_refused_once_with_its_remedy()
     near = replace(CA, axes=tuple(replace(a, low=-280.0, high=280.0) if a.name == "Y" else a for a in CA.axes))
     errors = [p for p in posted(round_part(), near).plan.problems if p.severity is Severity.ERROR]
     assert len(errors) == 1
-    assert "on the retreat for a rewind axis Y would go to" in errors[0].what
+    assert "on the retract for a rewind axis Y would go to" in errors[0].what
     assert "--set clearance=MM" in errors[0].cure
 
 

@@ -29,5 +29,7 @@ CASES = {
     "linuxcnc/blade.expected.ngc": Case(_BLADE, "xyzac_trt"),
     "linuxcnc/blade_without_tcp.expected.ngc": Case(_BLADE, "xyzac_trt", ("tcp=off", "zero=0,0,0")),
     "linuxcnc/contour.expected.ngc": Case("yl569/1_contour_rough.cls", "xyzac_trt"),
-    "linuxcnc/plate.expected.ngc": Case("linuxcnc/plate.cls", "xyzac_trt", ("title=plate",), warned=" made as motion"),
+    "linuxcnc/plate.expected.ngc": Case(
+        "linuxcnc/plate.cls", "xyzac_trt", ("title=plate",), warned=" expanded to rapids"
+    ),
 }

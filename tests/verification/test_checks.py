@@ -63,14 +63,14 @@ def test_a_fault_fails_its_check_at_its_block(old: str, new: str, key: str, bloc
 def test_a_block_that_repeats_its_position_is_reported_and_passes(verified: Verifier) -> None:
     found = verified(HEAD + CUT + "X20\n" + FOOT, CL)
     assert found.passed
-    assert "1 blocks that move nothing" in check(found, "order").summary
+    assert "1 block without motion" in check(found, "order").summary
 
 
 def test_points_that_repeat_the_one_before_need_no_block(verified: Verifier) -> None:
     cl = CL.replace("GOTO/20,0,5\n", "GOTO/10,0,5\nGOTO/10.0000001,0,5\nGOTO/20,0,5\nGOTO/20,0,5\n")
     found = verified(HEAD + CUT + FOOT, cl)
     assert found.passed
-    assert "3 repeated ones left out" in check(found, "order").summary
+    assert "3 repeated points left out" in check(found, "order").summary
 
 
 def test_lines_may_replace_an_arc_and_their_chords_are_reported(verified: Verifier) -> None:

@@ -23,6 +23,7 @@ from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.wording import counted
 
 #: Places that are not understood which an error names one by one.
 _MOST_NAMED = 20
@@ -48,7 +49,7 @@ class ConvertResult:
 
     def __repr__(self) -> str:
         """Return what matters in a notebook."""
-        result = f"{len(self.toolpath.operations)} operations" if self.posted is None else repr(self.posted)
+        result = counted(len(self.toolpath.operations), "operation") if self.posted is None else repr(self.posted)
         return f"ConvertResult({result})"
 
     @property
@@ -176,13 +177,13 @@ class _Reader:
         found = [Problem(one.file, one.line, one.text, "", one.severity) for one in run.diagnostics]
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
-            what = f"{len(errors)} places are not understood, and nothing is written"
+            what = f"{counted(len(errors), 'place')} not understood, and nothing is written"
             cure = "--force converts what was understood"
             raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
         self.report([problem for problem in found if not problem.what.startswith(COMPENSATION_FINDINGS)])
         converted = conversion.convert(run, control)
         if converted.errors and not self._force:
-            what = f"{len(converted.errors)} places cannot be converted, and nothing is written"
+            what = f"{counted(len(converted.errors), 'place')} cannot be converted, and nothing is written"
             cure = "--force converts the rest without them"
             raise RefusedError((*converted.errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
         self.report(converted.errors)

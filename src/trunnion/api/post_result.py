@@ -12,6 +12,7 @@ from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.verification import Check, Verification
+from trunnion.wording import counted
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -36,7 +37,7 @@ class PostResult:
 
     def __repr__(self) -> str:
         """Return what matters in a notebook: the columns would fill pages."""
-        rows = "not run" if self.run is None else f"{len(self.run)} motions"
+        rows = "not run" if self.run is None else counted(len(self.run), "motion")
         place = "" if self.output is None else f", output={str(self.output)!r}"
         return f"PostResult(passed={self.passed}, {rows}{place})"
 

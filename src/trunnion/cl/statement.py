@@ -5,6 +5,7 @@ from math import isfinite
 from typing import NamedTuple
 
 from trunnion.cl.diagnostics import StatementError
+from trunnion.wording import counted
 
 _TEXT_STATEMENT = re.compile(
     rb"(?:(TOOL[ \t]*PATH|PPRINT|INSERT|DISPLA?Y|PARTNO|TPRINT)|(STOP|OPSTOP)(?=[ \t]*(?:/|\Z)))[ \t]*(/?)(.*)",
@@ -71,7 +72,7 @@ def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[
             raise StatementError(f"{major} has the number {value}", cure)
     if counts and len(values) not in counts:
         expected = " or ".join(map(str, counts))
-        what = f"{major} has {len(values)} numbers, expected {expected}"
+        what = f"{major} has {counted(len(values), 'number')}, expected {expected}"
         raise StatementError(what, "look for a missing or an extra comma")
     return values  # type: ignore[return-value]
 

@@ -18,6 +18,7 @@ from trunnion.cl.write_events import event_statement
 from trunnion.cl.write_points import encode_lines, number_text, write_points
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.model.toolpath import Arcs, Event, From, Kind, Moves, Operation, Phase, Tool, Toolpath
+from trunnion.wording import counted
 
 _PHASE_COLOURS = {phase: colour for colour, phase in COLOUR_PHASES.items()} | {
     Phase.INITIAL: 186,
@@ -176,6 +177,6 @@ def _colours(file: str, operation: Operation) -> tuple[list[tuple[int, int]], li
         return colours, []
     row = int(off[0])
     was, now = Phase(int(moves.phase[row])).name.lower(), Phase(int(read[row])).name.lower()
-    what = f"{len(off)} points of operation {operation.name} change their phase, the first from {was} to {now}"
+    what = f"{operation.name}: {counted(len(off), 'point')} in another phase, the first in {now} instead of {was}"
     cure = "the colours of a CL file cannot express this order"
     return colours, [Problem(file, int(moves.line[row]), what, cure, Severity.WARNING)]

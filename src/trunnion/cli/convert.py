@@ -10,6 +10,7 @@ from trunnion.api.converting import convert
 from trunnion.api.reading import load_machine
 from trunnion.cli.terminal import ConversionTerminal, output_place
 from trunnion.controls import load_control
+from trunnion.wording import counted
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     if target != "-":
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
-        print(f"{target}: {rows} points, {len(operations)} operations", file=sys.stderr)
+        print(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}", file=sys.stderr)
     return 0
 
 

@@ -15,6 +15,7 @@ from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
+from trunnion.wording import counted
 
 
 def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
@@ -47,7 +48,7 @@ def _print_summary(target: str, result: PostResult) -> None:
         return
     rows = sum(len(motion.operation.moves) for motion in result.motions)
     operations = sum(motion.starts_operation for motion in result.motions)
-    print(f"{target}: {rows} points, {operations} operations", file=sys.stderr)
+    print(f"{target}: {counted(rows, 'point')}, {counted(operations, 'operation')}", file=sys.stderr)
     for subprogram in result.subprograms:
         print(f"{subprogram}: a subprogram of {result.output.name}", file=sys.stderr)
 

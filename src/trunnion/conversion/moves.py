@@ -7,6 +7,7 @@ from trunnion.conversion.unsupported import Warnings
 from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Arcs, Kind, Moves
+from trunnion.wording import counted
 
 #: Positions are rounded to this many decimals: the rest is rounding error of binary fractions.
 _DECIMALS = 9
@@ -48,8 +49,8 @@ def _feeds(run: Run, rows: Ints, warn: Warnings) -> tuple[Floats, Flags]:
     rescaled = np.union1d(inverse, without_tcp)
     without_feed = run.line[rows[rescaled[feed[rescaled] == 0.0]]]
     if len(without_feed):
-        what = f"{len(without_feed)} blocks turn the tool about a tip at rest: they have no feed in mm/min"
-        warn(int(without_feed[0]), what, "their feed becomes 0")
+        what = f"no feed in mm/min in {counted(len(without_feed), 'block')}: the tool only turns about its tip"
+        warn(int(without_feed[0]), what, "the feed becomes 0")
     last_cut = np.maximum.accumulate(np.where(rapid, -1, np.arange(len(feed))))
     feed = np.where(last_cut >= 0, feed[last_cut], np.nan)
     return feed, np.asarray((mode[last_cut] == 95) & ~np.isnan(feed))

@@ -11,6 +11,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.planning.poses.selection import choose_poses
+from trunnion.wording import counted
 
 #: Lines with lost words that get a warning each; the others are only counted.
 _MAX_WORD_WARNINGS = 5
@@ -100,12 +101,12 @@ def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warn
         differing, columns = np.nonzero(np.abs(difference) > _SAME_ANGLE)
         if len(differing):
             name = machine.axes[machine.rotary[int(columns[0])]].name
-            what = f"{len(np.unique(differing))} points have other rotary positions than their tool axis gives"
+            what = f"other rotary positions than the tool axis gives at {counted(len(np.unique(differing)), 'point')}"
             _warn_at_rows(run, rows[differing], f"{what}, the first in {name}", "only the tool axis is kept", warn)
 
 
 def warn_of_interpolation(run: Run, operations: Iterable[Ints], by_vectors: bool, warn: Warnings) -> None:
-    """Warn of motions that turn the tool in another way than our programs do.
+    """Warn of motions that turn the tool in another way than the programs of ``trunnion.post`` do.
 
     operations   the rows (n,) of each operation
     by_vectors   orientations will be written as vectors, which turn the tool on great circles
@@ -116,14 +117,15 @@ def warn_of_interpolation(run: Run, operations: Iterable[Ints], by_vectors: bool
         great_circle = turns & run.tcp[rows] & (run.orientation[rows] == Orientation.GREAT_CIRCLE)
         great_circle &= not by_vectors
         without_tcp = turns & ~run.tcp[rows]
-        for found, what in (
-            (great_circle, "turn the tool on a great circle"),
-            (without_tcp, "turn the tool without TCP"),
+        for found, how in (
+            (great_circle, "on a great circle"),
+            (without_tcp, "without TCP"),
         ):
             points = rows[found]
             if len(points):
+                what = f"the tool turns {how} to {counted(len(points), 'point')}, which is not carried over"
                 cure = "between points the tool turns as the control's templates have it"
-                _warn_at_rows(run, points, f"{len(points)} points {what}, which is not carried over", cure, warn)
+                _warn_at_rows(run, points, what, cure, warn)
 
 
 def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, warn: Warnings) -> None:
@@ -159,7 +161,7 @@ def warn_of_park_positions(run: Run, warn: Warnings) -> None:
 def warn_of_normals(run: Run, warn: Warnings) -> None:
     """Warn of surface normals."""
     if len(run.normals):
-        what = f"{len(run.normals)} blocks have a surface normal, which is not carried over"
+        what = f"{counted(len(run.normals), 'block')} with a surface normal, which is not carried over"
         _warn_at_rows(run, run.normals.row, what, "a CL file has contact points of the CAM system instead", warn)
 
 

@@ -60,7 +60,7 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
         if column is not None:
             values = joints[:, column]
             value = values.max() if values.max() > machine.axes[column].high else values.min()
-            what = f"on the retreat for a rewind {limit_violation_text(machine, column, float(value))}"
+            what = f"on the retract for a rewind {limit_violation_text(machine, column, float(value))}"
             yield Problem(chosen.file, line, what, "--set clearance=MM draws back less; or move the workpiece")
 
 

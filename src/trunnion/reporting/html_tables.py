@@ -11,7 +11,6 @@ from trunnion.reporting.content import ReportContent
 from trunnion.reporting.extents import AxisExtent, BlockReference, Extremes, TipExtent
 from trunnion.reporting.html_text import (
     capitalised,
-    counted,
     escape,
     format_fixed,
     format_limit,
@@ -21,6 +20,7 @@ from trunnion.reporting.html_text import (
 )
 from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
 
 #: Places that the page shows for each check; the JSON report has all of them.
 MAX_PLACES = 12

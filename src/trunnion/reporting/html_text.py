@@ -56,12 +56,3 @@ def format_range(values: tuple[float, float] | None) -> str:
         return ""
     low, high = map(format_number, values)
     return low if low == high else f"{low} … {high}"
-
-
-def counted(count: int, thing: str) -> str:
-    """Return a number of things in words.
-
-    >>> counted(1, "check"), counted(3, "check")
-    ('1 check', '3 checks')
-    """
-    return f"{count} {thing}" + ("" if count == 1 else "s")

@@ -8,6 +8,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import MM_PER_INCH, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.model.toolpath import Frame, Tool
+from trunnion.wording import counted
 
 #: Names of length units, in mm.
 LENGTH_UNITS = {"MM": 1.0, "INCHES": MM_PER_INCH, "INCH": MM_PER_INCH, "IN": MM_PER_INCH}
@@ -73,7 +74,7 @@ def tldata(state: ReaderState, statement: Statement) -> None:
     if form in _TLDATA_FIELDS and len(given) not in layouts:
         *others, last = map(str, layouts)
         expected = f"{', '.join(others)} or {last}" if others else last
-        what = f"TLDATA/{form} has {len(given)} numbers, expected {expected}"
+        what = f"TLDATA/{form} has {counted(len(given), 'number')}, expected {expected}"
         raise StatementError(what, "write TLDATA as NX does")
     fields = {field: number for field, number in zip(layouts.get(len(given), ()), given, strict=False) if field}
     kind = form if form in _TLDATA_FIELDS else "UNKNOWN"

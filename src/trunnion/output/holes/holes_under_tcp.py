@@ -114,7 +114,7 @@ def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
     for row, cycle in cycles.items():
         line = int(moves.line[row])
         if moves.kind[row] != Kind.RAPID:
-            yield HoleCycleError("a retreat of the rotary axes among holes", "leave the setting holes out", line)
+            yield HoleCycleError("a rewind of the rotary axes among holes", "leave the setting holes out", line)
         if row == 0:
             continue
         before = cycles.get(row - 1)

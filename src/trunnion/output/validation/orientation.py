@@ -7,6 +7,7 @@ from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind
 from trunnion.output.coordinates.tool_vectors import first_row_at_other_pose
 from trunnion.output.program import Program
+from trunnion.wording import counted
 
 
 def tool_vector_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -45,7 +46,7 @@ def normal_problems(program: Program, motion: Motion) -> list[Problem]:
         line = int(moves.line[int(np.argmax(inserted))])
         problems.append(Problem(program.file, line, what, "leave the setting axis_tolerance out"))
     elif missing.any():
-        what = f"operation {name}: {int(missing.sum())} of {len(moves)} points have no contact point"
+        what = f"operation {name}: no contact point at {int(missing.sum())} of {counted(len(moves), 'point')}"
         effect = "the control does not compensate the tool there"
         problems.append(Problem(*location, what, effect, Severity.WARNING))
     return problems

@@ -20,6 +20,7 @@ from trunnion.output.coordinates.axis_coordinates import (
 )
 from trunnion.output.program import Program
 from trunnion.output.validation.feeds import REFUSED_ERROR, TOLD_ERROR
+from trunnion.wording import counted
 
 #: Of computing, as a share.
 _NOISE: Final = 1e-6
@@ -64,7 +65,8 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
             cure = "output the toolpath with points nearer to each other, or a higher feed"
         problems.append(Problem(program.file, int(moves.line[row]), what, cure))
     if above.any():
-        what = f"{int(above.sum())} blocks so short that F would be above {number_format.greatest:g}: they are slower"
+        blocks = counted(int(above.sum()), "block")
+        what = f"{blocks} so short that F would be above {number_format.greatest:g}: slower than programmed"
         location = program.file, int(moves.line[cuts[np.argmax(above)]])
         problems.append(Problem(*location, what, "a wider tolerance inserts fewer points", Severity.WARNING))
     problems += _rounding_problems(program, motion, cuts, value, rule, number_format)
@@ -86,7 +88,7 @@ def _rounding_problems(
     if not len(wrong):
         return []
     worst = int(np.argmax(error))
-    what = f"F of {len(wrong)} blocks is up to {100.0 * error[worst]:.2g} % off, as its digits are too few"
+    what = f"F of {counted(len(wrong), 'block')} is up to {100.0 * error[worst]:.2g} % off, as its digits are too few"
     cure = "output the toolpath with points nearer to each other, or a higher feed"
     severity = Severity.ERROR if inverse_time else Severity.WARNING
     return [Problem(program.file, int(motion.operation.moves.line[cuts[worst]]), what, cure, severity)]

@@ -30,6 +30,7 @@ from trunnion.planning.holes.operations import cycle_row_ranges
 from trunnion.planning.holes.strokes import SAME_HEIGHT, HoleMotions, hole_motions
 from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.planning.options import CycleObjection
+from trunnion.wording import counted
 
 #: The reason for holes as motion although the control has their cycles.
 REQUESTED: Final = "as requested"
@@ -86,9 +87,8 @@ class ConvertedCycles:
 
     @property
     def description(self) -> str:
-        """Such as ``2 holes of CYCLE/DRILL made as motion``."""
-        holes = "1 hole" if self.holes == 1 else f"{self.holes} holes"
-        return f"{holes} of CYCLE/{self.method} made as motion"
+        """Such as ``CYCLE/DRILL expanded to rapids and lines for 2 holes``."""
+        return f"CYCLE/{self.method} expanded to rapids and lines for {counted(self.holes, 'hole')}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

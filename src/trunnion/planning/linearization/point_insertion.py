@@ -32,6 +32,7 @@ from trunnion.planning.linearization.slide_arcs import keep_slide_arcs
 from trunnion.planning.options import PlanOptions
 from trunnion.planning.request import PlanRequest
 from trunnion.planning.rotary_positions import displayed_positions
+from trunnion.wording import counted
 
 #: Pieces into which an even turn is cut: at first, and at most.
 _FIRST_PIECES: Final = 8
@@ -158,7 +159,8 @@ def _decisions(file: str, operation: Operation, copies: Ints) -> Iterable[Decisi
     if added[most]:
         line = int(operation.moves.line[most])
         text = (
-            f"{int(added.sum())} points put in between CL points, most of them ({int(added[most])}) before line {line}"
+            f"{counted(int(added.sum()), 'point')} inserted between CL points, most of them ({int(added[most])})"
+            f" before line {line}"
         )
         yield Decision(file, operation.name, line, most, DecisionTopic.POINTS, text)
 

@@ -13,6 +13,7 @@ from trunnion.planning.poses.limit_lookahead import LimitHit, continue_in_branch
 from trunnion.planning.poses.selection import choose_nearest_states, poses_of_states
 from trunnion.planning.poses.states import MAX_BEND, POLE_JUMP, REWIND_STEP, STATE_BITS, states_of
 from trunnion.planning.rotary_positions import is_endless, tool_axes
+from trunnion.wording import counted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -173,12 +174,8 @@ def _comparison(chosen: ChosenPoses) -> Decision:
     nearest = _nearest_neighbour(chosen)
     count = int((chosen.state & REWIND_STEP != 0).sum())
     text = (
-        f"{_rewinds(count)} and {rotary_travel(chosen.machine, chosen.rotary):.0f} degrees of rotary travel;"
-        f" from point to point the nearest pose would have had {_rewinds(len(rewind_rows(nearest)))}"
+        f"{counted(count, 'rewind')} and {rotary_travel(chosen.machine, chosen.rotary):.0f} degrees of rotary travel;"
+        f" from point to point the nearest pose would have had {counted(len(rewind_rows(nearest)), 'rewind')}"
         f" and {rotary_travel(chosen.machine, nearest.rotary):.0f} degrees"
     )
     return chosen.decision(-1, DecisionTopic.NEAREST, text)
-
-
-def _rewinds(count: int) -> str:
-    return "1 rewind" if count == 1 else f"{count} rewinds"

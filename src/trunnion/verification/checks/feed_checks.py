@@ -12,6 +12,7 @@ from trunnion.verification.context import MAX_PLACES, ComparedContext, check_fro
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, needlessly_lowered_feeds
 from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE
 from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
 
 #: A tip that moves by less than this, mm, or by less than rounding, may be taken to rest.
 _TIP_RESTS = 1e-3
@@ -48,7 +49,7 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations) -> Check:
     low, high = compared.range
     good = "nothing is cut" if low > high else f"{low:g} to {high:g}, as the CL file says"
     lowest, rows = accepted.slowed
-    good += f"; lowered at {rows} rows, down to {lowest:.2f}, for the rotary axes" if rows else ""
+    good += f"; lowered at {counted(rows, 'row')}, down to {lowest:.2f}, for the rotary axes" if rows else ""
     return check_from_places("feed", "feeds as the CL file says", [*named, *places], good, count + len(faults))
 
 

@@ -14,6 +14,7 @@ from trunnion.verification.matching.hole_approaches import clearance_between_hol
 from trunnion.verification.matching.hole_matching import MatchedHole, match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ def check_holes(context: ComparedContext) -> Check:
     for match in (match for match in matches if match.index >= len(expected.holes)):
         count += 1
         places.append(context.place(match.first, 0.0, "drills where the CL file has no more holes"))
-    good = f"{len(matches)} holes" if matches else "the CL file has none"
+    good = counted(len(matches), "hole") if matches else "the CL file has none"
     by_motion = sum(match.by_motion for match in matches)
     good += f", {by_motion} of them by motion" if by_motion else ""
     return check_from_places("holes", "holes as the cycles of the CL file ask", places, good, count)

@@ -13,7 +13,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.context import Context, check_from_places
 from trunnion.verification.results import Check, Place
 
-_TITLE: Final = "retreats to the machine's home"
+_TITLE: Final = "retracts to the machine's home"
 
 #: An axis is at home within this, mm or degrees.
 HOME_TOLERANCE: Final = 1e-6

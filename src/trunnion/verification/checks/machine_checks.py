@@ -8,6 +8,7 @@ from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.axis_motion import AxisMotion
 from trunnion.verification.kinematics.worst_rows import WorstRows
 from trunnion.verification.results import Check
+from trunnion.wording import counted
 
 #: Travel beyond a limit by less than this is rounding, mm or degrees.
 _ROUNDING = 1e-5
@@ -116,5 +117,5 @@ def _check_shares(
         f"{axes[top].name} at most {100.0 * worst.value:.0f} % of its {quantity}, in {context.block_name(worst.row)}"
     )
     if count:
-        summary += f"; in {count} places the control slows down"
+        summary += f"; in {counted(count, 'place')} the control slows down"
     return Check(key, title, True, summary, worst.value, 1.0, "of all", tuple(places[:MAX_PLACES]))

@@ -12,6 +12,7 @@ from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.rewind_retracts import RewindRetract, find_rewind_retracts
 from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
 
 _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
 
@@ -59,16 +60,15 @@ def _in_order(context: ComparedContext, retracts: list[RewindRetract], still: li
     ]
     notes += [context.place(row, 0.0, "repeats the position before it: nothing moves") for row in still]
     left_out = len(context.expected) - len(matching.cl)
-    summary = f"{len(matching.cl)} points in their order"
+    summary = f"{counted(len(matching.cl), 'point')} in their order"
     if len(matching.intermediate[0]):
         summary += f", {len(matching.intermediate[0])} more on the way between them"
     if left_out:
-        summary += f", {left_out} repeated ones left out"
+        summary += f", {counted(left_out, 'repeated point')} left out"
     if retracts:
-        noun = "retreat" if len(retracts) == 1 else "retreats"
-        summary += f", {len(retracts)} {noun} along the tool axis to turn"
+        summary += f", {counted(len(retracts), 'retract')} along the tool axis to turn"
     if still:
-        summary += f", {len(still)} blocks that move nothing"
+        summary += f", {counted(len(still), 'block')} without motion"
     title = "every CL point has its block, every block its point"
     return Check("order", title, True, summary, places=tuple(notes[:MAX_PLACES]))
 
@@ -113,7 +113,9 @@ def check_kind(context: ComparedContext) -> Check:
                 places.append(context.place_with_cl(row, 0.0, text, point))
     others = list(_rapids_on_arcs(context)) + list(_wrong_circles(context))
     places = sorted(places + others, key=lambda place: place.nc_line)
-    good = f"{expected.rapid_count} rapids, {len(expected.arcs.row)} circles, the rest lines"
+    rapids, arcs = expected.rapid_count, len(expected.arcs.row)
+    lines = len(expected) - rapids - arcs
+    good = ", ".join((counted(rapids, "rapid"), counted(arcs, "arc"), counted(lines, "line")))
     return check_from_places("kind", "rapid, line or circle as the CL file says", places, good, count + len(others))
 
 

@@ -13,6 +13,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext
 from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS
 from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
 
 _TITLE: Final = "surface normals against the contact points"
 
@@ -58,9 +59,9 @@ def check_normals(context: ComparedContext) -> list[Check]:
                     value = float(off[k]) if both[k] else 0.0
                     full = f"{text} by {value:.9f}" if both[k] else text
                     places.append(context.place_with_cl(int(nc[k]), value, full, int(cl[k])))
-    summary = f"{right} normals as the contact points have them, largest difference {largest:.9f}"
+    summary = f"{counted(right, 'normal')} as the contact points have them, largest difference {largest:.9f}"
     if not normals:
-        summary = f"{len(run.normals)} normals, and the CL files have no contact points to compare them with"
+        summary = f"{counted(len(run.normals), 'normal')}, and the CL files have no contact points to compare them with"
     if wrong:
         summary += f", {wrong} are not"
     return [Check("normal", _TITLE, not wrong, summary, largest, limit or None, "", tuple(places))]

@@ -14,6 +14,7 @@ from trunnion.verification.expected.arcs import great_circle_points
 from trunnion.verification.kinematics.axis_difference import degrees_apart
 from trunnion.verification.matching.pairs import ArcSegments
 from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
 
 #: A point whose three coordinates are off by one each is off by this much.
 _DIAGONAL = math.sqrt(3.0) + 1e-6
@@ -76,7 +77,9 @@ def check_axis(context: ComparedContext, deviations: DeviationSummary, accepted:
     title = "tool axis against the CL points"
     check = _measured("axis", title, context, deviations, "deg", [*named, *places, *on_arcs], count)
     lean, rows = accepted.lean
-    return replace(check, summary=f"{check.summary}; leans by up to {lean:.6f} at {rows} rows") if rows else check
+    if not rows:
+        return check
+    return replace(check, summary=f"{check.summary}; leans by up to {lean:.6f} at {counted(rows, 'row')}")
 
 
 def _axes_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
@@ -109,5 +112,5 @@ def _measured(
     largest, limit = deviations.largest, deviations.limit
     summary = f"largest {largest:.6f} {unit} in {each}, rms {whole} {deviations.rms:.6f}, allowed {limit:.6f}"
     if count:
-        summary += f", {count} points off, first in {min(places, key=lambda p: p.nc_line).block_name}"
+        summary += f", {counted(count, 'point')} off, first in {min(places, key=lambda p: p.nc_line).block_name}"
     return Check(key, title, not count, summary, largest, limit, unit, tuple(places))

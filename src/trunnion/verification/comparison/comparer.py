@@ -12,6 +12,7 @@ from trunnion.verification.comparison.on_path import PointTolerances, ends_on_pa
 from trunnion.verification.comparison.result import Comparison, Difference
 from trunnion.verification.matching.resync import find_resync
 from trunnion.verification.row_ranges import CHUNK
+from trunnion.wording import counted
 
 #: Motions that are compared at first, and after each difference.
 _FEW: Final = 64
@@ -159,7 +160,7 @@ class Comparer:
             angle = float(np.degrees(np.linalg.norm(one.run.axis[p] - two.run.axis[q])))
             text = f"tips are {apart:.6f} mm apart, tool axes {angle:.6f} degrees"
             if a != b:
-                text += f"; the {'first' if a > b else 'second'} program has {abs(a - b)} points more"
+                text += f"; the {'first' if a > b else 'second'} program has {counted(abs(a - b), 'more point')}"
             self._note(i + k, j + k, apart + angle, text)
             if a != b:
                 break

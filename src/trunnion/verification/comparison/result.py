@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from trunnion.wording import counted
+
 
 @dataclass(frozen=True, slots=True)
 class Difference:
@@ -42,10 +44,11 @@ class Comparison:
     def lines(self) -> Iterator[str]:
         """The result for a terminal."""
         if self.same:
-            yield f"same: {self.points} points, tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
+            points = counted(self.points, "point")
+            yield f"same: {points}, tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
             return
         yield from self.unknown_words[:5]
-        yield f"different: {self.count} places, {self.points} points are the same"
+        yield f"different: {counted(self.count, 'place')}; the same: {counted(self.points, 'point')}"
         for name, what in (("first", self.first), ("worst", self.worst)):
             if what is not None and (name == "first" or what != self.first):
                 yield f"{name}: {self.programs[0]}:{what.one} against {self.programs[1]}:{what.two}: {what.text}"
