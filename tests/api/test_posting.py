@@ -88,7 +88,7 @@ def test_every_wrong_setting_is_named_at_once() -> None:
     with pytest.raises(trunnion.InputError) as wrong:
         trunnion.post(CL, machine="yl569", settings={"titel": "x", "pole": "skip"})
     assert len(wrong.value.problems) == 2
-    assert "titel is no setting" in str(wrong.value)
+    assert "titel is not a setting" in str(wrong.value)
 
 
 def test_a_program_that_must_not_run_is_refused_and_nothing_is_written(tmp_path: Path) -> None:

@@ -236,7 +236,11 @@ def test_a_program_without_motion_is_an_error(tmp_path: Path, capfd: Capture) ->
 
 @pytest.mark.parametrize(
     ("setting", "word"),
-    [("titel=x", "titel is no setting"), ("units=mm", "units has no meaning"), ("zero=1,2,3", "zero has no meaning")],
+    [
+        ("titel=x", "titel is not a setting"),
+        ("units=mm", "units has no meaning"),
+        ("zero=1,2,3", "zero has no meaning"),
+    ],
 )
 def test_a_setting_that_makes_no_sense_is_named(setting: str, word: str, tmp_path: Path, capfd: Capture) -> None:
     assert word in failed(tmp_path, capfd, str(HUB), "--machine", "yl569", "--to-cl", "--set", setting)

@@ -133,6 +133,7 @@ def test_words_that_only_one_program_has_and_nobody_knows_are_a_difference(
     code, out = diff(capfd, tmp_path, TEXT.replace("N560 ;Cutting", "N560 FROBNICATE(1)"))
     assert code == 1
     assert out.startswith("second:56: not understood: ")
+    assert out.count("not understood") == 1
 
 
 def test_the_worst_difference_is_named_besides_the_first(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -190,7 +190,7 @@ def test_several_cl_files_become_one_program_in_one_file(tmp_path: Path, capfd: 
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (["--set", "titel=x"], "titel is no setting"),
+        (["--set", "titel=x"], "titel is not a setting"),
         (["--set", "units=feet"], "units is 'feet'"),
         (["--set", "zero=1,2"], "zero is '1,2'"),
         (["--set", "title=a\nM30"], "line break"),

@@ -326,3 +326,13 @@ def test_post_says_what_it_proved_with_half_the_last_digit_allowed(
     assert "FAIL" not in err
     assert "82 points in their order" in err
     assert "allowed 0.0000" in err or "allowed 0.000500" in err
+
+
+def test_a_program_for_another_control_is_asked_after_first(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    program = tmp_path / "part.h"
+    lines = "".join(f"{k} L X+{k} Y+0 FMAX\n" for k in range(1, 9))
+    program.write_text(f"0 BEGIN PGM PART MM\n{lines}9 END PGM PART MM\n", encoding="utf-8")
+    code, _, err = verify(capfd, program)
+    assert code == 1
+    assert err.startswith(f"{program}: is this a Sinumerik 840D sl program? ")
+    assert "lines of it not understood; --machine names the machine that runs it, and yl569 has this control\n" in err

@@ -124,7 +124,7 @@ def test_the_feed_of_a_cycle_is_its_own_and_the_modal_one_comes_back(post: Post)
         ("BORE,BACK,RAPTO,3,FEDTO,-20,MMPM,100", "does not say how far the tool must move off its axis"),
         ("TAP,BRKCHP,RAPTO,3,FEDTO,-20,MMPR,1.25", "without STEP"),
         ("TAP,BRKCHP,RAPTO,3,FEDTO,-20,STEP,5,MMPR,1.25,OPTION", "a compensating chuck"),
-        ("TAP,DEEP,RAPTO,3,FEDTO,-20,STEP,5,1,2,MMPR,1.25", "strokes that become shorter"),
+        ("TAP,DEEP,RAPTO,3,FEDTO,-20,STEP,5,1,2,MMPR,1.25", "decreasing peck depths"),
         ("DRILL,THRU,RAPTO,3,FEDTO,-20,MMPM,100", "cannot be written"),
     ],
 )
@@ -150,7 +150,7 @@ def test_holes_of_an_operation_whose_axis_changes_in_a_cut_are_motion_with_tcp(p
     text = HEAD + f"GOTO/20,0,30,0.6,0,0.8\nCYCLE/DRILL,{HEIGHTS}MMPM,100\nGOTO/10,0,0\n" + FOOT
     code, lines, err = post.all(text)
     assert code == 0
-    why = "no cycle goes along a tilted axis with TCP"
+    why = "no cycle along a tilted tool axis with TCP"
     assert f"part.cls:13: warning: {why}; CYCLE/DRILL expanded to rapids and lines for 1 hole" in err
     assert "1 hole, 1 of them by motion" in err
     assert "G1 X-2. Z-16. F100." in lines

@@ -95,16 +95,14 @@ def test_threads_along_a_tilted_axis_are_refused_with_a_cure(post: Post) -> None
     text = drilled(["DRILL"], AXES[1:]).replace(CYCLES["DRILL"], CYCLES["TAP"])
     code, out, err = post.all(text)
     assert (code, out) == (2, [])
-    assert (
-        "CYCLE/TAP with TCP: no cycle goes along a tilted axis there, and no motion can make it; clamp the part" in err
-    )
+    assert "CYCLE/TAP along a tilted tool axis needs a tilted plane, which this control lacks; clamp the part" in err
 
 
 def test_what_is_made_as_motion_is_said_once_for_each_kind(post: Post) -> None:
     text = CLEAR + f"CYCLE/DRILL,DEEP,{HEIGHTS}STEP,6.0,1.0,2.0,MMPM,250\nGOTO/10,0,0\nGOTO/20,0,0\nCYCLE/OFF\n" + FOOT
     code, _, err = post.all(text, "--explain")
     assert code == 0
-    why = "strokes that become shorter, where Q is one stroke"
+    why = "decreasing peck depths, and Q of G83 is constant"
     assert f"part.cls:10: warning: {why}; CYCLE/DRILL,DEEP expanded to rapids and lines for 2 holes" in err
     assert f"part.cls:10: OP1: CYCLE/DRILL,DEEP expanded to rapids and lines for 2 holes: {why}" in err
     code, _, err = post.all(

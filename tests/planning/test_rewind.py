@@ -267,7 +267,7 @@ def test_a_move_into_the_part_is_no_retract(tmp_path: Path, capfd: pytest.Captur
     code = main(["verify", str(program), "--machine", "generic_head_head_ca", "--tool", "1",
                  "--cl", str(tmp_path / "part.cls")])  # fmt: skip
     assert code == 1
-    assert "goes to a position that is no CL point" in "".join(capfd.readouterr())
+    assert "goes to a position that is not a CL point" in "".join(capfd.readouterr())
 
 
 # Messages and the log.

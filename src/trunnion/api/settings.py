@@ -78,7 +78,7 @@ def check_settings(settings: Mapping[str, str], control: Control) -> None:
     """Raise ``InputError`` for all settings that the control does not have or that make no sense."""
     known = (*control.settings, *RUN_SETTINGS)
     problems = [
-        Problem("--set", 0, f"{key} is no setting of {control.name}", f"write one of {', '.join(known)}")
+        Problem("--set", 0, f"{key} is not a setting of {control.name}", f"write one of {', '.join(known)}")
         for key in settings
         if key not in known
     ]
@@ -162,7 +162,7 @@ def number_setting(settings: Mapping[str, str], key: str) -> float | None:
     Raises
     ------
     InputError
-        If it is no number, or out of range.
+        If it is not a number, or out of range.
     """
     text = settings.get(key)
     if text is None:

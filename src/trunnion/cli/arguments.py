@@ -1,4 +1,4 @@
-"""What can be written on the command line."""
+"""The arguments of the command line."""
 
 import argparse
 from collections.abc import Callable, Sequence
@@ -10,7 +10,7 @@ from trunnion import __version__
 def _key_value(text: str) -> tuple[str, str]:
     key, equals, value = text.partition("=")
     if not equals or not key:
-        raise argparse.ArgumentTypeError(f"{text!r} is no setting; write KEY=VALUE")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a setting; write KEY=VALUE")
     return key, value
 
 
@@ -20,7 +20,7 @@ def _tolerance(text: str) -> float:
     except ValueError:
         value = 0.0
     if not 0.0 < value < 1e6:
-        raise argparse.ArgumentTypeError(f"{text!r} is no tolerance; write a number above 0, such as 0.001")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a tolerance; write a number above 0, such as 0.001")
     return value
 
 
@@ -34,7 +34,7 @@ def _add_subprograms(
 
 
 def _lazy_command(module: str, name: str) -> Callable[[argparse.Namespace], int]:
-    """What carries out a command. Its part of the house is imported when it is called, and nothing else."""
+    """The function that carries out a command; its module is imported when it is called."""
 
     def run(arguments: argparse.Namespace) -> int:
         command: Callable[[argparse.Namespace], int] = getattr(import_module(f"trunnion.cli.{module}"), name)
@@ -70,7 +70,7 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="CL", help="CL file")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
     parser.add_argument(
-        "--output", metavar="FILE|-|FOLDER", help="program, stdout, or a folder that takes one program a CL file"
+        "--output", metavar="FILE|-|FOLDER", help="program, stdout, or a folder: one program per CL file"
     )
     parser.add_argument(
         "--set", action="append", type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
@@ -105,7 +105,7 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool", default="", metavar="T", help="tool that was called in place of the CL file's")
     parser.add_argument("--offset", metavar="G", help="work offset of the program; G54 where there is a CL file")
     parser.add_argument("--edge", type=int, metavar="D", help="cutting edge under which the tool works; with --cl 1")
-    parser.add_argument("--units", choices=("mm", "inch"), help="units of CL files that do not say them")
+    parser.add_argument("--units", choices=("mm", "inch"), help="length unit of CL files that do not state it")
     parser.add_argument(
         "--frame", choices=("first", "absolute"), default="first",
         help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",

@@ -65,7 +65,7 @@ def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[st
         raise InputError(Problem("post", 0, "several CL files, and no output named", "write --output FILE or FOLDER"))
     into = Path(place or ".")
     if not into.is_dir():
-        raise InputError(Problem(str(into), 0, "is no folder", "make it first"))
+        raise InputError(Problem(str(into), 0, "is not a folder", "make it first"))
     extension = load_control(machine.control).extension
     targets: dict[str, list[str]] = {}
     for file in arguments.files:

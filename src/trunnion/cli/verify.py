@@ -1,10 +1,18 @@
 """``trunnion verify``: an NC program, read back by an independent reader, run, and compared with its CL files."""
 
 import argparse
+import sys
+from typing import Final
 
 from trunnion.api.reports import check_report_name, write_report
 from trunnion.api.verifying import verify
-from trunnion.verification import check_lines, place_lines, time_lines
+from trunnion.controls import load_control
+from trunnion.errors import InputError, Severity
+from trunnion.verification import Verification, check_lines, place_lines, time_lines
+from trunnion.wording import counted
+
+#: Fewer errors do not suggest that the program is for another control.
+_MANY_ERRORS: Final = 5
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -28,7 +36,25 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=arguments.tool_length or None,
         columns=bool(arguments.report),
     )
+    if hint := _control_hint(verification):
+        print(hint, file=sys.stderr)
     print(*check_lines(verification), *place_lines(verification), *time_lines(verification), sep="\n")
     if arguments.report:
         write_report(verification, arguments.report)
     return 0 if verification.passed else 1
+
+
+def _control_hint(verification: Verification) -> str:
+    """A question where more blocks have errors than motions: the program may be for another control. Else empty."""
+    run, machine = verification.run, verification.machine
+    errors = len({one.line for one in run.diagnostics if one.severity is Severity.ERROR})
+    if errors < max(_MANY_ERRORS, len(run)):
+        return ""
+    try:
+        control = load_control(machine.control.unread_copy()).name
+    except InputError:  # its programs can be read, but not written
+        return ""
+    return (
+        f"{verification.program}: is this a {control} program? {counted(errors, 'line')} of it not understood;"
+        f" --machine names the machine that runs it, and {machine.key} has this control"
+    )

@@ -49,4 +49,4 @@ def limit_remedy(machine: Machine, column: int, value: float, remark: str = "") 
     lacking = axis.low - value if value < axis.low else value - axis.high
     if axis.is_rotary:
         return f"tilt the workpiece by {lacking:.3f} degrees{remark}, or post for another machine"
-    return f"move the workpiece so that {axis.name} has {lacking:.3f} mm more{remark}, or tilt it"
+    return f"{axis.name} exceeds its limit by {lacking:.3f} mm{remark}; shift the workpiece zero or change the clamping"

@@ -98,7 +98,7 @@ def _pose_problem(file: str, moves: Moves, poses: PlannedPoses, request: PlanReq
         return Problem(file, line, what, cure)
     if code == BLOCKED:
         turn = f"{describe_pose(machine, poses.rotary[row - 1])} to {describe_pose(machine, poses.rotary[row])}"
-        what = f"the rotary axes must turn over within one step of the cut, {turn}, and no pose serves both its ends"
+        what = f"the rotary axes flip between these two points, {turn}; no solution is valid at both"
         return Problem(file, line, what, "output the toolpath with points nearer to each other, or tilt the workpiece")
     column, value = code - 1, float(poses.beyond_value[row])
     cure = limit_remedy(machine, column, value, _other_pose_remark(machine, moves, poses, row))

@@ -128,7 +128,7 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
     mode = prepared.mode if ranges is None else MachiningMode.TILTED
     objection = ""
     if mode in _SIMULTANEOUS and not _drills_along_tool(prepared):
-        objection = f"no cycle goes along a tilted axis {'with TCP' if mode is MachiningMode.TCP else 'without TCP'}"
+        objection = f"no cycle along a tilted tool axis {'with' if mode is MachiningMode.TCP else 'without'} TCP"
         turns = axis_change_rows(operation)
         ranges = row_ranges(turns[operation.moves.kind[turns] == Kind.RAPID], len(operation.moves))
     from_home = np.zeros(len(operation.moves), np.bool_)

@@ -29,8 +29,8 @@ FAMILIES: Final[dict[str, tuple[Family, tuple[str, ...]]]] = {
     "simultaneous milling without TCP": (off_the_pole, WITHOUT_TCP),
 }
 
-_NO_VECTORS: Final = "orientation is no setting"
-_NO_CYCLE: Final = "has no cycle on this control whose words are known"
+_NO_VECTORS: Final = "orientation is not a setting"
+_NO_CYCLE: Final = "no documented cycle"
 _LEAVES: Final = "leaves the hole as it asks for"
 _PECKS: Final = "whether G84 pecks, and how, is a parameter of the control"
 

@@ -105,9 +105,14 @@ def _check_cycle(
 def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycleError:
     """The error for a cycle along a tilted tool axis without a tilted plane."""
     settings, under_tcp = program.effective_settings(), motion.mode is MachiningMode.TCP
-    mode = "with TCP" if under_tcp else "without TCP"
-    what = f"CYCLE/{cycle.method} {mode}: no cycle goes along a tilted axis there, and no motion can make it"
-    if MachiningMode.TILTED in program.control.modes(settings):
+    has_planes = MachiningMode.TILTED in program.control.modes(settings)
+    where = (
+        f"and the operation is made {'with' if under_tcp else 'without'} TCP"
+        if has_planes
+        else "which this control lacks"
+    )
+    what = f"CYCLE/{cycle.method} along a tilted tool axis needs a tilted plane, {where}"
+    if has_planes:
         cure = "leave the setting mode out, or end the cut before the tool axis changes"
     else:
         cure = "clamp the part so that these holes stand along +Z, or post for a control with tilted planes"

@@ -161,12 +161,12 @@ def _change(chosen: ChosenPoses, row: int, rewinds: dict[int, str]) -> Decision:
     unchanged = continue_in_branch(machine, moves, slice(row, row + 1), before, rotary[row - 1])[0]
     hit = chosen.limit_ahead(row, before, rotary[row - 1])
     if np.abs(rotary_steps(machine, np.vstack((rotary[row], unchanged)))[1]).max() < 1e-6:
-        reason = "the tool axis is another one here"
+        reason = "new tool axis"
     elif hit is None:
         reason = "the preferred side, or less travel later on"
     else:
         reason = f"otherwise {hit.describe(machine, moves)}"
-    return chosen.decision(row, DecisionTopic.CHANGE, f"turns away from the cut, {turn}: {reason}")
+    return chosen.decision(row, DecisionTopic.CHANGE, f"repositions clear of the part, {turn}: {reason}")
 
 
 def _comparison(chosen: ChosenPoses) -> Decision:

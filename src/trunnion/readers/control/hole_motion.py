@@ -46,5 +46,5 @@ def check_pecks(depth: float, stroke: float, word: str) -> None:
 def finite(value: float | None) -> float | None:
     """Return a number of a cycle; refuse infinity and NaN."""
     if value is not None and not math.isfinite(value):
-        raise CycleExecutionError("has a number that is none")
+        raise CycleExecutionError("has a number that is not finite")
     return value

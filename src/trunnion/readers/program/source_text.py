@@ -50,7 +50,7 @@ class SourceText:
         self.name = path.name
         try:
             if not path.is_file():
-                raise InputError(Problem(str(path), 0, "is no file"))
+                raise InputError(Problem(str(path), 0, "is not a file"))
             # Stays open while the program is read; the interpreter calls ``close``.
             self._file = path.open("rb", buffering=0)
         except (OSError, ValueError) as error:
@@ -127,7 +127,7 @@ class SourceText:
                 break
             if size > MAX_LINE_LENGTH:
                 what = f"is longer than {MAX_LINE_LENGTH} characters"
-                raise self.problem(self.line, what, "this is no program")
+                raise self.problem(self.line, what, "this is not a program")
             size *= 8
         self.position += length + 1
         self.line += 1
@@ -152,7 +152,7 @@ class SourceText:
         filled += got
         cut = self._chunk.rfind(b"\n", 0, filled) + 1
         if filled - cut > MAX_LINE_LENGTH:
-            raise self.problem(self.line, f"is longer than {MAX_LINE_LENGTH} characters", "this is no program")
+            raise self.problem(self.line, f"is longer than {MAX_LINE_LENGTH} characters", "this is not a program")
         self._remainder, self._filled = cut, filled
         self.buffer = np.frombuffer(self._chunk, np.uint8, cut)
         self.buffer.setflags(write=False)

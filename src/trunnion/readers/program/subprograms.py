@@ -23,10 +23,12 @@ class Subprograms:
         for path in files:
             rank = self._rank(path.name.upper())
             if not _is_file(path):
-                problems.append(Problem(str(path), 0, "is no file"))
+                problems.append(Problem(str(path), 0, "is not a file"))
             elif rank is None:
                 endings = ", ".join(suffix for suffix in self._suffixes if suffix)
-                problems.append(Problem(str(path), 0, "is no name of a subprogram", f"let it end in one of {endings}"))
+                problems.append(
+                    Problem(str(path), 0, "is not a name of a subprogram", f"let it end in one of {endings}")
+                )
             elif (first := found.setdefault((self._stem(path.name), rank), path)) is not path:
                 problems.append(Problem(str(path), 0, f"is called as {first} is", "name one of them"))
         if problems:

@@ -117,7 +117,7 @@ def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]
             block.assignments.append((key, reader.assigned_value()))
             continue
         if not "A" <= letter <= "Z":
-            raise BlockError(f"{letter!r} is no word")
+            raise BlockError(f"{letter!r} is not a word")
         value, whole = reader.signed_value()
         if value is None:
             # A word whose value is an unset parameter counts as not written.

@@ -46,26 +46,30 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations) -> Check:
             places.append(context.place_with_cl(int(segments.nc[k]), float(feed[k]), text, segments.cl))
     faults = [*accepted.feed, *needlessly_lowered_feeds(context.run, context.expected, context.matching)]
     named = [context.place_of_cl_row(fault.cl, fault.value, fault.text) for fault in faults[:MAX_PLACES]]
-    low, high = compared.range
-    good = "nothing is cut" if low > high else f"{low:g} to {high:g}, as the CL file says"
+    good = ", ".join(map(_range_text, sorted(compared.ranges.items()))) or "nothing is cut"
     lowest, rows = accepted.slowed
     good += f"; lowered at {counted(rows, 'row')}, down to {lowest:.2f}, for the rotary axes" if rows else ""
     return check_from_places("feed", "feeds as the CL file says", [*named, *places], good, count + len(faults))
 
 
+def _range_text(item: tuple[str, tuple[float, float]]) -> str:
+    unit, (low, high) = item
+    return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
+
+
 @dataclass(slots=True)
 class _ComparedFeeds:
-    """Places of wrong feeds and how many there are, and the lowest and highest feed of the CL files."""
+    """Places of wrong feeds and how many there are, and the lowest and highest feed of the CL files by unit."""
 
     places: list[Place]
     count: int
-    range: tuple[float, float]
+    ranges: dict[str, tuple[float, float]]
 
 
 def _compare_points(context: ComparedContext) -> _ComparedFeeds:
     """Feeds of all motions that go or lead to a CL point."""
     run, expected = context.run, context.expected
-    found = _ComparedFeeds([], 0, (np.inf, -np.inf))
+    found = _ComparedFeeds([], 0, {})
     feed_tolerance = max(section.tolerances.feed for section in expected.sections)
     for nc, cl in context.matching.all_pair_chunks():
         at_feed = (run.kind[nc] != Kind.RAPID) & (expected.kind(cl) != Kind.RAPID)
@@ -75,9 +79,10 @@ def _compare_points(context: ComparedContext) -> _ComparedFeeds:
         stated = at_feed & ~np.isnan(asked)
         wrong = at_feed & ((mode == 95) != per_rev)
         wrong |= stated & ~near
-        known = asked if stated.all() else asked[stated]
-        if len(known):
-            found.range = min(found.range[0], float(known.min())), max(found.range[1], float(known.max()))
+        for unit, rows in (("mm/min", stated & ~per_rev), ("mm/rev", stated & per_rev)):
+            if rows.any():
+                low, high = found.ranges.get(unit, (np.inf, -np.inf))
+                found.ranges[unit] = min(low, float(asked[rows].min())), max(high, float(asked[rows].max()))
         if not wrong.any():
             continue
         bad = np.flatnonzero(wrong)

@@ -67,9 +67,9 @@ def check_home(context: Context) -> Check:
     """
     motions = _HomeMotions.of(context.run)
     if not len(motions.rows):
-        return Check("home", _TITLE, True, "the program does not go home")
+        return Check("home", _TITLE, True, "not checked: no home moves")
     if not motions.at_home.any():
-        return Check("home", _TITLE, True, "goes to machine positions of its own, not to the home of the definition")
+        return Check("home", _TITLE, True, "not checked: machine positions other than the home of the definition")
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
     good = "slides and rotary axes at home before, after and at every tool change"
     return check_from_places("home", _TITLE, places, good)

@@ -111,11 +111,11 @@ def _check_shares(
     top = max(range(len(axes)), key=lambda k: shares[k].value)
     worst = shares[top]
     if worst.row < 0:
-        return Check(key, title, True, "no axis moves at feed", 0.0, 1.0, "of all")
+        return Check(key, title, True, "no axis moves at feed", 0.0, 1.0, f"of {quantity}")
     count = sum(each.count for each in shares)
     summary = (
         f"{axes[top].name} at most {100.0 * worst.value:.0f} % of its {quantity}, in {context.block_name(worst.row)}"
     )
     if count:
         summary += f"; in {counted(count, 'place')} the control slows down"
-    return Check(key, title, True, summary, worst.value, 1.0, "of all", tuple(places[:MAX_PLACES]))
+    return Check(key, title, True, summary, worst.value, 1.0, f"of {quantity}", tuple(places[:MAX_PLACES]))

@@ -43,7 +43,7 @@ def check_modal_state(context: Context) -> Check:
     places.sort(key=lambda place: place.nc_line)
     # With a CL file, the check "spindle" has the spindle.
     at_cuts = "feed" if isinstance(context, ComparedContext) else "feed and spindle"
-    good = f"{at_cuts} at every cut, TCP off at home, no low rapids, a proper end"
+    good = f"{at_cuts} at every cut, TCP off at home, no rapids below the retract height, program end present"
     return check_from_places("modal", "modal state", places, good)
 
 

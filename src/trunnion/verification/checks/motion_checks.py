@@ -37,7 +37,7 @@ def check_order(context: ComparedContext) -> Check:
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
     places = [context.place_of_missing(cl, "no block goes to this CL point") for cl in matching.missing[:MAX_PLACES]]
     places += [
-        context.place(row, 0.0, "goes to a position that is no CL point")
+        context.place(row, 0.0, "goes to a position that is not a CL point")
         for row in extra[: 2 * MAX_PLACES - len(places)]
     ]
     if places:

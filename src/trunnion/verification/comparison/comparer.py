@@ -27,6 +27,9 @@ _MAX_DIFFERENCES: Final = 1000
 _FEED: Final = 0.005
 _RPM: Final = 0.5
 
+#: What most diagnostics of unknown words begin with.
+_UNKNOWN: Final = "not understood: "
+
 _KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "line", Kind.ARC: "circle"}
 
 
@@ -194,5 +197,7 @@ def _unknown_words(one: Run, two: Run) -> tuple[str, ...]:
     if sorted(error.text for error in one.errors) == sorted(error.text for error in two.errors):
         return ()
     return tuple(
-        f"{error.file}:{error.line}: not understood: {error.text}" for run in (one, two) for error in run.errors
+        f"{error.file}:{error.line}: {_UNKNOWN}{error.text.removeprefix(_UNKNOWN)}"
+        for run in (one, two)
+        for error in run.errors
     )

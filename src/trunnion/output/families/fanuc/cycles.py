@@ -81,7 +81,7 @@ def _dwell_milliseconds(cycle: Cycle, spindle: SpindleState | None) -> float:
 def _peck_depth(cycle: Cycle) -> float:
     """Q: the depth of every peck, the first measured from where the feed begins."""
     if any(cycle.strokes[1:]):
-        raise UnsupportedCycleError("strokes that become shorter, where Q is one stroke", "write STEP with one number")
+        raise UnsupportedCycleError("decreasing peck depths, and Q of G83 is constant", "write STEP with one number")
     return cycle.strokes[0]
 
 

@@ -117,7 +117,7 @@ def cycle_call(
     """Return the cycle with its first hole: Z is the height of rapid positioning, R the feed start, E the depth."""
     assert cycle.retract_height is not None
     if cycle.method not in _CYCLES:
-        what = f"{cycle.method} has no cycle on this control whose words are known"
+        what = f"no documented cycle for {cycle.method}"
         raise UnsupportedCycleError(what, "output the holes as motion")
     _check_thread(cycle, spindle)
     seconds = cycle_dwell_seconds(cycle, spindle)
@@ -139,7 +139,7 @@ def cycle_cancel() -> list[str]:
 def _peck_depth(cycle: Cycle) -> float:
     """D: the depth of every peck, the first measured from where the feed begins."""
     if any(cycle.strokes[1:]):
-        raise UnsupportedCycleError("strokes that become shorter, where D is one stroke", "write STEP with one number")
+        raise UnsupportedCycleError("decreasing peck depths, and D is constant", "write STEP with one number")
     return cycle.strokes[0]
 
 

@@ -183,7 +183,7 @@ def _tap_in_strokes(cycle: Cycle, top: float, spindle: SpindleState | None) -> C
     """A rigid tap in strokes, with full retracts or chip breaks between them."""
     if any(cycle.strokes[1:]):
         raise HoleCycleError(
-            "a thread in strokes that become shorter: the control has equal ones", "write STEP with one number"
+            "decreasing peck depths in a thread: the control has constant ones", "write STEP with one number"
         )
     _, _, values = _tap(cycle, top, spindle)
     back = 0.0 if cycle.method is HoleMethod.DEEP_TAP else _CHIP_BREAK_PITCHES

@@ -123,7 +123,7 @@ def _tap_in_strokes(of: _Input) -> CycleArguments:
     """As a tap in one stroke; then tool axis, PIT in mm, technology unchanged, VARI, the stroke DAM, VRT."""
     stroke, decrement, _ = of.cycle.strokes
     if decrement:
-        what = "a thread in strokes that become shorter: the control has equal ones"
+        what = "decreasing peck depths in a thread: the control has constant ones"
         raise HoleCycleError(what, "write STEP with one number")
     full = of.cycle.method is HoleMethod.DEEP_TAP
     name, arguments = _tap(of)

@@ -60,7 +60,7 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
                 continue
             block.take(letter)
             if letter not in words.ARGUMENTS:
-                self._note(f"{letter} is no argument of a macro", Severity.ERROR)
+                self._note(f"{letter} is not an argument of a macro", Severity.ERROR)
                 continue
             arguments[words.ARGUMENTS[letter]] = self._argument(letter, word)
         if block.m:

@@ -172,7 +172,7 @@ class OffsetInterpreter(CallInterpreter):
         if kind or (order is not None and order != 313):
             raise BlockError("G68.2 with P or Q is not simulated: only Euler angles are")
         if any(not abs(angle) < MAX_POSITION for angle in angles):
-            raise BlockError("an angle is none that a plane has")
+            raise BlockError("an angle is not one that a plane has")
         self.control.tilt(origin, (angles[0], angles[1], angles[2]))
 
     def _align_with_plane(self, block: Block) -> None:

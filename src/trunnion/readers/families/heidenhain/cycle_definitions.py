@@ -229,7 +229,7 @@ class Definitions:
         while at < len(rest.rstrip()):
             match = _ASSIGNED.match(rest, at)
             if match is None:
-                raise KlartextError(f"{rest[at : at + 20].strip()} is no parameter of a cycle")
+                raise KlartextError(f"{rest[at : at + 20].strip()} is not a parameter of a cycle")
             at = match.end()
             target, sign, parameter, figures, word = match.groups()
             if word in _RAPID and int(target[1:]) in MAY_BE_RAPID:
@@ -248,7 +248,7 @@ class Definitions:
     def _preset(self, q_values: dict[int, float]) -> None:
         preset = q_values.get(339, 0.0)
         if preset != int(preset) or not 0 <= preset < 65535:
-            raise KlartextError(f"preset {preset:g} is none")
+            raise KlartextError(f"preset {preset:g} does not exist")
         self._control.set_offset(int(preset), f"preset {preset:g}")
 
     # Calls

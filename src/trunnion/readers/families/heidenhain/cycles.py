@@ -149,7 +149,7 @@ def _bore(hole: Hole) -> list[HoleMotion]:
 def _lift_off(hole: Hole, distance: float) -> tuple[float, float]:
     direction = hole.get(214)
     if direction not in _LIFT_DIRECTIONS:
-        raise CycleExecutionError(f"has Q214={direction:g}, which is no direction")
+        raise CycleExecutionError(f"has Q214={direction:g}, which is not a direction")
     first, second = _LIFT_DIRECTIONS[int(direction)]
     return first * distance, second * distance
 

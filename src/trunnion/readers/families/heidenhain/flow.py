@@ -113,5 +113,5 @@ def _label_name(text: str, parameters: Parameters) -> str:
         raise KlartextError("a label has a number or a name in quotes")
     number = parameters[canonical(match[1])] if match[1] else float(match[2])
     if number != int(number) or number < 0.0:
-        raise KlartextError(f"{number:g} is no label")
+        raise KlartextError(f"{number:g} is not a label")
     return str(int(number))

@@ -92,14 +92,14 @@ def words(statement: str, at: int = 0) -> list[Word]:
     Raises
     ------
     KlartextError
-        If there is something that is no word.
+        If there is something that is not a word.
     """
     found: list[Word] = []
     end = len(statement.rstrip())
     while at < end:
         match = _WORD.match(statement, at)
         if match is None:
-            raise KlartextError(f"{statement[at : at + 20].strip()} is no word")
+            raise KlartextError(f"{statement[at : at + 20].strip()} is not a word")
         found.append(_word(match))
         at = match.end()
     return found

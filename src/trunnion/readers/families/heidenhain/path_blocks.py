@@ -141,7 +141,7 @@ def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
             block.radius = value
     elif name == "M":
         if value != int(value) or not 0 <= value < 10000:
-            raise KlartextError(f"M{value:g} is no function")
+            raise KlartextError(f"M{value:g} is not a function")
         block.m.append((int(value), {}))
     else:
         raise KlartextError(f"unknown word {name}{value:g}")

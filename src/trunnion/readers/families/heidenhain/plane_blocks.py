@@ -121,7 +121,7 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
             case _:
                 note(f"FUNCTION TCPM: {' '.join(pair)} is not simulated", Severity.ERROR)
     if len(names) % 2:
-        note(f"FUNCTION TCPM: {names[-1]} stands alone", Severity.ERROR)
+        note(f"FUNCTION TCPM: unexpected {names[-1]}", Severity.ERROR)
     control.set_tcp(True)
     control.spatial_angles_active = spatial_angles
     control.angles = [0.0, 0.0, 0.0]

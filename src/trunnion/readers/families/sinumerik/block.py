@@ -108,7 +108,7 @@ class BlockReader:
                 elif token.kind is TokenKind.NAME:
                     self._name(reader, block, variables)
                 else:
-                    raise ExpressionError(f"{token.text} stands alone")
+                    raise ExpressionError(f"unexpected {token.text}")
             except ExpressionError as error:
                 self._note(f"not understood: {_text(tokens, before)}: {error}", Severity.ERROR)
                 break

@@ -205,7 +205,7 @@ class ExpressionReader:
                 if name in FUNCTIONS and self.peek() == "(":
                     return self._function(name)
                 return self.names.variable(name, self.index())
-        raise ExpressionError(f"{token.text} is no value")
+        raise ExpressionError(f"{token.text} is not a value")
 
     def _parameter(self) -> float:
         token = self.token
@@ -231,7 +231,7 @@ class ExpressionReader:
 def whole(value: float) -> int:
     """Return a number without its decimals, for indices and counters."""
     if not abs(value) < 1e15:
-        raise ExpressionError(f"{value:g} is no sensible whole number")
+        raise ExpressionError(f"{value:g} is not a usable whole number")
     return int(value)
 
 

@@ -262,7 +262,7 @@ class Flow:
             active.variables.set_parameter(int(min(number.value, 1e6)), value)
             return
         if token.kind is not TokenKind.NAME:
-            raise ExpressionError(f"{name} is no name for a variable")
+            raise ExpressionError(f"{name} is not a name for a variable")
         size = reader.index()
         active.variables.define(kind, name)
         if not reader.accept("="):
