@@ -201,7 +201,7 @@ def at_pole(machine: Machine, moves: Moves, options: PlanOptions) -> str:
 
 
 def poles() -> None:
-    """Print the table of the ways to look after the pole."""
+    """Print the table of the ways to handle the pole."""
     print("\n| path | machine | pole | rotary axis at most | rows too fast | lean | s | planned in ms |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     paths = {

@@ -1,4 +1,4 @@
-"""The compiled walk agrees with its slow twin, bit for bit, however the file is cut into pieces."""
+"""The compiled walk agrees with its reference implementation, bit for bit, however the file is cut into pieces."""
 
 import math
 import struct

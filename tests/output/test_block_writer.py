@@ -1,4 +1,4 @@
-"""The block kernel against its slow twin, and what the writer remembers."""
+"""The block kernel against its reference implementation, and what the writer remembers."""
 
 import io
 

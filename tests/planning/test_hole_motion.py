@@ -1,4 +1,4 @@
-"""Holes as motion: the rows of each hole, against a twin that makes them hole by hole."""
+"""Holes as motion: the rows of each hole, against a reference that makes them hole by hole."""
 
 from dataclasses import replace
 
@@ -68,7 +68,7 @@ def drilled(draw: st.DrawFn) -> tuple[Operation, CycleOn]:
     return operation(tips, rapid, (cycle, CycleOff(len(before) + len(holes), 9))), cycle
 
 
-def twin(path: Operation, cycle: CycleOn) -> list[Row]:
+def reference(path: Operation, cycle: CycleOn) -> list[Row]:
     """The rows that docs/cl.md defines, under an upright tool, one hole after the other."""
     asked = cycle_from_event(cycle)
     assert asked.retract_height is not None
@@ -146,7 +146,7 @@ def expanded(path: Operation) -> Operation:
 def test_holes_become_the_motions_of_the_documentation(drawn: tuple[Operation, CycleOn]) -> None:
     path, cycle = drawn
     made = expanded(path)
-    found, wanted = rows_of(made), twin(path, cycle)
+    found, wanted = rows_of(made), reference(path, cycle)
     assert [row[1:] for row in found] == [row[1:] for row in wanted]
     assert np.allclose([row[0] for row in found], [row[0] for row in wanted], atol=1e-9)
     assert not any(isinstance(event, CycleOn | CycleOff) for event in made.events)

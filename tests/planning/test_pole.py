@@ -98,7 +98,7 @@ def test_nothing_is_done_where_nothing_is_too_fast(data: st.DataObject, name: st
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# The way with limited speed against a slow twin
+# The way with limited speed against a reference implementation
 
 GRID = 3.0
 FIRST = np.arange(-480.0, 480.0 + GRID, GRID)

@@ -1,4 +1,4 @@
-"""The kernels against their slow twins; for the scan kernel that is the interpreter itself."""
+"""The kernels against their reference implementations; for the scan kernel that is the interpreter itself."""
 
 import math
 from pathlib import Path

@@ -22,7 +22,7 @@ SINGLES = st.floats(-1e6, 1e6, width=32)
 
 
 def extreme_rows_naive(columns: list[NDArray[np.float32]], bucket: list[int]) -> list[int]:
-    """The naive twin of ``extreme_rows``, bucket by bucket."""
+    """The reference implementation of ``extreme_rows``, bucket by bucket."""
     keep: set[int] = set()
     for name in sorted(set(bucket)):
         rows = [row for row, at in enumerate(bucket) if at == name]

@@ -76,7 +76,7 @@ class PostJob:
         return {**self.control.settings, **self.settings}.get("normals") == "contact"
 
     def subprograms(self, files: OutputFiles, path: Path | None) -> SubprogramOutput | None:
-        """How the program is divided into files; None: it is one.
+        """How the program is divided into files; None: it is a single file.
 
         Parameters
         ----------

@@ -9,7 +9,7 @@ from trunnion.verification.results import Verification
 
 
 class Observer:
-    """Hears what happens while a program is made. Every method does nothing; override those that you need.
+    """Receives progress and warnings while a program is made. Every method does nothing; override those that you need.
 
     Methods are called in the thread that called the library, but for the progress of reading, which may come from
     another one.
@@ -45,8 +45,8 @@ class Observer:
 
 
 def _ignore(more: int) -> None:
-    """Hear of progress and do nothing."""
+    """Receive progress and do nothing."""
 
 
-#: Hears everything and does nothing.
+#: Receives everything and does nothing.
 SILENT = Observer()

@@ -1,4 +1,4 @@
-"""Inputs of the front door: CL files, machines and programs, by their names or already read."""
+"""Inputs of the public API: CL files, machines and programs, by their names or already read."""
 
 import os
 from collections.abc import Iterable, Sequence

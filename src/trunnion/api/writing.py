@@ -80,7 +80,7 @@ def write(
     progress
         Receives how much of them can be read back.
     subprograms
-        How the program is divided into files; None: it is one.
+        How the program is divided into files; None: it is a single file.
     observer
         Receives the progress, in points.
     """

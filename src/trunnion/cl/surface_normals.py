@@ -162,7 +162,7 @@ def _scan_contact_points(data: Bytes, stop: int, line: Lines, found: Floats2, st
 
 @inner
 def _contains(data: Bytes, begin: int, end: int, word: Bytes) -> bool:
-    """Whether bytes contain a word, in any case; ``word`` is in capitals."""
+    """Whether bytes contain a word, in upper or lower case; ``word`` is in capitals."""
     for first in range(begin, end - word.shape[0] + 1):
         same = 0
         while same < word.shape[0]:

@@ -50,7 +50,7 @@ class NumberFormat:
         return self.text_of_count(int(round_to_counts(np.array([value]), self.decimals)[0]))
 
     def text_of_count(self, count: int) -> str:
-        """Return the printed form of a count; the slow twin of the block kernel's digits."""
+        """Return the printed form of a count; the reference implementation of the block kernel's digits."""
         if count == 0 and self.zero:
             return self.zero
         sign = "-" if count < 0 else "+" if self.plus else ""

@@ -30,7 +30,7 @@ def workpiece_stretches(
     level_approach
         The control approaches X and Y first, then Z, not only in planes (``Control.level_approach``).
     warn
-        Hears of the places where the rows are divided, and of cuts that would be lost.
+        Receives the places where the rows are divided, and of cuts that would be lost.
 
     Returns
     -------

@@ -128,9 +128,9 @@ class Table:
             if key in self.read_keys:
                 continue
             same_stem = (known for known in self.read_keys if without_unit(known) == without_unit(key))
-            kin = next((known for known in same_stem if unit_of(known)), "")
-            if kin and unit_of(key) != unit_of(kin):
-                self.add_problem(key, "has a unit that does not fit here", f"write {kin}, in {unit_of(kin)}")
+            similar = next((known for known in same_stem if unit_of(known)), "")
+            if similar and unit_of(key) != unit_of(similar):
+                self.add_problem(key, "has a unit that does not fit here", f"write {similar}, in {unit_of(similar)}")
             else:
                 cure = did_you_mean(key, self.read_keys) or "known here: " + ", ".join(sorted(self.read_keys))
                 self.add_problem(key, "is not a key that is known here", cure)

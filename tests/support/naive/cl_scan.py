@@ -1,4 +1,4 @@
-"""Naive twins of the kernels in ``trunnion.cl.scan``."""
+"""Reference implementations of the kernels in ``trunnion.cl.scan``."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""A naive twin: draws a Klartext program, and works out by the textbook where each block puts the tool."""
+"""A reference: draws a Klartext program, and works out by the textbook where each block puts the tool."""
 
 import math
 from dataclasses import dataclass, field

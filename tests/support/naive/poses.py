@@ -1,4 +1,4 @@
-"""Naive twins of the planner: the nearest neighbour, and every possible path through the states."""
+"""Reference implementations of the planner: the nearest neighbour, and every possible path through the states."""
 
 import math
 from dataclasses import dataclass
@@ -138,13 +138,13 @@ class AllPaths:
         move, near = self._move(row, before, state)
         travel = cost = float(np.abs(move).sum())
         other = before[0] != state[0]
-        natural = near and (not other or bool(self.pole[row - 1]))
+        direct = near and (not other or bool(self.pole[row - 1]))
         alive = self._alive(row, before[0])
         small = other and travel < 90.0 and alive
         bent = self._bends(row, before, move)
         rewinds = 0
-        if not idle and bent and not natural:
-            rewinds = 1 if self._natural_source_open(row, state) else 1 + (1 << 20)
+        if not idle and bent and not direct:
+            rewinds = 1 if self._direct_source_open(row, state) else 1 + (1 << 20)
             cost += 1.0 if self.moves.phase[row] == Phase.CUT else 0.0
         elif other:
             cost += 0.5 if small and not bent else 200.0
@@ -153,7 +153,7 @@ class AllPaths:
                 cost += 0.1
         return rewinds, cost
 
-    def _natural_source_open(self, row: int, state: State) -> bool:
+    def _direct_source_open(self, row: int, state: State) -> bool:
         for source, is_open in zip(self.states, self.open[row - 1], strict=True):
             if source[0] == state[0] and is_open and self._move(row, source, state)[1]:
                 return True

@@ -1,4 +1,4 @@
-"""Naive twins of the readers' kernels."""
+"""Reference implementations of the readers' kernels."""
 
 import numpy as np
 

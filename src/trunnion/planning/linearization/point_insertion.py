@@ -79,7 +79,7 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
         operation, rotary = keep_slide_arcs(machine, operation, rotary, request.chord_tolerance)
     moves = operation.moves
     turning = rotary_motion(machine, moves, rotary)
-    is_bent = turning.bend > tolerance
+    leaves_path = turning.bend > tolerance
     divisible = (moves.kind != Kind.ARC) & ~turning.changes_branch
     if not without_tcp:
         divisible &= moves.kind == Kind.LINEAR
@@ -89,9 +89,9 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
         tcp=not without_tcp, tip_tolerance=options.tip_tolerance, axis_tolerance=tolerance,
     )  # fmt: skip
     if without_tcp:
-        even_turns = turning.changes_branch & ~(is_bent & (moves.kind != Kind.RAPID))
+        even_turns = turning.changes_branch & ~(leaves_path & (moves.kind != Kind.RAPID))
         path = _hold_tip(machine, path, np.flatnonzero(even_turns), options)
-    problems = [*_bend_problems(file, operation, np.flatnonzero(is_bent & (moves.kind == Kind.LINEAR)), options)]
+    problems = [*_bend_problems(file, operation, np.flatnonzero(leaves_path & (moves.kind == Kind.LINEAR)), options)]
     if len(path.source) == len(moves):
         return LinearizedMotion(replace(motion, operation=operation, rotary=rotary), tuple(problems))
     return _with_points(file, motion, operation, machine, path, problems)

@@ -42,9 +42,9 @@ def rotary_motion(machine: Machine, moves: Moves, rotary: Floats) -> RotaryMotio
     """The motion between displayed positions (n, 2), degrees."""
     positions = continuous_positions(machine, rotary)
     branch = branches_of_rows(machine, positions)
-    positions, astray = _follow_great_circle(machine, moves.axis, positions, branch)
-    astray |= _turns_in_place(moves, positions)
-    return RotaryMotion(positions, _branch_change_bend(machine, moves.axis, positions, branch, astray))
+    positions, off_path = _follow_great_circle(machine, moves.axis, positions, branch)
+    off_path |= _turns_in_place(moves, positions)
+    return RotaryMotion(positions, _branch_change_bend(machine, moves.axis, positions, branch, off_path))
 
 
 def _follow_great_circle(machine: Machine, axis: Floats, positions: Floats, branch: Ints) -> tuple[Floats, Flags]:
@@ -56,16 +56,16 @@ def _follow_great_circle(machine: Machine, axis: Floats, positions: Floats, bran
 
     Returns
     -------
-    positions, astray
+    positions, off_path
         (n, 2) degrees; and (n,) bool: rows into which an axis with limits turns to the other side.
     """
     first, _ = machine.rotary
     sense, pole = machine.axes[first].sense, np.array(machine.axes[first].direction)
     steps = np.diff(positions[:, 0])
     rows = 1 + np.flatnonzero((np.abs(steps) > 90.0) & (branch[1:] == branch[:-1]) & (branch[1:] >= 0))
-    astray = np.zeros(len(positions), np.bool_)
+    off_path = np.zeros(len(positions), np.bool_)
     if not len(rows):
-        return positions, astray
+        return positions, off_path
     ends = np.concatenate((rows - 1, rows))
     tilted = tool_axes(machine, np.column_stack((np.zeros(len(ends)), positions[ends, 1])))
     by_path, by_tilt = (
@@ -74,11 +74,11 @@ def _follow_great_circle(machine: Machine, axis: Floats, positions: Floats, bran
     turn = sense * (by_path - by_tilt)
     turns = np.rint((turn - steps[rows - 1]) / 360.0) * (np.abs(by_path) < 180.0 - 1e-6)
     if not machine.axes[first].endless:
-        astray[rows[turns != 0.0]] = True
-        return positions, astray
+        off_path[rows[turns != 0.0]] = True
+        return positions, off_path
     more = np.zeros(len(positions))
     more[rows] = 360.0 * turns
-    return np.column_stack((positions[:, 0] + np.cumsum(more), positions[:, 1])), astray
+    return np.column_stack((positions[:, 0] + np.cumsum(more), positions[:, 1])), off_path
 
 
 def _azimuths(vectors: Floats, pole: Floats) -> Floats:
@@ -103,13 +103,13 @@ def _turns_in_place(moves: Moves, positions: Floats) -> Flags:
     return found
 
 
-def _branch_change_bend(machine: Machine, axis: Floats, positions: Floats, branch: Ints, astray: Flags) -> Floats:
-    """``RotaryMotion.bend``: at changes of the branch, at turns of a limited axis by more than half, and ``astray``."""
+def _branch_change_bend(machine: Machine, axis: Floats, positions: Floats, branch: Ints, off_path: Flags) -> Floats:
+    """``RotaryMotion.bend``: at changes of branch, turns of a limited axis by more than half, and at ``off_path``."""
     bend = np.full(len(axis), -1.0)
     changes = (branch[1:] != branch[:-1]) & (branch[1:] >= 0) & (branch[:-1] >= 0)
     limited = [not machine.axes[column].endless for column in machine.rotary]
     far = np.abs(np.diff(positions, axis=0))[:, limited].max(axis=1, initial=0.0) > 180.0 + 1e-6
-    for row in (1 + np.flatnonzero(changes | far | astray[1:])).tolist():
+    for row in (1 + np.flatnonzero(changes | far | off_path[1:])).tolist():
         turning = positions[row - 1] + _BEND_SHARES[:, None] * (positions[row] - positions[row - 1])
         circle = great_circle_points(axis[row - 1], axis[row], _BEND_SHARES)
         chord = np.linalg.norm(tool_axes(machine, turning) - circle, axis=1).max()

@@ -1,4 +1,4 @@
-"""The stage that looks after the pole: the tool axis leans so that the rotary axes need not be too fast.
+"""The stage that handles the pole: the tool axis leans so that the rotary axes need not be too fast.
 
 It acts only if the user chooses a strategy. Every row that then differs from the CL file is recorded, so that a proof
 can check the program against the record.

@@ -51,7 +51,7 @@ def remaining_passages(passages: Sequence[PolePassage], too_fast: Flags, solved:
 def poses_through_pole(
     task: LeanTask, poses: PlannedPoses, passages: list[PolePassage], choose_branch: bool = True
 ) -> tuple[PlannedPoses, list[PolePassage]]:
-    """Poses with the tool axis in the pole within the passages, unless limits or reach speak against them.
+    """Poses with the tool axis in the pole within the passages, unless limits or reach forbid them.
 
     In these poses the first angle holds within the passages. Without ``choose_branch`` the branch in which most cuts
     begin is not preferred.

@@ -7,9 +7,9 @@ then the path is read backwards from the cheapest state of the last row. Cost me
 Limits are hard: a state beyond a limit is closed. If all are, those with the fewest axes beyond their limits stay open,
 so that there is a pose to report.
 
-A step is *natural* if it stays in its branch and both axes take the shorter way: points inserted between its ends
+A step is *direct* if it stays in its branch and both axes take the shorter way: points inserted between its ends
 follow the tool axis, however coarse the path is. In the pole the free angle holds, and both branches continue
-naturally. Any other step in the cut that bends the tool axis half-way (or half a turn on) by more than ``MAX_BEND`` is
+directly. Any other step in the cut that bends the tool axis half-way (or half a turn on) by more than ``MAX_BEND`` is
 a rewind. It takes place off the part at the row before, so the state to which it leads must be open there; if it is
 not, the step is blocked.
 

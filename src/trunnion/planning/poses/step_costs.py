@@ -48,7 +48,7 @@ _COS_BEND: Final = math.cos(math.radians(MAX_BEND))
 
 
 @inner
-def is_bent(kinematics: KinematicParameters, first: float, second: float, i: float, j: float, k: float) -> bool:
+def exceeds_bend(kinematics: KinematicParameters, first: float, second: float, i: float, j: float, k: float) -> bool:
     """Whether the tool axis at rotary values in degrees is off the direction i, j, k by more than ``MAX_BEND``."""
     angle = math.radians(second)
     cos, sin = math.cos(angle), math.sin(angle)
@@ -97,19 +97,19 @@ def find_predecessor(
             continue
         one, two, is_shorter = rotary_step(space, states, step, turn_jump, s, t)
         a = states[s, 0]
-        is_natural = is_shorter and (a == b or was_pole)
+        is_direct = is_shorter and (a == b or was_pole)
         travel = abs(one) + abs(two)
         total, mark = cost[PREVIOUS, s] + travel, 0
         if total >= best and rewinds == fewest:
             continue
         is_small = a != b and travel < POLE_JUMP and branch_status[a, IS_OPEN] != 0
-        bends = (is_small or (contact != NO_CONTACT and not is_natural)) and is_bent(
+        bends = (is_small or (contact != NO_CONTACT and not is_direct)) and exceeds_bend(
             kinematics, angle[PREVIOUS, a, 0] + _half(one), angle[PREVIOUS, a, 1] + _half(two), i, j, k
         )
-        if contact != NO_CONTACT and bends and not is_natural:
+        if contact != NO_CONTACT and bends and not is_direct:
             mark, rewinds = REWIND_STEP, rewinds + 1
             total += REWIND_IN_CUT_COST if contact == CUTS else 0.0
-            if not _natural_source_is_open(space, states, counts, turn_jump, branch_status, t):
+            if not _direct_source_is_open(space, states, counts, turn_jump, branch_status, t):
                 mark, rewinds = mark | BLOCKED_STEP, rewinds + _BLOCKED_COUNT
         elif a != b:
             total += POLE_PASSAGE_COST if is_small and not bends else BRANCH_CHANGE_COST
@@ -124,10 +124,10 @@ def find_predecessor(
 
 
 @inlined
-def _natural_source_is_open(
+def _direct_source_is_open(
     space: SearchSpace, states: Ints2, counts: Ints3, turn_jump: Ints3, branch_status: Ints2, t: int
 ) -> bool:
-    """Whether the state from which a natural step leads to ``t`` was open in the previous row."""
+    """Whether the state from which a direct step leads to ``t`` was open in the previous row."""
     b = states[t, 0]
     if not branch_status[b, WAS_OPEN]:
         return False

@@ -46,16 +46,16 @@ class RotaryGeometry:
 
 @inner
 def axis_difference(
-    is_: Floats, i: int, expected: Floats, j: int, value: float, sense: float, first: Floats, second: Floats
+    actual: Floats, i: int, expected: Floats, j: int, value: float, sense: float, first: Floats, second: Floats
 ) -> tuple[float, float]:
-    """Angle between the tool axes ``is_[i]`` and ``expected[j]``, rad, and the larger error of both rotary axes, deg.
+    """Angle between tool axes ``actual[i]`` and ``expected[j]``, rad, and the larger error of both rotary axes, deg.
 
-    ``value`` is the position of the first rotary axis under ``is_[i]``, degrees; ``sense``, ``first`` and ``second``
+    ``value`` is the position of the first rotary axis under ``actual[i]``, degrees; ``sense``, ``first`` and ``second``
     are as in ``RotaryGeometry``.
     """
     w0, w1, w2 = first[0], first[1], first[2]
     v0, v1, v2 = second[0], second[1], second[2]
-    a0, a1, a2 = is_[i, 0], is_[i, 1], is_[i, 2]
+    a0, a1, a2 = actual[i, 0], actual[i, 1], actual[i, 2]
     e0, e1, e2 = a0 - expected[j, 0], a1 - expected[j, 1], a2 - expected[j, 2]
     chord = e0 * e0 + e1 * e1 + e2 * e2
     if not chord > _NOISE * _NOISE:

@@ -1,4 +1,4 @@
-"""Random programs against their naive twins, and the kernel against the interpreter."""
+"""Random programs against their naive counterparts, and the kernel against the interpreter."""
 
 import math
 from pathlib import Path
