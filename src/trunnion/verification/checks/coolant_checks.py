@@ -77,11 +77,11 @@ def check_coolant(context: ComparedContext) -> Check:
         first, end = matching.pair_range(state.first, state.end)
         if first == end:
             continue
-        should = _COOLANT.get(state.value)
+        wanted = _COOLANT.get(state.value)
         row, last = matching.nc[first], matching.nc[end - 1]
         after = matching.nc[first - 1] if first else -1
         by_builder = words.has_builder_word(after, row)
-        if should is None or (should == "mist" and by_builder):
+        if wanted is None or (wanted == "mist" and by_builder):
             unread.add(state.value)
             if not by_builder and (state.value != before or words.has_own_word(after, row)):
                 text = (
@@ -90,8 +90,8 @@ def check_coolant(context: ComparedContext) -> Check:
                 )
                 places.append(context.place_with_cl(row, 0.0, text, matching.cl[first]))
         else:
-            asked.add(should)
-            fault = _fault(words, should, row, last, readable=not unread)
+            asked.add(wanted)
+            fault = _fault(words, wanted, row, last, readable=not unread)
             if fault is not None and fault.at_point:
                 places.append(context.place_with_cl(fault.row, 0.0, fault.text, matching.cl[first]))
             elif fault is not None:
@@ -115,24 +115,24 @@ class _Fault:
     at_point: bool = True
 
 
-def _fault(words: _CoolantWords, should: str, row: int, last: int, *, readable: bool) -> _Fault | None:
-    """What is wrong from row ``row`` to row ``last``, where coolant should be ``should``.
+def _fault(words: _CoolantWords, wanted: str, row: int, last: int, *, readable: bool) -> _Fault | None:
+    """What is wrong from row ``row`` to row ``last``, where coolant should be ``wanted``.
 
     ``readable``: all coolant words so far were the control's own; else any of them counts as on.
     """
 
     def differs(state: str) -> bool:
-        return state != should and (readable or state == "off" or should == "off")
+        return state != wanted and (readable or state == "off" or wanted == "off")
 
-    if should == "off":
+    if wanted == "off":
         row += 1  # M9 acts after the motion of its block
         if row > last:
             still_on = not words.is_off_before(row)
             return _Fault(last, "coolant is still on; the CL file wants it off") if still_on else None
     now = words.at(row)
     if differs(now):
-        return _Fault(row, f"coolant is {now}; the CL file wants {should}")
+        return _Fault(row, f"coolant is {now}; the CL file wants {wanted}")
     for changed, state in words.between(row, last):
         if differs(state):
-            return _Fault(changed, f"coolant changes; the CL file wants {should}", at_point=False)
+            return _Fault(changed, f"coolant changes; the CL file wants {wanted}", at_point=False)
     return None

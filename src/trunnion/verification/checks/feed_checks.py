@@ -32,17 +32,17 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations) -> Check:
     compared = _compare_points(context)
     count, places = compared.count, compared.places
     for segments in context.matching.arc_segments:
-        should, tolerances = (
+        wanted, tolerances = (
             context.expected.point(segments.cl).feed,
             context.expected.section_at(segments.cl).tolerances,
         )
-        asked = np.full(len(segments.nc), should)
+        asked = np.full(len(segments.nc), wanted)
         per_rev = context.expected.per_rev(np.array([segments.cl]))[0]
-        digit = np.full(len(asked), FEED_PER_REV_SHARE * should if per_rev else tolerances.feed)
+        digit = np.full(len(asked), FEED_PER_REV_SHARE * wanted if per_rev else tolerances.feed)
         near, feed = _compare_feeds(context, segments.nc, asked, tolerances.tip, digit)
         for k in np.flatnonzero(~near).tolist():
             count += 1
-            text = f"moves with {feed[k]:g} mm/min; the CL file wants {should:g}"
+            text = f"moves with {feed[k]:g} mm/min; the CL file wants {wanted:g}"
             places.append(context.place_with_cl(int(segments.nc[k]), float(feed[k]), text, segments.cl))
     faults = [*accepted.feed, *needlessly_lowered_feeds(context.run, context.expected, context.matching)]
     named = [context.place_of_cl_row(fault.cl, fault.value, fault.text) for fault in faults[:MAX_PLACES]]

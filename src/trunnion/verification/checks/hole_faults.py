@@ -117,14 +117,14 @@ def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float) -> Iterator[Hole
     """The feed of the cycle, in all lines."""
     mode, programmed = run.state.feed_mode.at(lines), run.state.feed.at(lines)
     feed = np.where(mode == 95, programmed * rpm, programmed)
-    should = hole.cycle.feed * rpm if hole.cycle.per_rev else hole.cycle.feed
+    wanted = hole.cycle.feed * rpm if hole.cycle.per_rev else hole.cycle.feed
     digit = (min(hole.feed_tolerance, _FEED) if hole.cycle.mode[0] == "TAP" else hole.feed_tolerance) + _NOISE
-    allowed = np.where(mode == 95, FEED_PER_REV_SHARE * should + _NOISE, digit + _PITCH * rpm)
-    off = ~(np.abs(feed - should) <= allowed + 1e-9 * should)
+    allowed = np.where(mode == 95, FEED_PER_REV_SHARE * wanted + _NOISE, digit + _PITCH * rpm)
+    off = ~(np.abs(feed - wanted) <= allowed + 1e-9 * wanted)
     if off.any():
         k = int(np.argmax(off))
         unit = f" ({hole.cycle.feed:g} mm/rev)" if hole.cycle.per_rev else ""
-        text = f"moves with {feed[k]:g} mm/min; the CL file wants {should:g}{unit}"
+        text = f"moves with {feed[k]:g} mm/min; the CL file wants {wanted:g}{unit}"
         yield HoleFault(int(lines[k]), float(feed[k]), text)
 
 
@@ -132,10 +132,10 @@ def _dwell_faults(
     hole: Hole, match: MatchedHole, bottom: int, dwells: Mapping[int, list[float]], rpm: float
 ) -> Iterator[HoleFault]:
     """The dwell at the bottom, and dwells elsewhere in the hole; ``bottom`` is the deepest row."""
-    should = 60.0 * hole.cycle.dwell / rpm if hole.cycle.dwell_turns and rpm else hole.cycle.dwell
+    wanted = 60.0 * hole.cycle.dwell / rpm if hole.cycle.dwell_turns and rpm else hole.cycle.dwell
     has = sum(dwell if dwell >= 0.0 else -60.0 * dwell / max(rpm, 1e-9) for dwell in dwells.get(bottom + 1, ()))
-    if abs(has - should) > _DWELL:
-        yield HoleFault(bottom, has, f"waits {has:g} s at the bottom; the CL file wants {should:g}")
+    if abs(has - wanted) > _DWELL:
+        yield HoleFault(bottom, has, f"waits {has:g} s at the bottom; the CL file wants {wanted:g}")
     elsewhere = [row for row in range(match.first + 1, match.end) if row != bottom + 1 and row in dwells]
     if match.by_motion and elsewhere:
         yield HoleFault(elsewhere[0], 0.0, "waits in the hole where the CL file does not want it")
@@ -145,9 +145,9 @@ def _spindle_faults(run: Run, hole: Hole, match: MatchedHole, bottom: int) -> It
     """Speed and sense of the spindle; where motions drill a hole that it leaves without turning, it is off then."""
     leaves_off = match.by_motion and "DRAG" in hole.cycle.mode
     row = bottom if leaves_off else match.end - 1
-    sense, rpm, should = int(run.state.spindle[row]), float(run.state.rpm[row]), hole.spindle
-    if should is not None and (sense != should.sense or (sense and abs(rpm - should.rpm) > RPM_TOLERANCE)):
-        text = f"the spindle turns with {sense * rpm:g}, not with {should.sense * should.rpm:g}"
+    sense, rpm, wanted = int(run.state.spindle[row]), float(run.state.rpm[row]), hole.spindle
+    if wanted is not None and (sense != wanted.sense or (sense and abs(rpm - wanted.rpm) > RPM_TOLERANCE)):
+        text = f"the spindle turns with {sense * rpm:g}, not with {wanted.sense * wanted.rpm:g}"
         yield HoleFault(row, rpm, text)
     if leaves_off and int(run.state.spindle[row + 1]):
         yield HoleFault(row + 1, rpm, "leaves the hole with the spindle turning; the CL file wants it to stand")

@@ -35,8 +35,8 @@ def check_normals(context: ComparedContext) -> list[Check]:
         tolerance = section.tolerances.normal
         limit = max(limit, tolerance)
         for nc, cl in matching.pair_chunks(*matching.pair_range(section.first, section.end)):
-            should, is_ = normal[cl - section.first], _programmed_normals(run, nc)
-            off = np.abs(is_ - should).max(axis=1)
+            wanted, actual = normal[cl - section.first], _programmed_normals(run, nc)
+            off = np.abs(actual - wanted).max(axis=1)
             both, line = np.isfinite(off), run.kind[nc] == Kind.LINEAR
             may_have = line & ((run.programmed[nc] & int(ROTARY_WORDS)) == 0)
             beyond = both & (off > tolerance)
@@ -44,11 +44,11 @@ def check_normals(context: ComparedContext) -> list[Check]:
             largest = max(largest, float(off[both].max(initial=0.0)))
             faults = (
                 (
-                    np.isfinite(should[:, 0]) & np.isnan(is_[:, 0]) & may_have,
+                    np.isfinite(wanted[:, 0]) & np.isnan(actual[:, 0]) & may_have,
                     "has no surface normal, but the CL file has a contact point",
                 ),
                 (
-                    np.isnan(should[:, 0]) & np.isfinite(is_[:, 0]),
+                    np.isnan(wanted[:, 0]) & np.isfinite(actual[:, 0]),
                     "has a surface normal, but the CL file has no contact point",
                 ),
                 (beyond, "the surface normal is off"),

@@ -84,8 +84,8 @@ def _programmed_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> I
     """Strokes that the program has itself are those of STEP, one by one: counted from the CL point, or from RAPTO."""
     found = _distinct_heights([hole.cycle.clearance, *ends], hole.tolerance)
     for begin in (0.0, hole.cycle.clearance):
-        should = _distinct_heights([hole.cycle.clearance, *_step_heights(hole, begin)], hole.tolerance)
-        if len(should) == len(found) and float(np.abs(should - found).max()) <= hole.tolerance:
+        wanted = _distinct_heights([hole.cycle.clearance, *_step_heights(hole, begin)], hole.tolerance)
+        if len(wanted) == len(found) and float(np.abs(wanted - found).max()) <= hole.tolerance:
             return
     heights = ", ".join(f"{-height:.4f}" for height in found[1:5])
     text = f"drills to {heights} and so on, which are not the strokes of STEP in the CL file"

@@ -29,10 +29,10 @@ def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
     places = []
     for k, value in deviations.bad:
         row, cl = matching.nc[k], matching.cl[k]
-        is_, should = run.positions(np.array([row])).tip[0], expected.point(cl).tip
+        actual, wanted = run.positions(np.array([row])).tip[0], expected.point(cl).tip
         axes = [
             f"{name}{now:.5f} for {then:.5f}"
-            for name, now, then in zip("XYZ", is_, should, strict=True)
+            for name, now, then in zip("XYZ", actual, wanted, strict=True)
             if not abs(now - then) <= deviations.limit
         ]
         inches = " (the program counts in inches here)" if run.state.inches[row] else ""
@@ -86,8 +86,8 @@ def _axes_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[P
     """Ends of lines that replace an arc under a wrong tool axis."""
     arc, tolerances = segments.arc, context.expected.section_at(segments.cl).tolerances
     begin, end = context.expected.point(segments.cl - 1).axis, context.expected.point(segments.cl).axis
-    is_ = context.run.positions(segments.nc)
-    away = degrees_apart(is_.axis, great_circle_points(begin, end, arc.fractions(is_.tip)))
+    actual = context.run.positions(segments.nc)
+    away = degrees_apart(actual.axis, great_circle_points(begin, end, arc.fractions(actual.tip)))
     total = 2.0 * float(np.arcsin(min(0.5 * float(np.linalg.norm(end - begin)), 1.0)))
     # It is not known better than this where on the arc a rounded point is.
     uncertainty = total * _DIAGONAL * tolerances.tip / max(arc.radius * arc.sweep, 1e-9)

@@ -26,19 +26,19 @@ def check_spindle(context: ComparedContext) -> Check:
     places: list[Place] = []
     asked: set[ExpectedSpindle] = set()
     for state in spindle_states(context.expected):
-        should = state.value
+        wanted = state.value
         first, end = matching.pair_range(state.first, state.end)
-        if should is None or first == end:
+        if wanted is None or first == end:
             continue
-        asked.add(should)
-        if should.sense == 0 and _stops_after(context, matching.nc[first]):
+        asked.add(wanted)
+        if wanted.sense == 0 and _stops_after(context, matching.nc[first]):
             first += 1
-        bad = first_wrong_pair(matching, first, end, partial(_differs, run, should))
+        bad = first_wrong_pair(matching, first, end, partial(_differs, run, wanted))
         if bad is not None:
             row, cl = bad
-            is_ = ExpectedSpindle(run.state.rpm[row], run.state.spindle[row])
-            text = f"{_words(is_)}; the CL file wants {_words(should)}"
-            places.append(context.place_with_cl(row, is_.rpm, text, cl))
+            actual = ExpectedSpindle(run.state.rpm[row], run.state.spindle[row])
+            text = f"{_words(actual)}; the CL file wants {_words(wanted)}"
+            places.append(context.place_with_cl(row, actual.rpm, text, cl))
     places += _foreign_events(context, asked | all_spindles(context.expected)) if asked else ()
     places.sort(key=lambda place: place.nc_line)
     good = ", ".join(_words(each) for each in sorted(asked, key=lambda each: (each.rpm, each.sense)))
@@ -65,10 +65,10 @@ def _stops_after(context: ComparedContext, row: int) -> bool:
     return after != row and context.run.state.spindle[after] == 0
 
 
-def _differs(run: Run, should: ExpectedSpindle, nc: Ints) -> Flags:
-    wrong = run.state.spindle.at(nc) != should.sense
-    if should.sense:
-        wrong |= np.abs(run.state.rpm.at(nc) - should.rpm) > RPM_TOLERANCE
+def _differs(run: Run, wanted: ExpectedSpindle, nc: Ints) -> Flags:
+    wrong = run.state.spindle.at(nc) != wanted.sense
+    if wanted.sense:
+        wrong |= np.abs(run.state.rpm.at(nc) - wanted.rpm) > RPM_TOLERANCE
     return np.asarray(wrong)
 
 

@@ -84,18 +84,18 @@ def _compare(
     run = context.run
     if not _is_within_operation(context, pair):
         events = [event for event in events if any(_same(run, event, each) for each in expected)]
-    for should, event in zip_longest(expected, events):
-        if should is None:
+    for wanted, event in zip_longest(expected, events):
+        if wanted is None:
             if not _follows_insert(context, pair):
                 text = f"{_words(event.kind, _amount(event))}, which the CL file does not ask for"
                 yield context.place_of_event(event, 0.0, text)
         elif event is None:
-            row = min(should.row, len(context.expected) - 1)
-            place = context.place_of_missing(row, f"the CL file wants {should} before this")
-            yield replace(place, cl_file=should.file, cl_line=should.line)
-        elif not _same(run, event, should):
-            text = f"{_words(event.kind, _amount(event))}; the CL file wants {should}"
-            yield replace(context.place_of_event(event, 0.0, text), cl_file=should.file, cl_line=should.line)
+            row = min(wanted.row, len(context.expected) - 1)
+            place = context.place_of_missing(row, f"the CL file wants {wanted} before this")
+            yield replace(place, cl_file=wanted.file, cl_line=wanted.line)
+        elif not _same(run, event, wanted):
+            text = f"{_words(event.kind, _amount(event))}; the CL file wants {wanted}"
+            yield replace(context.place_of_event(event, 0.0, text), cl_file=wanted.file, cl_line=wanted.line)
 
 
 def _is_within_operation(context: ComparedContext, pair: int) -> bool:
@@ -115,11 +115,11 @@ def _amount(event: RunEvent) -> float:
     return event.value if isinstance(event.value, float) else 0.0
 
 
-def _same(run: Run, event: RunEvent, should: _ExpectedStop) -> bool:
-    if event.kind != should.kind:
+def _same(run: Run, event: RunEvent, wanted: _ExpectedStop) -> bool:
+    if event.kind != wanted.kind:
         return False
     rpm = float(run.state.rpm[min(event.before_row, len(run) - 1)]) if len(run) else 0.0
-    return abs(_seconds(_amount(event), rpm) - _seconds(should.amount, rpm)) <= _TOLERANCE
+    return abs(_seconds(_amount(event), rpm) - _seconds(wanted.amount, rpm)) <= _TOLERANCE
 
 
 def _seconds(amount: float, rpm: float) -> float:

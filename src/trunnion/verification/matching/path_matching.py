@@ -171,10 +171,10 @@ class _PathMatcher:
     def _fits(self, i: int, j: int, count: int) -> Flags:
         """Which of ``count`` motions from the i-th on are at the points from CL row j on, (count,) bool."""
         rows, points = self._rows.rows(i, i + count), np.arange(j, j + count)
-        is_ = self._run.positions(rows)
+        actual = self._run.positions(rows)
         tip, axis = self._limits_of(points)
-        fits = (np.abs(is_.tip - self._expected.tip(points)) <= tip[:, None]).all(axis=1)
-        fits &= (np.abs(is_.axis - self._expected.axis(points)) <= axis[:, None]).all(axis=1)
+        fits = (np.abs(actual.tip - self._expected.tip(points)) <= tip[:, None]).all(axis=1)
+        fits &= (np.abs(actual.axis - self._expected.axis(points)) <= axis[:, None]).all(axis=1)
         if len(self._hole_cl_rows):  # no point is reached before the holes that come before it
             fits &= np.searchsorted(self._hole_rows, rows) == np.searchsorted(self._hole_cl_rows, points, "right")
         return np.asarray(fits)
@@ -296,13 +296,13 @@ class _PathMatcher:
         """How many motions and points come before two in a row fit again; all of them if they never do."""
         for window in _WINDOWS:
             a, b = min(window, self._n - i), min(window, self._m - j)
-            is_, points = self._run.positions(self._rows.rows(i, i + a)), np.arange(j, j + b)
+            actual, points = self._run.positions(self._rows.rows(i, i + a)), np.arange(j, j + b)
             cl_tip, cl_axis = self._expected.tip(points), self._expected.axis(points)
             tip, axis = self._limits_of(points)
             fits = np.ones((a, b), np.bool_)
             for column in range(3):
-                fits &= np.abs(is_.tip[:, column, None] - cl_tip[:, column]) <= tip
-                fits &= np.abs(is_.axis[:, column, None] - cl_axis[:, column]) <= axis
+                fits &= np.abs(actual.tip[:, column, None] - cl_tip[:, column]) <= tip
+                fits &= np.abs(actual.axis[:, column, None] - cl_axis[:, column]) <= axis
             found = find_resync(fits, (i + a == self._n, j + b == self._m))
             if found is not None:
                 return found
@@ -327,13 +327,13 @@ class _PathMatcher:
 
     def _best_gap(self, i: int, j: int, a: int, b: int) -> int:
         """How many pairs of ``a`` motions and ``b`` points should come before the gap in the longer side."""
-        is_, points = self._run.positions(self._rows.rows(i, i + a)), np.arange(j, j + b)
+        actual, points = self._run.positions(self._rows.rows(i, i + a)), np.arange(j, j + b)
         cl_tip, cl_axis = self._expected.tip(points), self._expected.axis(points)
         cost = np.empty(min(a, b) + 1)
         for gap in range(len(cost)):
             rows = np.delete(np.arange(a), slice(gap, gap + max(a - b, 0)))
             points = np.delete(np.arange(b), slice(gap, gap + max(b - a, 0)))
-            tip = np.abs(is_.tip[rows] - cl_tip[points]).sum(axis=1)
-            axis = np.abs(is_.axis[rows] - cl_axis[points]).sum(axis=1)
+            tip = np.abs(actual.tip[rows] - cl_tip[points]).sum(axis=1)
+            axis = np.abs(actual.axis[rows] - cl_axis[points]).sum(axis=1)
             cost[gap] = np.minimum(tip + 50.0 * axis, 1e6).sum()
         return int(np.argmin(cost))

@@ -57,14 +57,14 @@ def _plane_changes_at_points(run: Run, expected: ExpectedPath) -> Ints:
     rows = rows[run.state.xyz_is_tip.at(rows - 1) & ~run.state.tcp.at(rows - 1)]
     if not len(rows):
         return rows
-    is_, arrives = run.positions(rows), np.zeros(len(rows), np.bool_)
+    actual, arrives = run.positions(rows), np.zeros(len(rows), np.bool_)
     for section in expected.sections:
         moves, tolerances = section.operation.moves, section.tolerances
         rapids = np.flatnonzero(moves.kind[1:] == Kind.RAPID) + 1
         turns = rapids[(moves.axis[rapids] != moves.axis[rapids - 1]).any(axis=1)]
         for k in turns.tolist():
-            at_tip = (np.abs(is_.tip - moves.tip[k]) <= tolerances.tip).all(axis=1)
-            at_axis = (np.abs(is_.axis - moves.axis[k]) <= np.radians(2.0 * tolerances.angle)).all(axis=1)
+            at_tip = (np.abs(actual.tip - moves.tip[k]) <= tolerances.tip).all(axis=1)
+            at_axis = (np.abs(actual.axis - moves.axis[k]) <= np.radians(2.0 * tolerances.angle)).all(axis=1)
             arrives |= at_tip & at_axis
     return np.asarray(rows[arrives])
 
