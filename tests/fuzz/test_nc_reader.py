@@ -129,7 +129,7 @@ BOUNDED = {
     "turns of a circle": "G2 I5 TURN=1000000000",
     "turns that are no number": "G2 I5 TURN=1EX308",
     "pecks without number": "CYCLE83(50,0,2,-1EX6,,-.0001,,0)",
-    "tapping strokes without number": "CYCLE84(50,0,2,-20,,0,3,,1,0,100,100,3,1,1,1,.000001)",
+    "tapping pecks without number": "CYCLE84(50,0,2,-20,,0,3,,1,0,100,100,3,1,1,1,.000001)",
     "a huge circle": "G2 X1 CR=9999999",
     "a circle larger than that": "G2 X1 CR=1EX200",
     "a centre farther away than anything": "G2 X1 I1EX300",

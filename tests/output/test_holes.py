@@ -275,7 +275,7 @@ def test_a_number_in_a_cycle_that_is_another_one_is_seen(tmp_path: Path) -> None
                 other = f"MCALL {name}({','.join(changed)})"
                 if not proven([*blocks[:k], other, *blocks[k + 1 :]], cl, tmp_path):
                     unseen.append((name, n + 1))
-    # DTS and FRF over 1, the tool axis, MDEP below the stroke, VRT, DIS1; SDAC, spindle position, speed out.
+    # DTS and FRF over 1, the tool axis, MDEP below the peck, VRT, DIS1; SDAC, spindle position, speed out.
     quiet = {
         "CYCLE83": {8, 10, 11, 13, 14, 15, 17},
         "CYCLE84": {7, 10, 13, 14, 15, 18},

@@ -84,7 +84,7 @@ def test_in_planes_and_with_tcp_they_are_proven_too(
 ) -> None:
     """Where the tool axis changes the tool goes home first, however far the CL file has drawn it back."""
     pair = pair_of(control, "dmu65", tmp_path)
-    modes = ["DRILL,BRKCHP", "DRILL", "BORE,DRAG", "DRILL,DEEP, strokes shorter"]
+    modes = ["DRILL,BRKCHP", "DRILL", "BORE,DRAG", "DRILL,DEEP, decreasing pecks"]
     modes = modes if control != "fidia_nc15" or settings == ("cycles=off",) else modes[1:]
     done = posted(drilled(modes, AXES, back=back), pair, tmp_path, settings)
     check_proven(done, pair, ())
@@ -144,7 +144,7 @@ def test_what_the_words_of_a_cycle_lack_is_made_as_motion(control: str, words: s
     assert f"CYCLE/{words.partition(',{h}')[0]} expanded to rapids and lines for 2 holes" in done.err
 
 
-def test_strokes_and_dwells_count_in_the_time_of_an_operation(tmp_path: Path) -> None:
+def test_pecks_and_dwells_count_in_the_time_of_an_operation(tmp_path: Path) -> None:
     cl = tmp_path / "holes.cls"
     cl.write_text(drilled(["DRILL with DWELL", "DRILL,DEEP"], [UPRIGHT]), encoding="utf-8")
     motion, _ = (
@@ -156,7 +156,7 @@ def test_strokes_and_dwells_count_in_the_time_of_an_operation(tmp_path: Path) ->
 
 
 def test_every_block_that_is_dropped_is_missed(tmp_path: Path) -> None:
-    modes = ["DRILL", "DRILL,DEEP, strokes shorter", "DRILL with DWELL", "BORE,DRAG", "DRILL,BRKCHP", "BORE"]
+    modes = ["DRILL", "DRILL,DEEP, decreasing pecks", "DRILL with DWELL", "BORE,DRAG", "DRILL,BRKCHP", "BORE"]
     cl, program = made(drilled(modes, AXES[1:]), tmp_path)
     lines = program.read_text(encoding="utf-8").splitlines()
     assert failed(lines, cl, tmp_path) == []
@@ -177,7 +177,7 @@ def test_every_block_that_is_dropped_is_missed(tmp_path: Path) -> None:
 
 
 def test_every_number_that_is_another_one_is_seen(tmp_path: Path) -> None:
-    modes = ["DRILL,DEEP, strokes shorter", "BORE with DWELL", "DRILL,BRKCHP"]
+    modes = ["DRILL,DEEP, decreasing pecks", "BORE with DWELL", "DRILL,BRKCHP"]
     cl, program = made(drilled(modes, AXES[1:]), tmp_path)
     lines = program.read_text(encoding="utf-8").splitlines()
     count, quiet = 0, []
@@ -195,14 +195,14 @@ def test_every_number_that_is_another_one_is_seen(tmp_path: Path) -> None:
     assert quiet == []
 
 
-def test_strokes_that_others_would_draw_are_seen(tmp_path: Path) -> None:
-    """A stroke left out, one more, another order, a full retract where chips are broken, a rapid in place of a line."""
-    cl, program = made(drilled(["DRILL,DEEP, strokes shorter"], [UPRIGHT]), tmp_path, "cycles=off")
+def test_pecks_that_others_would_draw_are_seen(tmp_path: Path) -> None:
+    """A peck left out, one more, another order, a full retract where chips are broken, a rapid in place of a line."""
+    cl, program = made(drilled(["DRILL,DEEP, decreasing pecks"], [UPRIGHT]), tmp_path, "cycles=off")
     lines = program.read_text(encoding="utf-8").splitlines()
     assert failed(lines, cl, tmp_path) == []
-    strokes = [k for k, line in enumerate(lines) if " G1 Z-" in line]
-    assert len(strokes) == 10
-    one, two = strokes[1:3]
+    pecks = [k for k, line in enumerate(lines) if " G1 Z-" in line]
+    assert len(pecks) == 10
+    one, two = pecks[1:3]
     assert "holes" in failed(lines[:one] + lines[two:], cl, tmp_path)
     again = [*lines[:two], lines[one - 2], lines[one - 1], lines[one], *lines[two - 2 :]]
     assert "holes" in failed(again, cl, tmp_path)

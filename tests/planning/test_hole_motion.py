@@ -25,7 +25,7 @@ from trunnion.model.toolpath import (
 from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_from_event
 from trunnion.planning.holes.hole_motion import HoleConditions, convert_holes_to_motion
 from trunnion.planning.holes.operations import normalize_cycles
-from trunnion.planning.holes.strokes import stroke_depths
+from trunnion.planning.holes.pecks import peck_depths
 
 SPINDLE = SpindleState(1200.0, Sense.CLW)
 LENGTH = st.integers(1, 900).map(lambda n: n / 100.0)
@@ -86,7 +86,7 @@ def reference(path: Operation, cycle: CycleOn) -> list[Row]:
         if height > z + asked.rapid_height + 1e-9:
             rows.append(((x, y, z + asked.rapid_height), Kind.RAPID, ()))
         done = 0.0
-        for depth in depths(asked.method, asked.depth, asked.strokes):
+        for depth in depths(asked.method, asked.depth, asked.pecks):
             if done and asked.method is HoleMethod.DEEP_DRILLING:
                 rows.append(((x, y, z + asked.rapid_height), Kind.RAPID, ()))
                 if z - done + 0.5 < z + asked.rapid_height - 1e-9:
@@ -108,14 +108,14 @@ def reference(path: Operation, cycle: CycleOn) -> list[Row]:
 
 
 def depths(method: HoleMethod, depth: float, steps: tuple[float, float, float]) -> list[float]:
-    """Depths by adding up strokes, each shorter than the one before; only the last may be below the shortest."""
+    """Depths by adding up pecks, each shorter than the one before; only the last may be below the shortest."""
     if method not in (HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING):
         return [depth]
-    every, reached, stroke = [], 0.0, steps[0]
+    every, reached, peck = [], 0.0, steps[0]
     while reached < depth - 1e-9:
-        reached = min(reached + stroke, depth)
+        reached = min(reached + peck, depth)
         every.append(reached)
-        stroke = stroke if stroke <= steps[2] else max(stroke - steps[1], steps[2])
+        peck = peck if peck <= steps[2] else max(peck - steps[1], steps[2])
     return every
 
 
@@ -193,14 +193,14 @@ def cycle(*step: float) -> CycleOn:
         ((20.0, 1.0, 1.0), [12.0]),
     ],
 )
-def test_strokes_become_shorter_down_to_the_shortest(step: tuple[float, ...], depths: list[float]) -> None:
-    assert stroke_depths(cycle_from_event(cycle(*step))) == depths
+def test_pecks_become_shorter_down_to_the_shortest(step: tuple[float, ...], depths: list[float]) -> None:
+    assert peck_depths(cycle_from_event(cycle(*step))) == depths
 
 
 @pytest.mark.parametrize(
-    ("step", "why"), [((4.0, 3.0), "shortest"), ((4.0, -1.0, 1.0), "below 0"), ((1e-5,), "more than 10000 strokes")]
+    ("step", "why"), [((4.0, 3.0), "shortest"), ((4.0, -1.0, 1.0), "below 0"), ((1e-5,), "more than 10000 pecks")]
 )
-def test_strokes_that_never_reach_the_depth_are_refused(step: tuple[float, ...], why: str) -> None:
+def test_pecks_that_never_reach_the_depth_are_refused(step: tuple[float, ...], why: str) -> None:
     path = operation([(0.0, 0.0, 9.0), (0.0, 0.0, 0.0)], [True, False], (cycle(*step),))
     with pytest.raises(HoleCycleError, match=why) as error:
         expanded(path)

@@ -47,8 +47,8 @@ _METHODS: Final = {
     ("BORE", "MANUAL"): HoleMethod.BORE_MANUAL,
 }
 
-#: Methods that need the length of a stroke.
-_IN_STROKES: Final = (
+#: Methods that need the length of a peck.
+_IN_PECKS: Final = (
     HoleMethod.DEEP_DRILLING,
     HoleMethod.CHIP_BREAKING,
     HoleMethod.DEEP_TAP,
@@ -88,7 +88,7 @@ class Cycle:
     depth                 how far below the point the hole goes
     retract_height        height to which the tool retracts, no lower than ``rapid_height``; None: where it was before
                           the first hole
-    strokes               length of the first stroke, by how much each next one is shorter, the shortest one
+    pecks               length of the first peck, by how much each next one is shorter, the shortest one
     dwell                 at the bottom: seconds, or spindle revolutions if ``dwell_in_revolutions``
     feed                  mm/min, or mm/rev if ``per_rev``; None: the modal feed
     spindle_angle         for BORE,NODRAG, degrees
@@ -98,7 +98,7 @@ class Cycle:
     rapid_height: float
     depth: float
     retract_height: float | None
-    strokes: tuple[float, float, float]
+    pecks: tuple[float, float, float]
     dwell: float
     dwell_in_revolutions: bool
     feed: float | None
@@ -144,9 +144,9 @@ def cycle_from_event(event: CycleOn) -> Cycle:
     rapid_height = _first(values, "RAPTO", _first(values, "CLEAR", math.nan))
     if not rapid_height >= 0.0:
         raise HoleCycleError("CYCLE without RAPTO, or with one below the hole", "write RAPTO,distance above the point")
-    strokes = (*values.get("STEP", ()), 0.0, 0.0, 0.0)[:3]
-    if method in _IN_STROKES and not strokes[0] > 0.0:
-        raise HoleCycleError(f"CYCLE/{method} without STEP", "write STEP,first stroke")
+    pecks = (*values.get("STEP", ()), 0.0, 0.0, 0.0)[:3]
+    if method in _IN_PECKS and not pecks[0] > 0.0:
+        raise HoleCycleError(f"CYCLE/{method} without STEP", "write STEP,first peck")
     if words.get("RTRCTO") == "MANUAL":
         raise HoleCycleError("RTRCTO,MANUAL does not say how far", "write RTRCTO,distance or RTRCTO,AUTO")
     is_auto = words.get("RTRCTO") == "AUTO"
@@ -156,7 +156,7 @@ def cycle_from_event(event: CycleOn) -> Cycle:
         rapid_height=rapid_height,
         depth=_depth(event.mode, values),
         retract_height=None if is_auto else max(_first(values, "RTRCTO", rapid_height), rapid_height),
-        strokes=(strokes[0], strokes[1], strokes[2]),
+        pecks=(pecks[0], pecks[1], pecks[2]),
         dwell=_first(values, "DWELL", 0.0),
         dwell_in_revolutions=words.get("DWELL") == "REV",
         feed=_first(values, "MMPR" if per_rev else "MMPM", math.nan) if per_rev or "MMPM" in values else None,
@@ -188,7 +188,7 @@ def _method(mode: tuple[str, ...], words: Mapping[str, str]) -> HoleMethod:
         return method
     if method in (HoleMethod.DEEP_TAP, HoleMethod.CHIP_BREAKING_TAP):
         what = f"CYCLE/{method} with OPTION, a compensating chuck"
-        raise HoleCycleError(what, "leave OPTION out, or tap in one stroke")
+        raise HoleCycleError(what, "leave OPTION out, or tap in one pass")
     return HoleMethod.FLOATING_TAP if method is HoleMethod.TAP else method
 
 

@@ -1,4 +1,4 @@
-"""Holes as motion: rapids, strokes and dwells in place of a cycle that the control lacks.
+"""Holes as motion: rapids, pecks and dwells in place of a cycle that the control lacks.
 
 In:     an operation as ``trunnion.planning.holes.operations.normalize_cycles`` returns it.
 Out:    the same operation with rows of motion in place of the points of these holes, and without their cycles.
@@ -27,7 +27,7 @@ from trunnion.planning.holes.cycles import (
     spindle_state_at,
 )
 from trunnion.planning.holes.operations import cycle_row_ranges
-from trunnion.planning.holes.strokes import SAME_HEIGHT, HoleMotions, hole_motions
+from trunnion.planning.holes.pecks import SAME_HEIGHT, HoleMotions, hole_motions
 from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.planning.options import CycleObjection
 from trunnion.wording import counted
@@ -147,7 +147,7 @@ def convert_holes_to_motion(operation: Operation, conditions: HoleConditions) ->
     for holes, new in zip(converted, rows, strict=True):
         copies[holes.rows] = new.keep.sum(axis=1)
     if copies.sum() > _MOST_ROWS:
-        raise HoleCycleError(f"holes of {copies.sum()} motions", "output longer strokes", converted[0].event.line)
+        raise HoleCycleError(f"holes of {copies.sum()} motions", "output longer pecks", converted[0].event.line)
     first_rows = np.concatenate(([0], np.cumsum(copies)))
     return HolesAsMotion(
         _with_rows(operation, converted, rows, copies, first_rows), first_rows, tuple(_summary(converted))

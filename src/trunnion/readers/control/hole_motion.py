@@ -35,11 +35,11 @@ class HoleMotion:
     turns: int = 0
 
 
-def check_pecks(depth: float, stroke: float, word: str) -> None:
-    """Refuse strokes, given by ``word``, that would not get to a depth within ``MAX_PECKS`` pecks."""
-    if stroke <= 0.0:
+def check_pecks(depth: float, peck: float, word: str) -> None:
+    """Refuse pecks, given by ``word``, that would not get to a depth within ``MAX_PECKS`` pecks."""
+    if peck <= 0.0:
         raise CycleExecutionError(f"has a {word} that is not above 0")
-    if depth / stroke > MAX_PECKS:
+    if depth / peck > MAX_PECKS:
         raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
 
 

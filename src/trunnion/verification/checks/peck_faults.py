@@ -1,4 +1,4 @@
-"""What is wrong with the strokes of a hole: rapids in solid material, wrong pecks, wrong retracts between them.
+"""What is wrong with the pecks of a hole: rapids in solid material, wrong pecks, wrong retracts between them.
 
 Heights are as in ``trunnion.verification.expected.holes``.
 """
@@ -14,48 +14,48 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.drill_motions import DrillMotions, HoleFault
 from trunnion.verification.expected.holes import Hole
 
-#: No hole has more strokes.
-_MAX_STROKES: Final = 100_000
+#: No hole has more pecks.
+_MAX_PECKS: Final = 100_000
 
 #: A retract by less than this breaks the chip without leaving the hole, mm.
 _CHIP_BREAK: Final = 5.0
 
-#: The row at which faults of the strokes together are named: the first one into the hole.
-_FIRST_STROKE: Final = 2
+#: The row at which faults of the pecks together are named: the first one into the hole.
+_FIRST_PECK: Final = 2
 
 
 def peck_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
-    """Rapids stay above what is drilled; strokes and the retracts between them are those of the cycle."""
-    strokes = list[float]()
+    """Rapids stay above what is drilled; pecks and the retracts between them are those of the cycle."""
+    pecks = list[float]()
     between = list[list[int]]()
-    yield from _collect_strokes(hole, motions, strokes, between)
+    yield from _collect_pecks(hole, motions, pecks, between)
     if not hole.cycle.pecks:
-        if len(strokes) > 1:
-            text = f"drills in {len(strokes)} strokes, the CL file in one"
-            yield motions.fault(_FIRST_STROKE, float(len(strokes)), text)
+        if len(pecks) > 1:
+            text = f"drills in {len(pecks)} pecks, the CL file in one"
+            yield motions.fault(_FIRST_PECK, float(len(pecks)), text)
         return
-    yield from (_programmed_pecks if motions.by_motion else _cycle_pecks)(hole, motions, strokes)
-    for end, rows in zip(strokes, between[:-1], strict=False):
+    yield from (_programmed_pecks if motions.by_motion else _cycle_pecks)(hole, motions, pecks)
+    for end, rows in zip(pecks, between[:-1], strict=False):
         top = max((float(motions.height[k]) for k in rows), default=-math.inf)
         full, back = abs(top - hole.cycle.clearance) <= hole.tolerance, top - end
         if not rows or full != ("DEEP" in hole.cycle.mode) or (not full and back > _CHIP_BREAK):
             how = "not drawn back" if not rows else "drawn back all the way" if full else "drawn back a little"
-            text = f"between strokes the tool is {how}; the CL file says otherwise"
-            yield motions.fault(_FIRST_STROKE, top, text)
+            text = f"between pecks the tool is {how}; the CL file says otherwise"
+            yield motions.fault(_FIRST_PECK, top, text)
             break
 
 
-def _collect_strokes(
-    hole: Hole, motions: DrillMotions, strokes: list[float], between: list[list[int]]
+def _collect_pecks(
+    hole: Hole, motions: DrillMotions, pecks: list[float], between: list[list[int]]
 ) -> Iterator[HoleFault]:
-    """Fill in the heights at which strokes end, and the motions after each one; faults of single motions."""
+    """Fill in the heights at which pecks end, and the motions after each one; faults of single motions."""
     deepest, bottom = hole.cycle.clearance, motions.bottom
     for k in range(1, len(motions.row)):
         height, kind = float(motions.height[k]), motions.kind[k]
         if kind == Kind.RAPID and height < deepest - hole.tolerance:
             yield motions.fault(k, height, "goes at rapid where nothing is drilled yet")
         elif kind == Kind.LINEAR and height < deepest - 1e-9:
-            strokes.append(height)
+            pecks.append(height)
             between.append([])
         elif motions.by_motion and kind == Kind.LINEAR and k <= bottom:
             yield motions.fault(k, height, "goes at a feed where nothing is left to drill")
@@ -65,31 +65,31 @@ def _collect_strokes(
 
 
 def _cycle_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterator[HoleFault]:
-    """Strokes of a cycle: the first as deep as STEP says, the others no deeper, and equal if STEP makes them so."""
-    # Strokes count from the CL point, or from where the feed begins.
+    """Pecks of a cycle: the first as deep as STEP says, the others no deeper, and equal if STEP makes them so."""
+    # Pecks count from the CL point, or from where the feed begins.
     from_point = not ends or abs(ends[0] + min(hole.cycle.pecks[0], hole.cycle.depth)) <= hole.tolerance
     begin = 0.0 if from_point else hole.cycle.clearance
     first = min(hole.cycle.pecks[0], begin + hole.cycle.depth)
-    strokes = np.abs(np.diff([begin, *(ends or [hole.cycle.clearance])]))
-    if abs(strokes[0] - first) > hole.tolerance or (np.diff(strokes) > hole.tolerance).any():
-        found = ", ".join(f"{stroke:.4f}" for stroke in strokes[:4])
-        text = f"drills in strokes of {found}, not of {first:g} and less"
-        yield motions.fault(_FIRST_STROKE, float(strokes[0]), text)
+    pecks = np.abs(np.diff([begin, *(ends or [hole.cycle.clearance])]))
+    if abs(pecks[0] - first) > hole.tolerance or (np.diff(pecks) > hole.tolerance).any():
+        found = ", ".join(f"{peck:.4f}" for peck in pecks[:4])
+        text = f"drills in pecks of {found}, not of {first:g} and less"
+        yield motions.fault(_FIRST_PECK, float(pecks[0]), text)
     equal = len(hole.cycle.pecks) < 2 or not hole.cycle.pecks[1]
-    if equal and len(strokes) > 2 and abs(strokes[:-1] - first).max() > hole.tolerance:
-        yield motions.fault(_FIRST_STROKE, float(strokes.min()), f"the strokes are not all {first:g} mm")
+    if equal and len(pecks) > 2 and abs(pecks[:-1] - first).max() > hole.tolerance:
+        yield motions.fault(_FIRST_PECK, float(pecks.min()), f"the pecks are not all {first:g} mm")
 
 
 def _programmed_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterator[HoleFault]:
-    """Strokes that the program has itself are those of STEP, one by one: counted from the CL point, or from RAPTO."""
+    """Pecks that the program has itself are those of STEP, one by one: counted from the CL point, or from RAPTO."""
     found = _distinct_heights([hole.cycle.clearance, *ends], hole.tolerance)
     for begin in (0.0, hole.cycle.clearance):
         wanted = _distinct_heights([hole.cycle.clearance, *_step_heights(hole, begin)], hole.tolerance)
         if len(wanted) == len(found) and float(np.abs(wanted - found).max()) <= hole.tolerance:
             return
     heights = ", ".join(f"{-height:.4f}" for height in found[1:5])
-    text = f"drills to {heights} and so on, which are not the strokes of STEP in the CL file"
-    yield motions.fault(_FIRST_STROKE, float(found[-1]), text)
+    text = f"drills to {heights} and so on, which are not the pecks of STEP in the CL file"
+    yield motions.fault(_FIRST_PECK, float(found[-1]), text)
 
 
 def _distinct_heights(heights: Sequence[float], tolerance: float) -> Floats:
@@ -99,11 +99,11 @@ def _distinct_heights(heights: Sequence[float], tolerance: float) -> Floats:
 
 
 def _step_heights(hole: Hole, begin: float) -> list[float]:
-    """Heights to which STEP leads: the first stroke from ``begin``, each next one shorter, none below the shortest."""
-    stroke, less, shortest = (*hole.cycle.pecks, 0.0, 0.0, 0.0)[:3]
+    """Heights to which STEP leads: the first peck from ``begin``, each next one shorter, none below the shortest."""
+    peck, less, shortest = (*hole.cycle.pecks, 0.0, 0.0, 0.0)[:3]
     height, ends = begin, list[float]()
-    while height > -hole.cycle.depth and stroke > 0.0 and len(ends) < _MAX_STROKES:
-        height = max(height - stroke, -hole.cycle.depth)
+    while height > -hole.cycle.depth and peck > 0.0 and len(ends) < _MAX_PECKS:
+        height = max(height - peck, -hole.cycle.depth)
         ends.append(height)
-        stroke = stroke if stroke <= shortest else max(stroke - less, shortest)
+        peck = peck if peck <= shortest else max(peck - less, shortest)
     return ends

@@ -25,7 +25,7 @@ class HoleCycle:
     clearance    height down to which the tool may go at rapid (RAPTO)
     retract      height at which the tool leaves the hole (RTRCTO)
     depth        depth below the CL point, mm
-    pecks        of STEP: the first peck, how much each next one is shorter, the shortest; empty: one stroke
+    pecks        of STEP: the first peck, how much each next one is shorter, the shortest; empty: one peck
     feed         mm/min, or mm/rev where ``per_rev``
     dwell        seconds, or spindle revolutions where ``dwell_turns``
     """

@@ -111,7 +111,7 @@ UNSAID = {
     "BORE,MANUAL,RAPTO,3.0,FEDTO,-20.0,MMPM,100": "no cycle of the control",
     "DRILL,BRKCHP,RAPTO,3.0,FEDTO,-20.0,STEP,6.0,1.0,MMPM,250": "write STEP,first,less,shortest",
     "TAP,BRKCHP,RAPTO,3.0,FEDTO,-20.0,STEP,6.0,1.0,2.0,MMPR,1.25": "write STEP with one number",
-    "TAP,BRKCHP,RAPTO,3.0,FEDTO,-20.0,MMPR,1.25": "write STEP,first stroke",
+    "TAP,BRKCHP,RAPTO,3.0,FEDTO,-20.0,MMPR,1.25": "write STEP,first peck",
     "DRILL,DEEP,RAPTO,3.0,FEDTO,-20.0,STEP,6.0,1.0,MMPM,250": "write STEP,first,less,shortest",
     "TAP,RAPTO,3.0,FEDTO,-20.0,MMPR,1.25,DWELL,1": "leave DWELL out",
 }

@@ -214,13 +214,13 @@ def test_infeeds_shrink_to_the_least_and_end_at_the_depth(
 ) -> None:
     depths = peck_depths(total, first, less, least)
     assert depths[-1] == total
-    strokes = [b - a for a, b in zip([0.0, *depths], depths, strict=False)]
-    assert all(stroke > 0.0 for stroke in strokes)
+    pecks = [b - a for a, b in zip([0.0, *depths], depths, strict=False)]
+    assert all(peck > 0.0 for peck in pecks)
     expected = first
-    for stroke in strokes[:-1]:
-        assert stroke == pytest.approx(expected)
+    for peck in pecks[:-1]:
+        assert peck == pytest.approx(expected)
         expected = max(expected - less, least)
-    assert strokes[-1] <= (expected if len(strokes) > 1 else total) + 1e-9
+    assert pecks[-1] <= (expected if len(pecks) > 1 else total) + 1e-9
 
 
 def test_pecks_without_end_are_refused() -> None:

@@ -41,7 +41,7 @@ def test_a_cycle_without_mcall_drills_once_where_the_tool_is(run: Runner) -> Non
 
 
 def test_pecking_with_full_retraction(run: Runner) -> None:
-    # The facts' example: first stroke 6, then 1 less each time but not less than 2; chips are cleared at Z2.
+    # The facts' example: first peck 6, then 1 less each time but not less than 2; chips are cleared at Z2.
     result = run(HEAD + "CYCLE83(50,0,2,-20,,-6,,1,0.2,0,1,1,3,2,,0,1)")
     assert result.diagnostics == ()
     bottoms = heights(result, Kind.LINEAR)
@@ -57,7 +57,7 @@ def test_pecking_with_chip_breaking(run: Runner) -> None:
     assert result.feed[4] == 180.0
 
 
-def test_strokes_of_deep_holes() -> None:
+def test_pecks_of_deep_holes() -> None:
     assert peck_depths(10, 10, 0, 0) == [10]
     assert peck_depths(10, 4, 0, 0) == [4, 8, 10]
     assert peck_depths(20, 8, -0.5, 2) == [8, 12, 14, 16, 18, 20]

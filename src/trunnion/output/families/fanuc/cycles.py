@@ -80,9 +80,9 @@ def _dwell_milliseconds(cycle: Cycle, spindle: SpindleState | None) -> float:
 
 def _peck_depth(cycle: Cycle) -> float:
     """Q: the depth of every peck, the first measured from where the feed begins."""
-    if any(cycle.strokes[1:]):
+    if any(cycle.pecks[1:]):
         raise UnsupportedCycleError("decreasing peck depths, and Q of G83 is constant", "write STEP with one number")
-    return cycle.strokes[0]
+    return cycle.pecks[0]
 
 
 def _bore_shift(cycle: Cycle, settings: Mapping[str, str]) -> float:

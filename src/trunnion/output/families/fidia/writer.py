@@ -138,9 +138,9 @@ def cycle_cancel() -> list[str]:
 
 def _peck_depth(cycle: Cycle) -> float:
     """D: the depth of every peck, the first measured from where the feed begins."""
-    if any(cycle.strokes[1:]):
+    if any(cycle.pecks[1:]):
         raise UnsupportedCycleError("decreasing peck depths, and D is constant", "write STEP with one number")
-    return cycle.strokes[0]
+    return cycle.pecks[0]
 
 
 def _check_thread(cycle: Cycle, spindle: SpindleState | None) -> None:

@@ -18,10 +18,10 @@ Formats = Mapping[str, NumberFormat]
 QParameters = dict[int, float]
 RAPID: Final = math.inf
 
-#: How far a chip-breaking stroke is retracted, mm.
+#: How far a chip-breaking peck is retracted, mm.
 _CHIP_BREAK: Final = 0.2
 
-#: How far a chip-breaking stroke of a thread is retracted, pitches.
+#: How far a chip-breaking peck of a thread is retracted, pitches.
 _CHIP_BREAK_PITCHES: Final = 1.0
 
 #: How far above the last depth a rapid into the hole ends, mm.
@@ -133,33 +133,33 @@ def _drill(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefin
 
 
 def _peck(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
-    """Full retract after each stroke; or one stroke with chip breaks at equal distances."""
-    stroke, decrement, least = cycle.strokes
+    """Full retract after each peck; or one peck with chip breaks at equal distances."""
+    peck, decrement, least = cycle.pecks
     full = cycle.method is HoleMethod.DEEP_DRILLING
     if decrement and not least > 0.0:
-        raise HoleCycleError("STEP without a shortest stroke", "write STEP,first,less,shortest")
+        raise HoleCycleError("STEP without a shortest peck", "write STEP,first,less,shortest")
     if decrement and not full:
-        return _peck_with_shrinking_strokes(cycle, top, spindle)
+        return _peck_with_decreasing_depths(cycle, top, spindle)
     low, high = _heights(cycle, top)
-    stroke = min(stroke, cycle.depth)
-    values = {206: _feed(cycle, spindle), 202: stroke if full else cycle.depth, **high}
-    values |= {212: decrement, 205: (min(least, stroke) if decrement else stroke) if full else 0.0}
+    peck = min(peck, cycle.depth)
+    values = {206: _feed(cycle, spindle), 202: peck if full else cycle.depth, **high}
+    values |= {212: decrement, 205: (min(least, peck) if decrement else peck) if full else 0.0}
     values |= {
         258: _ADVANCED_STOP,
         259: _ADVANCED_STOP,
-        257: 0.0 if full else stroke,
+        257: 0.0 if full else peck,
         256: 0.0 if full else _CHIP_BREAK,
     }
     return 205, "UNIVERSAL PECKING", {**low, **values, **_dwell(cycle, spindle), 379: 0.0, 253: _feed(cycle, spindle)}
 
 
-def _peck_with_shrinking_strokes(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
-    """Strokes that become shorter, with as many chip breaks as possible before a full retract."""
-    stroke, decrement, least = cycle.strokes
+def _peck_with_decreasing_depths(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
+    """Decreasing pecks, with as many chip breaks as possible before a full retract."""
+    peck, decrement, least = cycle.pecks
     low, high = _heights(cycle, top)
-    stroke = min(stroke, cycle.depth)
-    values = {206: _feed(cycle, spindle), 202: stroke, 210: 0.0, **high, 212: decrement, 213: _MOST_BREAKS}
-    values |= {205: min(least, stroke), **_dwell(cycle, spindle), 208: RAPID, 256: _CHIP_BREAK}
+    peck = min(peck, cycle.depth)
+    values = {206: _feed(cycle, spindle), 202: peck, 210: 0.0, **high, 212: decrement, 213: _MOST_BREAKS}
+    values |= {205: min(least, peck), **_dwell(cycle, spindle), 208: RAPID, 256: _CHIP_BREAK}
     return 203, "UNIVERSAL DRILLING", {**low, **values}
 
 
@@ -179,16 +179,16 @@ def _floating_tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> Cyc
     return 206, "TAPPING NEW", {**low, 206: _feed(cycle, spindle), **_dwell(cycle, spindle), **high}
 
 
-def _tap_in_strokes(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
-    """A rigid tap in strokes, with full retracts or chip breaks between them."""
-    if any(cycle.strokes[1:]):
+def _tap_in_pecks(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
+    """A rigid tap in pecks, with full retracts or chip breaks between them."""
+    if any(cycle.pecks[1:]):
         raise HoleCycleError(
             "decreasing peck depths in a thread: the control has constant ones", "write STEP with one number"
         )
     _, _, values = _tap(cycle, top, spindle)
     back = 0.0 if cycle.method is HoleMethod.DEEP_TAP else _CHIP_BREAK_PITCHES
-    strokes = {257: min(cycle.strokes[0], cycle.depth), 256: back, 336: 0.0, 403: 1.0}
-    return 209, "TAPPING W/ CHIP BRKG", {**values, **strokes}
+    pecks = {257: min(cycle.pecks[0], cycle.depth), 256: back, 336: 0.0, 403: 1.0}
+    return 209, "TAPPING W/ CHIP BRKG", {**values, **pecks}
 
 
 def _bore(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
@@ -211,8 +211,8 @@ _DEFINITIONS: Final[dict[HoleMethod, Callable[[Cycle, float, SpindleState | None
     HoleMethod.CHIP_BREAKING: _peck,
     HoleMethod.TAP: _tap,
     HoleMethod.FLOATING_TAP: _floating_tap,
-    HoleMethod.DEEP_TAP: _tap_in_strokes,
-    HoleMethod.CHIP_BREAKING_TAP: _tap_in_strokes,
+    HoleMethod.DEEP_TAP: _tap_in_pecks,
+    HoleMethod.CHIP_BREAKING_TAP: _tap_in_pecks,
     HoleMethod.BORE: _bore,
     HoleMethod.BORE_WITH_LIFT: _bore,
     HoleMethod.REAM: _ream,

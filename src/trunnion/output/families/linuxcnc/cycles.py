@@ -64,16 +64,14 @@ def _drill(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCod
 
 
 def _peck(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
-    """Equal strokes of Q, the first measured from R."""
-    if any(cycle.strokes[1:]):
+    """Equal pecks of Q, the first measured from R."""
+    if any(cycle.pecks[1:]):
         raise UnsupportedCycleError("decreasing peck depths, and Q of G83 is constant", "write STEP with one number")
     if cycle.dwell:
         raise UnsupportedCycleError(
             "DWELL at the bottom of a pecked hole: the control has none there", "leave DWELL out"
         )
-    return (83 if cycle.method is HoleMethod.DEEP_DRILLING else 73), [
-        f"Q{formats['coordinate'].text(cycle.strokes[0])}"
-    ]
+    return (83 if cycle.method is HoleMethod.DEEP_DRILLING else 73), [f"Q{formats['coordinate'].text(cycle.pecks[0])}"]
 
 
 def _rigid_pitch(cycle: Cycle, spindle: SpindleState | None) -> float:

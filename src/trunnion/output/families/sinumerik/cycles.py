@@ -18,7 +18,7 @@ _THIRD_AXIS: Final = "3"
 #: Greatest lift-off in a bore, mm.
 _MAX_LIFT: Final = 100.0
 
-#: How far a chip-breaking stroke is retracted, mm.
+#: How far a chip-breaking peck is retracted, mm.
 _CHIP_BREAK: Final = 1.0
 
 #: The name of a cycle, and its arguments behind the heights.
@@ -93,11 +93,11 @@ def _drill(of: _Input) -> CycleArguments:
 
 
 def _peck(of: _Input) -> CycleArguments:
-    """FDPR, DAM, no dwell at the top, feed factor 1, VARI, tool axis, least stroke, chip break, dwell, DIS1 0."""
-    stroke, decrement, least = of.cycle.strokes
+    """FDPR, DAM, no dwell at the top, feed factor 1, VARI, tool axis, least peck, chip break, dwell, DIS1 0."""
+    peck, decrement, least = of.cycle.pecks
     full = of.cycle.method is HoleMethod.DEEP_DRILLING
     return "CYCLE83", [
-        "", "", of.number(min(stroke, of.cycle.depth)), of.number(decrement), "0", "0", "1", "1" if full else "0",
+        "", "", of.number(min(peck, of.cycle.depth)), of.number(decrement), "0", "0", "1", "1" if full else "0",
         _THIRD_AXIS, of.number(least), "0" if full else of.number(_CHIP_BREAK), of.dwell or "0", "0",
     ]  # fmt: skip
 
@@ -119,16 +119,16 @@ def _tap(of: _Input) -> CycleArguments:
     return "CYCLE84", ["", of.dwell, _sense_code(spindle), "", of.pitch(pitch), "0", speed, speed]
 
 
-def _tap_in_strokes(of: _Input) -> CycleArguments:
-    """As a tap in one stroke; then tool axis, PIT in mm, technology unchanged, VARI, the stroke DAM, VRT."""
-    stroke, decrement, _ = of.cycle.strokes
+def _tap_in_pecks(of: _Input) -> CycleArguments:
+    """As a tap in one pass; then tool axis, PIT in mm, technology unchanged, VARI, the peck DAM, VRT."""
+    peck, decrement, _ = of.cycle.pecks
     if decrement:
         what = "decreasing peck depths in a thread: the control has constant ones"
         raise HoleCycleError(what, "write STEP with one number")
     full = of.cycle.method is HoleMethod.DEEP_TAP
     name, arguments = _tap(of)
-    strokes = ["2" if full else "1", of.number(min(stroke, of.cycle.depth)), "0" if full else of.number(_CHIP_BREAK)]
-    return name, [*arguments, _THIRD_AXIS, "1", "0", *strokes]
+    pecks = ["2" if full else "1", of.number(min(peck, of.cycle.depth)), "0" if full else of.number(_CHIP_BREAK)]
+    return name, [*arguments, _THIRD_AXIS, "1", "0", *pecks]
 
 
 def _floating_tap(of: _Input) -> CycleArguments:
@@ -164,8 +164,8 @@ _CYCLES: Final[dict[HoleMethod, Callable[[_Input], CycleArguments]]] = {
     HoleMethod.CHIP_BREAKING: _peck,
     HoleMethod.TAP: _tap,
     HoleMethod.FLOATING_TAP: _floating_tap,
-    HoleMethod.CHIP_BREAKING_TAP: _tap_in_strokes,
-    HoleMethod.DEEP_TAP: _tap_in_strokes,
+    HoleMethod.CHIP_BREAKING_TAP: _tap_in_pecks,
+    HoleMethod.DEEP_TAP: _tap_in_pecks,
     HoleMethod.REAM: _ream,
     HoleMethod.BORE: _bore,
     HoleMethod.BORE_WITH_LIFT: _bore,

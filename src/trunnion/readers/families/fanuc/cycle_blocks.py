@@ -81,8 +81,8 @@ class CycleInterpreter(OffsetInterpreter):
         if not control.absolute:
             retract += initial
             bottom += retract
-        stroke = abs(words.get("Q", 0.0))
-        lateral = (stroke, 0.0)
+        peck = abs(words.get("Q", 0.0))
+        lateral = (peck, 0.0)
         if "I" in words:
             lateral = words["I"], words.get("J", 0.0)
         elif "J" in words:
@@ -92,7 +92,7 @@ class CycleInterpreter(OffsetInterpreter):
             bottom=bottom,
             initial=initial,
             to_initial=self._to_initial,
-            stroke=stroke,
+            peck=peck,
             lateral=lateral,
             dwell=max(words.get("P", 0.0), 0.0) / 1000.0,
             units=1.0 / control.length_unit,

@@ -30,7 +30,7 @@ class Hole:
     bottom      height Z
     initial     height before the cycles began
     to_initial  whether the cycle ends at the initial height (G98), else at R
-    stroke      Q
+    peck      Q
     lateral     shift of boring tools in the two axes of the plane
     dwell       seconds
     units       units of the program in a millimetre
@@ -40,7 +40,7 @@ class Hole:
     bottom: float
     initial: float
     to_initial: bool
-    stroke: float
+    peck: float
     lateral: tuple[float, float]
     dwell: float
     units: float
@@ -78,10 +78,10 @@ def cycle_motions(code: int, hole: Hole) -> list[HoleMotion]:
 def _peck(hole: Hole, full: bool) -> list[HoleMotion]:
     """Return the pecks of G73, or of G83 with ``full`` retracts."""
     total = abs(hole.retract - hole.bottom)
-    check_pecks(total, hole.stroke, "Q")
+    check_pecks(total, hole.peck, "Q")
     down = -1.0 if hole.bottom < hole.retract else 1.0
     motions: list[HoleMotion] = []
-    depth = hole.stroke
+    depth = hole.peck
     while depth < total - 1e-9:
         motions.append(HoleMotion(False, hole.retract + down * depth))
         if full:
@@ -90,7 +90,7 @@ def _peck(hole: Hole, full: bool) -> list[HoleMotion]:
                 motions.append(HoleMotion(True, hole.retract + down * (depth - ABOVE * hole.units)))
         else:
             motions.append(HoleMotion(True, hole.retract + down * max(depth - CHIP_BREAK * hole.units, 0.0)))
-        depth += hole.stroke
+        depth += hole.peck
     return [*motions, HoleMotion(False, hole.bottom)]
 
 

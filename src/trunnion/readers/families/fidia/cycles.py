@@ -42,15 +42,15 @@ def cycle_motions(code: int, words: dict[str, float], units: float) -> list[Hole
     return [*down, *cut, *back]
 
 
-def _peck(start: float, depth: float, stroke: float, dwell: float, units: float) -> list[HoleMotion]:
+def _peck(start: float, depth: float, peck: float, dwell: float, units: float) -> list[HoleMotion]:
     total = start - depth
-    check_pecks(total, stroke, "D")
+    check_pecks(total, peck, "D")
     motions: list[HoleMotion] = []
-    reached = stroke
+    reached = peck
     while reached < total - 1e-9:
         motions.append(HoleMotion(False, start - reached, dwell=dwell))
         motions.append(HoleMotion(True, start))
         if reached > ABOVE * units:
             motions.append(HoleMotion(True, start - reached + ABOVE * units))
-        reached += stroke
+        reached += peck
     return [*motions, HoleMotion(False, depth, dwell=dwell)]

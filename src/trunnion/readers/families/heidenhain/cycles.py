@@ -93,19 +93,19 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
 
 
 def peck_depths(total: float, first: float, less: float = 0.0, least: float = 0.0) -> list[float]:
-    """Return the depths of the pecks: each stroke is shorter by ``less``, but not shorter than ``least``.
+    """Return the depths of the pecks: each peck is shorter by ``less``, but not shorter than ``least``.
 
-    A first stroke that is not positive, or longer than the total, is the total.
+    A first peck that is not positive, or longer than the total, is the total.
     """
     if not 0.0 < first < total:
         return [total]
     depths = [first]
-    stroke = first
+    peck = first
     while total - depths[-1] > 1e-9:
-        stroke = max(stroke - less, least)
-        if stroke <= 0.0 or len(depths) >= MAX_PECKS:
+        peck = max(peck - less, least)
+        if peck <= 0.0 or len(depths) >= MAX_PECKS:
             raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
-        depths.append(min(depths[-1] + stroke, total))
+        depths.append(min(depths[-1] + peck, total))
     depths[-1] = total
     return depths
 
@@ -195,7 +195,7 @@ def _back_bore(hole: Hole) -> list[HoleMotion]:
 
 
 def _deep(hole: Hole) -> list[HoleMotion]:
-    """Cycle 205: deep drilling from Q379 on, chip breaks every Q257 by Q256, full retracts after each stroke."""
+    """Cycle 205: deep drilling from Q379 on, chip breaks every Q257 by Q256, full retracts after each peck."""
     motions: list[HoleMotion] = []
     begin = hole.get(379)
     if not 0.0 <= begin < hole.total:
@@ -204,9 +204,9 @@ def _deep(hole: Hole) -> list[HoleMotion]:
         motions.append(HoleMotion(False, hole.at(begin), hole.need(253)))
     depths = [begin + depth for depth in peck_depths(hole.total - begin, hole.get(202), hole.get(212), hole.get(205))]
     count = max(len(depths) - 2, 1)
-    for stroke, (before, depth) in enumerate(zip([begin, *depths], depths, strict=False)):
-        if stroke:
-            gap = hole.get(258) + (hole.get(259) - hole.get(258)) * min((stroke - 1) / count, 1.0)
+    for peck, (before, depth) in enumerate(zip([begin, *depths], depths, strict=False)):
+        if peck:
+            gap = hole.get(258) + (hole.get(259) - hole.get(258)) * min((peck - 1) / count, 1.0)
             motions.append(HoleMotion(True, hole.start))
             motions.append(HoleMotion(True, hole.at(max(before - gap, 0.0))))
         pieces = peck_depths(depth - before, hole.get(257), 0.0, hole.get(257))
@@ -281,7 +281,7 @@ def _centre(hole: Hole) -> list[HoleMotion]:
 
 
 def _gun_drill(hole: Hole) -> list[HoleMotion]:
-    """Cycle 241: gun drilling from Q379 on, in one stroke."""
+    """Cycle 241: gun drilling from Q379 on, in one pass."""
     motions: list[HoleMotion] = []
     begin = hole.get(379)
     if not 0.0 <= begin < hole.total:

@@ -68,17 +68,17 @@ def cycle_motions(code: int, hole: Hole) -> list[HoleMotion]:
 
 def _peck(hole: Hole, full: bool) -> list[HoleMotion]:
     """Return the pecks of G73, or of G83 with ``full`` retracts."""
-    stroke = hole.words.get("Q", 0.0)
-    check_pecks(hole.retract - hole.bottom, stroke, "Q")
+    peck = hole.words.get("Q", 0.0)
+    check_pecks(hole.retract - hole.bottom, peck, "Q")
     back = hole.words.get("D", hole.clearance)
     motions: list[HoleMotion] = []
-    depth = hole.retract - stroke
+    depth = hole.retract - peck
     while depth > hole.bottom:
         motions.append(HoleMotion(False, depth))
         if full:
             motions.append(HoleMotion(True, hole.retract))
         motions.append(HoleMotion(True, depth + back))
-        depth -= stroke
+        depth -= peck
     return [*motions, HoleMotion(False, hole.bottom), HoleMotion(True, hole.clear)]
 
 

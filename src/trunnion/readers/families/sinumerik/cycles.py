@@ -90,17 +90,17 @@ def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion
     sign = heights.sign
     total = abs(heights.depth - heights.reference)
     if deep:
-        stroke = abs(deep)
+        peck = abs(deep)
     elif first is not None:
-        stroke = sign * (first - heights.reference)
+        peck = sign * (first - heights.reference)
     else:
-        stroke = total
+        peck = total
     dwell, again = _or(arguments, 9), _or(arguments, 10)
     full = _or(arguments, 12) == 1.0
     back = _or(arguments, 15) or CHIP_BREAK
     entry = _or(arguments, 17) or _entry_gap(total)
     motions: list[HoleMotion] = []
-    depths = peck_depths(total, stroke, _or(arguments, 8), _or(arguments, 14))
+    depths = peck_depths(total, peck, _or(arguments, 8), _or(arguments, 14))
     factor = _or(arguments, 11, 1.0)
     for count, depth in enumerate(depths):
         height = heights.reference + sign * depth
@@ -120,30 +120,30 @@ def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion
 def peck_depths(total: float, first: float, less: float, least: float) -> list[float]:
     """Return the depths of the pecks of CYCLE83, mm below the reference plane.
 
-    Each stroke is shorter by ``less`` (a factor if negative), but not shorter than ``less`` or ``least``. The last two
-    strokes are of equal length if the last one would be short.
+    Each peck is shorter by ``less`` (a factor if negative), but not shorter than ``less`` or ``least``. The last two
+    pecks are of equal length if the last one would be short.
     """
     if first <= 0.0:
         raise CycleExecutionError("has a first depth above the reference plane")
     depths = [min(first, total)]
-    stroke = first
+    peck = first
     floor = max(abs(least), less if less > 0.0 else 0.0)
     while total - depths[-1] > 1e-9:
         left = total - depths[-1]
         if less < 0.0:
-            stroke = max(stroke * abs(less), floor)
+            peck = max(peck * abs(less), floor)
         elif less > 0.0:
-            stroke = max(stroke - less, floor)
-        if stroke <= 0.0 or len(depths) >= MAX_PECKS:
+            peck = max(peck - less, floor)
+        if peck <= 0.0 or len(depths) >= MAX_PECKS:
             raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
-        if left <= stroke:
+        if left <= peck:
             step = left
         elif left < 2.0 * floor:
             step = 0.5 * left
             depths.append(depths[-1] + step)
             step = total - depths[-1]
         else:
-            step = stroke
+            step = peck
         depths.append(depths[-1] + step)
     depths[-1] = total
     return depths
@@ -177,9 +177,9 @@ def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]
     pitch = _pitch(_get(arguments, 8), _get(arguments, 9), _or(arguments, 14))
     down = (_or(arguments, 11) or rpm) * pitch
     up = (_or(arguments, 12) or _or(arguments, 11) or rpm) * pitch
-    variant, stroke = _or(arguments, 16), abs(_or(arguments, 17))
+    variant, peck = _or(arguments, 16), abs(_or(arguments, 17))
     total = abs(heights.depth - heights.reference)
-    depths = peck_depths(total, stroke, 0.0, 0.0) if variant and stroke else [total]
+    depths = peck_depths(total, peck, 0.0, 0.0) if variant and peck else [total]
     motions: list[HoleMotion] = []
     for count, depth in enumerate(depths):
         if count:

@@ -1,4 +1,4 @@
-"""The motions that make one hole: strokes, returns to clear the chips, and the retract."""
+"""The motions that make one hole: pecks, returns to clear the chips, and the retract."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -6,14 +6,14 @@ from typing import Final
 from trunnion.model.toolpath import Kind
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod
 
-#: A rapid back into a hole ends this far above the drilled depth, and a chip-breaking stroke returns as far, mm.
+#: A rapid back into a hole ends this far above the drilled depth, and a chip-breaking peck returns as far, mm.
 REENTRY_CLEARANCE: Final = 0.5
 
 #: Heights are the same if they differ by no more than this, mm.
 SAME_HEIGHT: Final = 1e-9
 
-#: The most strokes that a hole may have.
-_MOST_STROKES: Final = 10_000
+#: The most pecks that a hole may have.
+_MOST_PECKS: Final = 10_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +35,12 @@ def hole_motions(cycle: Cycle) -> HoleMotions:
     Raises
     ------
     HoleCycleError
-        When its strokes never reach the depth.
+        When its pecks never reach the depth.
     """
     assert cycle.retract_height is not None
     motions: list[tuple[float, Kind]] = []
     drilled = 0.0
-    for number, depth in enumerate(stroke_depths(cycle)):
+    for number, depth in enumerate(peck_depths(cycle)):
         if number and cycle.method is HoleMethod.DEEP_DRILLING:
             motions.append((cycle.rapid_height, Kind.RAPID))
             if REENTRY_CLEARANCE - drilled < cycle.rapid_height - SAME_HEIGHT:
@@ -57,25 +57,25 @@ def hole_motions(cycle: Cycle) -> HoleMotions:
     return HoleMotions(tuple(height for height, _ in motions), tuple(kind for _, kind in motions), bottom)
 
 
-def stroke_depths(cycle: Cycle) -> list[float]:
-    """The depths below the point of the hole, mm, at which the strokes end.
+def peck_depths(cycle: Cycle) -> list[float]:
+    """The depths below the point of the hole, mm, at which the pecks end.
 
     Raises
     ------
     HoleCycleError
-        When the strokes never reach the depth, or there are too many.
+        When the pecks never reach the depth, or there are too many.
     """
     if cycle.method not in (HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING):
         return [cycle.depth]
-    stroke, decrement, shortest = cycle.strokes
+    peck, decrement, shortest = cycle.pecks
     if decrement < 0.0 or shortest < 0.0:
         raise HoleCycleError("STEP with a number below 0", "write STEP,first,less,shortest")
-    depths = [min(stroke, cycle.depth)]
+    depths = [min(peck, cycle.depth)]
     while cycle.depth - depths[-1] > SAME_HEIGHT:
-        stroke = max(stroke - decrement, min(shortest, stroke))
-        if not stroke > 0.0:
-            raise HoleCycleError("STEP without a shortest stroke", "write STEP,first,less,shortest")
-        if len(depths) >= _MOST_STROKES:
-            raise HoleCycleError(f"a hole in more than {_MOST_STROKES} strokes", "write longer ones")
-        depths.append(min(depths[-1] + stroke, cycle.depth))
+        peck = max(peck - decrement, min(shortest, peck))
+        if not peck > 0.0:
+            raise HoleCycleError("STEP without a shortest peck", "write STEP,first,less,shortest")
+        if len(depths) >= _MOST_PECKS:
+            raise HoleCycleError(f"a hole in more than {_MOST_PECKS} pecks", "write longer ones")
+        depths.append(min(depths[-1] + peck, cycle.depth))
     return [*depths[:-1], cycle.depth]
