@@ -98,7 +98,7 @@ def post_and_prove(cls: Path, program: Path) -> dict[str, Any]:
     from trunnion.output.program_writer import write_program
     from trunnion.planning import plan
     from trunnion.readers import run_program
-    from trunnion.verification import Settings, Tolerances, verify
+    from trunnion.verification import ExpectedValues, Tolerances, verify
 
     machine = load_machine(MACHINE)
     control = load_control(machine.control)
@@ -119,7 +119,7 @@ def post_and_prove(cls: Path, program: Path) -> dict[str, Any]:
     ran = run_program(program, machine)
     watch = step("read back", watch)
     half = Tolerances(5e-6 + 1e-9, 5e-6 + 1e-9)
-    found = verify(ran, [toolpath], tolerances=half, settings=Settings(work_offset=54, edge=1), columns=False)
+    found = verify(ran, [toolpath], tolerances=half, settings=ExpectedValues(work_offset=54, edge=1), columns=False)
     step("check", watch)
     return {"steps": steps, "passed": found.passed}
 

@@ -24,7 +24,7 @@ from trunnion.planning import operation_seconds
 from trunnion.planning.options import PlanOptions
 from trunnion.planning.planner import plan
 from trunnion.readers import run_program
-from trunnion.verification import Settings, Verification, failures, verify
+from trunnion.verification import ExpectedValues, Verification, failures, verify
 
 MACHINE = load_machine("xyzac_trt")
 
@@ -60,7 +60,7 @@ def proof(lines: Sequence[str], cl: Path, folder: Path, machine: Machine = MACHI
     """What is found in a program that somebody changed."""
     program = folder / "changed.ngc"
     program.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return verify(run_program(program, machine), [read_cl(cl)], settings=Settings(work_offset=54), columns=False)
+    return verify(run_program(program, machine), [read_cl(cl)], settings=ExpectedValues(work_offset=54), columns=False)
 
 
 def failed(lines: Sequence[str], cl: Path, folder: Path) -> list[str]:

@@ -31,7 +31,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.readers import run_program
 from trunnion.readers.families.sinumerik import words
-from trunnion.verification import Check, Settings, Tolerances, Verification, verify
+from trunnion.verification import Check, ExpectedValues, Tolerances, Verification, verify
 
 CASES = ("1_contour_rough", "2_hub_rough", "3_blade_finish")
 HALF_DIGIT = {"1_contour_rough": 5e-4, "2_hub_rough": 5e-6, "3_blade_finish": 5e-6}
@@ -39,7 +39,7 @@ HALF_DIGIT = {"1_contour_rough": 5e-4, "2_hub_rough": 5e-6, "3_blade_finish": 5e
 #: Numbers nearer than this are equal: whole turns and back leave that much rounding; the programs print 1e-5.
 SAME = 1e-9
 
-SETTINGS = Settings(work_offset=54, edge=1)
+SETTINGS = ExpectedValues(work_offset=54, edge=1)
 MACHINE = load_machine("yl569")
 
 _WORD = re.compile(r"(?<![A-Z_$])([A-Z]\d?=?)(-?\d*\.?\d+|-?\d+\.)(?![A-Z_\d])")

@@ -12,7 +12,7 @@ from trunnion.errors import InputError
 from trunnion.machines import Machine, forward, load_machine, shipped_machines
 from trunnion.output.families.sinumerik import writer as sinumerik
 from trunnion.readers import run_program
-from trunnion.verification import Settings, failures, verify
+from trunnion.verification import ExpectedValues, failures, verify
 
 ANGLES = st.one_of(st.sampled_from([0.0, 90.0, -90.0, 180.0, 45.0]), st.floats(-180.0, 180.0))
 
@@ -58,5 +58,5 @@ def proven(lines: list[str], cl: Path, folder: Path) -> list[str]:
     nc = folder / "changed.mpf"
     nc.write_text("\n".join(lines) + "\n", encoding="utf-8")
     run = run_program(nc, load_machine("yl569"))
-    found = verify(run, [read_cl(cl)], settings=Settings(work_offset=54, edge=1), columns=False)
+    found = verify(run, [read_cl(cl)], settings=ExpectedValues(work_offset=54, edge=1), columns=False)
     return [check.key for check in failures(found)]

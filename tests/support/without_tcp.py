@@ -23,7 +23,7 @@ from trunnion.output.program_writer import write_program
 from trunnion.output.validation import check_program
 from trunnion.planning import PlanOptions, plan
 from trunnion.readers import run_program
-from trunnion.verification import Settings, Tolerances, Verification, verify
+from trunnion.verification import ExpectedValues, Tolerances, Verification, verify
 
 NAMES = sorted(shipped_machines())
 SINUMERIK = load_machine("yl569").control
@@ -51,7 +51,7 @@ class Posted:
     run: Run
     found: Verification
     allowed: Sequence[Tolerances]
-    settings: Settings
+    settings: ExpectedValues
 
 
 def post(model: Machine, path: Toolpath, options: PlanOptions) -> Posted:

@@ -7,7 +7,7 @@ import pytest
 
 from tests.support.verifying import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier, check
 from trunnion.machines import Machine
-from trunnion.verification import Settings, Tolerances
+from trunnion.verification import ExpectedValues, Tolerances
 
 CUT = "G0 X0 Y0 Z50\nG1 X10 Z5 F500\nX20\n"
 CL = CL_HEAD + "GOTO/10,0,5\nGOTO/20,0,5\n" + CL_FOOT
@@ -53,7 +53,7 @@ def test_a_program_that_does_what_its_cl_file_says_passes_every_check(verified: 
 )  # fmt: skip
 def test_a_fault_fails_its_check_at_its_block(old: str, new: str, key: str, block: str, verified: Verifier) -> None:
     text = (HEAD + CUT + FOOT)[::-1].replace(old[::-1], new[::-1], 1)[::-1]
-    found = verified(text, CL, settings=Settings(work_offset=54, edge=1))
+    found = verified(text, CL, settings=ExpectedValues(work_offset=54, edge=1))
     failed = check(found, key)
     assert not failed.passed, failed
     lines = text.splitlines()
@@ -207,7 +207,7 @@ def test_the_tool_axis_between_the_points_is_reported_and_checked_on_request(ver
     told = check(verified(program), "span")
     assert told.passed
     assert told.worst == pytest.approx(angle, abs=1e-9)
-    assert not check(verified(program, settings=Settings(span=1.0)), "span").passed
+    assert not check(verified(program, settings=ExpectedValues(span=1.0)), "span").passed
     great = check(verified(program.replace("ORIAXES", "ORIVECT")), "span")
     assert great.worst == 0.0
 

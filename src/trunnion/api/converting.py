@@ -127,7 +127,7 @@ def convert(
     source = set_up_machine(source, zero, tool_length)
     with open_target(_checked_output(output, nc)) as target:
         divided = job.subprograms(target.files, target.path) is not None
-        reader = _Reader(str(nc), observer, force)
+        reader = _ProgramConverter(str(nc), observer, force)
         converted = reader.read(read_program(nc, machine=source, subprograms=subprograms), control)
         if subprograms and not (divided or to_cl):
             reader.warn_of_one_program(1 + len(subprograms))
@@ -160,7 +160,7 @@ def _checked_output(output: OutputLike, nc: FilePath) -> OutputLike:
     return output
 
 
-class _Reader:
+class _ProgramConverter:
     """Makes a toolpath of a program, and collects the warnings about what is lost."""
 
     def __init__(self, file: str, observer: Observer, force: bool) -> None:

@@ -14,7 +14,7 @@ from trunnion.api.tolerances import program_tolerances
 from trunnion.model.motion import MachiningMode
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
-from trunnion.verification import OperationSettings, Settings, Tolerances
+from trunnion.verification import ExpectedValues, OperationSettings, Tolerances
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,7 +26,7 @@ class Expectation:
     """
 
     tolerances: list[Tolerances]
-    settings: Settings
+    settings: ExpectedValues
 
 
 #: Settings for the tolerance of the control's own smoothing, and for what tool calls add to the tool, by their words.
@@ -39,7 +39,7 @@ def expectation(program: Program, options: PlanOptions | None = None) -> Expecta
     return Expectation(program_tolerances(program), _expected_settings(program, options or PlanOptions()))
 
 
-def _expected_settings(program: Program, options: PlanOptions) -> Settings:
+def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues:
     """What the settings of the post say and the CL files do not."""
     without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
     axis_tolerance = options.axis_tolerance_between_points
@@ -52,7 +52,7 @@ def _expected_settings(program: Program, options: PlanOptions) -> Settings:
     every = [values, *(program.effective_settings(motion.operation) for motion in program.motions)]
     tool, work_offset, edge = _operation_settings(values)
     inverse_time = program.control.formats.get("inverse_time")
-    return Settings(
+    return ExpectedValues(
         tool=tool,
         work_offset=work_offset,
         edge=edge,

@@ -15,7 +15,7 @@ from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import Run
-from trunnion.verification import Settings, Tolerances, Verification
+from trunnion.verification import ExpectedValues, Tolerances, Verification
 
 #: Chords stand for arcs within this, mm, however small the tolerance of coordinates is.
 _LEAST_CHORD = 0.001
@@ -119,7 +119,7 @@ def verify(
         run,
         toolpaths,
         tolerances=Tolerances(tip=tolerance, angle=tolerance, chord=max(_LEAST_CHORD, tolerance)),
-        settings=Settings(
+        settings=ExpectedValues(
             tool=tool,
             work_offset=_work_offset(work_offset, defaults.get("work_offset", "G54"), bool(toolpaths)),
             edge=edge,

@@ -3,7 +3,7 @@
 from trunnion.machines.forward import tool_axis_rows
 from trunnion.verification.comparison.comparison import compare
 from trunnion.verification.comparison.result import Comparison, Difference
-from trunnion.verification.context import Settings
+from trunnion.verification.context import ExpectedValues
 from trunnion.verification.deviations.point_deviations import compare_rows
 from trunnion.verification.expected.path import OperationSettings
 from trunnion.verification.expected.tolerances import Tolerances
@@ -21,10 +21,10 @@ __all__ = [
     "Check",
     "Comparison",
     "Difference",
+    "ExpectedValues",
     "OperationRows",
     "OperationSettings",
     "Place",
-    "Settings",
     "Tolerances",
     "Verification",
     "check_lines",

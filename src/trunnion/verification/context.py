@@ -20,7 +20,7 @@ _POSITIONING_WINDOW = 64
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class ExpectedValues:
     """What the CL files leave open.
 
     tool                   tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
@@ -67,7 +67,7 @@ class Context:
     """A program that is checked by itself, without CL files."""
 
     run: Run
-    settings: Settings
+    settings: ExpectedValues
 
     def place(self, row: int, value: float, text: str) -> Place:
         """The place of a row."""

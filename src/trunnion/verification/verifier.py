@@ -27,7 +27,7 @@ from trunnion.verification.checks.tool_checks import check_tool
 from trunnion.verification.checks.turn_checks import check_turns
 from trunnion.verification.checks.word_checks import check_words
 from trunnion.verification.checks.work_offset_checks import check_work_offset
-from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, Settings
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, accept_deviations
 from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors
 from trunnion.verification.deviations.point_deviations import PointDeviations
@@ -46,7 +46,7 @@ def verify(
     toolpaths: Sequence[Toolpath] = (),
     *,
     tolerances: Tolerances | Sequence[Tolerances] | None = None,
-    settings: Settings | None = None,
+    settings: ExpectedValues | None = None,
     columns: bool = True,
 ) -> Verification:
     """Make all checks of a program.
@@ -70,7 +70,7 @@ def verify(
     InputError
         When the toolpaths have no motion.
     """
-    settings = settings or Settings()
+    settings = settings or ExpectedValues()
     run = restore_rapids(run, settings.rapid_feed)
     analyzer = AxisMotionAnalyzer(run, MAX_PLACES, times=columns)
     if toolpaths:
@@ -102,7 +102,7 @@ class _Checked:
     general: list[Check]
 
 
-def _check_alone(run: Run, settings: Settings, analyzer: AxisMotionAnalyzer) -> _Checked:
+def _check_alone(run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> _Checked:
     """Checks of a program without CL files."""
     context = Context(run, settings)
     errors = _linearization_errors(context, [Tolerances()])
@@ -110,7 +110,7 @@ def _check_alone(run: Run, settings: Settings, analyzer: AxisMotionAnalyzer) -> 
     return _Checked(context, errors, [check_work_offset(context)], _general_checks(context))
 
 
-def _check_against(expected: ExpectedPath, run: Run, settings: Settings, analyzer: AxisMotionAnalyzer) -> _Checked:
+def _check_against(expected: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> _Checked:
     """Checks of a program against its expected path.
 
     Motions and points are matched by count if that fits, else by position.
@@ -129,7 +129,7 @@ def _check_against(expected: ExpectedPath, run: Run, settings: Settings, analyze
     return _Checked(context, errors, checks, general)
 
 
-def _match_by_position(expected: ExpectedPath, run: Run, settings: Settings) -> Matching:
+def _match_by_position(expected: ExpectedPath, run: Run, settings: ExpectedValues) -> Matching:
     """With intermediate points within the limits for the tool between points.
 
     By default only where rotary axes turn so far that the tool axis may need them.

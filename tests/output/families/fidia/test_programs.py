@@ -29,7 +29,7 @@ from trunnion.model.toolpath import Moves, Toolpath
 from trunnion.output.capabilities import control_capabilities
 from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
-from trunnion.verification import Settings, Verification, failures, verify
+from trunnion.verification import ExpectedValues, Verification, failures, verify
 
 #: The program that ran writes the blank behind a block number or leaves it out at whim.
 NUMBER = re.compile(rb"^(N\d+) ", re.MULTILINE)
@@ -182,7 +182,7 @@ def test_between_planes_the_tool_is_drawn_back_where_the_cl_file_does_not(travel
     dropped = [line for k, line in enumerate(text.splitlines()) if k != number - 1]
     (folder / "low.txt").write_text("\n".join(dropped) + "\n", encoding="utf-8")
     run = run_program(folder / "low.txt", MACHINES[travel])
-    asked = Settings(rapid_feed=3000.0)
+    asked = ExpectedValues(rapid_feed=3000.0)
     assert "turns" in [
         check.key for check in failures(verify(run, [read(start + HOLES + END, folder)], settings=asked))
     ]

@@ -16,7 +16,7 @@ from trunnion.controls import load_control
 from trunnion.machines import Machine, load_machine
 from trunnion.model.feed_path import FeedPath
 from trunnion.readers import run_program
-from trunnion.verification import Settings, failures, verify
+from trunnion.verification import ExpectedValues, failures, verify
 
 MACHINES = ("generic_head_table_bc", "hs664rt", "linuxcnc_5axis")
 RULES = {"slides": FeedPath.SLIDES, "all_axes": FeedPath.AXES}
@@ -64,7 +64,7 @@ def test_another_rule_in_the_proof_finds_the_feeds_wrong(tmp_path: Path) -> None
     pair = stated("hs664rt", tmp_path, "slides", "slides")
     done = posted(cut(pair.machine), pair, tmp_path, WITHOUT_TCP)
     other = known(stated("hs664rt", tmp_path, "slides", "all_axes").machine)
-    asked = Settings(rapid_feed=3000.0, span_tip=0.005, span=0.05)
+    asked = ExpectedValues(rapid_feed=3000.0, span_tip=0.005, span=0.05)
     for machine, failed in ((known(pair.machine), []), (other, ["feed"])):
         found = verify(run_program(done.program, machine), [read_cl(done.cl)], settings=asked, columns=False)
         assert [check.key for check in failures(found) if check.key == "feed"] == failed

@@ -19,7 +19,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.output.coordinates.axis_coordinates import FEED_AT_TIP
 from trunnion.readers import run_program
-from trunnion.verification import Settings, Tolerances, failures, verify
+from trunnion.verification import ExpectedValues, Tolerances, failures, verify
 
 #: Tool axes by the pole as well; nearer than 2e-5 four decimals cannot tell.
 LEAN = st.one_of(st.floats(-0.6, 0.6), st.floats(-1e-3, 1e-3)).map(lambda v: v if abs(v) > 2e-5 else 0.0)
@@ -139,7 +139,7 @@ def test_another_f_in_any_block_that_turns_is_found(name: str, share: float, at:
     k = said[int(at * len(said))]
     lines[k] = re.sub(r" F([0-9.]+)$", lambda f: f" F{share * float(f[1]):.3f}", lines[k])
     file.write_text("\n".join(lines), encoding="utf-8")
-    asked, allowed = Settings(span=0.05, span_tip=0.005), Tolerances(tip=2e-4, angle=2e-4, feed=0.001)
+    asked, allowed = ExpectedValues(span=0.05, span_tip=0.005), Tolerances(tip=2e-4, angle=2e-4, feed=0.001)
     found = verify(run_program(file, machine), [toolpath], tolerances=allowed, settings=asked)
     assert [check.key for check in failures(found)] == ["feed"]
 
