@@ -127,19 +127,19 @@ def convert(
     source = set_up_machine(source, zero, tool_length)
     with open_target(_checked_output(output, nc)) as target:
         divided = job.subprograms(target.files, target.path) is not None
-        reader = _ProgramConverter(str(nc), observer, force)
-        converted = reader.read(read_program(nc, machine=source, subprograms=subprograms), control)
+        converter = _ProgramConverter(str(nc), observer, force)
+        converted = converter.read(read_program(nc, machine=source, subprograms=subprograms), control)
         if subprograms and not (divided or to_cl):
-            reader.warn_of_one_program(1 + len(subprograms))
-        carried = reader.carry(converted.settings, control, job)
+            converter.warn_of_one_program(1 + len(subprograms))
+        carried = converter.carry(converted.settings, control, job)
         if to_cl:
             comments = [f"--set {key}={value}" for key, value in carried.items()]
-            reader.report(write_cl(converted.toolpath, target.files.main, comments=comments))
+            converter.report(write_cl(converted.toolpath, target.files.main, comments=comments))
             posted = None
         else:
             job = replace(job, settings={**job.settings, **carried})
             posted = post_toolpaths([converted.toolpath], job, target, observer)
-    problems = (*reader.problems, *(posted.problems if posted else ()))
+    problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
 
 

@@ -21,7 +21,7 @@ _POSITIONING_WINDOW = 64
 
 @dataclass(frozen=True, slots=True)
 class ExpectedValues:
-    """What the CL files leave open.
+    """What a program is expected to be where the CL files leave it open.
 
     tool                   tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
     work_offset            54..59, 505..599, or 600 plus the P of G54.1; None: any, but the same throughout
