@@ -110,7 +110,9 @@ def _check_alone(run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyze
     return _Checked(context, errors, [check_work_offset(context)], _general_checks(context))
 
 
-def _check_against(expected: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> _Checked:
+def _check_against(
+    expected: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer
+) -> _Checked:
     """Checks of a program against its expected path.
 
     Motions and points are matched by count if that fits, else by position.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trunnion.verification.context import ComparedContext, Context, Settings
+from trunnion.verification.context import ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.linearization import LinearizationErrors
 from trunnion.verification.kinematics.axis_motion import AxisMotion
 from trunnion.verification.results import Check
@@ -38,7 +38,7 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     return Check("span", title, passed, summary, axis.value, settings.span, "deg", tuple(places))
 
 
-def _allowed(settings: Settings) -> str:
+def _allowed(settings: ExpectedValues) -> str:
     """What is allowed, in words."""
     tip = [] if settings.span_tip is None else [f"{settings.span_tip:g} mm"]
     if settings.span is not None:

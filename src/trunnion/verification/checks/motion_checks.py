@@ -101,15 +101,15 @@ def check_kind(context: ComparedContext) -> Check:
     for nc, cl in matching.all_pair_chunks():
         for k in np.flatnonzero(run.kind[nc] != expected.kind(cl)).tolist():
             row, point = int(nc[k]), int(cl[k])
-            is_, should = Kind(int(run.kind[row])), expected.point(point).kind
-            if should is Kind.ARC and is_ is Kind.LINEAR and (point in by_lines or _is_flat(context, point)):
+            actual, wanted = Kind(int(run.kind[row])), expected.point(point).kind
+            if wanted is Kind.ARC and actual is Kind.LINEAR and (point in by_lines or _is_flat(context, point)):
                 continue
             at_rapid_feed = expected.point(point).feed == context.settings.rapid_feed
-            if is_ is Kind.RAPID and should is Kind.LINEAR and at_rapid_feed:
+            if actual is Kind.RAPID and wanted is Kind.LINEAR and at_rapid_feed:
                 continue
             count += 1
             if len(places) < MAX_PLACES:
-                text = f"moves {_KINDS[is_]}; the CL file wants it {_KINDS[should]}"
+                text = f"moves {_KINDS[actual]}; the CL file wants it {_KINDS[wanted]}"
                 places.append(context.place_with_cl(row, 0.0, text, point))
     others = list(_rapids_on_arcs(context)) + list(_wrong_circles(context))
     places = sorted(places + others, key=lambda place: place.nc_line)
@@ -153,9 +153,9 @@ def _wrong_circles(context: ComparedContext) -> Iterator[Place]:
         for circle in (*before, motion):
             yield from _circle_faults(context, k, circle)
         turns = len(before) + int(run.arcs.full_turns[np.searchsorted(run.arcs.row, motion)])
-        should = int(expected.arcs.full_turns[k])
-        if turns != should:
-            text = f"makes {turns} full turns before its end; the CL file wants {should}"
+        wanted = int(expected.arcs.full_turns[k])
+        if turns != wanted:
+            text = f"makes {turns} full turns before its end; the CL file wants {wanted}"
             yield context.place_with_cl(motion, 0.0, text, row)
 
 

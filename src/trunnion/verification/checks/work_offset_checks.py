@@ -29,20 +29,20 @@ def check_work_offset(context: Context) -> Check:
     compared = isinstance(context, ComparedContext)
     places: list[Place] = []
     count = 0
-    for rows, should in stretches:
+    for rows, wanted in stretches:
         for start in range(0, len(rows), CHUNK):
             part = rows.rows(start, start + CHUNK)
             here = used.at(part)
-            if (here == should).all():
+            if (here == wanted).all():
                 continue
-            wrong = here != should if compared else (here != should) & ~((here == 0) & ~tcp.at(part))
+            wrong = here != wanted if compared else (here != wanted) & ~((here == 0) & ~tcp.at(part))
             bad = part[wrong]
             count += len(bad)
             places += [
-                context.place(row, 0.0, f"works in {_name(used[row])}, not in {_name(should)}")
+                context.place(row, 0.0, f"works in {_name(used[row])}, not in {_name(wanted)}")
                 for row in bad[: max(MAX_PLACES - len(places), 0)].tolist()
             ]
-    known = list(dict.fromkeys(should for _, should in stretches))
+    known = list(dict.fromkeys(wanted for _, wanted in stretches))
     others = set(used.distinct().tolist()) - {0, *known}
     if others and not places:
         row = min(int(used.rows_with(code)[0]) for code in others)
@@ -81,9 +81,9 @@ def _stretches(context: Context) -> Iterator[tuple[RowRanges, int]]:
     """Rows with the work offset that they should have: those of each operation, or all without CL files."""
     used = context.run.state.work_offset
     if not isinstance(context, ComparedContext):
-        rows, should = _workpiece_frame_rows(context.run), context.settings.work_offset
-        if len(rows) and should is not None:
-            yield rows, should
+        rows, wanted = _workpiece_frame_rows(context.run), context.settings.work_offset
+        if len(rows) and wanted is not None:
+            yield rows, wanted
         return
     matching = context.matching
     if not len(matching.nc):
