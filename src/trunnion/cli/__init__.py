@@ -48,7 +48,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     from trunnion.cli.arguments import parse_arguments
 
     for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):  # Windows consoles and pipes do not speak UTF-8 by themselves
+        if hasattr(stream, "reconfigure"):  # Windows consoles and pipes are not UTF-8 by default
             stream.reconfigure(encoding="utf-8", errors="replace")
     arguments = parse_arguments(sys.argv[1:] if argv is None else argv)
     try:
@@ -59,7 +59,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
-    except BrokenPipeError:  # the reader of our output has gone away
+    except BrokenPipeError:  # whatever reads the output has closed the pipe
         return 2
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
