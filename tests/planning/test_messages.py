@@ -102,7 +102,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
         slides(roomy("generic_head_head_ca"), Y=(-170.0, 170.0)),
         operation_of(two_points((40.0, 60.0), (40.0, 120.0))), OFF,
         "part.cls:11: error: on the way to this point axis Y would go to 17\\d.\\d+, above its limit 170 mm",
-        "move the workpiece so that Y has ",
+        "Y exceeds its limit by ",
     ),
     "a step across the pole": (
         roomy("generic_head_head_ca"), operation_of(two_points((0.3, 0.0), (0.3, 150.0))),

@@ -323,5 +323,5 @@ def test_a_step_too_coarse_for_a_branch_change_is_refused() -> None:
     moves = moves_of(np.zeros((3, 3)), directions(np.full(3, 40.0), np.array([60.0, 70.0, 110.0])))
     (problem,) = planned(operation_of(moves), narrow).problems
     assert (problem.severity, problem.line) == (Severity.ERROR, 12)
-    assert "turn over within one step of the cut, C 70.000 B 40.000 to C -70.000 B -40.000" in problem.what
+    assert "flip between these two points, C 70.000 B 40.000 to C -70.000 B -40.000" in problem.what
     assert "points nearer to each other" in problem.cure
