@@ -231,7 +231,7 @@ def test_a_program_may_use_several_work_offsets(verified: Verifier) -> None:
     found = check(verified(program), "offset")
     assert found.passed
     assert found.summary == "G54, then G55, each as the program chooses"
-    assert not check(verified(program, settings=Settings(work_offset=54)), "offset").passed
+    assert not check(verified(program, settings=ExpectedValues(work_offset=54)), "offset").passed
 
 
 @pytest.mark.parametrize(
