@@ -65,6 +65,7 @@ FAULTS = [
     ("yl569", "G1 Z10. F500.", "G1 Z10. F500. TOFFR=.5", "tool"),
     ("yl569", "G0 X0.0 Y0.0 Z60. S4000 D1 M3", "G0 X0.0 Y0.0 Z60. S4000 D2 M3", "tool"),
     ("yl569", "CYCLE84(16.,11.,5.,-1.,", "CYCLE84(16.,11.,5.,1.,", "holes"),
+    ("yl569", ",3,,1.5,0,500,500)", ",3,,-1.5,0,500,500)", "holes"),
     ("yl569", " TRAORI\n", "\n", "turns"),
     # Klartext
     ("dmu65", "TOOL CALL 2 Z S4000", "TOOL CALL 2 Z S4000 DL-5", "tool"),
@@ -84,6 +85,8 @@ FAULTS = [
     ("matsuura_mx330", "N10 G21 G17", "N10 G17", "modal"),
     ("matsuura_mx330", "N10 G21 G17", "N10 G20 G17", "tip"),
     ("matsuura_mx330", "T2 M6", "T2", "tool"),
+    ("dmu65", "Q239=+1.5", "Q239=-1.5", "holes"),
+    ("matsuura_mx330", " G84 ", " G74 ", "holes"),
     ("matsuura_mx330", " M29 S500", "", "holes"),
     ("matsuura_mx330", "\nN210 G69", "\nN210", "turns"),
     # Fidia

@@ -29,7 +29,12 @@ _FEED_OUT: Final = ("TAP", "REAM")
 
 
 def hole_faults(
-    run: Run, hole: Hole, match: MatchedHole, dwells: Mapping[int, list[float]], clearance: float | None = None
+    run: Run,
+    hole: Hole,
+    match: MatchedHole,
+    dwells: Mapping[int, list[float]],
+    hands: Mapping[int, float],
+    clearance: float | None = None,
 ) -> Iterator[HoleFault]:
     """What is wrong with one hole.
 
@@ -37,6 +42,8 @@ def hole_faults(
     ----------
     dwells
         The dwells of the run by row, in seconds, or spindle revolutions if negative.
+    hands
+        The hands of threads by the row at which their cycle begins: 1 right, -1 left.
     clearance
         As ``clearance_between_holes`` gives it, from the hole before.
     """
@@ -68,6 +75,7 @@ def hole_faults(
     yield from _feed_faults(run, hole, motions.row[kind == Kind.LINEAR], rpm)
     yield from _dwell_faults(hole, match, bottom, dwells, rpm)
     yield from _spindle_faults(run, hole, match, bottom)
+    yield from _thread_faults(hole, match, hands)
 
 
 def _approach_faults(
@@ -139,6 +147,20 @@ def _dwell_faults(
     elsewhere = [row for row in range(match.first + 1, match.end) if row != bottom + 1 and row in dwells]
     if match.by_motion and elsewhere:
         yield HoleFault(elsewhere[0], 0.0, "waits in the hole where the CL file does not want it")
+
+
+def _thread_faults(hole: Hole, match: MatchedHole, hands: Mapping[int, float]) -> Iterator[HoleFault]:
+    """A thread of the other hand than the sense of the CL file's spindle, and one where it wants none."""
+    row = next((row for row in range(match.first, match.end) if row in hands), None)
+    if row is None:
+        return
+    hand = hands[row]
+    if hole.cycle.mode[:1] != ("TAP",):
+        yield HoleFault(min(row, match.end - 1), 0.0, "cuts a thread where the CL file wants none")
+    elif hole.spindle is not None and hole.spindle.sense and hand != hole.spindle.sense:
+        which, wants = ("left", "right") if hand < 0.0 else ("right", "left")
+        text = f"cuts a {which}-hand thread; the CL file wants a {wants}-hand one"
+        yield HoleFault(min(row, match.end - 1), hand, text)
 
 
 def _spindle_faults(run: Run, hole: Hole, match: MatchedHole, bottom: int) -> Iterator[HoleFault]:

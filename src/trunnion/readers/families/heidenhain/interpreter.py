@@ -321,6 +321,8 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._note(f"the cycle {error}: it is not executed", Severity.ERROR)
             return
         self._counter.count_blocks(len(motions))
+        if pitch := self._definitions.pitch:
+            self.control.add_thread(pitch)
         self.control.drill(motions)
 
     # Planes

@@ -134,4 +134,6 @@ class CycleInterpreter(OffsetInterpreter):
             place[along] = above * unit
             if not control.add_row(Kind.RAPID, place, bits=bits):
                 return
+            if hand := cycles.HANDS.get(self.motion_code):
+                control.add_thread(hand)
             control.drill([HoleMotion(True, hole.retract), *motions] if above > hole.retract else motions)

@@ -51,6 +51,12 @@ def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotio
     return [HoleMotion(True, heights.start), *motions, HoleMotion(True, heights.retract)]
 
 
+def signed_pitch(name: str, arguments: Arguments) -> float:
+    """Return the pitch or size of the thread of a cycle, whose sign is its hand; 0 if it cuts none or says none."""
+    places = {"CYCLE84": (9, 8), "CYCLE840": (11, 10)}.get(name, ())
+    return next((value for place in places if (value := _or(arguments, place))), 0.0)
+
+
 def _get(arguments: Arguments, place: int) -> float | None:
     """Return an argument by its position in the list, from 1."""
     return arguments[place - 1] if place <= len(arguments) else None
