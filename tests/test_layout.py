@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import SLOW
 from tests.support.locations import ROOT, TESTS
+from tests.support.slow import SLOW
 
 SOURCES = ROOT / "src" / "trunnion"
 

@@ -1,0 +1,13 @@
+"""The tests that take long: ``make.py quick`` leaves them out."""
+
+#: Folders and files that ``make.py quick`` leaves out: whole matrices, judges, fuzzing, and long property tests.
+SLOW = (
+    "api/test_concurrent_proof.py", "conversion", "examples", "fuzz", "jit", "linuxcnc", "machines/test_chains.py",
+    "machines/test_turn_clearance.py", "matrix",
+    "output/families/fanuc", "output/families/heidenhain", "output/families/linuxcnc/test_holes.py",
+    "output/families/sinumerik/test_planes.py", "output/test_hole_positions.py", "output/test_holes.py",
+    "output/test_holes_as_motion.py", "output/test_small_tilts.py", "output/test_subprograms.py",
+    "planning/test_everywhere.py", "planning/test_optimizer.py", "planning/test_pole.py", "planning/test_read_back.py",
+    "planning/test_without_tcp.py", "readers/families", "reporting/test_write.py", "readers/test_kernels.py",
+    "verification/test_declared_deviations.py", "verification/test_mutations.py",
+)  # fmt: skip
