@@ -20,6 +20,12 @@ class Severity(StrEnum):
     ERROR = "error"
 
 
+class ArgumentName(str):
+    """The name of an argument of the library, as the place of a problem; the command line names its option instead."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """One thing that is wrong, its location, and how to correct it.
@@ -51,6 +57,11 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
         same[0] if len(same) == 1 else replace(same[0], what=f"{same[0].what} ({len(same)} times, first here)")
         for same in alike.values()
     )
+
+
+def argument_problem(name: str, what: str, cure: str = "", severity: Severity = Severity.ERROR) -> Problem:
+    """Return a problem with an argument of a function of the library."""
+    return Problem(ArgumentName(name), 0, what, cure, severity)
 
 
 class TrunnionError(Exception):

@@ -57,7 +57,7 @@ def diff(
     >>> trunnion.diff(program, program, machine="yl569").same
     True
     """
-    check_tolerance("--tolerance", tolerance)
+    check_tolerance("tolerance", tolerance)
     one = as_machine(machine)
     two = one if to_machine is None else as_machine(to_machine)
     for each in (one, two):

@@ -13,13 +13,13 @@ from trunnion.api.observer import SILENT, Observer
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
-from trunnion.api.settings import Settings, set_up_machine
+from trunnion.api.settings import Settings, control_setting_faults, set_up_machine
 from trunnion.api.targets import OutputLike, open_target, written_text
 from trunnion.cl.write import write_cl
 from trunnion.controls import Control, load_control
 from trunnion.conversion import Conversion
 from trunnion.conversion.program_events import COMPENSATION_FINDINGS
-from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -146,9 +146,11 @@ def convert(
 def _check_settings(job: PostJob, to_cl: bool) -> None:
     """Raise ``InputError`` for settings that have no meaning in a conversion."""
     if "units" in job.settings:
-        raise InputError(Problem("--set", 0, "units has no meaning here", "an NC program says its units itself"))
+        raise InputError(
+            argument_problem("settings", "units has no meaning here", "an NC program says its units itself")
+        )
     if "zero" in job.settings and to_cl:
-        raise InputError(Problem("--set", 0, "zero has no meaning in a CL file", "give it to trunnion post"))
+        raise InputError(argument_problem("settings", "zero has no meaning in a CL file", "give it to trunnion post"))
 
 
 def _checked_output(output: OutputLike, nc: FilePath) -> OutputLike:
@@ -156,7 +158,7 @@ def _checked_output(output: OutputLike, nc: FilePath) -> OutputLike:
     if isinstance(output, str | os.PathLike):
         place, source = Path(output), Path(nc)
         if place.exists() and source.exists() and place.samefile(source):
-            raise InputError(Problem(str(output), 0, "is the program itself", "name another --output"))
+            raise InputError(Problem(str(output), 0, "is the program itself", "name another output"))
     return output
 
 
@@ -178,13 +180,13 @@ class _ProgramConverter:
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
             what = f"{counted(len(errors), 'place')} not understood, and nothing is written"
-            cure = "--force converts what was understood"
+            cure = "force=True converts what was understood"
             raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
         self.report([problem for problem in found if not problem.what.startswith(COMPENSATION_FINDINGS)])
         converted = conversion.convert(run, control)
         if converted.errors and not self._force:
             what = f"{counted(len(converted.errors), 'place')} cannot be converted, and nothing is written"
-            cure = "--force converts the rest without them"
+            cure = "force=True converts the rest without them"
             raise RefusedError((*converted.errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
         self.report(converted.errors)
         if not converted.toolpath.operations:
@@ -195,7 +197,7 @@ class _ProgramConverter:
 
     def warn_of_one_program(self, files: int) -> None:
         """Warn that a program with subprograms becomes one without."""
-        cure = "--set programs=operations writes several"
+        cure = "setting programs=operations writes several"
         self.report([Problem(self._file, 0, f"{files} files become one program", cure, Severity.WARNING)])
 
     def carry(self, stated: Mapping[str, str], control: Control, job: PostJob) -> dict[str, str]:
@@ -209,6 +211,10 @@ class _ProgramConverter:
             what = f"{key} is {stated[key]!r}, which is not carried over"
             known = key in target.settings
             cure = f"say it as {target.name} does" if known else f"{target.name} has no such setting"
+            self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
+        faults = [(key, cure) for key, cure in control_setting_faults(carried, target, job.machine) if key in carried]
+        for key, cure in faults:
+            what = f"{key} is {carried.pop(key)!r}, which {target.name} cannot have: it is not carried over"
             self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
         carried |= job.printed
         if "tool" in job.printed and "tool_call" not in job.printed:

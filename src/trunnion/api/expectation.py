@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from trunnion.api.settings import m_code, work_offset_number
+from trunnion.api.settings import m_code, work_offset_setting
 from trunnion.api.tolerances import program_tolerances
 from trunnion.model.motion import MachiningMode
 from trunnion.output.program import Program
@@ -44,13 +44,14 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
     without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
     axis_tolerance = options.axis_tolerance_between_points
     values = program.effective_settings()
+    operations = {motion.operation.name: motion.operation for motion in program.motions}
     by_operation = {
-        motion.operation.name: OperationSettings(*_operation_settings(program.effective_settings(motion.operation)))
-        for motion in program.motions
-        if motion.operation.name in program.own_settings
+        name: OperationSettings(*_operation_settings(program, program.effective_settings(operation)))
+        for name, operation in operations.items()
+        if name in program.own_settings
     }
     every = [values, *(program.effective_settings(motion.operation) for motion in program.motions)]
-    tool, work_offset, edge = _operation_settings(values)
+    tool, work_offset, edge = _operation_settings(program, values)
     inverse_time = program.control.formats.get("inverse_time")
     return ExpectedValues(
         tool=tool,
@@ -72,7 +73,7 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
     )
 
 
-def _operation_settings(values: Mapping[str, str]) -> tuple[str, int | None, int | None]:
+def _operation_settings(program: Program, values: Mapping[str, str]) -> tuple[str, int | None, int | None]:
     """Tool, work offset and edge as settings give them."""
     edge = int(values["edge"]) if "edge" in values else None
-    return values["tool"].strip('"'), work_offset_number(values["work_offset"]), edge
+    return values["tool"].strip('"'), work_offset_setting(values["work_offset"], program.machine), edge

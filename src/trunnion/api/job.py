@@ -18,7 +18,7 @@ from trunnion.api.settings import (
 )
 from trunnion.controls import Control, load_control
 from trunnion.controls.vocabulary import PROGRAM_CHOICES
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputFiles
 from trunnion.machines import Machine
 from trunnion.model.motion import MachiningMode, PoleStrategy
@@ -94,14 +94,14 @@ class PostJob:
         if self.settings.get("programs", "one") == "one":
             if size is not None:
                 cure = "write programs=operations too"
-                raise InputError(Problem("--set", 0, "split divides subprograms, and there are none", cure))
+                raise InputError(argument_problem("settings", "split divides subprograms, and there are none", cure))
             return None
         if self.control.subprograms is None:
             what = f"programs is operations, and {self.control.name} has no words for subprograms here"
-            raise InputError(Problem("--set", 0, what, "leave it out"))
+            raise InputError(argument_problem("settings", what, "leave it out"))
         if path is None:
-            cure = "name a file or a folder, or programs=one"
-            raise InputError(Problem("--output", 0, "stdout takes one file", cure))
+            cure = "name a file or a folder, or write setting programs=one"
+            raise InputError(argument_problem("output", "a program of several files needs a place for them", cure))
         return SubprogramOutput(path.stem, files.add_file, None if size is None else int(size))
 
 
@@ -123,8 +123,8 @@ def prepare(
     """
     control = load_control(machine.control)
     texts = as_texts(settings)
-    texts, own = split_by_operation(texts, control)
-    check_settings(texts, control)
+    texts, own = split_by_operation(texts, control, machine)
+    check_settings(texts, control, machine)
     if texts.get("numbers") == "off":
         control = replace(control, block_numbers=replace(control.block_numbers, numbered=False))
     machine = apply_setup(machine, texts)
@@ -137,7 +137,7 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
     """The options of the planner, of settings that ``check_settings`` has checked."""
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:
-        raise InputError(Problem("--set", 0, "tcp is on, and the machine's control has none", "write tcp=off"))
+        raise InputError(argument_problem("settings", "tcp is on, and the machine's control has none", "write tcp=off"))
     mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
     numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
     known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
@@ -167,7 +167,7 @@ def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str,
         if word not in known:
             what = "mode is tcp, and there is no TCP" if word == "tcp" else f"mode is {text!r}"
             cure = f"write one of {', '.join(known)}; OPERATION:WORD says it of one operation"
-            raise InputError(Problem("--set", 0, what, cure))
+            raise InputError(argument_problem("settings", what, cure))
         if name:
             own[name] = known[word]
         else:
@@ -186,4 +186,4 @@ def _parse_clearance(text: str) -> Clearance:
     if least <= value <= 10000.0:
         return Clearance(value, surface)
     cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
-    raise InputError(Problem("--set", 0, f"clearance is {text!r}", cure))
+    raise InputError(argument_problem("settings", f"clearance is {text!r}", cure))

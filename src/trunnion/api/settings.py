@@ -4,22 +4,26 @@ In:     settings as text or numbers.
 Out:    text that is checked; numbers, points, and the machine as it is set up.
 """
 
+import datetime
 import math
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Final, TypeAlias
 
+import numpy as np
+
+from trunnion import readers
 from trunnion.controls import Control
+from trunnion.controls.setting_rules import is_one_line
 from trunnion.controls.vocabulary import PROGRAM_CHOICES
-from trunnion.errors import InputError, Problem
+from trunnion.definitions.messages import did_you_mean
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.machines import Machine
 from trunnion.model.motion import PoleStrategy
-from trunnion.model.run import EXTENDED_OFFSET_BASE, ORIGIN_OFFSET_BASE
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
 
-#: A setting as text, as a number, or as several numbers (``zero``).
-SettingValue: TypeAlias = str | float | Iterable[float]
+#: A setting as text, as a number, as several numbers (``zero``), on or off, or None: it is not set.
+SettingValue: TypeAlias = str | float | bool | datetime.date | Iterable[float] | None
 
 #: Settings by their keys.
 Settings: TypeAlias = Mapping[str, SettingValue]
@@ -56,6 +60,9 @@ _NUMBERS: Final = {
 #: Settings of the post itself; all others belong to the control, whose templates print them.
 RUN_SETTINGS: Final = (*_CHOICES, *_NUMBERS, "mode", "zero", "clearance")
 
+#: What True and False mean, as far as a setting has such a word.
+_SWITCHES: Final = {True: ("on", "yes"), False: ("off", "no")}
+
 #: The farthest that the workpiece zero may be from the origin of the machine, mm.
 _FARTHEST_ZERO: Final = 1e5
 
@@ -64,46 +71,90 @@ _GREATEST_TOLERANCE: Final = 1e6
 
 
 def as_texts(settings: Settings | None) -> dict[str, str]:
-    """Settings as text, in the form that ``--set`` takes."""
-    return {key: _as_text(value) for key, value in (settings or {}).items()}
+    """Settings as text, in the form that ``--set`` takes; those that are None are not set.
 
-
-def _as_text(value: SettingValue) -> str:
-    if isinstance(value, Iterable) and not isinstance(value, str):
-        return ",".join(str(float(part)) for part in value)
-    return str(value)
-
-
-def check_settings(settings: Mapping[str, str], control: Control) -> None:
-    """Raise ``InputError`` for all settings that the control does not have or that make no sense."""
-    known = (*control.settings, *RUN_SETTINGS)
+    Raises
+    ------
+    InputError
+        If this is no mapping of texts to values, or with every value of a type that no setting has.
+    """
+    if settings is None:
+        return {}
+    if not isinstance(settings, Mapping):
+        what, cure = f"is a {type(settings).__name__}", 'give a mapping, such as {"title": "BLADE", "tolerance": 0.01}'
+        raise InputError(argument_problem("settings", what, cure))
     problems = [
-        Problem("--set", 0, f"{key} is not a setting of {control.name}", f"write one of {', '.join(known)}")
+        argument_problem("settings", f"the key {key!r} is a {type(key).__name__}", "write the name of a setting")
         for key in settings
-        if key not in known
+        if not isinstance(key, str)
     ]
+    texts = {key: _as_text(key, value) for key, value in settings.items() if value is not None}
+    wrong = [key for key, text in texts.items() if text is None]
+    problems += [_problem(key, settings[key], "write a text or a number") for key in wrong if isinstance(key, str)]
+    if problems:
+        raise InputError(problems)
+    return {key: text for key, text in texts.items() if text is not None}
+
+
+def _as_text(key: str, value: object) -> str | None:
+    """A setting as text; None if it is of a type that settings do not have."""
+    if isinstance(value, bool | np.bool_):
+        words = _CHOICES.get(key, ())
+        return next((word for word in _SWITCHES[bool(value)] if word in words), None)
+    if isinstance(value, str | int | np.integer | datetime.date):
+        return str(value)
+    if isinstance(value, float | np.floating):
+        return np.format_float_positional(value, trim="-")
+    if isinstance(value, bytes | Mapping) or not isinstance(value, Iterable):
+        return None
+    parts = list(value)
+    numbers = [part for part in parts if isinstance(part, int | float | np.number) and not isinstance(part, bool)]
+    return ",".join(str(float(part)) for part in numbers) if len(numbers) == len(parts) else None
+
+
+def _problem(key: str, value: object, cure: str) -> Problem:
+    return argument_problem("settings", f"{key} is {value!r}", cure)
+
+
+def check_settings(settings: Mapping[str, str], control: Control, machine: Machine) -> None:
+    """Raise ``InputError`` for all settings that the control does not have or that it cannot have."""
+    problems = [_unknown_setting(key, control) for key in settings if key not in {*control.settings, *RUN_SETTINGS}]
     problems += [
-        Problem("--set", 0, f"{key} has a line break or a control character in it", "write it in one line")
+        _problem(key, value, "write one line without control characters")
         for key, value in settings.items()
-        if any(ord(character) < 32 for character in value)
+        if key not in control.settings and not is_one_line(value)
     ]
     problems += [
-        Problem("--set", 0, f"{key} is {settings[key]!r}", f"write {' or '.join(f'{key}={one}' for one in choices)}")
-        for key, choices in {**_CHOICES, **control.family.SETTING_CHOICES}.items()
+        _problem(key, settings[key], f"write {' or '.join(f'{key}={one}' for one in choices)}")
+        for key, choices in _CHOICES.items()
         if settings.get(key, choices[0]) not in choices
     ]
-    problems += [
-        Problem("--set", 0, f"{key} is {settings[key]!r}", cure)
-        for key, cure in control.family.validate_settings(settings)
-    ]
-    if not settings.get("edge", "1").isdigit():
-        problems.append(Problem("--set", 0, f"edge is {settings['edge']!r}", "write a whole number, such as edge=1"))
+    known = {**control.settings, **settings}
+    problems += [_problem(key, known[key], cure) for key, cure in control_setting_faults(settings, control, machine)]
     if problems:
         raise InputError(problems)
 
 
+def control_setting_faults(settings: Mapping[str, str], control: Control, machine: Machine) -> list[tuple[str, str]]:
+    """The settings of a control that cannot be as they are, each with its cure."""
+    judged = {key: control.setting_cure(key, value) for key, value in settings.items() if key in control.settings}
+    faults = [(key, cure) for key, cure in judged.items() if cure]
+    if "work_offset" in judged and readers.can_read(machine):
+        offsets = readers.reader_of(machine).work_offsets
+        faults += [] if offsets.value_of(settings["work_offset"]) else [("work_offset", f"write {offsets.form}")]
+    effective = {**control.settings, **{key: value for key, value in settings.items() if value}}
+    found = dict(faults)
+    return faults + [(key, cure) for key, cure in control.family.validate_settings(effective) if key not in found]
+
+
+def _unknown_setting(key: str, control: Control) -> Problem:
+    known = (*control.settings, *RUN_SETTINGS)
+    cure = did_you_mean(key, known) or f"{control.name} has {', '.join(sorted(known))}"
+    return argument_problem("settings", f"{key} is not a setting of {control.name}", cure)
+
+
 def split_by_operation(
-    settings: Mapping[str, str], control: Control
+    settings: Mapping[str, str], control: Control, machine: Machine
 ) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
     """Settings of the program, and those of single operations by their names: ``method=ROUGH,TOP:FINISH``.
 
@@ -125,13 +176,15 @@ def split_by_operation(
                 own.setdefault(name, {})[key] = value
             elif key in program:
                 cure = f"write {key}=VALUE,OPERATION:VALUE: a text can have no comma beside a colon"
-                problems.append(Problem("--set", 0, f"{key} has two values for all operations: {text!r}", cure))
+                problems.append(
+                    argument_problem("settings", f"{key} has two values for all operations: {text!r}", cure)
+                )
             else:
                 program[key] = value
     if problems:
         raise InputError(problems)
     for values in own.values():
-        check_settings({**program, **values}, control)
+        check_settings({**program, **values}, control, machine)
     return program, own
 
 
@@ -142,13 +195,13 @@ def check_operation_names(
     known = list(dict.fromkeys(names))
     cure = f"write one of {', '.join(known)}; in a setting that can differ by operation, a colon follows its name"
     problems = [
-        Problem("--set", 0, f"{key} is set for operation {name}, and the program has none of that name", cure)
+        argument_problem("settings", f"{key} is set for operation {name}, and the program has none of that name", cure)
         for name, values in own.items()
         if name not in known
         for key in values
     ]
     problems += [
-        Problem("--set", 0, f"{key} is {text!r}, and it cannot differ by operation", f"write {key}=VALUE")
+        argument_problem("settings", f"{key} is {text!r}, and it cannot differ by operation", f"write {key}=VALUE")
         for key, text in settings.items()
         if key != "mode" and any(entry.rpartition(":")[0] in known for entry in text.split(",") if ":" in entry)
     ]
@@ -173,7 +226,7 @@ def number_setting(settings: Mapping[str, str], key: str) -> float | None:
     except ValueError:
         value = math.nan
     if not low <= value <= high:
-        raise InputError(Problem("--set", 0, f"{key} is {text!r}", f"write {cure}"))
+        raise InputError(_problem(key, text, f"write {cure}"))
     return value
 
 
@@ -202,20 +255,22 @@ def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
     lost = [axis.name for axis in axes if not axis.low < axis.high]
     if lost:
         what = f"limit_margin is {margin:g}, and axis {lost[0]} has no travel left"
-        raise InputError(Problem("--set", 0, what, "write a smaller number"))
+        raise InputError(argument_problem("settings", what, "write a smaller number"))
     return replace(machine, axes=tuple(axes))
 
 
 def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> Machine:
     """The machine with its workpiece zero and its tool length, mm, where they are given."""
-    given = {"zero": zero, "tool_length": tool_length}
-    return apply_setup(machine, as_texts({key: value for key, value in given.items() if value is not None}))
+    return apply_setup(machine, as_texts({"zero": zero, "tool_length": tool_length}))
 
 
-def check_tolerance(option: str, value: float | None) -> None:
-    """Raise ``InputError`` for a tolerance that is not above 0."""
-    if value is not None and not 0.0 < value < _GREATEST_TOLERANCE:
-        raise InputError(Problem(option, 0, f"is {value!r}", "give a number above 0, such as 0.001"))
+def check_tolerance(argument: str, value: object, *, optional: bool = False) -> None:
+    """Raise ``InputError`` for a tolerance that is no number above 0; None is one only if it is optional."""
+    if value is None and optional:
+        return
+    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    if not (is_number and 0.0 < float(value) < _GREATEST_TOLERANCE):  # type: ignore[arg-type]
+        raise InputError(argument_problem(argument, f"is {value!r}", "give a number above 0, such as 0.001"))
 
 
 def m_code(text: str) -> int | None:
@@ -223,16 +278,23 @@ def m_code(text: str) -> int | None:
     return int(text[1:]) if text[:1] == "M" and text[1:].isdigit() else None
 
 
-def work_offset_number(text: str) -> int | None:
-    """The number of a work offset: 54 for ``G54``, 603 for ``G54.1 P3``, 501 for ``G55 O1``; None for other names."""
-    code = text.strip().upper().removeprefix("G")
-    origin = re.fullmatch(r"55 +O0*(\d{1,2})", code)
-    if origin:
-        return ORIGIN_OFFSET_BASE + int(origin[1])
-    extended = re.fullmatch(r"54\.1 *P0*(\d{1,3})", code)
-    if extended:
-        return EXTENDED_OFFSET_BASE + int(extended[1])
-    return int(code) if code.isdigit() else None
+def work_offset_setting(text: str, machine: Machine) -> int | None:
+    """The value in the column ``Run.work_offset`` of a work offset as programs for a machine write it.
+
+    None if nothing reads programs for the machine.
+
+    Raises
+    ------
+    InputError
+        If it is no work offset of the machine's control.
+    """
+    if not readers.can_read(machine):
+        return None
+    offsets = readers.reader_of(machine).work_offsets
+    value = offsets.value_of(" ".join(text.upper().split()))
+    if value is None:
+        raise InputError(argument_problem("work_offset", f"is {text!r}", f"write {offsets.form}"))
+    return value
 
 
 def _point_setting(text: str) -> tuple[float, float, float]:
@@ -243,5 +305,5 @@ def _point_setting(text: str) -> tuple[float, float, float]:
         x = y = z = math.nan
     if not max(abs(x), abs(y), abs(z)) <= _FARTHEST_ZERO or math.isnan(x + y + z):
         cure = "write zero=X,Y,Z: the workpiece zero on the machine, mm, such as zero=0,0,120.5"
-        raise InputError(Problem("--set", 0, f"zero is {text!r}", cure))
+        raise InputError(_problem("zero", text, cure))
     return x, y, z

@@ -8,9 +8,9 @@ from trunnion.api import kernels
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
-from trunnion.api.settings import check_tolerance, m_code, set_up_machine, work_offset_number
+from trunnion.api.settings import check_tolerance, m_code, set_up_machine, work_offset_setting
 from trunnion.controls import Control, load_control
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
@@ -98,8 +98,9 @@ def verify(
     >>> found.passed
     True
     """
-    for key, value in (("tolerance", tolerance), ("span", span), ("span-tip", span_tip)):
-        check_tolerance(f"--{key}", value)
+    check_tolerance("tolerance", tolerance)
+    check_tolerance("span", span, optional=True)
+    check_tolerance("span_tip", span_tip, optional=True)
     loaded = as_machine(machine)
     readers.reader_of(loaded)
     compile_ahead(kernels.VERIFYING)
@@ -121,7 +122,7 @@ def verify(
         tolerances=Tolerances(tip=tolerance, angle=tolerance, chord=max(_LEAST_CHORD, tolerance)),
         settings=ExpectedValues(
             tool=tool,
-            work_offset=_work_offset(work_offset, defaults.get("work_offset", "G54"), bool(toolpaths)),
+            work_offset=_work_offset(work_offset, loaded, defaults.get("work_offset", "G54"), bool(toolpaths)),
             edge=edge,
             span=span,
             span_tip=span_tip,
@@ -154,11 +155,8 @@ def rapid_feed_of(machine: Machine) -> float | None:
     return float(feed) if feed else None
 
 
-def _work_offset(text: str | None, default: str, with_cl: bool) -> int | None:
-    """The number of the work offset that a program must have; None: any, the same throughout."""
-    if text is None:
-        return work_offset_number(default) if with_cl else None
-    code = work_offset_number(text)
-    if code is None:
-        raise InputError(Problem("--offset", 0, f"is {text!r}", "write it as the program does, such as G54"))
-    return code
+def _work_offset(text: object, machine: Machine, default: str, with_cl: bool) -> int | None:
+    """The work offset that a program must have; None: any, the same throughout."""
+    if text is None and not with_cl:
+        return None
+    return work_offset_setting(default if text is None else str(text), machine)

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+from trunnion.cli.wording import error_lines
 from trunnion.errors import InputError, RefusedError
 
 
@@ -54,10 +55,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         code: int = arguments.run(arguments)
     except RefusedError as refused:
-        print(refused, file=sys.stderr)
+        print(error_lines(refused), file=sys.stderr)
         return 1
     except InputError as error:
-        print(error, file=sys.stderr)
+        print(error_lines(error), file=sys.stderr)
         return 2
     except BrokenPipeError:  # whatever reads the output has closed the pipe
         return 2

@@ -7,6 +7,7 @@ from typing import BinaryIO
 
 from trunnion.api.observer import Observer
 from trunnion.cli.progress import progress
+from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.errors import Problem
 from trunnion.model.motion import Plan
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
@@ -29,13 +30,13 @@ class Terminal(Observer):
     def problems(self, problems: Sequence[Problem]) -> None:
         """Print problems, one a line."""
         for problem in problems:
-            print(problem, file=sys.stderr)
+            print(problem_line(problem), file=sys.stderr)
 
     def planned(self, plan: Plan) -> None:
         """Print the decisions of the planner."""
         self._explained = self._recorded and bool(plan.decisions)
         if self._explain:
-            print(*plan.decisions, sep="\n", file=sys.stderr)
+            print(*(in_command_words(str(decision)) for decision in plan.decisions), sep="\n", file=sys.stderr)
 
     def verified(self, verification: Verification) -> None:
         """Print one line a check, the places of failed checks, and times."""

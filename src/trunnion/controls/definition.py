@@ -7,7 +7,8 @@ What these cannot express is code, in the writer module of the control's family.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from trunnion.controls.family_writer import FamilyWriter
+from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
+from trunnion.controls.setting_rules import SettingKind, SettingRule, tool_number
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
     FIVE_AXIS,
@@ -112,6 +113,7 @@ class Control:
     statements            what becomes of CL statements that Trunnion does not know: statement -> line of the program,
                           empty for nothing
     settings              name -> default value
+    setting_rules         name -> what the setting may be; any text of one line where there is no rule
     method_defaults       setting -> (part of a method's name, value): defaults that depend on the machining method;
                           the first part that occurs in the name decides
     tool_types, phases    texts for templates and for comments between motions
@@ -143,6 +145,7 @@ class Control:
     initial_modal_state: Mapping[str, int]
     statements: Mapping[str, str]
     settings: Mapping[str, str]
+    setting_rules: Mapping[str, SettingRule]
     method_defaults: Mapping[str, tuple[tuple[str, str], ...]]
     tool_types: Mapping[str, str]
     phases: Mapping[str, str]
@@ -171,6 +174,31 @@ class Control:
         """Return the default of a setting for operations of a machining method, or None if there is no rule for it."""
         rules = self.method_defaults.get(setting, ())
         return next((value for part, value in rules if part.upper() in method.upper()), None)
+
+    def setting_cure(self, name: str, text: str) -> str | None:
+        """Return what to write instead of a text that a setting may not be; None if it may.
+
+        A number that a template prints must not print as 0 unless it is 0.
+        """
+        formats = [self.formats[number_format] for field, number_format in self._printed_fields() if field == name]
+        rule = self.setting_rules.get(name, SettingRule())
+        rule = SettingRule(SettingKind.NUMBER) if formats and not rule.is_number else rule
+        if not rule.allows(text):
+            return rule.cure()
+        if rule.kind is SettingKind.TOOL and tool_number(text or "0") is None:
+            try:
+                self.family.tool_call(0, text.strip('"'), by_name=True)
+            except UnsupportedFeatureError:
+                return rule.cure()
+        for number_format in (each for pair in formats if text for each in (pair.five_axis, pair.three_axis)):
+            if float(text) and number_format.text(float(text)) == number_format.text(0.0):
+                return f"write at least {10.0**-number_format.decimals:.9g}: the program would say 0"
+        return None
+
+    def _printed_fields(self) -> set[tuple[str, str]]:
+        """Name and format of each number in the templates."""
+        fields = {field for template in self.templates.values() for field in template.fields()}
+        return {(name, number_format) for name, number_format in fields if number_format in self.formats}
 
     def template_suffix(self, mode: MachiningMode, settings: Mapping[str, str]) -> str:
         """Return the suffix of the templates for a machining mode; empty if the control cannot work in that mode."""

@@ -6,6 +6,7 @@ from importlib.resources.abc import Traversable
 
 from trunnion.controls.definition import ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
 from trunnion.controls.family_writer import FamilyWriter
+from trunnion.controls.setting_rules import SettingKind, SettingRule, read_setting_rules
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
     AXIS_WORDS,
@@ -66,6 +67,7 @@ def load_control(own: Table) -> Control:
         initial_modal_state=_read_integers(table.table("in_force"), words, complete=False),
         statements=_read_statements(table.table("statements")),
         settings=_read_settings(settings, family),
+        setting_rules=_read_setting_rules(table.table("setting_rules"), settings, family),
         method_defaults=_read_method_defaults(table.tables("by_method"), settings),
         tool_types=_read_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_read_texts(table.table("phases"), PHASES),
@@ -89,6 +91,7 @@ def load_control(own: Table) -> Control:
     for missing in dict.fromkeys(name for name in words if name not in defined):
         table.add_problem("word", f"has no entry {missing!r}, which programs of this family need", "write it")
     _check_templates(templates, control)
+    _check_settings(settings, table.tables("by_method"), control)
     table.report_unread_keys()
     table.raise_problems()
     return control
@@ -174,10 +177,7 @@ def _read_texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
 def _read_settings(table: Table, family: FamilyWriter) -> dict[str, str]:
     found = {name: table.text(name) for name in list(table.keys())}
     for name, choices in family.SETTING_CHOICES.items():
-        if found.setdefault(name, choices[0]) not in choices:
-            table.add_problem(name, f"is {found[name]!r}", f"write one of {', '.join(choices)}")
-    for name, cure in family.validate_settings(found):
-        table.add_problem(name, f"is {found[name]!r}", cure)
+        found.setdefault(name, choices[0])
     table.report_unread_keys()
     return found
 
@@ -190,6 +190,29 @@ def _read_statements(table: Table) -> dict[str, str]:
             table.add_problem(statement, "has a line break or a control character in it", "write one line of a program")
     table.report_unread_keys()
     return found
+
+
+def _read_setting_rules(table: Table, settings: Table, family: FamilyWriter) -> dict[str, SettingRule]:
+    choices = {
+        name: SettingRule(SettingKind.CHOICE, one_of=words, optional=False)
+        for name, words in family.SETTING_CHOICES.items()
+    }
+    return read_setting_rules(table, settings) | choices
+
+
+def _check_settings(table: Table, by_method: Sequence[Table], control: Control) -> None:
+    """Report defaults that their own rules do not allow."""
+    for name, value in control.settings.items():
+        cure = control.setting_cure(name, value)
+        if cure and name in table:
+            table.add_problem(name, f"is {value!r}", cure)
+    for name, cure in control.family.validate_settings(control.settings):
+        table.add_problem(name, f"is {control.settings[name]!r}", cure)
+    for entry in by_method:
+        value = entry.text("value")
+        cure = control.setting_cure(entry.text("setting"), value)
+        if cure:
+            entry.add_problem("value", f"is {value!r}", cure)
 
 
 def _read_method_defaults(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tuple[str, str], ...]]:

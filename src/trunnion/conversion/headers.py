@@ -15,7 +15,7 @@ from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
 from trunnion.conversion.template_matching import LinePattern, TemplatePatterns, match_lines
-from trunnion.model.run import ProgrammedWord, Run, offset_name
+from trunnion.model.run import ProgrammedWord, Run
 
 #: The beginnings of the names of the templates that make the header and the end of an operation.
 _HEADER_TEMPLATES = ("operation_start", "first_tool", "tool_change", "approach_", "plane_on_")
@@ -100,7 +100,7 @@ class HeaderReader:
         """
         row = section.rows[0]
         offset, edge = int(self._run.work_offset[row]), int(self._run.edge[row])
-        found = {"work_offset": offset_name(offset)} if offset and self.offset_is_word else {}
+        found = {"work_offset": self._run.work_offset_name(offset)} if offset and self.offset_is_word else {}
         return found | ({"edge": str(edge)} if edge >= 0 and "edge" in self._control.settings else {})
 
     def _orientation_setting(self, rows: Ints) -> dict[str, str]:

@@ -9,7 +9,7 @@ Frame: the workpiece frame of the machine, whose origin is the zero set by the w
 tilted planes are already transformed into it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields
 from enum import IntEnum, IntFlag
 from functools import cached_property
@@ -95,18 +95,6 @@ class RunEvent:
 
 #: ``Run.work_offset`` where work offsets are suppressed and positions count from the machine's zero (G500).
 NO_OFFSET = 500
-
-#: Work offsets that are called by ``G55 O`` have codes from here on, as those of ``G505`` and higher.
-ORIGIN_OFFSET_BASE = 500
-
-#: Work offsets with higher codes are called by ``G54.1 P``.
-EXTENDED_OFFSET_BASE = 600
-
-
-def offset_name(code: int) -> str:
-    """Return the word that calls a work offset: ``G54``, ``G505``, ``G54.1 P3``."""
-    return f"G{code}" if code <= EXTENDED_OFFSET_BASE else f"G54.1 P{code - EXTENDED_OFFSET_BASE}"
-
 
 #: ``ModalState.orientation`` before the program sets an ``Orientation``: a block with a vector moves on a great circle.
 ORIENTATION_FROM_WORDS = 2
@@ -198,6 +186,7 @@ class Run:
     units_from                     row from which on the program has said mm or inches, or its control is known to
                                    count so; None: never
     uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
+    work_offset_name               what programs of this control call a value of the column ``work_offset``
 
     Computed on first access:
 
@@ -239,6 +228,7 @@ class Run:
     diagnostics: tuple[Diagnostic, ...] = ()
     uses_length_numbers: bool = False
     units_from: int | None = 0
+    work_offset_name: Callable[[int], str] = field(default="work offset {}".format)
 
     def __post_init__(self) -> None:
         for each in fields(self):

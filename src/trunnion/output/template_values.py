@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.controls.family_writer import FamilyWriter
+from trunnion.controls.setting_rules import tool_number
 from trunnion.controls.template import Value
 from trunnion.errors import InputError, Problem
 from trunnion.machines import inverse
@@ -191,17 +192,21 @@ class TemplateValues:
         number, name = self._program.effective_setting("tool", operation), operation.tool.name
         own = self._program.own_settings.get(operation.name, {}).get("tool")
         if own:
-            return own
+            return self._tool_setting(own)
         if loaded.call and not loads and name == loaded.name:
             return loaded.call
         if name and (self._program.effective_setting("tool_call", operation) == "name" or not (number or loads)):
             return self._family.tool_call(0, name, by_name=True)
         if number:
-            return number
+            return self._tool_setting(number)
         if loads:
             return self._family.tool_call(loads[-1].number, "", by_name=False)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(Problem(self._program.file, operation.line, what, "write --set tool=NUMBER"))
+
+    def _tool_setting(self, text: str) -> str:
+        """The tool of the run's setting: a number as it is written, a name as the control takes names."""
+        return text if tool_number(text) is not None else self._family.tool_call(0, text.strip('"'), by_name=True)
 
 
 def prints_times(program: Program) -> bool:

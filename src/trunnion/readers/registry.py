@@ -59,7 +59,7 @@ def run_program(
     reader = reader_of(machine, family)
     options = RunOptions(tuple(subprograms), step_limit, skip, shortest)
     run = reader.interpreter(Path(path), machine, options).run(write_progress)
-    return replace(run, uses_length_numbers=reader.uses_length_numbers)
+    return replace(run, uses_length_numbers=reader.uses_length_numbers, work_offset_name=reader.work_offsets.name)
 
 
 def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:

@@ -24,7 +24,7 @@ class ExpectedValues:
     """What a program is expected to be where the CL files leave it open.
 
     tool                   tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
-    work_offset            54..59, 505..599, or 600 plus the P of G54.1; None: any, but the same throughout
+    work_offset            as in ``Run.work_offset``; None: any, but the same throughout
     edge                   number of the cutting edge (D); None: any
     span                   how far the tool axis may be off between points, degrees; None: ``axis_tolerance``
     span_tip               how far the tip may be off its line between points without TCP, mm; None: reported, not

@@ -8,6 +8,7 @@ from trunnion.machines import Axis, Machine
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.program.work_offsets import WorkOffsetWords, first_number
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Value
@@ -103,4 +104,10 @@ class ToyInterpreter(Rs274Interpreter[ActiveProgram]):
         self._report_unused_words(block)
 
 
-READER: Final = FamilyReader(ToyInterpreter, frozenset(), comments=rb";[^\n]*", uses_length_numbers=False)
+READER: Final = FamilyReader(
+    ToyInterpreter,
+    frozenset(),
+    WorkOffsetWords("1 to 99", re.compile(r"([0-9]{1,2})"), first_number, lambda value: f"ORIGIN {value}"),
+    comments=rb";[^\n]*",
+    uses_length_numbers=False,
+)

@@ -8,6 +8,7 @@ from typing import Any
 from trunnion.machines import Machine
 from trunnion.readers.program.interpreter import Interpreter
 from trunnion.readers.program.options import RunOptions
+from trunnion.readers.program.work_offsets import WorkOffsetWords
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
 RS274_COMMENTS = rb"\([^)\n]*\)|;[^\n]*"
@@ -20,11 +21,13 @@ class FamilyReader:
     interpreter          makes the interpreter that runs a program on a machine
     words_without_path   words, as written without leading zeros, that the path does not depend on
     comments             regular expression of comments and texts, in which words mean nothing
+    work_offsets         how programs select work offsets
     uses_length_numbers  programs select the tool length by a number (H); it is the column ``Run.edge``
     """
 
     interpreter: Callable[[Path, Machine, RunOptions], Interpreter[Any]]
     words_without_path: frozenset[str]
+    work_offsets: WorkOffsetWords
     comments: bytes = RS274_COMMENTS
     uses_length_numbers: bool = False
 

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.model.run import Run, offset_name
+from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.results import Check, Place
@@ -39,15 +39,16 @@ def check_work_offset(context: Context) -> Check:
             bad = part[wrong]
             count += len(bad)
             places += [
-                context.place(row, 0.0, f"works in {_name(used[row])}, not in {_name(wanted)}")
+                context.place(row, 0.0, f"works in {_name(context, used[row])}, not in {_name(context, wanted)}")
                 for row in bad[: max(MAX_PLACES - len(places), 0)].tolist()
             ]
     known = list(dict.fromkeys(wanted for _, wanted in stretches))
     others = set(used.distinct().tolist()) - {0, *known}
     if others and not places:
         row = min(int(used.rows_with(code)[0]) for code in others)
-        places.append(context.place(row, 0.0, f"{_name(used[row])} is not the offset of this program"))
-    good = f"{_name(known[0])} throughout" if len(known) == 1 else ", ".join(map(_name, known))
+        places.append(context.place(row, 0.0, f"{_name(context, used[row])} is not the offset of this program"))
+    names = [_name(context, code) for code in known]
+    good = f"{names[0]} throughout" if len(names) == 1 else ", ".join(names)
     return check_from_places("offset", _TITLE, places, good, count or None)
 
 
@@ -66,13 +67,13 @@ def _check_changes(context: Context, rows: RowRanges) -> Check:
         for k in np.flatnonzero(np.diff(here, prepend=last)).tolist():
             row, code = int(part[k]), int(here[k])
             if codes and codes[-1] and run.kind[row] != Kind.RAPID:
-                what = f"changes from {_name(codes[-1])} to {_name(code)} in a cut"
+                what = f"changes from {_name(context, codes[-1])} to {_name(context, code)} in a cut"
                 places.append(context.place(row, 0.0, f"{what}: go there at rapid first"))
             elif code == 0 and run.state.tcp[row] and used.distinct().any():
                 places.append(context.place(row, 0.0, "works in no work offset"))
             codes.append(code)
         last = int(here[-1])
-    names = list(dict.fromkeys(_name(code) for code in codes if code)) or [_name(0)]
+    names = list(dict.fromkeys(_name(context, code) for code in codes if code)) or [_name(context, 0)]
     good = f"{names[0]} throughout" if len(names) == 1 else f"{', then '.join(names)}, each as the program chooses"
     return check_from_places("offset", _TITLE, places, good)
 
@@ -101,5 +102,6 @@ def _workpiece_frame_rows(run: Run) -> RowRanges:
     return RowRanges.from_flags((start, ~frame.part(start, end)) for start, end in chunk_bounds(len(run)))
 
 
-def _name(code: int) -> str:
-    return "no work offset" if code == 0 else offset_name(code)
+def _name(context: Context, code: int) -> str:
+    """A work offset as programs of this control call it."""
+    return "no work offset" if code == 0 else context.run.work_offset_name(code)

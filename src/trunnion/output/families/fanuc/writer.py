@@ -146,13 +146,11 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
     """Return invalid numbers, calls and shifts."""
-    program, tool = settings.get("program", "1"), settings.get("tool", "")
+    program = settings.get("program", "1")
     wrong = []
     if not (program.isdecimal() and program.isascii() and 0 < int(program) < 10**_PROGRAM_NUMBER_DIGITS):
         digits = _PROGRAM_NUMBER_DIGITS
         wrong.append(("program", f"write the program's number, at most {digits} digits, such as program=1234"))
-    if tool and not (tool.isdecimal() and tool.isascii()):
-        wrong.append(("tool", "write the tool's number, such as tool=5"))
     if not _is_call(settings.get("call", "M98")):
         wrong.append(("call", "write M98, or G65, with arguments such as G65 A1. B-2.5, each letter once"))
     if not is_valid_shift(settings.get("bore_lift", "")):

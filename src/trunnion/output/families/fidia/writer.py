@@ -29,6 +29,9 @@ PLANE_COMMANDS: tuple[str, ...] = ("g154",)
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
+#: Words that switch TCP on and off: for a table with both rotary axes, and for a head.
+_TCP_PAIRS: Final = (("G196", "G197"), ("G96", "G97"))
+
 #: Characters of a comment: a line of 80 has room for them, with brackets and blanks.
 _COMMENT_LENGTH: Final = 76
 
@@ -106,9 +109,11 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Return an invalid rapid feed, which must be a whole number."""
-    text = settings.get("rapid_feed", "1")
-    return [] if text.isdigit() and int(text) > 0 else [("rapid_feed", "write mm/min, a whole number such as 3000")]
+    """Return words that switch TCP on and off for different machines."""
+    pair = settings.get("tcp_on", "G196"), settings.get("tcp_off", "G197")
+    if pair in _TCP_PAIRS or pair[1] not in dict(_TCP_PAIRS).values():
+        return []
+    return [("tcp_on", "write G196 with tcp_off=G197, or G96 with tcp_off=G97")]
 
 
 def cycle_call(

@@ -141,7 +141,7 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
     name, blank = settings.get("program", ""), settings.get("blank", "")
     if name and not re.fullmatch(r"[A-Za-z0-9_#$%&-]{1,24}", name):
         wrong.append(("program", "write up to 24 letters, digits and _ # $ % & -"))
-    if not settings.get("work_offset", "1").isdigit():
+    if not re.fullmatch(r"[0-9]{1,5}", settings.get("work_offset", "1")):
         wrong.append(("work_offset", "write the number of the preset, such as 1"))
     if settings.get("disengage", "") not in ("", "1", "2", "3", "4"):
         wrong.append(("disengage", "write 1 for -X, 2 for -Y, 3 for +X or 4 for +Y"))

@@ -3,7 +3,9 @@
 Facts: SINUMERIK 840D sl programming manuals, *Fundamentals* and *Job planning*; docs/controls/sinumerik.md lists them.
 """
 
+import re
 from collections.abc import Mapping
+from typing import Final
 
 from trunnion.arrays import Floats
 from trunnion.controls.family_writer import EACH_HOLE, Codes, Formats, UnsupportedFeatureError
@@ -34,6 +36,9 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, "interpolation"})
+
+#: _ST of CYCLE800 with 0 as its ones digit: a new plane, not one that is added.
+_NEW_SWIVEL: Final = re.compile(r"[0-9]{0,7}0")
 
 #: _MODE of CYCLE800 for the frame words ROT and AROT, which turn about X, Y and Z.
 _FRAME_MODE = "57"
@@ -106,9 +111,13 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Return an invalid lift-off."""
-    valid = is_valid_lift(settings.get("bore_lift", ""))
-    return [] if valid else [("bore_lift", "write millimetres, such as 0.5, or nothing")]
+    """Return an invalid lift-off or style of swivelling."""
+    wrong = []
+    if not is_valid_lift(settings.get("bore_lift", "")):
+        wrong.append(("bore_lift", "write millimetres, such as 0.5, or nothing"))
+    if not _NEW_SWIVEL.fullmatch(settings.get("swivel_style", "0")):
+        wrong.append(("swivel_style", "write a whole number that ends in 0: planes are never added to each other"))
+    return wrong
 
 
 def cycle_call(

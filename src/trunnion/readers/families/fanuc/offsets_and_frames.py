@@ -4,12 +4,12 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
-from trunnion.model.run import EXTENDED_OFFSET_BASE, offset_name
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.calls import CallInterpreter
+from trunnion.readers.families.fanuc.work_offsets import extended_offset, offset_name
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
 
@@ -24,11 +24,11 @@ class OffsetInterpreter(CallInterpreter):
         if code == words.MORE_OFFSETS and more is None:
             raise BlockError("G54.1 needs P")
         if more is not None:
-            if more != int(more) or not 1 <= more <= 300:
+            if more != int(more) or not extended_offset(int(more)):
                 raise BlockError("P of G54.1 is not from 1 to 300")
             system = 6 + int(more)
         control.system = system
-        offset = 53 + system if system <= 6 else EXTENDED_OFFSET_BASE + system - 6
+        offset = 53 + system if system <= 6 else extended_offset(system - 6)
         control.set_offset(offset, offset_name(offset))
         control.update_frame()
 

@@ -7,7 +7,6 @@ from typing import Final
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.model.run import ORIGIN_OFFSET_BASE
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.virtual_control import RAPID
@@ -120,7 +119,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             number = block.take("O")
             if number is None or number != int(number) or not 1 <= number <= 99:
                 raise BlockError("G55 needs O from 1 to 99")
-            control.set_offset(ORIGIN_OFFSET_BASE + int(number), f"G55 O{number:g}")
+            control.set_offset(words.OFFSET_BASE + int(number), f"G55 O{number:g}")
             control.set_length(True)
             control.preconditions.meet("G55")
         elif code == words.TAKE_PLANE:

@@ -1,9 +1,19 @@
 """The reader of Fidia NC15 programs."""
 
+import re
 from typing import Final
 
 from trunnion.readers.families.fidia.interpreter import FidiaInterpreter
-from trunnion.readers.families.fidia.words import WITHOUT_PATH_EFFECT
+from trunnion.readers.families.fidia.words import OFFSET_BASE, WITHOUT_PATH_EFFECT
 from trunnion.readers.program.family_reader import FamilyReader, g_words
+from trunnion.readers.program.work_offsets import WorkOffsetWords
 
-READER: Final = FamilyReader(FidiaInterpreter, g_words(WITHOUT_PATH_EFFECT))
+#: G55 with the number of the offset; the column counts from 501.
+WORK_OFFSETS: Final = WorkOffsetWords(
+    "G55 O1 to G55 O99",
+    re.compile(r"G55 O([0-9]{1,2})"),
+    lambda numbers: OFFSET_BASE + numbers[0] if numbers[0] else 0,
+    lambda value: f"G55 O{value - OFFSET_BASE}",
+)
+
+READER: Final = FamilyReader(FidiaInterpreter, g_words(WITHOUT_PATH_EFFECT), WORK_OFFSETS)

@@ -3,6 +3,8 @@
 from typing import Final
 
 OFFSET: Final = 550
+#: The value of the column ``work_offset`` for O0, which there is not: O1 is one more.
+OFFSET_BASE: Final = 500
 TAKE_PLANE: Final = 1540
 NO_PLANE: Final = 690
 DWELL: Final = 40

@@ -1,0 +1,168 @@
+"""What a setting may be, as the definition of a control states it.
+
+In:     the table ``[setting_rules]`` of a definition.
+Out:    rules that judge a text, and say what to write instead.
+"""
+
+import math
+import re
+import unicodedata
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Final
+
+from trunnion.definitions import Table
+
+#: Controls read numbers without an exponent.
+_NUMBER: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)")
+
+#: Unicode categories of characters that would break a line, or that a file cannot have.
+_NOT_IN_A_LINE: Final = frozenset({"Cc", "Cs", "Zl", "Zp"})
+
+
+class SettingKind(StrEnum):
+    """What a setting is.
+
+    TEXT    any text of one line
+    STRING  a text without quotation marks, for places inside them
+    QUOTED  a text in quotation marks
+    PATH    a folder of the control
+    NUMBER  a number, without an exponent
+    WHOLE   a whole number, without a sign
+    M_CODE  M and a number of up to four digits
+    CHOICE  one of some words
+    TOOL    a tool number, or the name of a tool where the family calls tools by name
+    """
+
+    TEXT = "text"
+    STRING = "string"
+    QUOTED = "quoted"
+    PATH = "path"
+    NUMBER = "number"
+    WHOLE = "whole"
+    M_CODE = "m_code"
+    CHOICE = "choice"
+    TOOL = "tool"
+
+
+#: The texts of some kinds, and how to say what they are.
+_FORMS: Final = {
+    SettingKind.STRING: (re.compile(r'[^"]*'), "a text without quotation marks"),
+    SettingKind.QUOTED: (re.compile(r'"[^"]*"'), "a text in quotation marks"),
+    SettingKind.PATH: (re.compile(r"[A-Za-z0-9_:./\\-]*"), "a folder: letters, digits and _ - . : / \\"),
+    SettingKind.M_CODE: (re.compile(r"M[0-9]{1,4}"), "an M code, such as M29"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class SettingRule:
+    """What a setting may be.
+
+    kind                       what it is
+    unit                       of a number, for messages
+    above, at_least, at_most   bounds of a number; None: there is none
+    one_of                     the words of a CHOICE
+    optional                   may be empty: then there is none
+    """
+
+    kind: SettingKind = SettingKind.TEXT
+    unit: str = ""
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    one_of: tuple[str, ...] = ()
+    optional: bool = True
+
+    @property
+    def is_number(self) -> bool:
+        """Whether the setting is a number."""
+        return self.kind in (SettingKind.NUMBER, SettingKind.WHOLE)
+
+    def allows(self, text: str) -> bool:
+        """Whether a setting may be this text."""
+        if not is_one_line(text):
+            return False
+        if not text:
+            return self.optional
+        match self.kind:
+            case SettingKind.NUMBER | SettingKind.WHOLE:
+                return self._allows_number(text)
+            case SettingKind.CHOICE:
+                return text in self.one_of
+            case SettingKind.TOOL:
+                return tool_number(text) != 0
+            case SettingKind.TEXT:
+                return True
+            case _:
+                return bool(_FORMS[self.kind][0].fullmatch(text))
+
+    def _allows_number(self, text: str) -> bool:
+        if not _NUMBER.fullmatch(text) or (self.kind is SettingKind.WHOLE and not text.isdecimal()):
+            return False
+        value = float(text)
+        return (
+            math.isfinite(value)
+            and (self.above is None or value > self.above)
+            and (self.at_least is None or value >= self.at_least)
+            and (self.at_most is None or value <= self.at_most)
+        )
+
+    def cure(self) -> str:
+        """Return what to write, such as ``write a number above 0 and of at most 10, mm``."""
+        nothing = ", or nothing" if self.optional else ""
+        match self.kind:
+            case SettingKind.NUMBER | SettingKind.WHOLE:
+                what = "a whole number" if self.kind is SettingKind.WHOLE else "a number"
+                unit = f", {self.unit}" if self.unit else ""
+                return f"write {what}{self._bounds()}{unit}{nothing}"
+            case SettingKind.CHOICE:
+                return f"write {' or '.join(self.one_of)}{nothing}"
+            case SettingKind.TOOL:
+                return "write the tool's number, such as 5"
+            case SettingKind.TEXT:
+                return "write a text of one line"
+            case _:
+                return f"write {_FORMS[self.kind][1]}{nothing}"
+
+    def _bounds(self) -> str:
+        parts = (("above", self.above), ("of at least", self.at_least), ("of at most", self.at_most))
+        text = " and ".join(f"{words} {value:g}" for words, value in parts if value is not None)
+        return f" {text}" if text else ""
+
+
+def is_one_line(text: str) -> bool:
+    """Whether a text has no line break, control character or other character that a program cannot have."""
+    return not any(unicodedata.category(character) in _NOT_IN_A_LINE for character in text)
+
+
+def tool_number(text: str) -> int | None:
+    """The number that a tool is called by; None for a name."""
+    return int(text) if text.isdecimal() and text.isascii() else None
+
+
+def read_setting_rules(table: Table, settings: Table) -> dict[str, SettingRule]:
+    """Read the rules of a definition, each for one of its settings; mistakes are added to the table's problems.
+
+    A rule with ``one_of`` is a choice. A setting whose default is empty may be empty, and others if their rule says so.
+    """
+    rules = {}
+    for name in list(table.keys()):
+        entry = table.table(name)
+        if name not in settings:
+            entry.add_problem("", "is the rule of no setting", "add the setting to [control.settings]")
+        words = entry.texts("one_of", ())
+        kinds = tuple(kind for kind in SettingKind if kind is not SettingKind.CHOICE)
+        kind = SettingKind.CHOICE if words else SettingKind(entry.text("kind", "text", one_of=kinds) or "text")
+        is_number = kind in (SettingKind.NUMBER, SettingKind.WHOLE)
+        rules[name] = SettingRule(
+            kind,
+            entry.text("unit", "") if is_number else "",
+            entry.number("above", None) if is_number else None,
+            entry.number("at_least", None) if is_number else None,
+            entry.number("at_most", None) if is_number else None,
+            words,
+            entry.flag("optional", not settings.text(name, "")),
+        )
+        entry.report_unread_keys()
+    table.report_unread_keys()
+    return rules

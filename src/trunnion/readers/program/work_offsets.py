@@ -1,0 +1,36 @@
+"""How a family of controls selects work offsets: the words of a program, and the values of a column."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class WorkOffsetWords:
+    """The work offsets of a family.
+
+    form   what they look like, for messages
+    words  regular expression of one of them, with a group for each number
+    value  ``Run.work_offset`` of the numbers of its groups (None where a group is absent); 0 for none
+    name   the word that selects a value
+    """
+
+    form: str
+    words: re.Pattern[str]
+    value: Callable[[tuple[int | None, ...]], int]
+    name: Callable[[int], str]
+
+    def value_of(self, text: str) -> int | None:
+        """Return the value of a work offset as a program writes it; None if it is none."""
+        found = self.words.fullmatch(text)
+        return (self.value(tuple(int(group) if group else None for group in found.groups())) or None) if found else None
+
+
+def g_word(value: int) -> str:
+    """Return the G word of a value: 54 is G54."""
+    return f"G{value}"
+
+
+def first_number(numbers: tuple[int | None, ...]) -> int:
+    """Return the first number: the value of an offset whose word has one number."""
+    return numbers[0] or 0
