@@ -8,9 +8,11 @@ A Problem prints as ``file:line: error: what is wrong; how to correct it``, from
 CI systems jump to the line.
 """
 
+import stat
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from pathlib import Path
 
 
 class Severity(StrEnum):
@@ -62,6 +64,20 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
 def argument_problem(name: str, what: str, cure: str = "", severity: Severity = Severity.ERROR) -> Problem:
     """Return a problem with an argument of a function of the library."""
     return Problem(ArgumentName(name), 0, what, cure, severity)
+
+
+def unusable_file(path: Path, what: str) -> Problem | None:
+    """Return why a path is no file that can be read; None if it may be one. ``what`` is meant: ``an NC program``."""
+    cure = f"give the path of {what}"
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError) as error:  # also names that no system allows
+        is_missing = isinstance(error, FileNotFoundError | NotADirectoryError)
+        reason = getattr(error, "strerror", None) or error
+        return Problem(str(path), 0, "file not found" if is_missing else f"cannot be read: {reason}", cure)
+    if stat.S_ISDIR(mode):
+        return Problem(str(path), 0, f"is a folder, not {what}", cure)
+    return None if stat.S_ISREG(mode) else Problem(str(path), 0, f"is not a regular file, but {what} is one", cure)
 
 
 class TrunnionError(Exception):

@@ -141,7 +141,7 @@ def test_a_folder_is_no_cl_file(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_not_there_is_said_so(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"none\.cls: error: cannot be read: No such file"):
+    with pytest.raises(InputError, match=r"none\.cls: error: file not found"):
         read_cl(tmp_path / "none.cls")
 
 

@@ -45,7 +45,7 @@ def test_toolpaths_come_in_order_and_are_not_kept() -> None:
 def test_a_file_that_cannot_be_read_is_said_where_its_toolpath_is_wanted(tmp_path: Path) -> None:
     with ThreadPoolExecutor(1) as executor:
         coming = read_toolpaths([str(tmp_path / "none.cls"), *FILES], None, False, executor)
-        with pytest.raises(InputError, match="No such file"):
+        with pytest.raises(InputError, match="file not found"):
             next(coming)
 
 

@@ -191,7 +191,7 @@ def test_a_number_of_many_thousand_digits_is_a_mistake_and_no_crash(tmp_path: Pa
 def test_a_missing_file_and_a_folder_are_no_definitions(tmp_path: Path) -> None:
     (tmp_path / "folder.toml").mkdir()
     for name in ("missing.toml", "folder.toml"):
-        with pytest.raises(InputError, match="there is no such file"):
+        with pytest.raises(InputError, match=r"file not found|is a folder"):
             load_table(tmp_path / name, tmp_path)
 
 

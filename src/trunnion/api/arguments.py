@@ -4,13 +4,10 @@ import io
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TypeAlias, TypeVar
+from typing import TypeVar
 
 from trunnion.api.observer import Observer
-from trunnion.errors import InputError, Problem, argument_problem
-
-#: A path as text or as a ``Path``.
-FilePath: TypeAlias = str | os.PathLike[str]
+from trunnion.errors import InputError, argument_problem
 
 _Choice = TypeVar("_Choice", bound=str)
 
@@ -26,16 +23,6 @@ def check_path(name: str, value: object) -> Path:
     if isinstance(value, str | os.PathLike) and isinstance(text := os.fspath(value), str) and text and "\0" not in text:
         return Path(text)
     raise wrong_argument(name, value, "give the path of a file")
-
-
-def check_file(name: str, value: object, what: str) -> Path:
-    """The path of a file that is there; ``what`` it is called, such as ``an NC program``."""
-    path = check_path(name, value)
-    if path.is_dir():
-        raise InputError(Problem(str(path), 0, f"is a folder, not {what}", "give the path of a file"))
-    if not path.exists():
-        raise InputError(Problem(str(path), 0, "file not found", f"give the path of {what}"))
-    return path
 
 
 def check_paths(name: str, values: object) -> list[Path]:

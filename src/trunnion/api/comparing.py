@@ -59,13 +59,17 @@ def diff(
     """
     check_tolerance("tolerance", tolerance)
     one = as_machine(machine)
-    two = one if to_machine is None else as_machine(to_machine)
+    two = one if to_machine is None else as_machine(to_machine, "to_machine")
     for each in (one, two):
         readers.reader_of(each)
     compile_ahead(readers.KERNELS)
-    return compare(_run(first, one, subprograms), _run(second, two, to_subprograms), tolerance, path=path)
+    runs = (
+        _run(first, one, subprograms, ("first", "subprograms")),
+        _run(second, two, to_subprograms, ("second", "to_subprograms")),
+    )
+    return compare(*runs, tolerance, path=path)
 
 
-def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath]) -> Run:
+def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath], names: tuple[str, str]) -> Run:
     """The run of a program, with lines at the feed of rapids as rapids."""
-    return restore_rapids(as_run(program, machine, subprograms), rapid_feed_of(machine))
+    return restore_rapids(as_run(program, machine, subprograms, names), rapid_feed_of(machine))

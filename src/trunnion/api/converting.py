@@ -8,6 +8,7 @@ from pathlib import Path
 
 from trunnion import conversion, readers
 from trunnion.api import kernels
+from trunnion.api.arguments import check_observer, check_path, check_paths
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.post_result import PostResult
@@ -117,18 +118,21 @@ def convert(
     >>> converted.posted.passed
     True
     """
+    check_observer(observer)
+    program, others = check_path("nc", nc), check_paths("subprograms", subprograms)
     if (to_machine is None) is not to_cl:
-        raise InputError(Problem("convert", 0, "has no result or two", "give either to_machine or to_cl=True"))
+        what, cure = "is given with to_cl" if to_cl else "is None", "give either to_machine or to_cl=True"
+        raise InputError(argument_problem("to_machine", what, cure))
     source = as_machine(machine)
     control = load_control(source.control)
-    job = prepare(source if to_machine is None else as_machine(to_machine), settings, force=force)
+    job = prepare(source if to_machine is None else as_machine(to_machine, "to_machine"), settings, force=force)
     _check_settings(job, to_cl)
     compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
     source = set_up_machine(source, zero, tool_length)
     with open_target(_checked_output(output, nc)) as target:
         divided = job.subprograms(target.files, target.path) is not None
         converter = _ProgramConverter(str(nc), observer, force)
-        converted = converter.read(read_program(nc, machine=source, subprograms=subprograms), control)
+        converted = converter.read(read_program(program, machine=source, subprograms=others), control)
         if subprograms and not (divided or to_cl):
             converter.warn_of_one_program(1 + len(subprograms))
         carried = converter.carry(converted.settings, control, job)

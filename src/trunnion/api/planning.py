@@ -4,13 +4,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from trunnion import planning, readers
+from trunnion.api.arguments import check_observer
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.inserts import insert_problems
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
 from trunnion.api.settings import Settings, check_operation_names, number_setting
-from trunnion.errors import InputError, Problem, RefusedError, Severity, merge_repeated
+from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
@@ -69,6 +70,7 @@ def plan(
     >>> planned.motions[0].rotary.shape
     (23, 2)
     """
+    check_observer(observer)
     job = prepare(as_machine(machine), settings, explain=explain)
     toolpaths = load_toolpaths(cl, job, strict, observer)
     return _planned(toolpaths, job)
@@ -81,7 +83,7 @@ def load_toolpaths(
     toolpaths = as_toolpaths(cl, job.settings.get("units"), strict, observer)
     toolpaths = replace_unknown_statements(toolpaths, job.control.statements)
     if not toolpaths:
-        raise InputError(Problem("post", 0, "there is no CL file", "give at least one"))
+        raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
     if job.has_normals:
         from trunnion.cl.surface_normals import with_normals
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from trunnion.api import kernels
+from trunnion.api.arguments import check_observer
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
@@ -98,6 +99,7 @@ def post(
     >>> result
     PostResult(passed=True, 30 motions)
     """
+    check_observer(observer)
     if report is not None:
         check_report_name(report)
     compile_ahead(kernels.POSTING)

@@ -1,17 +1,17 @@
 """Inputs of the public API: CL files, machines and programs, by their names or already read."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
-from pathlib import Path
 from typing import Final, TypeAlias
 
 from trunnion import machines, readers
+from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths, wrong_argument
 from trunnion.api.observer import SILENT, Observer
 from trunnion.cl import read_cl as read_cl_file
 from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -61,8 +61,11 @@ def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, o
     >>> toolpath.operations[0].moves.tip.shape
     (23, 3)
     """
-    path = Path(path)
-    size = path.stat().st_size if path.is_file() else 0
+    path = check_path("path", path)
+    check_observer(observer)
+    if units is not None:
+        check_choice("units", units.lower() if isinstance(units, str) else units, ("mm", "inch"))
+    size = path.stat().st_size if unusable_file(path, "a CL file") is None else 0
     with observer.progress(path.name, size, "B") as advance:
         done = 0
 
@@ -99,7 +102,7 @@ def load_machine(machine: FilePath) -> Machine:
     >>> [axis.name for axis in trunnion.load_machine("yl569").axes]
     ['C', 'B', 'X', 'Y', 'Z']
     """
-    return machines.load_machine(os.fspath(machine))
+    return machines.load_machine(str(check_path("machine", machine)))
 
 
 def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[FilePath] = ()) -> Run:
@@ -137,10 +140,16 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     >>> run.tip.shape, run.diagnostics
     ((30, 3), ())
     """
-    return readers.run_program(Path(nc), as_machine(machine), subprograms=as_paths(subprograms))
+    program, others = check_path("nc", nc), check_paths("subprograms", subprograms)
+    return readers.run_program(program, as_machine(machine), subprograms=others)
 
 
-def as_run(nc: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath] = ()) -> Run:
+def as_run(
+    nc: FilePath | Run,
+    machine: Machine,
+    subprograms: Sequence[FilePath] = (),
+    names: tuple[str, str] = ("nc", "subprograms"),
+) -> Run:
     """The run of a program; one that has already been read must have been read for this machine, set up as it is.
 
     Raises
@@ -149,8 +158,9 @@ def as_run(nc: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath]
         If the file cannot be read, or a run is of another machine, workpiece zero or tool length: its positions were
         computed with those that it has.
     """
+    others = check_paths(names[1], subprograms)
     if not isinstance(nc, Run):
-        return read_program(nc, machine=machine, subprograms=subprograms)
+        return read_program(check_path(names[0], nc), machine=machine, subprograms=others)
     if subprograms:
         raise InputError(Problem(nc.files[0], 0, "has already been read", "give the subprograms to read_program"))
     own = nc.machine
@@ -174,14 +184,9 @@ def _control(machine: Machine) -> dict[str, object]:
     return resolve_extends(machine.control.unread_copy(), control_library()).to_dict()
 
 
-def as_machine(machine: MachineLike) -> Machine:
-    """The machine itself, loaded if it is named."""
-    return machine if isinstance(machine, Machine) else load_machine(machine)
-
-
-def as_paths(files: Sequence[FilePath]) -> list[Path]:
-    """Paths of files."""
-    return [Path(file) for file in files]
+def as_machine(machine: MachineLike, argument: str = "machine") -> Machine:
+    """The machine itself, loaded if it is named; errors name the argument."""
+    return machine if isinstance(machine, Machine) else load_machine(check_path(argument, machine))
 
 
 def as_toolpaths(
@@ -190,7 +195,11 @@ def as_toolpaths(
     """Toolpaths in their order, read if they are named; ``units`` and ``strict`` as ``read_cl`` has them."""
     if isinstance(cl, str | os.PathLike | Toolpath):
         cl = [cl]
+    if isinstance(cl, bytes | Mapping) or not isinstance(cl, Iterable):
+        raise wrong_argument("cl", cl, "give CL files: a path, a Toolpath, or a list of them")
+    check_observer(observer)
+    paths = (each if isinstance(each, Toolpath) else check_path("cl", each) for each in cl)
     return [
         each if isinstance(each, Toolpath) else read_cl(each, units=units, strict=strict, observer=observer)
-        for each in cl
+        for each in paths
     ]

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion import reporting
+from trunnion.api.arguments import check_path, wrong_argument
 from trunnion.api.reading import FilePath
 from trunnion.errors import InputError, Problem
 from trunnion.model.motion import Decision
@@ -15,7 +16,7 @@ _SUFFIXES: Final = (".html", ".json")
 
 def check_report_name(file: FilePath) -> None:
     """Raise ``InputError`` for a report of an unknown form, before any work."""
-    if Path(file).suffix.lower() not in _SUFFIXES:
+    if check_path("report", file).suffix.lower() not in _SUFFIXES:
         cure = f"let its name end in {' or '.join(_SUFFIXES)}"
         raise InputError(Problem(str(file), 0, "a report is a page or data", cure))
 
@@ -37,6 +38,8 @@ def write_report(verification: Verification, file: FilePath, *, decisions: Seque
     InputError
         When the name ends otherwise, the verification has no columns, or the file cannot be written.
     """
+    if not isinstance(verification, Verification):
+        raise wrong_argument("verification", verification, "give the result of trunnion.verify or trunnion.post")
     check_report_name(file)
     if len(verification.seconds) != len(verification.run):
         raise InputError(Problem(str(file), 0, "the verification has no columns", "ask for it with columns=True"))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
+from trunnion.api.arguments import check_stream
 from trunnion.files import OutputFiles, atomic_output
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
@@ -48,6 +49,7 @@ def open_target(place: OutputLike) -> Iterator[Target]:
         with atomic_output(os.fspath(place)) as files:
             yield Target(files, os.fspath(place), Path(place))
     elif place is not None:
+        check_stream("output", place)
         with atomic_output(place) as files:
             yield Target(files)
     else:

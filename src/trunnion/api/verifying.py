@@ -5,11 +5,13 @@ from typing import Literal
 
 from trunnion import readers, verification
 from trunnion.api import kernels
+from trunnion.api.arguments import check_choice, check_observer, check_whole, wrong_argument
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import check_tolerance, m_code, set_up_machine, work_offset_setting
 from trunnion.controls import Control, load_control
+from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
@@ -30,9 +32,9 @@ def verify(
     tolerance: float = 0.001,
     span: float | None = None,
     span_tip: float | None = None,
-    tool: str = "",
+    tool: str | int = "",
     work_offset: str | None = None,
-    edge: int | None = None,
+    edge: int | str | None = None,
     units: str | None = None,
     frame: Literal["first", "absolute"] = "first",
     zero: str | Iterable[float] | None = None,
@@ -98,6 +100,12 @@ def verify(
     >>> found.passed
     True
     """
+    check_observer(observer)
+    check_choice("frame", frame, ("first", "absolute"))
+    if units is not None:
+        check_choice("units", units, ("mm", "inch"))
+    tool = _tool(tool)
+    edge = None if edge is None else check_whole("edge", edge, 1)
     check_tolerance("tolerance", tolerance)
     check_tolerance("span", span, optional=True)
     check_tolerance("span_tip", span_tip, optional=True)
@@ -133,6 +141,14 @@ def verify(
         ),
         columns=columns,
     )
+
+
+def _tool(tool: object) -> str:
+    """The tool that is called in place of the CL file's, as a run names it; empty for none."""
+    text = str(tool).strip('"') if isinstance(tool, str | int) and not isinstance(tool, bool) else None
+    if text is None or tool_number(text) == 0 or text.startswith("-"):
+        raise wrong_argument("tool", tool, "give the number of a tool, such as 5, or its name")
+    return text
 
 
 def default_settings(machine: Machine) -> Mapping[str, str]:

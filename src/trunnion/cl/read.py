@@ -4,7 +4,6 @@ The file is read twice, in pieces: first for its encoding and the length of its 
 sized; then for its content. Points never become Python objects.
 """
 
-import stat
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,6 +19,7 @@ from trunnion.cl.nx import ClsfInterpreter
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.cl.unknown import unknown_statement_problems
 from trunnion.encoding import EncodingDetector
+from trunnion.errors import InputError, unusable_file
 from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time.
@@ -95,10 +95,10 @@ def read_in_chunks(
     diagnostics = Diagnostics(str(path))
     if units is not None and units.lower() not in ("mm", "inch"):
         raise diagnostics.fatal(0, f"units are {units!r}", "units are mm or inch")
+    unusable = unusable_file(path, "a CL file")
+    if unusable:
+        raise InputError(unusable)
     try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            what = "is a folder" if path.is_dir() else "is not a regular file"
-            raise diagnostics.fatal(0, what, "give a CL file")
         with path.open("rb", buffering=0) as file:
             survey = _survey(file, diagnostics)
             columns = MoveColumns.allocate(survey.rows)
@@ -109,8 +109,6 @@ def read_in_chunks(
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
         raise diagnostics.fatal(0, what, "give the name of a file that you may read") from error
-    except ValueError as error:  # a NUL in the name
-        raise diagnostics.fatal(0, f"cannot be read: {error}", "give the name of a CL file") from error
     interpreter.finish(scanner.rows, survey.complete, scanner.line - 1)
     unit = interpreter.unit(units)
     if unit != 1.0:

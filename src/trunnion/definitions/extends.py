@@ -3,7 +3,7 @@
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources.abc import Traversable
 from pathlib import Path, PurePosixPath
 from typing import Final, TypeAlias
@@ -12,7 +12,7 @@ from trunnion.definitions.merging import merge
 from trunnion.definitions.messages import as_written, did_you_mean
 from trunnion.definitions.source_lines import LocatedValue, key_lines, locate_values
 from trunnion.definitions.table import Table
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, unusable_file
 
 #: Larger files are refused unread; real definitions have a few kilobytes.
 MAX_FILE_BYTES: Final = 1_000_000
@@ -40,8 +40,9 @@ def _read(source: _DefinitionFile) -> LocatedValue:
     """Read and parse one file, without following its ``extends``."""
     label = source.label
     try:
-        if not source.location.is_file():
-            raise InputError(Problem(label, 0, "there is no such file", "check the name"))
+        unusable = unusable_file(source.location, "a machine definition") if isinstance(source.location, Path) else None
+        if unusable:
+            raise InputError(replace(unusable, file=label))
         with source.location.open("rb") as stream:
             data = stream.read(MAX_FILE_BYTES + 1)
     except OSError as error:
@@ -167,6 +168,7 @@ def load_table(
     else:
         source = _shipped(text, library)
         if not _NAME.fullmatch(text) or not source.location.is_file():
+            _check_is_name(text, kind)
             names = definition_names(library)
             near = did_you_mean(text, names)
             cure = f"{near} " if near else ""
@@ -177,6 +179,20 @@ def load_table(
     if overrides:
         root = merge(root, locate_values(dict(overrides), "overrides", {}), "", problems)
     return Table(root, "", problems)
+
+
+def _check_is_name(text: str, kind: str) -> None:
+    """Raise ``InputError`` for the path of a folder or of a file of another kind, which is no name."""
+    try:
+        path = Path(text)
+        is_folder, is_file = path.is_dir(), path.is_file()
+    except (OSError, ValueError):
+        return
+    cure = f"give the path of a {kind}'s .toml file, or the name of a shipped {kind}"
+    if is_folder:
+        raise InputError(Problem(text, 0, f"is a folder, not a {kind} definition", cure))
+    if is_file:
+        raise InputError(Problem(text, 0, f"is not a {kind} definition, whose name ends in .toml", cure))
 
 
 def resolve_extends(table: Table, library: Library) -> Table:

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Ints
 from trunnion.encoding import EncodingDetector
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.files import WriteProgress
 
 #: Bytes read at a time.
@@ -48,13 +48,16 @@ class SourceText:
     def __init__(self, path: Path, *, whole: bool = False) -> None:
         self.path = path
         self.name = path.name
+        unusable = unusable_file(path, "an NC program")
+        if unusable:
+            raise InputError(unusable)
         try:
-            if not path.is_file():
-                raise InputError(Problem(str(path), 0, "is not a file"))
             # Stays open while the program is read; the interpreter calls ``close``.
             self._file = path.open("rb", buffering=0)
         except (OSError, ValueError) as error:
-            raise InputError(Problem(str(path), 0, f"cannot be read: {error}")) from None
+            raise InputError(
+                Problem(str(path), 0, f"cannot be read: {error}", "give the path of an NC program")
+            ) from None
         self.whole = False
         self._write_progress: WriteProgress | None = None
         self._size = os.fstat(self._file.fileno()).st_size

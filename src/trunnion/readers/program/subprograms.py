@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, unusable_file
 
 
 class Subprograms:
@@ -22,8 +22,8 @@ class Subprograms:
         found: dict[tuple[str, int], Path] = {}
         for path in files:
             rank = self._rank(path.name.upper())
-            if not _is_file(path):
-                problems.append(Problem(str(path), 0, "is not a file"))
+            if unusable := unusable_file(path, "an NC program"):
+                problems.append(unusable)
             elif rank is None:
                 endings = ", ".join(suffix for suffix in self._suffixes if suffix)
                 problems.append(
@@ -58,10 +58,3 @@ class Subprograms:
         for suffix in self._suffixes:
             stem = stem.removesuffix(suffix)
         return stem.removeprefix(self._prefix)
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError, RuntimeError):  # circular links, names that no system allows
-        return False

@@ -223,9 +223,9 @@ def test_findings_after_a_subprogram_are_those_of_its_caller(run: Runner) -> Non
 @pytest.mark.parametrize(
     ("names", "what"),
     [
-        (["LOOPY.SPF"], "LOOPY.SPF: error: is not a file"),
-        (["NOWHERE.SPF"], "NOWHERE.SPF: error: is not a file"),
-        (["folder"], "folder: error: is not a file"),
+        (["LOOPY.SPF"], "LOOPY.SPF: error: cannot be read"),
+        (["NOWHERE.SPF"], "NOWHERE.SPF: error: file not found"),
+        (["folder"], "folder: error: is a folder, not an NC program"),
         (["notes.txt"], r"notes.txt: error: is not a name of a subprogram; let it end in one of .SPF"),
         (["ONE.SPF", "a/one.spf"], "a/one.spf: error: is called as .*/ONE.SPF is; name one of them"),
     ],

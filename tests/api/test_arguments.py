@@ -1,0 +1,152 @@
+"""Types and values that the library cannot use are errors of the input that name the argument."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import trunnion
+from tests.support.locations import YL569
+
+CL = YL569 / "2_hub_rough.cls"
+PROGRAM = YL569 / "2_hub_rough.expected.mpf"
+
+POST: dict[str, Any] = {"cl": CL, "machine": "yl569"}
+VERIFY: dict[str, Any] = {"nc": PROGRAM, "machine": "yl569"}
+CONVERT: dict[str, Any] = {"nc": PROGRAM, "machine": "yl569", "to_cl": True}
+DIFF: dict[str, Any] = {"first": PROGRAM, "second": PROGRAM, "machine": "yl569"}
+
+#: A function, its good arguments, and bad values of some of them.
+WRONG: list[tuple[Callable[..., Any], dict[str, Any], dict[str, list[Any]]]] = [
+    (trunnion.read_cl, {"path": CL}, {"path": [None, 5, b"x", ""], "units": ["foo"], "observer": [None]}),
+    (trunnion.load_machine, {"machine": "yl569"}, {"machine": [None, 5, b"yl569", ""]}),
+    (
+        trunnion.plan,
+        POST,
+        {"cl": [None, 5, b"x", [None], [CL, 5]], "machine": [None, 5], "settings": ["title=A"], "observer": [None]},
+    ),
+    (
+        trunnion.post,
+        POST,
+        {
+            "cl": [None, 5, b"x", [None], {"a": 1}.values()],
+            "machine": [None, 5],
+            "settings": ["title=A", ["a"], {5: "x"}, {"title": b"x"}, {"zero": ("a", 2, 3)}, {"tolerance": True}],
+            "output": [io.StringIO(), 3, object()],
+            "report": [5, b"r.html"],
+            "observer": [None, print],
+        },
+    ),
+    (trunnion.read_program, VERIFY, {"nc": [None, 5], "machine": [None], "subprograms": ["abc", None, 5, [None]]}),
+    (
+        trunnion.verify,
+        VERIFY,
+        {
+            "nc": [None, 5],
+            "cl": [None, 5, [5]],
+            "machine": [5],
+            "subprograms": ["abc", PROGRAM],
+            "tolerance": [None, "0.001", "a", 0.0, -1.0, float("nan"), True],
+            "span": ["0.1", 0.0],
+            "span_tip": ["a"],
+            "tool": [[], 0, -1],
+            "work_offset": [54, "G99", ""],
+            "edge": ["x", 0, 1.5, True, ""],
+            "units": ["foo"],
+            "frame": ["foo", None],
+            "zero": [("a", 2, 3), 5, (1, 2)],
+            "tool_length": ["a", -1],
+            "observer": [None],
+        },
+    ),
+    (
+        trunnion.convert,
+        CONVERT,
+        {
+            "nc": [None, 5],
+            "machine": [None],
+            "output": [io.StringIO(), 3],
+            "subprograms": ["abc"],
+            "zero": [("a", 2, 3)],
+            "tool_length": ["a"],
+            "settings": ["title=A"],
+            "observer": [None],
+        },
+    ),
+    (
+        trunnion.diff,
+        DIFF,
+        {"first": [None, 5], "second": [None], "machine": [None], "to_machine": [5], "tolerance": [None, "a"],
+         "subprograms": ["abc"], "to_subprograms": ["abc"]},
+    ),
+    (trunnion.write_report, {"verification": None, "file": "r.html"}, {"verification": [None, 5]}),
+]  # fmt: skip
+
+CASES = [
+    (function, arguments, name, value)
+    for function, arguments, wrong in WRONG
+    for name, values in wrong.items()
+    for value in values
+]
+
+#: What the machine's setup is checked with stands in settings.
+PLACES = {"zero": "settings", "tool_length": "settings"}
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "name", "value"), CASES, ids=lambda value: getattr(value, "__name__", repr(value)[:30])
+)
+def test_a_wrong_argument_is_named(
+    function: Callable[..., Any], arguments: dict[str, Any], name: str, value: Any, tmp_path: Path
+) -> None:
+    with pytest.raises(trunnion.InputError) as raised:
+        function(**{**arguments, name: value})
+    assert {problem.file for problem in raised.value.problems} <= {name, PLACES.get(name, name)}
+    assert all(problem.cure for problem in raised.value.problems)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "passed"),
+    [({"tool": 2}, False), ({"edge": "1", "cl": CL}, True), ({"tolerance": 1}, True), ({"frame": "absolute"}, True)],
+)
+def test_values_that_mean_the_same_are_taken(arguments: dict[str, Any], passed: bool) -> None:
+    found = trunnion.verify(**{**VERIFY, "cl": CL, **arguments}, columns=False)
+    assert found.passed is passed
+    assert passed or any("2" in check.summary for check in found.checks if not check.passed)
+
+
+def test_a_switch_may_be_true_or_false() -> None:
+    planned = trunnion.plan(CL, machine="yl569", settings={"tcp": True, "numbers": False, "lower_feed": False})
+    assert planned.motions
+    with pytest.raises(trunnion.InputError, match="tool_length=MM"):
+        trunnion.plan(CL, machine="yl569", settings={"tool_length": "x", "tcp": False})
+
+
+@pytest.mark.parametrize(
+    ("call", "what"),
+    [
+        (lambda path: trunnion.read_cl(path), "a CL file"),
+        (lambda path: trunnion.post(path, machine="yl569"), "a CL file"),
+        (lambda path: trunnion.read_program(path, machine="yl569"), "an NC program"),
+        (lambda path: trunnion.verify(path, machine="yl569"), "an NC program"),
+        (lambda path: trunnion.verify(PROGRAM, machine="yl569", cl=path), "a CL file"),
+        (lambda path: trunnion.convert(path, machine="yl569", to_cl=True), "an NC program"),
+        (lambda path: trunnion.diff(path, PROGRAM, machine="yl569"), "an NC program"),
+        (lambda path: trunnion.diff(PROGRAM, path, machine="yl569"), "an NC program"),
+        (lambda path: trunnion.read_program(PROGRAM, machine="yl569", subprograms=[path]), "an NC program"),
+        (lambda path: trunnion.load_machine(path), "a machine definition"),
+    ],
+)
+def test_a_file_that_is_not_there_and_a_folder_are_told_alike(
+    call: Callable[[Path], Any], what: str, tmp_path: Path
+) -> None:
+    missing, folder = tmp_path / "missing.toml", tmp_path / "folder"
+    folder.mkdir()
+    for path, words in ((missing, "file not found"), (folder, f"is a folder, not {what}")):
+        with pytest.raises(trunnion.InputError) as raised:
+            call(path)
+        (problem,) = raised.value.problems
+        assert (problem.file, problem.what) == (str(path), words)
+        assert problem.cure
