@@ -134,7 +134,13 @@ def prepare(
 
 
 def parse_plan_options(settings: Mapping[str, str], control: Control, explain: bool = False) -> PlanOptions:
-    """The options of the planner, of settings that ``check_settings`` has checked."""
+    """The options of the planner, of settings that ``check_settings`` has checked.
+
+    Raises
+    ------
+    InputError
+        If a number is none or out of range, or the settings contradict the control or each other.
+    """
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:
         raise InputError(argument_problem("settings", "tcp is on, and the machine's control has none", "write tcp=off"))

@@ -79,7 +79,13 @@ def plan(
 def load_toolpaths(
     cl: ToolpathLike | Iterable[ToolpathLike], job: PostJob, strict: bool, observer: Observer
 ) -> list[Toolpath]:
-    """The toolpaths of a post, with surface normals if the program has them; their remarks are reported."""
+    """The toolpaths of a post, with surface normals if the program has them; their remarks are reported.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, or there is none.
+    """
     toolpaths = as_toolpaths(cl, job.settings.get("units"), strict, observer)
     toolpaths = replace_unknown_statements(toolpaths, job.control.statements)
     if not toolpaths:
@@ -131,9 +137,10 @@ def plan_program(
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
     problems = [*merge_repeated(check_program(program))]
-    if any(problem.severity is Severity.ERROR for problem in problems):
-        raise InputError(problems)
-    observer.problems(problems)
+    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    observer.problems([problem for problem in problems if problem not in errors])
+    if errors:
+        raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
     unproven = _missing_reader(job)
     found = [*merge_repeated(planned.problems), *insert_problems(program)]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven

@@ -169,7 +169,7 @@ def _nothing_checked(job: PostJob, target: Target) -> Problem:
 
 def _proof_failed(result: PostResult) -> ProofFailedError:
     """The error for a program that fails its proof."""
-    failed = ", ".join(check.key for check in result.checks if not check.passed)
-    what = f"the program does not do what this file asks for: {failed}"
+    failed = "; ".join(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
+    what = f"the program fails its proof: {failed}"
     problem = Problem(result.toolpaths[0].file, 0, what, "no program is written; force=True writes it")
     return ProofFailedError(problem, result)

@@ -265,7 +265,7 @@ def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_le
 
 
 def check_tolerance(argument: str, value: object, *, optional: bool = False) -> None:
-    """Raise ``InputError`` for a tolerance that is no number above 0; None is one only if it is optional."""
+    """Raise ``InputError`` for a tolerance, mm or degrees, that is no number above 0; an optional one may be None."""
     if value is None and optional:
         return
     is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)

@@ -37,6 +37,11 @@ def forward(machine: Machine, joints: Floats, tool_length: float | None = None) 
     axis : (n, 3) float64
         Unit vectors from tip to holder, in workpiece coordinates.
 
+    Raises
+    ------
+    ValueError
+        If ``joints`` has another shape.
+
     Notes
     -----
     Product of exponentials: with all axes at zero the workpiece frame lies on the machine frame, and each joint moves

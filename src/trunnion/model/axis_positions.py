@@ -123,7 +123,11 @@ def resolve_angles(
 def joints_from_rows(
     machine: Machine, kinematics: KinematicParameters, xyz_is_tip: Flags, xyz: Floats, rotary: Floats
 ) -> Floats:
-    """Return all five axis values, (n, 5), of rows whose ``xyz`` is the tip or the slide positions.
+    """Return all five axis values, (n, 5), mm and degrees, in the order of ``machine.axes``.
+
+    xyz_is_tip  (n,) bool     ``xyz`` is the tool tip in the workpiece frame, not the positions of the slides X, Y and Z
+    xyz         (n, 3)        mm
+    rotary      (n, 2)        positions with all their turns, degrees, in the order of ``machine.rotary``
 
     Slides that cannot bring the tip there are NaN.
     """
@@ -142,6 +146,9 @@ def slide_columns(machine: Machine) -> list[int]:
 def resolve_turns(rotary: Floats2, turn_rule: Codes, start: Floats, turn_start: Floats) -> None:
     """Replace the values of ``rotary`` (n, 2), NaN where none is programmed, by the positions that the axes take.
 
+    All angles are in degrees, in the order of ``machine.rotary``.
+
+    turn_rule   (n,) uint8    see the module
     start       (2,) float64  positions before the first row
     turn_start  (2,) float64  where the displayed turn of an axis begins, 0 or -180
     """
@@ -258,7 +265,7 @@ def rotary_position(current: float, value: float, turn_rule: int, turn_start: fl
 
 @inner
 def nearest_turn(current: float, value: float, endless: bool, low: float, high: float) -> float:
-    """Return ``value`` plus the whole turns that bring it nearest to ``current``, within the travel if possible."""
+    """Return ``value``, degrees, plus the turns that bring it nearest to ``current``, within the travel if possible."""
     close = value + 360.0 * math.floor((current - value) / 360.0 + 0.5)
     if endless or low <= close <= high:
         return close

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from trunnion.arrays import Floats
-from trunnion.errors import Problem
+from trunnion.errors import Problem, Severity
 from trunnion.model.arcs import with_closed_turns
 from trunnion.model.deviations import Deviations
 from trunnion.model.frames import into_plane
@@ -113,3 +113,8 @@ class Plan:
     motions: tuple[Motion, ...]
     problems: tuple[Problem, ...]
     decisions: tuple[Decision, ...] = ()
+
+    def __repr__(self) -> str:
+        """Return what matters in a notebook: the columns would fill pages."""
+        errors = sum(problem.severity is Severity.ERROR for problem in self.problems)
+        return f"Plan({len(self.motions)} motions, {errors} errors, {len(self.problems) - errors} warnings)"

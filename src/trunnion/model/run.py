@@ -239,6 +239,11 @@ class Run:
     def __len__(self) -> int:
         return len(self.kind)
 
+    def __repr__(self) -> str:
+        """Return what matters in a notebook: the columns would fill pages."""
+        name = self.files[0] if self.files else ""
+        return f"Run({name!r}, {self.machine.key}, {len(self)} motions, {len(self.diagnostics)} diagnostics)"
+
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
         """The diagnostics that put the columns in doubt: words that are unknown or not executed."""
@@ -299,22 +304,27 @@ class Run:
 
     @cached_property
     def line(self) -> Lines:
+        """Line of the file of each row, from 1, (n,)."""
         return self.lines.column(np.int32)
 
     @cached_property
     def block_number(self) -> Ints:
+        """N number of each block, (n,), -1 where it has none."""
         return self.block_numbers.column(np.int64)
 
     @cached_property
     def tip(self) -> Floats:
+        """Tool tip at the end of each row, (n, 3), mm, workpiece frame."""
         return self._compute_column("tip", 3)
 
     @cached_property
     def axis(self) -> Floats:
+        """Unit vectors from tip to holder, (n, 3), workpiece frame."""
         return self._compute_column("axis", 3)
 
     @cached_property
     def joints(self) -> Floats:
+        """Axis values as displayed, (n, 5), mm or degrees, machine order; rotary values with all turns."""
         return self._compute_column("joints", 5)
 
     def _compute_column(self, name: str, width: int) -> Floats:
@@ -326,54 +336,67 @@ class Run:
 
     @cached_property
     def orientation(self) -> Codes:
+        """How the tool axis moves to each row, (n,): an ``Orientation``."""
         column = self.orientation_between(0, len(self))
         column.setflags(write=False)
         return column
 
     @cached_property
     def file(self) -> NDArray[np.uint16]:
+        """Index of each row's file in ``files``, (n,)."""
         return self.state.file.column()
 
     @cached_property
     def feed(self) -> Floats:
+        """Programmed feed, (n,), in the unit of ``feed_mode``; NaN before the first F."""
         return self.state.feed.column()
 
     @cached_property
     def feed_mode(self) -> Codes:
+        """Unit of the feed, (n,): 94 mm/min, 95 mm/rev, 93 1/min."""
         return self.state.feed_mode.column()
 
     @cached_property
     def rpm(self) -> Floats:
+        """Programmed spindle speed, (n,), rev/min; 0 before the first S."""
         return self.state.rpm.column()
 
     @cached_property
     def spindle(self) -> NDArray[np.int8]:
+        """Sense of the spindle, (n,): 1 M3, -1 M4, 0 off."""
         return self.state.spindle.column()
 
     @cached_property
     def tool(self) -> Lines:
+        """Index of the tool in ``tools``, (n,); 0 before the first."""
         return self.state.tool.column()
 
     @cached_property
     def edge(self) -> Lines:
+        """D number, (n,), or H of the active length; -1 for none."""
         return self.state.edge.column()
 
     @cached_property
     def compensation(self) -> NDArray[np.int8]:
+        """Cutter radius compensation, (n,): 1 left (G41), -1 right (G42), 0 off."""
         return self.state.compensation.column()
 
     @cached_property
     def work_offset(self) -> NDArray[np.uint16]:
+        """Work offset, (n,), 0 before the first; ``work_offset_name`` tells its name."""
         return self.state.work_offset.column()
 
     @cached_property
     def tcp(self) -> Flags:
+        """Whether tool centre point control is on, (n,)."""
         return self.state.tcp.column()
 
     @cached_property
     def machine_frame(self) -> Flags:
+        """Whether the block programs positions of the machine axes, (n,)."""
         return self.state.machine_frame.column()
 
     @cached_property
     def inches(self) -> Flags:
+        """Whether lengths are programmed in inches, (n,); the columns are in mm."""
         return self.state.inches.column()

@@ -323,3 +323,8 @@ class Toolpath:
     part: str = ""
     remarks: tuple[Problem, ...] = field(default=())
     unit: float = 1.0
+
+    def __repr__(self) -> str:
+        """Return what matters in a notebook: the columns would fill pages."""
+        points = sum(len(operation.moves) for operation in self.operations)
+        return f"Toolpath({self.file!r}, {len(self.operations)} operations, {points} points)"

@@ -97,6 +97,12 @@ class Verification:
         """Whether all checks passed."""
         return all(check.passed for check in self.checks)
 
+    def __repr__(self) -> str:
+        """Return what matters in a notebook: the columns would fill pages."""
+        failed = ", ".join(check.key for check in self.checks if not check.passed)
+        result = f"failed: {failed}" if failed else f"{len(self.checks)} checks"
+        return f"Verification(passed={self.passed}, {result}, {len(self.run)} motions)"
+
 
 def without_columns(verification: Verification) -> Verification:
     """Return a verification as if its columns had not been asked for."""

@@ -41,6 +41,11 @@ def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float | No
     tool_length
         From the gauge point to the tip, mm; None: that of ``machine.tool_length``.
 
+    Raises
+    ------
+    ValueError
+        If ``tip`` and ``axis`` have other shapes.
+
     Notes
     -----
     The formula is in the docstring of ``trunnion.machines.inverse``.

@@ -8,7 +8,13 @@ from trunnion.wording import counted
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One difference: the blocks of both programs, its size (mm, or 0), and a description."""
+    """One difference between two programs.
+
+    one, two  the blocks of both programs
+    value     its size, by which the worst one is found: millimetres between tips plus degrees between tool axes; 0
+              where only words differ
+    text      what it is
+    """
 
     one: str
     two: str

@@ -14,7 +14,12 @@ from trunnion.verification.expected.path import ExpectedPath
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arc:
-    """One circle or helix from ``start`` to ``end``; rounding in the file is spread evenly along it."""
+    """One circle or helix; rounding in the file is spread evenly along it.
+
+    start, end, centre  (3,) mm, program's coordinate system
+    normal              (3,) unit vector: the tool goes right-handed about it
+    sweep               radians, with whole turns
+    """
 
     start: Floats
     end: Floats
@@ -24,13 +29,13 @@ class Arc:
 
     @property
     def radial(self) -> Floats:
-        """From the axis to the start, (3,)."""
+        """From the axis to the start, (3,) mm."""
         arm = self.start - self.centre
         return np.asarray(arm - (arm @ self.normal) * self.normal)
 
     @property
     def radius(self) -> float:
-        """Distance of the start from the axis."""
+        """Distance of the start from the axis, mm."""
         return float(np.linalg.norm(self.radial))
 
     @property
@@ -46,7 +51,7 @@ class Arc:
         return float(np.linalg.norm(off - (off @ self.normal) * self.normal))
 
     def fractions(self, points: Floats) -> Floats:
-        """Fractions of the arc at which points near it lie; the points are in order, (k,)."""
+        """Fractions of the arc, (k,), at which points near it lie, (k, 3) mm; the points are in order."""
         arm = points - self.centre
         across = np.cross(self.normal, self.radial)
         angle = np.unwrap(np.concatenate(([0.0], np.arctan2(arm @ across, arm @ self.radial))))[1:]
@@ -55,7 +60,7 @@ class Arc:
         return np.asarray(angle / self.sweep)
 
     def at(self, fraction: Floats) -> Floats:
-        """Points at fractions of the arc, (k, 3)."""
+        """Points at fractions of the arc, (k, 3) mm."""
         angle = (fraction * self.sweep)[:, None]
         radial, across = self.radial, np.cross(self.normal, self.radial)
         height = self.start - self.centre - radial

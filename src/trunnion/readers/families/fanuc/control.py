@@ -76,7 +76,7 @@ class FanucControl(Rs274Control):
         return self._offset_values.get(system, self.zero)
 
     def set_values(self, system: int, values: Floats) -> None:
-        """Set a work offset."""
+        """Set a work offset, 1 for G54: its slides (3,), mm, machine frame."""
         self._offset_values[system] = values
         self.update_frame()
 
@@ -94,13 +94,13 @@ class FanucControl(Rs274Control):
             self.set_program_frame(base.compose(self.rotation), keep_base=False)
 
     def rotate(self, centre: Floats, direction: Floats, angle: float) -> None:
-        """G68: rotate about an axis through a point (both (3,), programmed), on top of a G68 in force."""
+        """G68: rotate by an angle, degrees, about an axis through a point, mm, both (3,), on top of a G68 in force."""
         linear = _rotation(direction, angle)
         self.rotation = self.rotation.compose(AffineMap(linear, centre - linear @ centre))
         self.update_frame()
 
     def tilt(self, origin: Floats, euler: tuple[float, float, float]) -> None:
-        """G68.2: tilt the plane by its origin and Euler angles Z, X, Z, in the work offset; the axes stay."""
+        """G68.2: tilt the plane by its origin (3,), mm, and Euler angles Z, X, Z, degrees, in the work offset."""
         if self.tilted:
             self.note("G68.2 while a plane is tilted: the old one is given up", Severity.WARNING)
         first, second, third = euler

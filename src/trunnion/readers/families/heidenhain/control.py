@@ -83,7 +83,7 @@ class HeidenhainControl(PlaneControl):
     # Directions
 
     def end_direction(self) -> Floats | None:
-        """Return the direction of the last motion at its end, programmed, (3,) of any length; None without a motion."""
+        """Return the direction of the last motion at its end, (3,) of any length, as programmed; None before one."""
         if not self.row:
             return None
         to_programmed = np.linalg.inv(self.position_map[:, :3])

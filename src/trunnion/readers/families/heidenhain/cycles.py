@@ -23,6 +23,8 @@ _LIFT_DIRECTIONS: Final = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.
 class Hole:
     """The values of a cycle: Q parameters by number, and heights that all cycles have.
 
+    Heights are coordinates along the tool axis, mm; depths count from the surface, mm, with the sign of Q201.
+
     sign     -1 if drilling goes to lower values
     start    height of the set-up clearance
     back     height of the second set-up clearance if it is higher, else of the first

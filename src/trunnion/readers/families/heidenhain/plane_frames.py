@@ -45,12 +45,12 @@ class Datum:
 
 
 def spatial(a: float, b: float, c: float) -> Floats:
-    """Return the plane of spatial angles, about the fixed axes X, Y and Z in this order, (3, 3)."""
+    """Return the plane of spatial angles, degrees, about the fixed X, Y, Z in this order: (3, 3), axes as columns."""
     return rotation_matrix(2, c) @ rotation_matrix(1, b) @ rotation_matrix(0, a)
 
 
 def euler(precession: float, nutation: float, rotation: float) -> Floats:
-    """Return the plane of Euler angles, about Z, the new X and the new Z, (3, 3)."""
+    """Return the plane of Euler angles, about Z, the new X and the new Z, degrees: (3, 3), its axes as columns."""
     return rotation_matrix(2, precession) @ rotation_matrix(0, nutation) @ rotation_matrix(2, rotation)
 
 
