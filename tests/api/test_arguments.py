@@ -1,6 +1,8 @@
 """Types and values that the library cannot use are errors of the input that name the argument."""
 
+import ast
 import io
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -8,7 +10,9 @@ from typing import Any
 import pytest
 
 import trunnion
-from tests.support.locations import YL569
+from tests.support.locations import ROOT, YL569
+from trunnion.cli.wording import problem_line
+from trunnion.errors import argument_problem
 
 CL = YL569 / "2_hub_rough.cls"
 PROGRAM = YL569 / "2_hub_rough.expected.mpf"
@@ -109,12 +113,18 @@ def test_a_wrong_argument_is_named(
 
 @pytest.mark.parametrize(
     ("arguments", "passed"),
-    [({"tool": 2}, False), ({"edge": "1", "cl": CL}, True), ({"tolerance": 1}, True), ({"frame": "absolute"}, True)],
+    [
+        ({"tool": 2}, True),
+        ({"tool": "3"}, False),
+        ({"edge": "1", "cl": CL}, True),
+        ({"tolerance": 1}, True),
+        ({"frame": "absolute"}, True),
+    ],
 )
 def test_values_that_mean_the_same_are_taken(arguments: dict[str, Any], passed: bool) -> None:
     found = trunnion.verify(**{**VERIFY, "cl": CL, **arguments}, columns=False)
     assert found.passed is passed
-    assert passed or any("2" in check.summary for check in found.checks if not check.passed)
+    assert passed or any("3" in check.summary for check in found.checks if not check.passed)
 
 
 def test_a_switch_may_be_true_or_false() -> None:
@@ -150,3 +160,33 @@ def test_a_file_that_is_not_there_and_a_folder_are_told_alike(
         (problem,) = raised.value.problems
         assert (problem.file, problem.what) == (str(path), words)
         assert problem.cure
+
+
+#: Options of the command line. Programs and CL files name those that they were written with.
+_OPTION = re.compile(r"--[a-z]{3,}")
+
+
+@pytest.mark.parametrize("module", sorted((ROOT / "src" / "trunnion").rglob("*.py")), ids=lambda path: path.stem)
+def test_only_the_command_line_names_its_options(module: Path) -> None:
+    if "cli" in module.parts:
+        return
+    tree = ast.parse(module.read_text(encoding="utf-8"))
+    documents = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    texts = [
+        node.value
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in documents
+    ]
+    assert [
+        text for text in texts if _OPTION.search(text) and text != "--set " and "written by --force" not in text
+    ] == []
+
+
+def test_the_command_line_puts_its_options_in_place_of_arguments() -> None:
+    for problem, line in (
+        (argument_problem("work_offset", "is 'x'", "write G54"), "--offset: error: is 'x'; write G54"),
+        (argument_problem("tool_length", "is 'x'"), "--tool-length: error: is 'x'"),
+        (trunnion.Problem("a.cls", 3, "b", "setting mode=… sets it"), "a.cls:3: error: b; --set mode=… sets it"),
+        (trunnion.Problem("a.cls", 0, "b", "force=True writes it"), "a.cls: error: b; --force writes it"),
+    ):
+        assert problem_line(problem) == line

@@ -163,7 +163,7 @@ def test_subprograms_are_named_and_need_a_folder(tmp_path: Path) -> None:
         file.is_file() for file in result.subprograms
     )
     assert len(result.subprograms) == 2
-    with pytest.raises(trunnion.InputError, match="stdout takes one file"):
+    with pytest.raises(trunnion.InputError, match="several files needs a place"):
         trunnion.post([HUB, CL], machine="yl569", settings=settings)
 
 

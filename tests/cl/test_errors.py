@@ -87,7 +87,7 @@ def test_many_bad_vectors_are_listed_up_to_the_cap(body_fails: Fail) -> None:
 
 def test_both_units_cure_names_the_setting(body_fails: Fail) -> None:
     (problem,) = body_fails("FEDRAT/MMPM,1", "FEDRAT/IPM,1", GO)
-    assert "--set units=" in problem.cure
+    assert "setting units=" in problem.cure
 
 
 @pytest.mark.parametrize(

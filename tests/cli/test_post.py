@@ -193,9 +193,9 @@ def test_several_cl_files_become_one_program_in_one_file(tmp_path: Path, capfd: 
         (["--set", "titel=x"], "titel is not a setting"),
         (["--set", "units=feet"], "units is 'feet'"),
         (["--set", "zero=1,2"], "zero is '1,2'"),
-        (["--set", "title=a\nM30"], "line break"),
+        (["--set", "title=a\nM30"], "write a text of one line"),
         (["--set", "edge=x"], "edge is 'x'"),
-        (["--set", "stock=thick"], "setting stock is 'thick'"),
+        (["--set", "stock=thick"], "stock is 'thick'"),
     ],
 )
 def test_a_setting_that_makes_no_sense_is_named(

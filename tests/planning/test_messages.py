@@ -79,7 +79,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
     "a rewind that is forbidden": (
         CA, operation_of(round_part()), PlanOptions(allow_rewinds=False),
         r"part.cls:\d\d+: error: axis C would go to 36\d\.\d+, above its limit 360 degrees in the cut",
-        r"allow rewinds \(--set rewind=insert\), split the operation, or turn the workpiece",
+        r"allow rewinds \(setting rewind=insert\), split the operation, or turn the workpiece",
     ),
     "a turn over within one step": (
         with_limits(BC, C=(-80, 80), B=(-110, 110)),
@@ -91,7 +91,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
         CA, operation_of(replace(winding(89.5, 100.0, 1100.0), tip=40.0 * winding(89.5, 100.0, 1100.0).axis)),
         PlanOptions(clearance=Clearance(90.0, ClearanceSurface.PLANE)),
         r"part.cls:\d+: error: the tool must rewind here, and its axis does not lead to the clearance plane:90",
-        "--set clearance=MM draws back by a distance",
+        "setting clearance=MM draws back by a distance",
     ),
     "a rewind under radius compensation": (
         CA, replace(operation_of(round_part()), events=(CutterComp(3, 13, "LEFT"),)), None,
@@ -108,7 +108,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
         roomy("generic_head_head_ca"), operation_of(two_points((0.3, 0.0), (0.3, 150.0))),
         PlanOptions(tcp=False, axis_tolerance=0.001),
         "part.cls:11: error: in this step of the cut the tool axis leaves its path by more than 0.001 degrees",
-        "--set axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other",
+        "setting axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other",
     ),
     "a plane whose axis changes": (
         BC, operation_of(two_points((10.0, 0.0), (20.0, 0.0))), PlanOptions(mode=MachiningMode.TILTED),
@@ -118,7 +118,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
     "without TCP and a place": (
         replace(roomy("yl569"), workpiece_zero=None), operation_of(two_points((10.0, 0.0), (20.0, 0.0))), OFF,
         "part.cls:1: error: without TCP the program holds positions of the slides, and the workpiece zero on the",
-        "write --set zero=X,Y,Z",
+        "write setting zero=X,Y,Z",
     ),
 }  # fmt: skip
 

@@ -234,7 +234,7 @@ def test_by_default_nothing_changes_and_the_log_names_place_axis_and_cure() -> N
     said = [decision for decision in found.decisions if decision.topic is DecisionTopic.SPEED]
     assert len(said) == 1
     assert "axis C would need" in said[0].text
-    assert "--set pole=lean --set pole_angle=0.08 would do" in said[0].text
+    assert "setting pole=lean setting pole_angle=0.08 would do" in said[0].text
     assert 10 + 190 < said[0].line < 10 + 210
 
 
@@ -242,7 +242,7 @@ def test_an_unsolved_region_is_a_warning_with_a_sufficient_angle() -> None:
     found = planned(straight_past(0.2), pole_strategy=PoleStrategy.LEAN, pole_angle=0.1)
     assert [str(p.severity) for p in found.problems] == ["warning"]
     assert "no lean of the tool axis by up to 0.1 degrees" in found.problems[0].what
-    assert found.problems[0].cure == "--set pole=lean --set pole_angle=0.2 would do, or --set lower_feed=yes"
+    assert found.problems[0].cure == "setting pole=lean setting pole_angle=0.2 would do, or setting lower_feed=yes"
     enough = planned(straight_past(0.2), pole_strategy=PoleStrategy.LEAN, pole_angle=0.2)
     assert enough.problems == ()
     assert [d.topic for d in enough.decisions if d.topic in (DecisionTopic.SPEED, DecisionTopic.POLE)][

@@ -110,7 +110,7 @@ def test_without_rewinds_the_program_is_refused_with_line_axis_value_and_limit()
     assert problem.line > 10
     assert "axis C would go to 36" in problem.what
     assert "above its limit 360 degrees in the cut" in problem.what
-    assert "--set rewind=insert" in problem.cure
+    assert "setting rewind=insert" in problem.cure
 
 
 def test_with_a_known_workpiece_zero_a_retract_keeps_the_limits_of_the_slides() -> None:
@@ -120,7 +120,7 @@ def test_with_a_known_workpiece_zero_a_retract_keeps_the_limits_of_the_slides() 
     errors = [p for p in found if p.severity is Severity.ERROR]
     assert len(errors) == 1
     assert "on the retract for a rewind axis" in errors[0].what
-    assert "--set clearance=MM" in errors[0].cure
+    assert "setting clearance=MM" in errors[0].cure
 
 
 def test_without_a_workpiece_zero_a_retract_needs_travel_too() -> None:

@@ -63,7 +63,7 @@ def test_rewinds_can_be_forbidden_without_tcp_too() -> None:
     (problem,) = done.plan.problems
     assert problem.severity is Severity.ERROR
     assert "axis C would go to 36" in problem.what
-    assert "--set rewind=insert" in problem.cure
+    assert "setting rewind=insert" in problem.cure
     assert not any(isinstance(e, Message) for e in done.plan.motions[0].operation.events)
 
 
@@ -72,7 +72,7 @@ def test_a_retract_beyond_the_limits_of_slides_is_refused_once_with_its_remedy()
     errors = [p for p in posted(round_part(), near).plan.problems if p.severity is Severity.ERROR]
     assert len(errors) == 1
     assert "on the retract for a rewind axis Y would go to" in errors[0].what
-    assert "--set clearance=MM" in errors[0].cure
+    assert "setting clearance=MM" in errors[0].cure
 
 
 def straight_turn(lines: list[str], first: int, last: int) -> list[str]:

@@ -162,7 +162,7 @@ def _prove(
 
 def _nothing_checked(job: PostJob, target: Target) -> Problem:
     """The warning of a forced program that no reader can read."""
-    what = "it is written by --force, and nothing has been checked"
+    what = "it is written by force, and nothing has been checked"
     lost = "" if job.report is None else ": there is no report"
     return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING)
 

@@ -106,13 +106,13 @@ class ClsfInterpreter:
             self._diagnostics.error(
                 max(mm, inch),
                 f"feeds in mm (line {mm}) and in inches (line {inch}), and no UNITS",
-                "give the unit of lengths with --set units=mm or --set units=inch",
+                "give the unit of lengths with setting units=mm or setting units=inch",
             )
         if inch and not mm:
             self._diagnostics.remark(
                 inch,
                 "all feeds are in inches, so lengths are taken as inches too",
-                "if they are not, write --set units=mm",
+                "if they are not, write setting units=mm",
             )
             return MM_PER_INCH
         return 1.0

@@ -10,8 +10,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from trunnion.cli.wording import error_lines
-from trunnion.errors import InputError, RefusedError
+from trunnion.errors import RefusedError, TrunnionError
 
 
 def configure_process() -> None:
@@ -54,12 +53,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = parse_arguments(sys.argv[1:] if argv is None else argv)
     try:
         code: int = arguments.run(arguments)
-    except RefusedError as refused:
-        print(error_lines(refused), file=sys.stderr)
-        return 1
-    except InputError as error:
+    except TrunnionError as error:
+        from trunnion.cli.wording import error_lines
+
         print(error_lines(error), file=sys.stderr)
-        return 2
+        return 1 if isinstance(error, RefusedError) else 2
     except BrokenPipeError:  # whatever reads the output has closed the pipe
         return 2
     except KeyboardInterrupt:

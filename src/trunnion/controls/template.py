@@ -66,5 +66,5 @@ class Template:
             return float(value)  # type: ignore[arg-type]  # lines with None are left out
         except ValueError:
             raise InputError(
-                Problem(self.file, self.line, f"setting {name} is {value!r}", f"write a number: --set {name}=0.5")
+                Problem(self.file, self.line, f"setting {name} is {value!r}", f"write a number: setting {name}=0.5")
             ) from None

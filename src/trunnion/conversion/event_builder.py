@@ -159,7 +159,7 @@ class EventBuilder:
                 else:
                     yield Insert(row, line, f"{event.kind.upper()}{value:g}")
             case "cycle832":
-                self._warn(line, "CYCLE832 is not carried over", "see --set cycle832=… and tolerance=…")
+                self._warn(line, "CYCLE832 is not carried over", "see setting cycle832=… and tolerance=…")
 
 
 def _switches_off(event: Event) -> bool:

@@ -37,7 +37,7 @@ def settings_from_headers(
         for name, value in _header_settings(control, values).items():
             if merged.setdefault(name, value) != value:
                 what = f"{name} is {value!r} here and {merged[name]!r} before; one program has one"
-                warn(line, what, f"the first is taken; see --set {name}=…")
+                warn(line, what, f"the first is taken; see setting {name}=…")
     return {name: value for name, value in merged.items() if value and not _equal_values(value, control.settings[name])}
 
 

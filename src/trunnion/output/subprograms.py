@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import BinaryIO, Final
 
 from trunnion.controls.definition import SubprogramNaming
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, argument_problem
 
 #: Bytes of a file that are reserved for the end of an operation.
 END_RESERVE_BYTES: Final = 4096
@@ -77,7 +77,7 @@ class SubprogramNames:
         name = next(free, "")
         if not name:
             raise InputError(
-                Problem("--set", 0, f"no program numbers are left from {first:04d} on", "write programs=one")
+                argument_problem("settings", f"no program numbers are left from {first:04d} on", "write programs=one")
             )
         self._taken.add(name)
         return name

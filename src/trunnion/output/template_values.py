@@ -202,7 +202,7 @@ class TemplateValues:
         if loads:
             return self._family.tool_call(loads[-1].number, "", by_name=False)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
-        raise InputError(Problem(self._program.file, operation.line, what, "write --set tool=NUMBER"))
+        raise InputError(Problem(self._program.file, operation.line, what, "write setting tool=NUMBER"))
 
     def _tool_setting(self, text: str) -> str:
         """The tool of the run's setting: a number as it is written, a name as the control takes names."""

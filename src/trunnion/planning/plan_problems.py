@@ -48,10 +48,10 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
             continue
         if not math.isfinite(rewind.retract_distance):
             what = f"the tool must rewind here, and its axis does not lead to the clearance {options.clearance}"
-            yield Problem(chosen.file, line, what, "--set clearance=MM draws back by a distance")
+            yield Problem(chosen.file, line, what, "setting clearance=MM draws back by a distance")
             continue
         what = f"the tool draws back {rewind.retract_distance:g} mm in the cut to rewind, {rewind.reason}"
-        yield Problem(chosen.file, line, what, "--set rewind=none refuses it", Severity.WARNING)
+        yield Problem(chosen.file, line, what, "setting rewind=none refuses it", Severity.WARNING)
         if is_radius_compensated(chosen.operation, rewind.row):
             what = "a rewind within cutter radius compensation"
             yield Problem(chosen.file, line, what, "output the path without CUTCOM, or split the operation")
@@ -61,7 +61,7 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
             values = joints[:, column]
             value = values.max() if values.max() > machine.axes[column].high else values.min()
             what = f"on the retract for a rewind {limit_violation_text(machine, column, float(value))}"
-            yield Problem(chosen.file, line, what, "--set clearance=MM draws back less; or move the workpiece")
+            yield Problem(chosen.file, line, what, "setting clearance=MM draws back less; or move the workpiece")
 
 
 def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
@@ -69,7 +69,7 @@ def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
     if rewind.limit_hit is not None:
         row, hit = rewind.limit_hit.row, rewind.limit_hit
         what = f"{limit_violation_text(chosen.machine, hit.column, hit.value)} in the cut"
-    cure = "allow rewinds (--set rewind=insert), split the operation, or turn the workpiece"
+    cure = "allow rewinds (setting rewind=insert), split the operation, or turn the workpiece"
     return Problem(chosen.file, int(chosen.operation.moves.line[row]), what, cure)
 
 

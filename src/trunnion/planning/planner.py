@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from trunnion.errors import InputError, Problem, RefusedError
+from trunnion.errors import InputError, Problem, RefusedError, argument_problem
 from trunnion.machines import Machine
 from trunnion.model.motion import MachiningMode, Plan
 from trunnion.model.toolpath import Frame, Operation, Toolpath
@@ -77,7 +77,7 @@ def _check_names(options: PlanOptions, sources: Sequence[tuple[str, Operation]])
     if unknown:
         what = "mode is set for operation {}, and the program has none of that name"
         cure = f"write one of {', '.join(dict.fromkeys(names))}"
-        raise InputError([Problem("--set", 0, what.format(name), cure) for name in unknown])
+        raise InputError([argument_problem("settings", what.format(name), cure) for name in unknown])
 
 
 def _check_reach_and_travel(planned: Sequence[PlannedOperation], request: PlanRequest) -> list[Problem]:
@@ -102,7 +102,7 @@ def _frame_remedy(first: Frame, options: PlanOptions) -> str:
     if options.absolute_frame or tilt < _LEAST_TILT:
         return ""
     return (
-        f"; or write --set frame=absolute: the MSYS of the first operation is tilted by {tilt:.4g} degrees, which"
+        f"; or write setting frame=absolute: the MSYS of the first operation is tilted by {tilt:.4g} degrees, which"
         " counts as the tilt of the workpiece"
     )
 

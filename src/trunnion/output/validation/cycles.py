@@ -117,5 +117,5 @@ def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycl
     else:
         cure = "clamp the part so that these holes stand along +Z, or post for a control with tilted planes"
     if HOLES_SETTING in settings and under_tcp:
-        cure += f", or turn the tool from hole to hole (--set {HOLES_SETTING}=…)"
+        cure += f", or turn the tool from hole to hole (setting {HOLES_SETTING}=…)"
     return HoleCycleError(what, cure)

@@ -25,7 +25,7 @@ def tool_problems(program: Program, operation: Operation, in_spindle: str) -> li
     stays = not loaded and name == in_spindle
     if not loaded and name and not stays:
         what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
-        cure = "--set tool=NUMBER calls it by number"
+        cure = "setting tool=NUMBER calls it by number"
         problems.append(Problem(program.file, operation.line, what, cure, Severity.WARNING))
     if name and (not (loaded or stays) or program.effective_setting("tool_call", operation) == "name"):
         try:
@@ -41,7 +41,7 @@ def machining_mode_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     operation = motion.operation
     what = f"operation {operation.name}: {program.control.name} has no words for {motion.mode}"
-    return [Problem(program.file, operation.line, what, "--set mode=… sets another mode")]
+    return [Problem(program.file, operation.line, what, "setting mode=… sets another mode")]
 
 
 def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -52,7 +52,7 @@ def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     fallback = program.effective_setting("fallback_tolerance", operation)
     what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
-    return [Problem(program.file, operation.line, what, "--set tolerance=…", Severity.WARNING)]
+    return [Problem(program.file, operation.line, what, "setting tolerance=…", Severity.WARNING)]
 
 
 def _prints_tolerance(program: Program, motion: Motion) -> bool:

@@ -35,7 +35,7 @@ def normal_problems(program: Program, motion: Motion) -> list[Problem]:
         problems.append(Problem(*location, what, "leave the setting normals out"))
     if motion.mode is MachiningMode.TCP and program.effective_setting("orientation") != "vector":
         what = f"operation {name}: with TCP the control would align the tool with the surface normal"
-        problems.append(Problem(*location, what, "--set orientation=vector writes the tool axis as well"))
+        problems.append(Problem(*location, what, "setting orientation=vector writes the tool axis as well"))
     if len(operation.arcs.row):
         what = "a circle, which can have no surface normal: the control would not compensate the tool there"
         problems.append(Problem(program.file, int(moves.line[operation.arcs.row[0]]), what, "output lines only"))

@@ -170,7 +170,7 @@ def _bend_problems(file: str, operation: Operation, rows: Ints, options: PlanOpt
     for row in rows[:_NAMED].tolist():
         tolerance = f"{options.axis_tolerance_between_points:g} degrees"
         what = f"in this step of the cut the tool axis leaves its path by more than {tolerance}"
-        cure = "--set axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other"
+        cure = "setting axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other"
         yield Problem(file, int(operation.moves.line[row]), f"{what}: the rotary axes change their side", cure)
 
 

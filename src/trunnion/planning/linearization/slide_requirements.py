@@ -27,7 +27,7 @@ def check_slides_are_known(file: str, operations: Sequence[Operation], machine: 
         what = (
             "without TCP the program holds positions of the slides, and the workpiece zero on the machine is not known"
         )
-        problems.append(Problem(file, line, what, "write --set zero=X,Y,Z, or zero_mm under [workpiece]"))
+        problems.append(Problem(file, line, what, "write setting zero=X,Y,Z, or zero_mm under [workpiece]"))
     if {machine.axes[column].name for column in machine.linear} != set("XYZ"):
         what = f"without TCP the words X, Y and Z are slides, and those of {machine.key} have other names"
         problems.append(Problem(file, line, what, "name the slides X, Y and Z in the definition"))
@@ -42,10 +42,10 @@ def _tool_length_problems(file: str, operations: Sequence[Operation], machine: M
     line, z = operations[0].line, machine.axis("Z")
     if machine.tool_length is None:
         what = "without TCP the slides follow the tool's length where the head turns it, and it is not known"
-        yield Problem(file, line, what, "write --set tool_length=MM, as in the control's tool offset")
+        yield Problem(file, line, what, "write setting tool_length=MM, as in the control's tool offset")
     if z.sense * float(np.dot(z.direction, machine.spindle_direction)) < 1.0 - _PARALLEL_SINE:
         what = "without TCP the control adds the tool's length along Z, and the spindle does not point there at zero"
-        yield Problem(file, line, what, "post with TCP (--set tcp=on)")
+        yield Problem(file, line, what, "post with TCP (setting tcp=on)")
     tools: dict[tuple[int | None, str], int] = {}
     number = None
     for operation in operations:

@@ -68,8 +68,8 @@ def sufficient_setting(prepared: PreparedOperation, poses: PlannedPoses, angle: 
     """What to set if a lean of ``angle`` degrees is not enough, as the cure of a message."""
     for more in angle * 2.0 ** np.arange(1, _TRIED):
         if all(region.is_solved for region in _lean(prepared, poses, PoleStrategy.LEAN, float(more)).regions):
-            return f"--set pole=lean --set pole_angle={more:.4g} would do, or --set lower_feed=yes"
-    return "--set lower_feed=yes lowers the feed there"
+            return f"setting pole=lean setting pole_angle={more:.4g} would do, or setting lower_feed=yes"
+    return "setting lower_feed=yes lowers the feed there"
 
 
 def _lean(prepared: PreparedOperation, poses: PlannedPoses, strategy: PoleStrategy, angle: float) -> LeanedMoves:

@@ -93,9 +93,9 @@ def _speed_decisions(prepared: PreparedOperation, poses: PlannedPoses, off_part:
         return
     axis = machine.axes[machine.rotary[worst.axis]]
     off = float(degrees_off_pole(kinematic_parameters(machine), operation.moves.axis[worst.row : worst.row + 1])[0])
-    cure = "--set lower_feed=yes"
+    cure = "setting lower_feed=yes"
     if options.pole_strategy is PoleStrategy.OFF:
-        cure = "--set pole=lean, or --set lower_feed=yes, helps"
+        cure = "setting pole=lean, or setting lower_feed=yes, helps"
         if options.explain and not options.lower_feed:
             cure = sufficient_setting(prepared, poses, _LEAST_LEAN)
     rows = f"{worst.count} rows are" if worst.count > 1 else "1 row is"

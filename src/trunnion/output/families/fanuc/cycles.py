@@ -94,5 +94,5 @@ def _bore_shift(cycle: Cycle, settings: Mapping[str, str]) -> float:
         raise HoleCycleError(what, "write BORE,NODRAG without an angle")
     if not settings["bore_lift"]:
         what = "BORE,NODRAG does not say how far the tool lifts off"
-        raise HoleCycleError(what, "--set bore_lift=MM says it; to which side is a parameter of the control")
+        raise HoleCycleError(what, "setting bore_lift=MM says it; to which side is a parameter of the control")
     return float(settings["bore_lift"])

@@ -92,7 +92,7 @@ def cycle_definition(
     if cycle.method is HoleMethod.BORE_WITH_LIFT:
         if not side:
             what = "BORE,NODRAG does not say to which side the tool moves off the wall"
-            raise HoleCycleError(what, "--set disengage=1 is -X, 2 -Y, 3 +X, 4 +Y, with the spindle at its angle")
+            raise HoleCycleError(what, "setting disengage=1 is -X, 2 -Y, 3 +X, 4 +Y, with the spindle at its angle")
         values = {**values, 214: float(side), 336: cycle.spindle_angle}
     lines = [f"CYCL DEF {number} {name}", *(_parameter_line(q, value, formats) for q, value in values.items())]
     return [f"{line} ~" for line in lines[:-1]] + lines[-1:]

@@ -86,7 +86,7 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``TOOL CALL``: a number, or a name in quotation marks."""
     if by_name and '"' in name:
-        raise UnsupportedFeatureError(f"the tool name {name} has a quotation mark in it", "write --set tool=NUMBER")
+        raise UnsupportedFeatureError(f"the tool name {name} has a quotation mark in it", "write setting tool=NUMBER")
     return f'"{name}"' if by_name else str(number)
 
 

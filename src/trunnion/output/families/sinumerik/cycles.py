@@ -149,7 +149,7 @@ def _bore(of: _Input) -> CycleArguments:
     lifts = of.cycle.method is HoleMethod.BORE_WITH_LIFT
     if lifts and not of.lift:
         what = "BORE,NODRAG does not say how far and to which side the tool lifts off"
-        raise HoleCycleError(what, "--set bore_lift=MM says it, along X with the spindle at its angle")
+        raise HoleCycleError(what, "setting bore_lift=MM says it, along X with the spindle at its angle")
     lift = of.number(of.lift if lifts and of.lift else 0.0)
     return "CYCLE86", ["", of.dwell, _sense_code(of.spindle), lift, "0", "0", of.number(of.cycle.spindle_angle)]
 
