@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from trunnion.controls import load_control
 from trunnion.conversion import Conversion, convert
 from trunnion.machines import Machine, load_machine
@@ -214,3 +215,63 @@ def test_cuts_in_machine_positions_are_refused_and_retracts_at_feed_are_not(
 ) -> None:
     found = sinumerik(tmp_path, *lines)
     assert [error.what for error in found.errors] == ["moves at feed to a position of the machine"] * refused
+
+
+def test_a_swing_of_the_tip_without_tcp_is_no_straight_line(tmp_path: Path) -> None:
+    lines = ["G0 X0 Y60 Z5", "G1 X1 F10", "G0 C180", "G0 X0 Y60", "G1 X1"]
+    found = sinumerik(tmp_path, *lines, **KNOWN)
+    assert found.errors == ()
+    assert len(found.toolpath.operations) == 2
+
+
+def test_klartext_keeps_radius_compensation(tmp_path: Path) -> None:
+    lines = ["L X+0 Y+0 Z+5 R0 FMAX M3", "L X+1 RL F100", "L X+2", "L X+3 R0", "L Y+9 RR", "L Y+10 R0"]
+    text = "\n".join(["BEGIN PGM A MM", "TOOL CALL 5 Z S500", *lines, "M30", "END PGM A MM", ""])
+    (operation,) = converted(text, load_machine("mikron_600u"), tmp_path).toolpath.operations
+    sides = [(event.row, event.side) for event in operation.events if isinstance(event, CutterComp)]
+    assert sides == [(1, "LEFT"), (3, "OFF"), (4, "RIGHT"), (5, "OFF")]
+
+
+def test_fanuc_keeps_the_register_of_radius_compensation(tmp_path: Path) -> None:
+    text = "G21 G90 G94\nT5 M6\nG54 S500 M3\nG43 H5 G0 X0. Y0. Z50.\nG41 D{d} G1 X1. F100.\nX2.\nG40 X3.\nM30\n"
+    for number, register in ((15, 15), (5, 0)):
+        found = converted(text.format(d=number), load_machine("matsuura_mx330"), tmp_path)
+        (operation,) = found.toolpath.operations
+        assert CutterComp(1, 5, "LEFT", "", register) in operation.events
+
+
+@pytest.mark.parametrize(
+    ("line", "what"),
+    [
+        ("TOOL CALL 5 Z S500 DL+0.5", "DL or DR of TOOL CALL"),
+        ("CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 90", "the spindle stops at an angle"),
+        ("CYCL DEF 208 BORE MILLING Q200=2 Q201=-5 Q206=100 Q334=1 Q203=0 Q204=10 Q335=20 Q342=0 Q351=1", "cycle 208:"),
+    ],
+)
+def test_klartext_that_a_toolpath_cannot_hold_is_refused(line: str, what: str, tmp_path: Path) -> None:
+    lines = ["TOOL CALL 5 Z S500", line, "L X+0 Y+0 Z+5 R0 FMAX M3", "L X+1 F100"]
+    text = "\n".join(["BEGIN PGM A MM", *lines, "M30", "END PGM A MM", ""])
+    errors = converted(text, load_machine("mikron_600u"), tmp_path).errors
+    assert [error.what.startswith(what) for error in errors] == [True]
+
+
+def test_a_tolerance_of_cycle_32_is_named(tmp_path: Path) -> None:
+    lines = [
+        "TOOL CALL 5 Z S500",
+        "L X+0 Y+0 Z+5 R0 FMAX M3",
+        "CYCL DEF 32.0 TOLERANCE",
+        "CYCL DEF 32.1 T0.05",
+        "L X+1 F100",
+    ]
+    text = "\n".join(["BEGIN PGM A MM", *lines, "M30", "END PGM A MM", ""])
+    found = converted(text, load_machine("mikron_600u"), tmp_path)
+    assert "cycle 32 is not carried over" in [remark.what for remark in found.warnings]
+
+
+def test_control_characters_in_comments_become_blanks(tmp_path: Path) -> None:
+    lines = ["TOOL CALL 5 Z S500", "; D32\rLONG", "L X+0 Y+0 Z+5 R0 FMAX M3", "L X+1 F100"]
+    text = "\n".join(["BEGIN PGM A MM", *lines, "M30", "END PGM A MM", ""])
+    program = tmp_path / "part.h"
+    program.write_bytes(text.encode())
+    found = trunnion.convert(program, machine="mikron_600u", to_cl=True)
+    assert "PPRINT/D32 LONG" in (found.text or "")

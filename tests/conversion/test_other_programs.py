@@ -193,11 +193,7 @@ def warnings_for(programs: Programs, *lines: str) -> list[tuple[int, str]]:
         (["G0 X0 Y0 Z0", "N20 G1 G64 X1 F1"], 2, "G64 is not carried over"),
         (["DYNFINISH", "G0 X0 Y0 Z0", "G1 X1 F1"], 1, "DYNFINISH is not carried over"),
         (["G0 X0 Y0 Z0", "FGROUP(X,Y)", "G1 X1 F1"], 2, "FGROUP is not carried over"),
-        (["G0 X0 Y0 Z0", "G96 S100 M3", "G1 X1 F1"], 2, "G96 is not carried over"),
-        (["G0 X0 Y0 Z0", "SPOS=90", "G1 X1 F1"], 2, "SPOS is not carried over"),
         (["G0 X0 Y0 Z0", "CYCLE832(0.1,_FINISH,1)", "G1 X1 F1"], 2, "CYCLE832 is not carried over"),
-        (["G0 X0 Y0 Z0 D1", "G1 X1 F1", "D2", "X2"], 4, "D2 within an operation is not carried over"),
-        (["G54", "G0 X0 Y0 Z0", "G55 G1 X1 F1"], 3, "G55 within an operation is not carried over"),
         (
             ["SUPA G0 Z300", "G0 X0 Y0 Z0", "G1 X1 F1"],
             1,
@@ -236,11 +232,36 @@ def test_words_of_a_subprogram_are_remarked_upon_in_its_file(programs: Programs)
     assert (Path(remark.file).name, remark.line, remark.what) == ("HOLE.SPF", 2, "SOFT is not carried over")
 
 
-def test_signs_that_have_no_place_in_a_program_with_jumps_are_remarked_upon(programs: Programs) -> None:
-    lines = "R1=0", "AGAIN:", "G41 G0 X=R1 Y0 Z0", "/G1 X9 F1", "R1=R1+1", "IF R1<2 GOTOB AGAIN"
-    assert warnings_for(programs, *lines) == [
-        (0, "block skip signs and cutter radius compensation in a program with jumps or subprograms: not carried over")
+@pytest.mark.parametrize(
+    ("lines", "line", "what"),
+    [
+        (["G0 X0 Y0 Z0", "G96 S100 M3", "G1 X1 F1"], 2, "constant surface speed"),
+        (["G0 X0 Y0 Z0", "SPOS=90", "G1 X1 F1"], 2, "the spindle stops at an angle"),
+        (["G0 X0 Y0 Z0 D1", "G1 X1 F1", "D2", "X2"], 4, "D2 within an operation, which has D1"),
+        (["G54", "G0 X0 Y0 Z0", "G55 G1 X1 F1"], 3, "G55 within an operation, which has G54"),
+    ],
+)
+def test_what_must_not_be_lost_is_refused(lines: list[str], line: int, what: str, programs: Programs) -> None:
+    found = [(error.line, error.what) for error in programs.all(*lines).errors]
+    assert [each[0] for each in found] == [line]
+    assert found[0][1].startswith(what)
+
+
+def test_block_skip_has_no_place_in_a_program_with_jumps_and_compensation_has(programs: Programs) -> None:
+    lines = "R1=0", "AGAIN:", "G41 G0 X=R1 Y0 Z0", "/G1 X9 F1", "G40 X10", "R1=R1+1", "IF R1<2 GOTOB AGAIN"
+    found = programs.all(*lines)
+    assert [(error.line, error.what) for error in found.errors] == [
+        (4, "block skip signs in a program with jumps or subprograms: a toolpath cannot hold them")
     ]
+    (operation,) = found.toolpath.operations
+    sides = [(event.row, event.side) for event in operation.events if isinstance(event, CutterComp)]
+    assert sides == [(0, "LEFT"), (2, "OFF"), (3, "LEFT"), (5, "OFF")]
+
+
+def test_work_offsets_of_operations_go_by_their_names(programs: Programs) -> None:
+    found = programs.all("T1 M6", "G54", "G0 X0 Y0 Z5", "G1 X1 F9", "T2 M6", "G55", "G0 X0 Y0 Z5", "G1 X1")
+    assert found.settings["work_offset"] == "G54,TOOL_2:G55"
+    assert found.errors == ()
 
 
 def test_jumps_and_subprograms_are_followed(programs: Programs) -> None:

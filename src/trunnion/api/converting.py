@@ -22,6 +22,7 @@ from trunnion.conversion import Conversion
 from trunnion.conversion.program_events import COMPENSATION_FINDINGS
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem
 from trunnion.jit import compile_ahead
+from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.wording import counted
@@ -132,7 +133,9 @@ def convert(
     with open_target(_checked_output(output, nc)) as target:
         divided = job.subprograms(target.files, target.path) is not None
         converter = _ProgramConverter(str(nc), observer, force)
-        converted = converter.read(read_program(program, machine=source, subprograms=others), control)
+        converted = converter.read(
+            read_program(program, machine=source, subprograms=others), control, None if to_cl else job.machine
+        )
         if subprograms and not (divided or to_cl):
             converter.warn_of_one_program(1 + len(subprograms))
         carried = converter.carry(converted.settings, control, job)
@@ -178,8 +181,8 @@ class _ProgramConverter:
         self.problems += problems
         self._observer.problems(problems)
 
-    def read(self, run: Run, control: Control) -> Conversion:
-        """The toolpath of a run; a program that was not understood is refused."""
+    def read(self, run: Run, control: Control, target: Machine | None) -> Conversion:
+        """The toolpath of a run for another machine, None for a CL file; one that was not understood is refused."""
         found = [Problem(one.file, one.line, one.text, "", one.severity) for one in run.diagnostics]
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
@@ -188,16 +191,24 @@ class _ProgramConverter:
             raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
         self.report([problem for problem in found if not problem.what.startswith(COMPENSATION_FINDINGS)])
         converted = conversion.convert(run, control)
-        if converted.errors and not self._force:
-            what = f"{counted(len(converted.errors), 'place')} cannot be converted, and nothing is written"
-            cure = "force=True converts the rest without them"
-            raise RefusedError((*converted.errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
-        self.report(converted.errors)
+        toolpath, of_builder = conversion.carry_machine_words(converted.toolpath, run.machine, target)
+        converted = replace(converted, toolpath=toolpath)
+        lost = [*converted.errors, *(problem for problem in of_builder if problem.severity is Severity.ERROR)]
+        self._refuse(lost)
+        self.report([problem for problem in of_builder if problem.severity is Severity.WARNING])
         if not converted.toolpath.operations:
             what = "there is no motion at the part in it"
             raise InputError(Problem(self._file, 0, what, "give a program that cuts"))
         self.report(converted.warnings)
         return converted
+
+    def _refuse(self, lost: Sequence[Problem]) -> None:
+        """Refuse what must not be lost, unless it is forced."""
+        if lost and not self._force:
+            what = f"{counted(len(lost), 'place')} cannot be converted, and nothing is written"
+            cure = "force=True converts the rest without them"
+            raise RefusedError((*lost[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
+        self.report(lost)
 
     def warn_of_one_program(self, files: int) -> None:
         """Warn that a program with subprograms becomes one without."""
@@ -211,7 +222,11 @@ class _ProgramConverter:
         """
         target = job.control
         carried = conversion.transfer_settings(stated, control, target)
-        for key in sorted(stated.keys() - carried.keys()):
+        lost = sorted(stated.keys() - carried.keys())
+        if "work_offset" in lost and ":" in stated["work_offset"] and "work_offset" not in job.settings:
+            what = f"operations have different work offsets ({stated['work_offset']}), which {target.name} cannot take"
+            self._refuse([Problem(self._file, 0, what, "--set work_offset=… says them as the other control does")])
+        for key in lost:
             what = f"{key} is {stated[key]!r}, which is not carried over"
             known = key in target.settings
             cure = f"say it as {target.name} does" if known else f"{target.name} has no such setting"

@@ -48,6 +48,7 @@ class PostJob:
     force         write a program that must not run, with notices in its head
     report        file of the report; None: there is none
     columns       work out the columns of the verification
+    beside        files of subprograms that exist already and that templates call
     """
 
     machine: Machine
@@ -59,6 +60,7 @@ class PostJob:
     report: Path | None = None
     columns: bool = False
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    beside: tuple[Path, ...] = ()
 
     @property
     def printed(self) -> dict[str, str]:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from trunnion.api import kernels
-from trunnion.api.arguments import check_observer
+from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
@@ -41,6 +41,7 @@ def post(
     explain: bool = False,
     report: FilePath | None = None,
     columns: bool = True,
+    subprograms: Sequence[FilePath] = (),
     observer: Observer = SILENT,
 ) -> PostResult:
     """Post CL files as one NC program, and prove it.
@@ -71,6 +72,8 @@ def post(
     columns
         Work out the columns of the verification: ``seconds`` (n,), ``tip_feed`` (n,) in mm/min and ``cl_line`` (n,). A
         report needs them; without them a program of any length takes little memory.
+    subprograms
+        Files of subprograms that exist already and that templates of the definition call. No others are opened.
     observer
         Receives the progress, warnings, the plan and the proof.
 
@@ -105,6 +108,7 @@ def post(
     compile_ahead(kernels.POSTING)
     place = None if report is None else Path(report)
     job = prepare(as_machine(machine), settings, force=force, explain=explain, report=place, columns=columns)
+    job = replace(job, beside=tuple(check_paths("subprograms", subprograms)))
     with open_target(output) as target:
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         toolpaths = load_toolpaths(cl, job, strict, observer)
@@ -114,8 +118,10 @@ def post(
 def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, observer: Observer) -> PostResult:
     """Plan, write and prove a program; errors as ``post`` raises them."""
     subprograms = job.subprograms(target.files, target.path)
+    divided = subprograms is not None
+    reading = read_back_while_writing(target.files, job.machine, divided=divided, beside=job.beside)
     try:
-        with read_back_while_writing(target.files, job.machine, divided=subprograms is not None) as (progress, run):
+        with reading as (progress, run):
             program, planned, problems = plan_program(toolpaths, job, observer)
             program = replace(program, has_time_tokens=prints_times(program))
             write(program, target.files.main, progress, subprograms, observer)

@@ -4,9 +4,10 @@ In:     a planned program.
 Out:    its file, and the run of what is on the disk.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from pathlib import Path
 from typing import BinaryIO
 
 from trunnion import readers
@@ -21,7 +22,7 @@ from trunnion.output.subprograms import SubprogramOutput
 
 @contextmanager
 def read_back_while_writing(
-    files: OutputFiles, machine: Machine, *, divided: bool
+    files: OutputFiles, machine: Machine, *, divided: bool, beside: Sequence[Path] = ()
 ) -> Iterator[tuple[WriteProgress, Future[Run | None]]]:
     """Run a program while its file is being written; the reader is set up while the program is planned.
 
@@ -36,6 +37,8 @@ def read_back_while_writing(
         Runs it.
     divided
         The program calls subprograms: the run waits for all files, as calls stand before what they call.
+    beside
+        Files of subprograms that exist already and that its templates call.
 
     Yields
     ------
@@ -46,7 +49,7 @@ def read_back_while_writing(
     """
     progress = WriteProgress()
     with ThreadPoolExecutor(1) as executor:
-        run = executor.submit(_run, files, machine, progress, divided)
+        run = executor.submit(_run, files, machine, progress, divided or bool(beside), beside)
         try:
             yield progress, run
             files.start_sync()
@@ -54,12 +57,14 @@ def read_back_while_writing(
             progress.finish()
 
 
-def _run(files: OutputFiles, machine: Machine, progress: WriteProgress, divided: bool) -> Run | None:
+def _run(
+    files: OutputFiles, machine: Machine, progress: WriteProgress, waits: bool, beside: Sequence[Path]
+) -> Run | None:
     if not readers.can_read(machine):
         return None
-    if divided:
+    if waits:
         progress.wait_until_finished()
-    return readers.run_program(files.path, machine, subprograms=files.other_paths, write_progress=progress)
+    return readers.run_program(files.path, machine, subprograms=[*files.other_paths, *beside], write_progress=progress)
 
 
 def write(

@@ -76,6 +76,7 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
         "--set", action="append", type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
         help="what templates print (title, part, date, method, …), or how to read, place and plan; may be repeated",
     )  # fmt: skip
+    _add_subprograms(parser, "a template")
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors at once")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
     parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")

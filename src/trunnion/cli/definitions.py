@@ -8,6 +8,7 @@ from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
+from trunnion.readers import known_words
 
 
 def machines(arguments: argparse.Namespace) -> int:
@@ -29,7 +30,7 @@ def machines(arguments: argparse.Namespace) -> int:
 def check(arguments: argparse.Namespace) -> int:
     """Validate a definition: every mistake of the machine and of its control at once."""
     problems: list[Problem] = []
-    for load in (load_machine, _load_control):
+    for load in (load_machine, _load_control, _load_known_words):
         try:
             load(arguments.file)
         except InputError as error:
@@ -38,6 +39,11 @@ def check(arguments: argparse.Namespace) -> int:
         raise InputError(problems)
     print(f"{arguments.file}: good")
     return 0
+
+
+def _load_known_words(file: str) -> None:
+    """Read the words that a definition declares."""
+    known_words(load_machine(file))
 
 
 def _load_control(file: str) -> None:

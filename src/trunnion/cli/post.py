@@ -36,6 +36,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
             explain=arguments.explain,
             report=arguments.report,
             columns=False,
+            subprograms=arguments.subprograms,
             observer=Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
         )
         _print_summary(target, result)

@@ -103,7 +103,7 @@ def _load_family(table: Table) -> FamilyWriter:
         known = ", ".join(FAMILIES)
         table.add_problem("family", f"is {key!r}, for which no programs can be written yet", f"write one of {known}")
         table.raise_problems()
-    table.mark_read("reading")  # only for the readers of programs
+    table.mark_read("reading", "known")  # only for the readers of programs
     family: FamilyWriter = load_writer(key)
     return family
 

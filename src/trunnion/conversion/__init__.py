@@ -1,6 +1,7 @@
 """Conversion of NC programs into toolpaths, from what the reader found about them."""
 
+from trunnion.conversion.machine_words import carry_machine_words
 from trunnion.conversion.settings import transfer_settings
 from trunnion.conversion.toolpath_builder import Conversion, convert
 
-__all__ = ["Conversion", "convert", "transfer_settings"]
+__all__ = ["Conversion", "carry_machine_words", "convert", "transfer_settings"]

@@ -115,7 +115,8 @@ class EventBuilder:
     def _set_spindle(self, event: ProgramEvent, row: int, found: list[Event]) -> bool:
         """M3, M4 or M5; returns whether the event starts the spindle."""
         if event.value == "oriented":
-            self._warn(event.line, "SPOS is not carried over")
+            cure = "a toolpath has no angle of the spindle"
+            self._warn.refuse(event.line, "the spindle stops at an angle (SPOS, cycle 13)", cure, event.file)
         elif event.value == "off":
             if self._sense is not None:
                 found.append(SpindleOff(row, event.line))
@@ -131,7 +132,7 @@ class EventBuilder:
         match event.kind:
             case "comment":
                 if event.text and event.text not in self._phase_comments:
-                    yield Message(row, line, event.text)
+                    yield Message(row, line, _one_line(event.text))
             case "tool":
                 if str(value).isdigit() and int(str(value)):
                     yield SelectTool(row, line, int(str(value)))
@@ -142,24 +143,40 @@ class EventBuilder:
             case "dwell":
                 assert isinstance(value, float)
                 yield Dwell(row, line, abs(value), value < 0)
+            case "stop" if value == "pallet":
+                self._warn.refuse(line, "M60 changes the pallet", "a toolpath has no pallets", event.file)
             case "stop" | "optional_stop":
                 yield Stop(row, line, event.kind == "optional_stop")
             case "message":
-                yield Message(row, line, str(value or ""), display=True)
+                yield Message(row, line, _one_line(str(value or "")), display=True)
             case "skip":
                 yield BlockSkip(row, line, bool(value))
             case "comp":
                 assert isinstance(value, tuple)
                 if row < row_count or value[0] != "OFF":  # every operation ends without compensation
-                    yield CutterComp(row, line, value[0], value[1])
+                    register = int(value[2])
+                    yield CutterComp(row, line, value[0], value[1], 0 if str(register) == self.tool else register)
             case "m" | "h":
                 assert isinstance(value, float)
                 if event.kind == "m" and int(value) in self._coolants:
                     yield Coolant(row, line, self._coolants[int(value)])
                 else:
                     yield Insert(row, line, f"{event.kind.upper()}{value:g}")
+            case "known":
+                yield Insert(row, line, str(value))
+            case "delta":
+                if line not in self._template_lines:
+                    cure = "see the settings delta_length and delta_radius"
+                    self._warn.refuse(line, "DL or DR of TOOL CALL in a form that is not ours", cure, event.file)
+            case "cycle32":
+                self._warn(line, "cycle 32 is not carried over", "see the setting tolerance=…", event.file)
             case "cycle832":
                 self._warn(line, "CYCLE832 is not carried over", "see setting cycle832=… and tolerance=…")
+
+
+def _one_line(text: str) -> str:
+    """A text with blanks in the place of control characters, as a stray carriage return in a comment."""
+    return "".join(character if character.isprintable() else " " for character in text)
 
 
 def _switches_off(event: Event) -> bool:

@@ -1,7 +1,7 @@
 """What a program contains besides motion, in the order in which it acts: events, comments, and signs in its text."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -11,15 +11,19 @@ from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.unsupported import Warnings
 from trunnion.model.run import Run, RunEvent
 
-_SIDES = {"G40": "OFF", "G41": "LEFT", "G42": "RIGHT"}
+_SIDE_OF_WORD = {"G40": 0, "G41": 1, "G42": -1}
+_SIDES = {0: "OFF", 1: "LEFT", -1: "RIGHT"}
 _PLANES = {"G17": "XYPLAN", "G18": "ZXPLAN", "G19": "YZPLAN"}
 _CIRCLE = re.compile(r"G0?[23](?!\d)")
 
 #: Where events found in the text come among those of the run in the same block.
 _BEFORE_OTHERS, _AFTER_OTHERS = -1, 1 << 60
 
+#: The register of radius compensation, on controls that name one.
+_REGISTER = re.compile(r"(?<![A-Z])D0*(\d{1,4})(?![\d.])")
+
 #: Diagnostics of the reader that become events here.
-COMPENSATION_FINDINGS = ("G41:", "G42:")
+COMPENSATION_FINDINGS = ("G41:", "G42:", "RL:", "RR:")
 
 
 class ProgramEvent(NamedTuple):
@@ -50,18 +54,18 @@ def collect_events(run: Run, text: ProgramText, warn: Warnings) -> list[ProgramE
         ProgramEvent(c.before_row, c.line, len(found) + k, "comment", c.text, c.file)
         for k, c in enumerate(run.comments)
     ]
-    skips = list(text.skip_changes())
-    compensated = any(finding.text.startswith(COMPENSATION_FINDINGS) for finding in run.diagnostics)
+    skips, own_lines = list(text.skip_changes()), dict[tuple[int, int], int]()
     # A line has one place in the run only if lines are executed once and in their order.
     if len(run.files) == 1 and bool((np.diff(run.line) >= 0).all()):
         rows = np.searchsorted(run.line, [line for line, _ in skips]).tolist()
         found += [
             ProgramEvent(row, line, _BEFORE_OTHERS, "skip", on, 0) for row, (line, on) in zip(rows, skips, strict=True)
         ]
-        found += _compensations(run, text) if compensated else ()
-    elif skips or compensated:
-        what = " and ".join(["block skip signs"] * bool(skips) + ["cutter radius compensation"] * compensated)
-        warn(0, f"{what} in a program with jumps or subprograms: not carried over")
+        own_lines = _compensation_lines(run, text)
+    elif skips:
+        what = "block skip signs in a program with jumps or subprograms: a toolpath cannot hold them"
+        warn.refuse(skips[0][0], what, "take the signs out, or flatten the program")
+    found += _compensations(run, text, own_lines)
     return _without_tool_calls(sorted(found, key=lambda event: (event.row, event.line, event.order)))
 
 
@@ -72,18 +76,31 @@ def _row_before(run: Run, event: RunEvent) -> int:
     return row - 1 if late and (run.line[row - 1], run.file[row - 1]) == (event.line, event.file) else row
 
 
-def _compensations(run: Run, text: ProgramText) -> Iterator[ProgramEvent]:
-    """Changes of cutter radius compensation, which the reader only reports."""
-    side = "OFF"
+def _compensation_lines(run: Run, text: ProgramText) -> dict[tuple[int, int], int]:
+    """The lines of G40, G41 and G42, also in blocks without motion, by the row that follows and the side."""
+    found: dict[tuple[int, int], int] = {}
     for line, words in text.sparse_words():
-        active = next((_SIDES[word] for word in words if word in _SIDES), side)
-        if active == side:
+        for side in (_SIDE_OF_WORD[word] for word in words if word in _SIDE_OF_WORD):
+            found.setdefault((int(np.searchsorted(run.line, line)), side), line)
+    return found
+
+
+def _compensations(run: Run, text: ProgramText, own_lines: Mapping[tuple[int, int], int]) -> Iterator[ProgramEvent]:
+    """Changes of cutter radius compensation: side, plane and register; the reader does not simulate its effect."""
+    side, column = 0, run.state.compensation
+    for row, value in zip(column.rows.tolist(), column.values.tolist(), strict=True):
+        if value == side or row > len(run):
             continue
-        side = active
+        side = value
+        at = min(row, len(run) - 1)
+        line, file = own_lines.get((row, side), int(run.line[at])), int(run.file[at])
+        block = text.line_text(line).upper() if file == 0 else ""
         # In the block of a circle the plane is that of the circle.
-        planes = [] if _CIRCLE.search(text.line_text(line)) else [_PLANES[word] for word in words if word in _PLANES]
-        row, value = int(np.searchsorted(run.line, line)), (side, planes[0] if planes else "")
-        yield ProgramEvent(row, line, _AFTER_OTHERS, "comp", value, 0)
+        words = () if _CIRCLE.search(block) else re.findall(r"G1[789](?!\d)", block)
+        planes = [_PLANES[word] for word in words]
+        register = _REGISTER.search(block) if side and run.uses_length_numbers else None
+        number = int(register[1]) if register else 0
+        yield ProgramEvent(row, line, _AFTER_OTHERS, "comp", (_SIDES[side], planes[0] if planes else "", number), file)
 
 
 def _without_tool_calls(events: list[ProgramEvent]) -> list[ProgramEvent]:

@@ -89,11 +89,15 @@ def divide_sections(
             part.stretches, part.values = [rows], dict(section.values)
             divided.append(part)
             sides = [event for event in events[section.first_event : end_event] if event.kind == "comp"]
-            if not is_last and sides and sides[-1].value != ("OFF", ""):
+            if not is_last and sides and not _is_off(sides[-1]):
                 what = "radius compensation stays on while the tool leaves the workpiece"
                 warn.refuse(sides[-1].line, what, "end it with G40 (R0) before", sides[-1].file)
             first_event = end_event
     return divided
+
+
+def _is_off(event: ProgramEvent) -> bool:
+    return isinstance(event.value, tuple) and event.value[0] == "OFF"
 
 
 def assign_events(

@@ -19,7 +19,7 @@ _SAME_TOLERANCE = 5e-6
 
 
 def settings_from_headers(
-    control: Control, headers: Iterable[tuple[int, Mapping[str, str]]], warn: Warnings
+    control: Control, headers: Iterable[tuple[int, str, Mapping[str, str]]], warn: Warnings
 ) -> dict[str, str]:
     """The settings that give the same headers again, without defaults.
 
@@ -28,17 +28,30 @@ def settings_from_headers(
     control
         The control of the program.
     headers
-        Line and values of each operation's header.
+        Line, name of the operation, and values of each header.
     warn
         Takes settings that differ between operations: a program has one value of each.
     """
     merged: dict[str, str] = {}
-    for line, values in headers:
+    own: dict[str, str] = {}
+    every = list(headers)
+    names = [operation for _, operation, _ in every]
+    for line, operation, values in every:
         for name, value in _header_settings(control, values).items():
-            if merged.setdefault(name, value) != value:
-                what = f"{name} is {value!r} here and {merged[name]!r} before; one program has one"
+            if merged.setdefault(name, value) == value:
+                continue
+            is_named = names.count(operation) == 1 and not set(",:") & {*operation, *value}
+            if is_named and control.differs_by_operation(name):
+                own[name] = f"{own.get(name, '')},{operation}:{value}"
+                continue
+            what = f"{name} is {value!r} here and {merged[name]!r} before; one program has one"
+            if name == "work_offset":
+                warn.refuse(line, what, "give each operation a name of its own")
+            else:
                 warn(line, what, f"the first is taken; see setting {name}=…")
-    return {name: value for name, value in merged.items() if value and not _equal_values(value, control.settings[name])}
+    differing = {name: (merged.pop(name) or control.settings[name]) + text for name, text in own.items()}
+    same = {name: value for name, value in merged.items() if value}
+    return differing | {k: value for k, value in same.items() if not _equal_values(value, control.settings[k])}
 
 
 def transfer_settings(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
@@ -46,8 +59,11 @@ def transfer_settings(settings: Mapping[str, str], control: Control, target: Con
     known = {name: value for name, value in settings.items() if name in target.settings}
     if control.family is target.family:
         return known
-    offsets = {control.settings.get("work_offset"), target.settings.get("work_offset"), settings.get("work_offset")}
+    offsets = {control.settings.get("work_offset"), target.settings.get("work_offset")}
+    offsets |= {entry.rpartition(":")[2] for entry in settings.get("work_offset", "").split(",") if entry}
     same = _COMMON_SETTINGS | ({"work_offset"} if offsets <= _COMMON_OFFSETS else frozenset())
+    if target.settings.get("program", "").isdigit() and not settings.get("program", "").isdigit():
+        same -= {"program"}  # a name, where programs have numbers
     return {name: value for name, value in known.items() if name in same}
 
 

@@ -22,9 +22,11 @@ from trunnion.conversion.program_events import ProgramEvent, collect_events
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection, assign_events, divide_sections, split_program
 from trunnion.conversion.settings import parse_number, settings_from_headers
+from trunnion.conversion.spindle_holes import read_spindle_holes
 from trunnion.conversion.tools import build_tool
 from trunnion.conversion.unsupported import (
     Warnings,
+    refuse_unsimulated_motions,
     warn_of_interpolation,
     warn_of_machine_words,
     warn_of_normals,
@@ -86,6 +88,7 @@ class _ToolpathBuilder:
         self._headers = HeaderReader(run, control, self._texts[0])
         self._coolants = _coolant_words(control)
         self._warn = Warnings(run.files)
+        self._rigid_tap = control.settings.get("rigid_tap", "")
 
     def build(self) -> Conversion:
         """Convert the whole program."""
@@ -95,7 +98,10 @@ class _ToolpathBuilder:
         self._headers.read(sections, events)
         sections = self._divided(sections, events)
         operations = self._operations(sections, events, PhaseComments(self._control, has_headers=bool(starts)))
-        headers = [(section.line, section.values) for section in sections]
+        headers = [
+            (section.line, operation.name, section.values)
+            for section, operation in zip(sections, operations, strict=True)
+        ]
         settings = settings_from_headers(self._control, headers, self._warn)
         self._warn_of_losses(sections, operations, settings.get("orientation") == "vector")
         toolpath = Toolpath(self._run.files[0], operations, settings.get("part", ""))
@@ -135,16 +141,20 @@ class _ToolpathBuilder:
     def _operation(
         self, section: ProgramSection, events: Sequence[ProgramEvent], phases: PhaseComments, builder: EventBuilder
     ) -> Operation:
-        run, rows, values = self._run, section.rows, section.values
-        found = builder.build(events, rows, section.line)
+        run, values = self._run, section.values
+        holes = read_spindle_holes(run, section.rows, events, self._warn)
+        rows, events = holes.rows, holes.without_own_events(events, self._rigid_tap)
+        section.stretches = [rows]
+        found = holes.with_cycles(builder.build(events, rows, section.line))
         phase = phases.column(events, run, rows, self._headers.template_lines, self._warn)
+        moves = build_moves(run, rows, phase, self._warn)
         default_name = f"TOOL_{builder.tool}" if builder.tool else Path(run.files[0]).stem
         name = values.get("operation", "") or default_name
         return Operation(
             name=name if section.part == 1 else f"{name}_{section.part}",
             tool=build_tool(values, builder.tool, self._control),
             frame=Frame(),
-            moves=build_moves(run, rows, phase, self._warn),
+            moves=replace(moves, tip=holes.tips(moves.tip)),
             arcs=build_arcs(run, rows),
             events=self._with_length_number(found, section),
             line=section.line,
@@ -168,6 +178,7 @@ class _ToolpathBuilder:
         self, sections: Sequence[ProgramSection], operations: Sequence[Operation], by_vectors: bool
     ) -> None:
         run, rows = self._run, [section.rows for section in sections]
+        refuse_unsimulated_motions(run, self._warn)
         warn_of_park_positions(run, self._warn)
         warn_of_normals(run, self._warn)
         warn_of_register_changes(run, rows, "G" if self._headers.offset_is_word else "work offset ", self._warn)

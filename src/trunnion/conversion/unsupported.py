@@ -24,6 +24,12 @@ _NOT_LOST = frozenset(
 )
 _SURFACE_SPEED = frozenset({"G96", "G961", "G962"})
 
+#: How findings of readers end where a motion is more than a line.
+_TAKEN_AS_LINE = "is taken as a straight line"
+
+#: How findings of readers begin where the path is that of the wall, or of the tool centre as programmed.
+_WITHOUT_RADIUS = ("cycle 208:", "G41.2:", "G42.2:")
+
 #: Rotary positions within this, degrees, are the same; programs have at most five decimals.
 _SAME_ANGLE = 1e-4
 #: Machine positions within this, mm, are the same.
@@ -72,17 +78,19 @@ def warn_of_machine_words(
         Lines of the program that were written from templates.
     """
     count = 0
-    lost_words = (machine_words | _SURFACE_SPEED) - _NOT_LOST
+    lost_words = machine_words - _NOT_LOST - _SURFACE_SPEED
     for file, text in enumerate(texts):
         for line, words in text.sparse_words():
+            plain = [_ZEROS.sub(r"\1", word) for word in words]
+            if _SURFACE_SPEED.intersection(plain):
+                what = "constant surface speed: S is no rev/min, and a toolpath has only these"
+                warn.refuse(line, what, "write G97 and the speed", file)
             lost = [word for word in words if _ZEROS.sub(r"\1", word) in lost_words]
             if not lost or (file == 0 and line in template_lines):
                 continue
             count += 1
             if count <= _MAX_WORD_WARNINGS:
-                speed = _SURFACE_SPEED.intersection(lost)
-                cure = "S is taken as rev/min" if speed else "write it in a template of the control"
-                warn(line, f"{' '.join(lost)} is not carried over", cure, file)
+                warn(line, f"{' '.join(lost)} is not carried over", "write it in a template of the control", file)
     if count > _MAX_WORD_WARNINGS:
         warn(0, f"and {count - _MAX_WORD_WARNINGS} more lines with words that are not carried over")
 
@@ -129,7 +137,7 @@ def warn_of_interpolation(run: Run, operations: Iterable[Ints], by_vectors: bool
 
 
 def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, warn: Warnings) -> None:
-    """Warn of work offsets and edges that change within an operation; an edge may begin after the first motions.
+    """Refuse work offsets and edges that change within an operation; an edge may begin after the first motions.
 
     operations   the rows (n,) of each operation
     offset       the text before the number of a work offset
@@ -138,9 +146,12 @@ def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, 
         with_edge = rows[np.argmax(run.edge[rows] >= 0) :]
         for column, letter, concerned in ((run.work_offset, offset, rows), (run.edge, "D", with_edge)):
             others = concerned[column[concerned] != column[concerned[0]]]
+            # Without a length in force rapids lead away: their positions are those of the spindle nose.
+            others = others[(column[others] > 0) | (run.kind[others] != Kind.RAPID)]
             if len(others):
-                what = f"{letter}{column[others[0]]} within an operation is not carried over"
-                _warn_at_rows(run, others, what, f"{letter}{column[concerned[0]]} is used for all of it", warn)
+                what = f"{letter}{column[others[0]]} within an operation, which has {letter}{column[concerned[0]]}"
+                cure = "a toolpath has one of an operation; begin a new one there"
+                warn.refuse(int(run.line[others[0]]), what, cure, int(run.file[others[0]]))
 
 
 def warn_of_park_positions(run: Run, warn: Warnings) -> None:
@@ -156,6 +167,14 @@ def warn_of_park_positions(run: Run, warn: Warnings) -> None:
             position = positions[elsewhere[0]]
             what = f"{axis.name} goes to the machine position {position:g}, which is not carried over"
             _warn_at_rows(run, rows[elsewhere], what, "the control's templates define where to park", warn)
+
+
+def refuse_unsimulated_motions(run: Run, warn: Warnings) -> None:
+    """Refuse what the reader only approximates: threads and probing as lines, paths without the tool's radius."""
+    for found in run.diagnostics:
+        approximate = found.text.endswith(_TAKEN_AS_LINE) or found.text.startswith(_WITHOUT_RADIUS)
+        if found.severity is Severity.WARNING and approximate:
+            warn.refuse(found.line, found.text, "a toolpath has no such motion", run.files.index(found.file))
 
 
 def warn_of_normals(run: Run, warn: Warnings) -> None:

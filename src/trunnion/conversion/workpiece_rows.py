@@ -8,12 +8,19 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.conversion.unsupported import Warnings
+from trunnion.machines import forward
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 
 _XY = ProgrammedWord.X | ProgrammedWord.Y
 _XYZ = _XY | ProgrammedWord.Z
 _POSITION = _XYZ | ProgrammedWord.VECTOR
+
+#: Rotary positions within this, degrees, are the same.
+_SAME_ANGLE = 1e-9
+
+#: A tip that leaves its straight line by more than this half-way, mm, goes another way.
+_SWING = 1.0
 
 
 def workpiece_stretches(
@@ -47,7 +54,7 @@ def workpiece_stretches(
     _refuse_lost_cuts(run, rows[~known[rows] & ~run.machine_frame[rows]], rows, warn)
     _refuse_machine_cuts(run, rows, warn)
     kept = np.flatnonzero(at_part)
-    left_out = np.cumsum(~(at_part | approach))
+    left_out = np.cumsum(~(at_part | approach) | _swings(run, rows))
     stretches: list[Ints] = []
     for part in np.split(kept, np.flatnonzero(np.diff(left_out[kept])) + 1) if len(kept) else []:
         moved = np.flatnonzero(positions[part] | (run.kind[rows[part]] != Kind.RAPID))
@@ -105,6 +112,19 @@ def _refuse_machine_cuts(run: Run, rows: Ints, warn: Warnings) -> None:
             what, cure = "moves at feed to a position of the machine", "a toolpath cannot hold it; write it at rapid"
             warn.refuse(int(run.line[row]), what, cure, int(run.file[row]))
             return
+
+
+def _swings(run: Run, rows: Ints) -> Flags:
+    """(n,) bool: rapids without TCP that turn rotary axes and take the tip far from the straight line to their end."""
+    found = np.zeros(len(rows), np.bool_)
+    before = np.maximum(rows - 1, 0)
+    turns = (np.abs(run.rotary[rows] - run.rotary[before]) > _SAME_ANGLE).any(axis=1)
+    here = np.flatnonzero(turns & (run.kind[rows] == Kind.RAPID) & ~run.tcp[rows] & ~run.machine_frame[rows])
+    if len(here):
+        start, end = run.positions(before[here]), run.positions(rows[here])
+        half_way = forward(run.machine, 0.5 * (start.joints + end.joints))[0]
+        found[here] = np.linalg.norm(half_way - 0.5 * (start.tip + end.tip), axis=1) > _SWING
+    return found
 
 
 def _turns_only(run: Run, rows: Ints) -> Flags:

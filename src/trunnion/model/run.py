@@ -9,9 +9,10 @@ Frame: the workpiece frame of the machine, whose origin is the zero set by the w
 tilted planes are already transformed into it.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields
-from enum import IntEnum, IntFlag
+from enum import IntEnum, IntFlag, StrEnum
 from functools import cached_property
 
 import numpy as np
@@ -91,6 +92,49 @@ class RunEvent:
     value: EventValue = None
     file: int = 0
     tcp: bool = False
+
+
+class SpindleTask(StrEnum):
+    """What the spindle does in a hole besides turning, by the words of ``CYCLE``."""
+
+    TAP = "TAP"
+    STOP = "BORE,DRAG"
+    LIFT = "BORE,NODRAG"
+    MANUAL = "BORE,MANUAL"
+
+
+@dataclass(frozen=True, slots=True)
+class SpindleWork:
+    """How a cycle drives the spindle: motions alone do not make such a hole.
+
+    pitch        of a thread, mm; NaN: it follows from feed and speed
+    hand         of a thread: 1 right, -1 left, 0 that of the spindle
+    rpm          0: the programmed speed
+    floating     the cycle is for a compensating chuck
+    stroke       a thread in strokes of this length, mm; 0: in one
+    full         between strokes the tool leaves the hole
+    clearance    from the surface of the hole up to where the feed begins, mm
+    """
+
+    task: SpindleTask
+    pitch: float = math.nan
+    hand: int = 0
+    rpm: float = 0.0
+    floating: bool = False
+    stroke: float = 0.0
+    full: bool = False
+    clearance: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SpindleHole:
+    """A hole whose cycle drives the spindle: rows ``first`` to ``end`` (exclusive); ``file`` as in ``Run.file``."""
+
+    first: int
+    end: int
+    line: int
+    file: int
+    work: SpindleWork
 
 
 #: ``Run.work_offset`` where work offsets are suppressed and positions count from the machine's zero (G500).
@@ -187,6 +231,7 @@ class Run:
                                    count so; None: never
     uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
     work_offset_name               what programs of this control call a value of the column ``work_offset``
+    spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
 
     Computed on first access:
 
@@ -229,6 +274,7 @@ class Run:
     uses_length_numbers: bool = False
     units_from: int | None = 0
     work_offset_name: Callable[[int], str] = field(default="work offset {}".format)
+    spindle_holes: tuple[SpindleHole, ...] = ()
 
     def __post_init__(self) -> None:
         for each in fields(self):

@@ -24,7 +24,17 @@ from trunnion.model.axis_positions import (
     resolve_rotary,
     slide_columns,
 )
-from trunnion.model.run import Comment, Diagnostic, EventValue, ProgrammedWord, Run, RunEvent, SurfaceNormals
+from trunnion.model.run import (
+    Comment,
+    Diagnostic,
+    EventValue,
+    ProgrammedWord,
+    Run,
+    RunEvent,
+    SpindleHole,
+    SpindleWork,
+    SurfaceNormals,
+)
 from trunnion.model.toolpath import Arcs, Kind
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
@@ -90,6 +100,7 @@ class RowRecorder:
         self._tool_names = [""]
         self._selected_tool = 0
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
+        self._spindle_holes: list[SpindleHole] = []
         self._normals: list[tuple[Ints, Floats]] = []
         self._kinematics = kinematic_parameters(machine)
         self._slides = slide_columns(machine)
@@ -206,6 +217,10 @@ class RowRecorder:
         """Record the circle of a row of kind ``Kind.ARC``, in the workpiece frame."""
         self._arcs.append((row, centre, normal, radius, turns))
 
+    def add_spindle_hole(self, first: int, work: SpindleWork) -> None:
+        """Record that the rows from ``first`` on are a hole whose cycle drives the spindle."""
+        self._spindle_holes.append(SpindleHole(first, self.row, self.line, int(self.modal.file.current), work))
+
     def add_normal(self, normal: Floats) -> None:
         """Record the programmed surface normal (3,) of the last row."""
         self._normals.append((np.array([self.row - 1]), (self.vector_map @ normal)[None]))
@@ -313,6 +328,7 @@ class RowRecorder:
             events=self.events,
             diagnostics=tuple(diagnostics),
             units_from=self.units_from,
+            spindle_holes=tuple(self._spindle_holes),
         )
 
     def _normal_columns(self) -> SurfaceNormals:

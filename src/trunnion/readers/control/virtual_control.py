@@ -15,7 +15,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.model import axis_positions
-from trunnion.model.run import ProgrammedWord
+from trunnion.model.run import ProgrammedWord, SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import affine_matrix
@@ -223,6 +223,13 @@ class VirtualControl(CoordinateControl, ABC):
         self._increment_base.clear()
         self.programmed_position = self._position_of_axes()
 
+    def go_home(self) -> None:
+        """Move the slides to the home position of the machine, as a subprogram of the builder does."""
+        self.modal.machine_frame.set(self.row, True)
+        bits = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
+        self.move_axes(Kind.RAPID, self.machine.home[self._slides].copy(), bits=bits)
+        self.modal.machine_frame.set(self.row, False)
+
     # Circles
 
     def _arc_in_workpiece(self, arc: arcs.Arc, axes_turn: bool) -> tuple[Floats, Floats, float] | None:
@@ -260,8 +267,8 @@ class VirtualControl(CoordinateControl, ABC):
 
     # Drilling
 
-    def drill(self, motions: Sequence[HoleMotion]) -> None:
-        """Execute the motions of a drilling cycle at the present position."""
+    def drill(self, motions: Sequence[HoleMotion], work: SpindleWork | None = None) -> None:
+        """Execute the motions of a drilling cycle at the present position; ``work``: the cycle drives the spindle."""
         self.preconditions.report_motion()
         hole = self.programmed_position.copy()
         feed, first_row = self.programmed_feed, self.row
@@ -282,6 +289,8 @@ class VirtualControl(CoordinateControl, ABC):
             if motion.dwell:
                 self.add_event("dwell", motion.dwell)
         self._check_drilling_axis(self.row - first_row)
+        if work is not None:
+            self.add_spindle_hole(first_row, work)
 
     def _add_helix(self, hole: Floats, end: Floats, turns: int) -> None:
         """Add whole turns about a hole to a point above or below the present one; positive counter-clockwise."""

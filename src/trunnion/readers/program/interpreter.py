@@ -16,6 +16,7 @@ from trunnion.machines import Machine
 from trunnion.model.run import Comment, Diagnostic, Run
 from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.virtual_control import VirtualControl
+from trunnion.readers.program.known_words import KnownWords
 from trunnion.readers.program.limits import (
     CHARACTERS_PER_STEP,
     MAX_CALL_DEPTH,
@@ -87,6 +88,7 @@ class Interpreter(ABC, Generic[A]):
         self._stack: list[A] = []
         self._lines_without_scan = 0
         self.control = self._make_control()
+        self._known = KnownWords(machine, self.control)
 
     @abstractmethod
     def _make_control(self) -> VirtualControl:
@@ -161,9 +163,18 @@ class Interpreter(ABC, Generic[A]):
             control.line, control.block_number = line, -1
             raw = source.next_line()
             self._counter.count_blocks(1, len(raw))
-            self._execute_line(active, line, raw)
+            self._execute_known(active, line, raw) if self._known.any else self._execute_line(active, line, raw)
             self._counter.count_events(control.events)
             self._counter.check_resolutions(control.resolutions)
+
+    def _execute_known(self, active: A, line: int, raw: str) -> None:
+        """Execute a line with the words that the definition declares."""
+        rest, words = self._known.take(raw)
+        if rest is None:
+            return
+        self._known.execute(words, before_motion=True)
+        self._execute_line(active, line, rest)
+        self._known.execute(words, before_motion=False)
 
     def _scan(self, source: SourceText) -> int:
         """Execute plain blocks, as many as follow each other; returns how many."""

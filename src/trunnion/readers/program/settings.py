@@ -11,12 +11,12 @@ from trunnion.machines import Machine
 @lru_cache(maxsize=8)
 def family_of(machine: Machine) -> str:
     """Return the family of a machine's control."""
-    return _control(machine).text("family", DEFAULT_FAMILY)
+    return control_of(machine).text("family", DEFAULT_FAMILY)
 
 
 def reading_of(machine: Machine) -> Table:
     """Return the table ``reading`` of a machine's control, empty where it has none."""
-    return _control(machine).table("reading")
+    return control_of(machine).table("reading")
 
 
 def unit_of(table: Table) -> str:
@@ -24,5 +24,6 @@ def unit_of(table: Table) -> str:
     return table.text("units", "", one_of=("", "mm", "inch"))
 
 
-def _control(machine: Machine) -> Table:
+def control_of(machine: Machine) -> Table:
+    """Return the definition of a machine's control, with what it extends."""
     return resolve_extends(machine.control.unread_copy(), files("trunnion").joinpath("controls", "library"))

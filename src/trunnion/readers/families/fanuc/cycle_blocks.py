@@ -64,6 +64,7 @@ class CycleInterpreter(OffsetInterpreter):
         self._check_cycle_feed()
         hole = self._hole()
         motions = self._cycle_motions(lambda: cycles.cycle_motions(self.motion_code, hole))
+        work = cycles.spindle_work(self.motion_code, hole.peck * control.length_unit)
         in_plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
         motion = control.motion
         for _ in range(holes):
@@ -72,7 +73,7 @@ class CycleInterpreter(OffsetInterpreter):
             control.move(in_plane, None)
             if hand := cycles.HANDS.get(self.motion_code):
                 control.add_thread(hand)
-            control.drill(motions)
+            control.drill(motions, work)
         control.motion = motion
 
     def _hole(self) -> cycles.Hole:

@@ -6,6 +6,7 @@ Heights are positions along the axis normal to the working plane, in the units o
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
 
 #: Canned cycles, by their G code in tenths.
@@ -77,6 +78,23 @@ def cycle_motions(code: int, hole: Hole) -> list[HoleMotion]:
         case _:
             assert code == 870
             return _back_bore(hole)
+
+
+def spindle_work(code: int, stroke: float) -> SpindleWork | None:
+    """Return how a cycle drives the spindle; None: it turns as programmed.
+
+    stroke   Q, mm; how a tap with Q pecks is a setting of the control, and out of the hole is always right
+    """
+    match code:
+        case 740 | 840:
+            return SpindleWork(SpindleTask.TAP, hand=1 if code == 840 else -1, stroke=stroke, full=stroke > 0.0)
+        case 860:
+            return SpindleWork(SpindleTask.STOP)
+        case 760 | 870:
+            return SpindleWork(SpindleTask.LIFT)
+        case 880:
+            return SpindleWork(SpindleTask.MANUAL)
+    return None
 
 
 def _peck(hole: Hole, full: bool) -> list[HoleMotion]:

@@ -6,6 +6,7 @@ positions along Z, in the units of the program.
 
 from typing import Final
 
+from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
 
 #: Canned cycles, by their G code in tenths.
@@ -40,6 +41,13 @@ def cycle_motions(code: int, words: dict[str, float], units: float) -> list[Hole
             cut = [into, HoleMotion(False, start)]
     back = [HoleMotion(True, height)] if code not in (840, 850, 890) or start != height else []
     return [*down, *cut, *back]
+
+
+def spindle_work(code: int) -> SpindleWork | None:
+    """Return how a cycle drives the spindle; None: it turns as programmed."""
+    if code == 840:
+        return SpindleWork(SpindleTask.TAP)
+    return SpindleWork(SpindleTask.STOP) if code == 860 else None
 
 
 def _peck(start: float, depth: float, peck: float, dwell: float, units: float) -> list[HoleMotion]:

@@ -203,5 +203,6 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         if up:
             control.drill([to_height])
         control.move(place, None)
-        control.drill(motions if up or float(control.programmed_position[2]) == height else [to_height, *motions])
+        level = up or float(control.programmed_position[2]) == height
+        control.drill(motions if level else [to_height, *motions], cycles.spindle_work(self.motion_code))
         control.motion = motion

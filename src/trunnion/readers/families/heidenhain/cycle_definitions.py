@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.model.run import SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.families.heidenhain import plane_datums
@@ -16,6 +17,8 @@ from trunnion.readers.families.heidenhain.cycles import (
     MAY_BE_RAPID,
     cycle_motions,
     legacy_cycle_motions,
+    legacy_spindle_work,
+    spindle_work,
 )
 from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
@@ -261,6 +264,15 @@ class Definitions:
         """The pitch of the defined cycle, whose sign is the hand of the thread; 0 if it cuts none."""
         cycle = self.defined_cycle
         return 0.0 if cycle is None else cycle.q_values.get(_PITCH, 0.0) or cycle.values.get("PITCH", 0.0)
+
+    def spindle_work(self) -> SpindleWork | None:
+        """Return how the defined cycle drives the spindle; None: it turns as programmed."""
+        cycle, unit = self.defined_cycle, self._control.length_unit
+        if cycle is None:
+            return None
+        if cycle.number in LEGACY_CYCLES:
+            return legacy_spindle_work(cycle.number, cycle.values, unit)
+        return spindle_work(cycle.number, cycle.q_values, unit)
 
     def call(self, parameters: Parameters) -> list[HoleMotion]:
         """Return the motions of the defined cycle at the present position.

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Final
 
+from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion, finite
 
 #: How far the tool moves off the wall of a bored hole, mm: a fixed value of the control.
@@ -309,6 +310,39 @@ CYCLES: Final[dict[int, Callable[[Hole], list[HoleMotion]]]] = {
     240: _centre,
     241: _gun_drill,
 }
+
+
+def spindle_work(number: int, values: Mapping[int, float], unit: float) -> SpindleWork | None:
+    """Return how a cycle of the 200 series drives the spindle; None: it turns as programmed.
+
+    unit   millimetres of a length
+    """
+    clearance = abs(values.get(200, 0.0)) * unit
+    match number:
+        case 206:
+            return SpindleWork(SpindleTask.TAP, floating=True, clearance=clearance)
+        case 207 | 209:
+            pitch = values.get(239, math.nan)
+            stroke = abs(values.get(257, 0.0)) * unit if number == 209 else 0.0
+            hand = -1 if pitch < 0.0 else 1
+            full = bool(stroke) and not values.get(256)
+            return SpindleWork(SpindleTask.TAP, abs(pitch) * unit, hand, stroke=stroke, full=full, clearance=clearance)
+        case 202:
+            return SpindleWork(SpindleTask.LIFT if values.get(214) else SpindleTask.STOP, clearance=clearance)
+        case 204:
+            return SpindleWork(SpindleTask.LIFT, clearance=clearance)
+    return None
+
+
+def legacy_spindle_work(number: int, values: Mapping[str, float], unit: float) -> SpindleWork | None:
+    """As ``spindle_work``, for cycles 1, 2 and 17."""
+    clearance = abs(values.get("DIST", 0.0)) * unit
+    if number == 2:
+        return SpindleWork(SpindleTask.TAP, floating=True, clearance=clearance)
+    if number == 17:
+        pitch = values.get("PITCH", math.nan)
+        return SpindleWork(SpindleTask.TAP, abs(pitch) * unit, -1 if pitch < 0.0 else 1, clearance=clearance)
+    return None
 
 
 def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, here: float) -> list[HoleMotion]:

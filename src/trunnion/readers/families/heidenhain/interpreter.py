@@ -323,7 +323,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         self._counter.count_blocks(len(motions))
         if pitch := self._definitions.pitch:
             self.control.add_thread(pitch)
-        self.control.drill(motions)
+        self.control.drill(motions, self._definitions.spindle_work())
 
     # Planes
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from trunnion.machines import Machine
+from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.coordinates import INCH
@@ -56,7 +57,8 @@ class CycleInterpreter(OffsetInterpreter):
             [
                 HoleMotion(False, float(end[control.plane_axis]), feed, lateral=lateral),
                 HoleMotion(False, float(start[control.plane_axis]), feed * (factor or 1.0)),
-            ]
+            ],
+            SpindleWork(SpindleTask.TAP, abs(pitch) * control.length_unit),
         )
 
     def _feed_of_pitch(self, pitch: float, length: float) -> float:
@@ -136,4 +138,5 @@ class CycleInterpreter(OffsetInterpreter):
                 return
             if hand := cycles.HANDS.get(self.motion_code):
                 control.add_thread(hand)
-            control.drill([HoleMotion(True, hole.retract), *motions] if above > hole.retract else motions)
+            work = cycles.spindle_work(self.motion_code)
+            control.drill([HoleMotion(True, hole.retract), *motions] if above > hole.retract else motions, work)

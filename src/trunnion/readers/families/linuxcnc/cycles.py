@@ -6,6 +6,7 @@ Heights are positions along the axis normal to the working plane, in the units o
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
 
 #: Canned cycles that drill, by their G code in tenths.
@@ -68,6 +69,20 @@ def cycle_motions(code: int, hole: Hole) -> list[HoleMotion]:
         case _:
             assert code == 880
             return [into_and_dwell]
+
+
+def spindle_work(code: int) -> SpindleWork | None:
+    """Return how a cycle drives the spindle; None: it turns as programmed."""
+    match code:
+        case 740 | 840:
+            return SpindleWork(SpindleTask.TAP, hand=1 if code == 840 else -1, floating=True)
+        case 860:
+            return SpindleWork(SpindleTask.STOP)
+        case 870:
+            return SpindleWork(SpindleTask.LIFT)
+        case 880:
+            return SpindleWork(SpindleTask.MANUAL)
+    return None
 
 
 def _peck(hole: Hole, full: bool) -> list[HoleMotion]:

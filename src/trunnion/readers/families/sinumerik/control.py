@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
-from trunnion.model.run import NO_OFFSET
+from trunnion.model.run import NO_OFFSET, SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs, tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
@@ -179,7 +179,7 @@ class SinumerikControl(VirtualControl):
         x = np.array([1.0, 0.0, 0.0]) if length < 1e-9 else x / length
         return AffineMap(np.column_stack((x, np.cross(z, x), z)), zero)
 
-    def drill(self, motions: Sequence[HoleMotion]) -> None:
+    def drill(self, motions: Sequence[HoleMotion], work: SpindleWork | None = None) -> None:
         """Execute a drilling cycle at the present position; along the tool if the machine's definition sets that."""
         turns = self.tcp and not (self.tilted or self.tool_frame) and self._cycles_along_tool
         program = self.program_frame
@@ -187,7 +187,7 @@ class SinumerikControl(VirtualControl):
             self.set_program_frame(self._along_tool(program.shift), keep_base=False)
         if (turns or self.tool_frame) and any(any(motion.lateral) for motion in motions):
             self.note("the cycle lifts off along X and Y of a frame that the control's settings turn", Severity.ERROR)
-        super().drill(motions)
+        super().drill(motions, work)
         if turns:
             self.set_program_frame(program, keep_base=False)
 

@@ -4,10 +4,12 @@ Heights are positions along the drilling axis, mm, in the frame of the program. 
 is read; the parameters of newer controls (``_GMODE``, ``_DMODE``, ``_AMODE``) are not needed for the motions.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion
 
 #: How far a chip-breaking peck backs off by default, mm.
@@ -55,6 +57,35 @@ def signed_pitch(name: str, arguments: Arguments) -> float:
     """Return the pitch or size of the thread of a cycle, whose sign is its hand; 0 if it cuts none or says none."""
     places = {"CYCLE84": (9, 8), "CYCLE840": (11, 10)}.get(name, ())
     return next((value for place in places if (value := _or(arguments, place))), 0.0)
+
+
+def spindle_work(name: str, arguments: Arguments) -> SpindleWork | None:
+    """Return how a cycle drives the spindle; None: it turns as programmed."""
+    clearance = abs(_or(arguments, 3))
+    match name:
+        case "CYCLE84":
+            size, pitch = _get(arguments, 8), _get(arguments, 9)
+            stroke = abs(_or(arguments, 17)) if _or(arguments, 16) else 0.0
+            return SpindleWork(
+                SpindleTask.TAP,
+                pitch=_pitch(size, pitch, _or(arguments, 14)),
+                hand=-1 if (pitch or size or 0.0) < 0.0 else 1,
+                rpm=_or(arguments, 11),
+                stroke=stroke,
+                full=bool(stroke) and _or(arguments, 16) == 2.0,
+                clearance=clearance,
+            )
+        case "CYCLE840":
+            size, pitch = _get(arguments, 10), _get(arguments, 11)
+            lead = _pitch(size, pitch, _or(arguments, 13)) if size or pitch else math.nan
+            hand = -1 if (pitch or size or 0.0) < 0.0 else 0
+            return SpindleWork(SpindleTask.TAP, pitch=lead, hand=hand, floating=True, clearance=clearance)
+        case "CYCLE86":
+            lifts = any(_or(arguments, place) for place in (8, 9, 10))
+            return SpindleWork(SpindleTask.LIFT if lifts else SpindleTask.STOP, clearance=clearance)
+        case "CYCLE87" | "CYCLE88":
+            return SpindleWork(SpindleTask.MANUAL, clearance=clearance)
+    return None
 
 
 def _get(arguments: Arguments, place: int) -> float | None:

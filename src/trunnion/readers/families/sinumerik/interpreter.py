@@ -344,14 +344,15 @@ class SinumerikInterpreter(CallInterpreter):
     def _drill(self, call: Call) -> None:
         try:
             numbers = [finite(_number(value)) for value in call.arguments]
-            motions = cycles.cycle_motions(call.name, numbers, float(self.control.modal.rpm.current))
+            rpm = float(self.control.modal.rpm.current)
+            motions, work = cycles.cycle_motions(call.name, numbers, rpm), cycles.spindle_work(call.name, numbers)
         except CycleExecutionError as error:
             self._note(f"{call.name} {error}: it is not executed", Severity.ERROR)
             return
         self._counter.count_blocks(len(motions))
         if pitch := cycles.signed_pitch(call.name, numbers):
             self.control.add_thread(pitch)
-        self.control.drill(motions)
+        self.control.drill(motions, work)
 
 
 def _number(value: Value | None) -> float | None:

@@ -1,0 +1,161 @@
+"""Words that a definition declares: what codes of the machine builder, macros and probing calls do to a program.
+
+``[control.known]`` maps a word to its effects, separated by commas, and after a colon to what it means. A word that is
+an M code acts wherever it stands in a block. Any other word begins a block, and the whole block belongs to it.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final
+
+from trunnion.definitions import Table
+from trunnion.machines import Machine
+from trunnion.readers.control.virtual_control import VirtualControl
+from trunnion.readers.program.settings import control_of
+
+#: What a word may do.
+EFFECTS: Final = (
+    "no effect", "comes back", "comes back home", "stop", "optional stop", "tool change", "spindle clockwise",
+    "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant off", "tcp off",
+)  # fmt: skip
+
+#: Effects that act before the motion of their block; all others act after it.
+_BEFORE_MOTION: Final = ("spindle clockwise", "spindle counter-clockwise", "coolant flood", "coolant mist")
+
+#: Effects that are not events of their own: the word itself says what happens.
+_SILENT: Final = frozenset({"no effect", "comes back", "comes back home"})
+
+_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1, "off": 0}
+_M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
+_BLOCK_BEGIN: Final = re.compile(r"[ \t]*/?[0-9]?[ \t]*(?:N[0-9]+|[0-9]+(?=[ \t]))?[ \t]*/?[ \t]*")
+_TOOL: Final = re.compile(r"(?<![A-Z0-9])T=?[ \t]*([0-9]{1,9})")
+
+
+@dataclass(frozen=True, slots=True)
+class KnownWord:
+    """A declared word: its ``effects``, and what it ``means`` to people; empty if that is not said."""
+
+    word: str
+    effects: tuple[str, ...]
+    means: str
+
+    @property
+    def code(self) -> int | None:
+        """Its number if it is an M code."""
+        match = _M_CODE.fullmatch(self.word)
+        return int(match[1]) if match else None
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether nothing but the word itself says what happens."""
+        return set(self.effects) <= _SILENT
+
+
+@lru_cache(maxsize=8)
+def known_words(machine: Machine) -> tuple[KnownWord, ...]:
+    """Return the words that the definition of a machine's control declares.
+
+    Raises
+    ------
+    InputError
+        If one of them is written wrongly.
+    """
+    table = control_of(machine).table("known")
+    found = tuple(_known_word(table, key) for key in list(table.keys()))
+    table.raise_problems()
+    return found
+
+
+def _known_word(table: Table, key: str) -> KnownWord:
+    text, _, means = table.text(key).partition(":")
+    effects = tuple(effect.strip() for effect in text.split(","))
+    if unknown := [effect for effect in effects if effect not in EFFECTS]:
+        table.add_problem(key, f"has no effect {unknown[0]!r}", f"write one of {', '.join(EFFECTS)}")
+    if not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
+        table.add_problem(key, "is no word of a program", 'write such as M60, "CYCL DEF 392" or "G65 P9810"')
+    return KnownWord(" ".join(key.upper().split()), effects, means.strip())
+
+
+class KnownWords:
+    """Finds and executes declared words, line by line."""
+
+    def __init__(self, machine: Machine, control: VirtualControl) -> None:
+        self._control = control
+        words = known_words(machine)
+        self._codes = {word.code: word for word in words if word.code is not None}
+        blocks = [word for word in words if word.code is None]
+        begins = "|".join(rf"(?:{_pattern(word.word)})" for word in sorted(blocks, key=lambda word: -len(word.word)))
+        self._begin = re.compile(rf"({begins})(?![A-Z0-9_])", re.IGNORECASE) if blocks else None
+        self._blocks = {word.word: word for word in blocks}
+        codes = "|".join(str(code) for code in self._codes)
+        self._code = re.compile(rf"(?<![A-Z0-9_.$])M0*({codes})(?![0-9=])(?:\([^)]*\))?", re.I) if codes else None
+        self._continues = False
+        self.any = bool(words)
+
+    def take(self, raw: str) -> tuple[str | None, tuple[KnownWord, ...]]:
+        """Return what is left of a line, None if a declared word has the whole block, and the declared words in it."""
+        if self._continues:
+            self._continues = raw.rstrip().endswith("~")
+            return None, ()
+        if self._begin is not None:
+            start = _BLOCK_BEGIN.match(raw)
+            match = self._begin.match(raw, start.end() if start else 0)
+            if match is not None:
+                self._continues = raw.rstrip().endswith("~")
+                word = self._blocks[" ".join(match[1].upper().split())]
+                self._execute_block(word, raw[match.start() :].split(";")[0].strip())
+                return None, ()
+        if self._code is None:
+            return raw, ()
+        found: list[KnownWord] = []
+
+        def remove(match: re.Match[str]) -> str:
+            before = raw[: match.start()]
+            if ";" in before or before.count("(") > before.count(")") or before.count('"') % 2:
+                return match[0]
+            found.append(self._codes[int(match[1])])
+            return " " * len(match[0])
+
+        return self._code.sub(remove, raw), tuple(found)
+
+    def execute(self, words: tuple[KnownWord, ...], *, before_motion: bool) -> None:
+        """Execute the effects of M codes that act before the motion of their block, or those that act after it."""
+        for word in words:
+            for effect in word.effects:
+                if (effect in _BEFORE_MOTION) is before_motion:
+                    self._execute(effect)
+            if word.is_silent and before_motion and word.code is not None:
+                self._control.add_event("m", float(word.code))
+
+    def _execute_block(self, word: KnownWord, text: str) -> None:
+        tool = _TOOL.search(text.upper())
+        if tool is not None and "tool change" in word.effects:
+            self._control.select_tool(f"{int(tool[1])}")
+        for effect in word.effects:
+            self._execute(effect)
+        if word.is_silent:
+            self._control.add_event("known", text)
+
+    def _execute(self, effect: str) -> None:
+        control = self._control
+        kind, _, value = effect.partition(" ")
+        match effect:
+            case "stop" | "optional stop":
+                control.add_event(effect.replace(" ", "_"))
+            case "tool change":
+                control.change_tool()
+            case "tcp off":
+                control.set_tcp(False)
+            case "comes back home":
+                control.go_home()
+            case _ if kind == "spindle":
+                control.modal.spindle.set(control.row, _SENSES[value])
+                control.add_event("spindle", value)
+            case _ if kind == "coolant":
+                control.add_event("coolant", value)
+
+
+def _pattern(word: str) -> str:
+    """Return the regular expression of a word; blanks between its parts may be more, or missing."""
+    return r"[ \t]*".join(re.escape(part) for part in word.split())
