@@ -187,6 +187,38 @@ def test_several_cl_files_become_one_program_in_one_file(tmp_path: Path, capfd: 
     assert [line for line in program.splitlines() if "T=" in line] == ["N190 T=1", "N1550 T=2"] or "T=2" in program
 
 
+def test_a_folder_must_be_there(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """With a slash at its end a name is a folder's, and so it looks without an extension where there are several."""
+    files = [str(YL569 / f"{name}.cls") for name in ("1_contour_rough", "2_hub_rough")]
+    program = str(YL569 / "2_hub_rough.expected.mpf")
+    for command in (
+        ["post", *files, "--output", str(tmp_path / "out")],
+        ["post", *files, "--output", f"{tmp_path / 'out'}/"],
+        ["post", files[0], "--output", f"{tmp_path / 'out'}/"],
+        ["convert", program, "--to-cl", "--output", f"{tmp_path / 'out'}/"],
+        ["convert", program, "--to-machine", "yl569", "--output", f"{tmp_path / 'out'}/"],
+    ):
+        assert main([*command, "--machine", "yl569"]) == 2
+        err = capfd.readouterr().err
+        assert "error: there is no such folder; make it first" in err
+        assert list(tmp_path.iterdir()) == []
+    (tmp_path / "out").mkdir()
+    assert main(["post", *files, "--output", f"{tmp_path / 'out'}/", "--machine", "yl569"]) == 0
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["1_contour_rough.mpf", "2_hub_rough.mpf"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
+@pytest.mark.parametrize("command", ["post", "verify"])
+def test_a_stdout_that_is_full_is_said(command: str) -> None:
+    file = YL569 / ("2_hub_rough.cls" if command == "post" else "2_hub_rough.expected.mpf")
+    arguments = [command, str(file), "--machine", "yl569", *(["--output", "-"] if command == "post" else [])]
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run([sys.executable, "-m", "trunnion", *arguments], stdout=full, stderr=-1, check=False)
+    assert done.returncode == 2
+    assert b"cannot be written: No space left on device" in done.stderr
+    assert b"Traceback" not in done.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [

@@ -1,6 +1,5 @@
 """Types and values of arguments: what cannot be used is an ``InputError`` that names the argument, before any work."""
 
-import io
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -52,10 +51,3 @@ def check_observer(value: object) -> None:
     """Refuse what is no ``Observer``."""
     if not isinstance(value, Observer):
         raise wrong_argument("observer", value, "give a trunnion.Observer, or leave it out")
-
-
-def check_stream(name: str, value: object) -> None:
-    """Refuse what takes no bytes."""
-    if isinstance(value, io.TextIOBase) or not callable(getattr(value, "write", None)):
-        cure = "give a path, a stream that takes bytes, such as io.BytesIO(), or None"
-        raise wrong_argument(name, value, cure)

@@ -1,7 +1,6 @@
 """Conversion: an NC program back to a toolpath, and out again as a CL file or for another machine."""
 
 import io
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,6 +8,7 @@ from pathlib import Path
 from trunnion import conversion, readers
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_path, check_paths
+from trunnion.api.input_files import definition_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.post_result import PostResult
@@ -85,7 +85,7 @@ def convert(
     to_machine, to_cl
         One of both: the machine for which it is posted, or True for a CL file.
     output
-        File of the result, or a binary stream; None: the result has the text. Never the program itself.
+        File of the result, or a binary stream; None: the result has the text. Never a file that is read.
     subprograms
         Files of the subprograms that it calls. No others are opened.
     zero : (3,) float, mm
@@ -125,12 +125,14 @@ def convert(
         what, cure = "is given with to_cl" if to_cl else "is None", "give either to_machine or to_cl=True"
         raise InputError(argument_problem("to_machine", what, cure))
     source = as_machine(machine)
+    target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
     control = load_control(source.control)
-    job = prepare(source if to_machine is None else as_machine(to_machine, "to_machine"), settings, force=force)
+    job = prepare(target_machine, settings, force=force)
     _check_settings(job, to_cl)
-    compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
+    definitions = [*definition_files(machine, source), *definition_files(to_machine or target_machine, target_machine)]
     source = set_up_machine(source, zero, tool_length)
-    with open_target(_checked_output(output, nc)) as target:
+    with open_target(output, inputs=[program, *others, *definitions]) as target:
+        compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
         divided = job.subprograms(target.files, target.path) is not None
         converter = _ProgramConverter(str(nc), observer, force)
         converted = converter.read(
@@ -158,15 +160,6 @@ def _check_settings(job: PostJob, to_cl: bool) -> None:
         )
     if "zero" in job.settings and to_cl:
         raise InputError(argument_problem("settings", "zero has no meaning in a CL file", "give it to trunnion post"))
-
-
-def _checked_output(output: OutputLike, nc: FilePath) -> OutputLike:
-    """The place of the result, unless it is the program itself."""
-    if isinstance(output, str | os.PathLike):
-        place, source = Path(output), Path(nc)
-        if place.exists() and source.exists() and place.samefile(source):
-            raise InputError(Problem(str(output), 0, "is the program itself", "name another output"))
-    return output
 
 
 class _ProgramConverter:

@@ -12,13 +12,14 @@ from pathlib import Path
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
+from trunnion.api.input_files import cl_files, definition_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.planning import load_toolpaths, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
-from trunnion.api.reports import check_report_name
+from trunnion.api.reports import add_report, check_report_name
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
@@ -57,7 +58,8 @@ def post(
         The name of a shipped machine, the path of a definition, or a ``Machine``.
     output
         File of the program, or a binary stream; None: the result has the text. A file appears whole or not at all,
-        with the files of its subprograms.
+        with the files of its subprograms. It is never one of those that are read. A device or a pipe takes the program
+        as a stream.
     settings
         As ``--set`` takes them, by the same keys: ``{"title": "BLADE", "zero": (0, 0, 80), "tcp": "off"}``; see
         docs/commands.md.
@@ -68,7 +70,7 @@ def post(
     explain
         Record why the axes were planned as they are (``decisions``).
     report
-        File of a report, ``.html`` or ``.json``, which is written even if the program is refused.
+        File of a report, ``.html`` or ``.json``. It appears together with the program, and alone where that is refused.
     columns
         Work out the columns of the verification: ``seconds`` (n,), ``tip_feed`` (n,) in mm/min and ``cl_line`` (n,). A
         report needs them; without them a program of any length takes little memory.
@@ -102,16 +104,42 @@ def post(
     >>> result
     PostResult(passed=True, 30 motions)
     """
+    return post_beside(
+        cl, (), machine=machine, output=output, settings=settings, strict=strict, force=force, explain=explain,
+        report=report, columns=columns, subprograms=subprograms, observer=observer,
+    )  # fmt: skip
+
+
+def post_beside(
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    others: Sequence[FilePath],
+    *,
+    machine: MachineLike,
+    output: OutputLike,
+    settings: Settings | None,
+    strict: bool,
+    force: bool,
+    explain: bool,
+    report: FilePath | None,
+    columns: bool,
+    subprograms: Sequence[FilePath],
+    observer: Observer,
+) -> PostResult:
+    """Post CL files as ``post`` does, and write over none of the other files of the same work."""
     check_observer(observer)
     if report is not None:
         check_report_name(report)
-    compile_ahead(kernels.POSTING)
+    loaded = as_machine(machine)
     place = None if report is None else Path(report)
-    job = prepare(as_machine(machine), settings, force=force, explain=explain, report=place, columns=columns)
-    job = replace(job, beside=tuple(check_paths("subprograms", subprograms)))
-    with open_target(output) as target:
+    job = prepare(loaded, settings, force=force, explain=explain, report=place, columns=columns)
+    existing = check_paths("subprograms", subprograms)
+    job = replace(job, beside=tuple(existing))
+    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
+    with open_target(output, report=report, inputs=inputs) as target:
+        compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         toolpaths = load_toolpaths(cl, job, strict, observer)
+        target.files.protect(toolpath.file for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer)
 
 
@@ -142,10 +170,10 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         observer.verified(verification)
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
     result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems))
-    if job.report is not None and verification is not None:
-        result.write_report(job.report)
     failed = [check for check in result.checks if not check.passed]
     if failed and not job.force:
+        if job.report is not None:
+            result.write_report(job.report)
         raise _proof_failed(result)
     if failed:
         notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
@@ -153,6 +181,8 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         write(replace(program, notices=[*program.notices, *notices]), target.files.main, subprograms=subprograms)
     if program.has_time_tokens:
         write_times(target.files, program, times)
+    if target.report is not None and verification is not None:
+        add_report(verification, target.files.add_report(target.report), target.report.name, result.decisions)
     return replace(result, output=target.path, subprograms=target.subprograms, _memory=target.memory)
 
 

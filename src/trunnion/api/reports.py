@@ -1,24 +1,40 @@
 """Reports of a verification: a page or data."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
 from trunnion import reporting
-from trunnion.api.arguments import check_path, wrong_argument
+from trunnion.api.arguments import wrong_argument
+from trunnion.api.input_files import verified_files
 from trunnion.api.reading import FilePath
 from trunnion.errors import InputError, Problem
+from trunnion.files import OutputPlace, atomic_file, check_outputs, resolve_output
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
 
 _SUFFIXES: Final = (".html", ".json")
 
 
-def check_report_name(file: FilePath) -> None:
-    """Raise ``InputError`` for a report of an unknown form, before any work."""
-    if check_path("report", file).suffix.lower() not in _SUFFIXES:
+def check_report_name(file: FilePath) -> OutputPlace:
+    """The place of a report, which is found out before any work.
+
+    Raises
+    ------
+    InputError
+        If it is of an unknown form, or cannot be written.
+    """
+    place = resolve_output(file)
+    if Path(place.name).suffix.lower() not in _SUFFIXES:
         cure = f"let its name end in {' or '.join(_SUFFIXES)}"
-        raise InputError(Problem(str(file), 0, "a report is a page or data", cure))
+        raise InputError(Problem(place.name, 0, "a report is a page or data", cure))
+    return place
+
+
+def check_report(file: FilePath, inputs: Iterable[FilePath]) -> None:
+    """Raise ``InputError`` for a report that cannot be written, or that is one of the files that are read."""
+    check_report_name(file)
+    check_outputs([file], inputs)
 
 
 def write_report(verification: Verification, file: FilePath, *, decisions: Sequence[Decision] = ()) -> None:
@@ -36,11 +52,24 @@ def write_report(verification: Verification, file: FilePath, *, decisions: Seque
     Raises
     ------
     InputError
-        When the name ends otherwise, the verification has no columns, or the file cannot be written.
+        When the name ends otherwise, the verification has no columns, the file cannot be written, or it is one that the
+        verification is about.
     """
     if not isinstance(verification, Verification):
         raise wrong_argument("verification", verification, "give the result of trunnion.verify or trunnion.post")
-    check_report_name(file)
+    place = check_report_name(file)
+    with atomic_file(place, inputs=verified_files(verification)) as sink:
+        add_report(verification, sink, place.name, decisions)
+
+
+def add_report(verification: Verification, sink: BinaryIO, name: str, decisions: Sequence[Decision]) -> None:
+    """Write a report into a file that appears later.
+
+    Raises
+    ------
+    InputError
+        When the verification has no columns.
+    """
     if len(verification.seconds) != len(verification.run):
-        raise InputError(Problem(str(file), 0, "the verification has no columns", "ask for it with columns=True"))
-    reporting.write_report(verification, Path(file), decisions=decisions)
+        raise InputError(Problem(name, 0, "the verification has no columns", "ask for it with columns=True"))
+    sink.writelines(reporting.render_report(verification, Path(name), decisions=decisions))

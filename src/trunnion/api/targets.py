@@ -2,14 +2,13 @@
 
 import io
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
-from trunnion.api.arguments import check_stream
-from trunnion.files import OutputFiles, atomic_output
+from trunnion.files import OutputFiles, OutputPlace, atomic_output, check_stream, resolve_output
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
 OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None
@@ -21,14 +20,16 @@ class Target:
 
     files   takes what is written
     name    what messages call it
-    path    of the file; None: it is no file
+    path    of the file; None: it is no file, or a device
     memory  takes the text where there is no other place; None: there is
+    report  place of its report; None: there is none
     """
 
     files: OutputFiles
     name: str = "the program"
     path: Path | None = None
     memory: io.BytesIO | None = None
+    report: OutputPlace | None = None
 
     @property
     def subprograms(self) -> tuple[Path, ...]:
@@ -37,25 +38,38 @@ class Target:
 
 
 @contextmanager
-def open_target(place: OutputLike) -> Iterator[Target]:
+def open_target(
+    place: OutputLike, *, report: str | os.PathLike[str] | None = None, inputs: Iterable[str | os.PathLike[str]] = ()
+) -> Iterator[Target]:
     """Open the place of a result.
+
+    Parameters
+    ----------
+    place
+        Of the result.
+    report
+        File of its report, which appears with it.
+    inputs
+        Files that are read: none of them is written over.
 
     Raises
     ------
     InputError
         When a file cannot be written; this is found out before anything is computed.
     """
+    beside = None if report is None else resolve_output(report)
     if isinstance(place, str | os.PathLike):
-        with atomic_output(os.fspath(place)) as files:
-            yield Target(files, os.fspath(place), Path(place))
-    elif place is not None:
-        check_stream("output", place)
-        with atomic_output(place) as files:
-            yield Target(files)
-    else:
-        memory = io.BytesIO()
-        with atomic_output(memory) as files:
-            yield Target(files, memory=memory)
+        found = resolve_output(place)
+        path = None if found.is_stream else Path(place)
+        with atomic_output(found, report=beside, inputs=inputs) as files:
+            yield Target(files, found.name, path, report=beside)
+        return
+    memory = io.BytesIO() if place is None else None
+    stream: BinaryIO | None = memory if place is None else place
+    assert stream is not None
+    check_stream(stream)
+    with atomic_output(stream, report=beside, inputs=inputs) as files:
+        yield Target(files, memory=memory, report=beside)
 
 
 def written_text(path: Path | None, memory: io.BytesIO | None) -> str | None:

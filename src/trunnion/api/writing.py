@@ -49,10 +49,15 @@ def read_back_while_writing(
     """
     progress = WriteProgress()
     with ThreadPoolExecutor(1) as executor:
-        run = executor.submit(_run, files, machine, progress, divided or bool(beside), beside)
+        # Without a word the reader would wait forever: an interruption of the first one leaves the second.
         try:
+            run = executor.submit(_run, files, machine, progress, divided or bool(beside), beside)
             yield progress, run
             files.start_sync()
+            progress.finish()
+        except BaseException:
+            progress.stop()
+            raise
         finally:
             progress.finish()
 

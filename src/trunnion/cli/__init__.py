@@ -30,7 +30,12 @@ def run_and_exit() -> NoReturn:
     configure_process()
     _show_log()
     code = main()
-    sys.stdout.flush()
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        if code == 0 and not isinstance(error, BrokenPipeError):
+            print(f"stdout: error: cannot be written: {error.strerror}", file=sys.stderr)
+        code = code or 2
     sys.stderr.flush()
     os._exit(code)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from trunnion.api.converting import convert
 from trunnion.api.reading import load_machine
-from trunnion.cli.terminal import ConversionTerminal, output_place
+from trunnion.cli.terminal import ConversionTerminal, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.wording import counted
 
@@ -51,5 +51,5 @@ def _post_hint(target: str, machine: str, settings: Mapping[str, str]) -> str:
 def _target_file(arguments: argparse.Namespace, extension: str) -> str:
     """Where the result goes."""
     name = Path(arguments.file).stem + extension
-    output: str = arguments.output or name
-    return str(Path(output) / name) if output != "-" and Path(output).is_dir() else output
+    folder = output_folder(arguments.output)
+    return str(folder / name) if folder is not None else arguments.output

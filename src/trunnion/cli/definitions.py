@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from trunnion.cli.results import print_result
 from trunnion.controls import load_control
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
@@ -18,12 +19,11 @@ def machines(arguments: argparse.Namespace) -> int:
         folder = machine_library()
         shipped_file = folder.joinpath(f"{arguments.name}.toml")
         source = shipped_file if shipped_file.is_file() else Path(arguments.name)
-        print(source.read_text(encoding="utf-8"), end="")
+        print_result(source.read_text(encoding="utf-8"), end="")
         return 0
     found = [load_machine(key) for key in shipped_machines()]
     width = max(len(machine.key) for machine in found)
-    for machine in found:
-        print(f"{machine.key:<{width}}  {machine.name}")
+    print_result(*(f"{machine.key:<{width}}  {machine.name}" for machine in found))
     return 0
 
 
@@ -37,7 +37,7 @@ def check(arguments: argparse.Namespace) -> int:
             problems += [problem for problem in error.problems if problem not in problems]
     if problems:
         raise InputError(problems)
-    print(f"{arguments.file}: good")
+    print_result(f"{arguments.file}: good")
     return 0
 
 

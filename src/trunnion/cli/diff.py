@@ -3,6 +3,7 @@
 import argparse
 
 from trunnion.api.comparing import diff
+from trunnion.cli.results import print_result
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -18,5 +19,5 @@ def run(arguments: argparse.Namespace) -> int:
         tolerance=arguments.tolerance,
         path=arguments.path,
     )
-    print(*found.lines(), sep="\n")
+    print_result(*found.lines())
     return 0 if found.same else 1

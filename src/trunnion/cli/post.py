@@ -1,18 +1,19 @@
 """``trunnion post``: CL files in, one proven NC program out (or one each, into a folder)."""
 
 import argparse
-import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
+from trunnion.api.input_files import definition_files
 from trunnion.api.post_result import PostResult
-from trunnion.api.posting import post as post_program
+from trunnion.api.posting import post_beside
 from trunnion.api.reading import load_machine
-from trunnion.cli.terminal import Terminal, output_place
+from trunnion.cli.terminal import Terminal, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
+from trunnion.files import check_outputs
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.wording import counted
@@ -22,12 +23,17 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     """Post every CL file; their toolpaths come one after the other."""
     machine = load_machine(arguments.machine)
     targets = _files_by_target(arguments, machine)
-    if arguments.report and len(targets) > 1:
+    if arguments.report is not None and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
+    read = [*arguments.files, *definition_files(arguments.machine, machine)]
+    report = [] if arguments.report is None else [arguments.report]
+    check_outputs([*(target for target in targets if target != "-"), *report], read)
+    written: list[Path] = []
     for target, files in targets.items():
-        result = post_program(
+        result = post_beside(
             islice(toolpaths, len(files)),
+            [*read, *written],
             machine=machine,
             output=output_place(target),
             settings=dict(arguments.settings),
@@ -39,6 +45,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
             subprograms=arguments.subprograms,
             observer=Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
         )
+        written += [*result.subprograms, *([] if result.output is None else [result.output])]
         _print_summary(target, result)
     return 0
 
@@ -56,17 +63,15 @@ def _print_summary(target: str, result: PostResult) -> None:
 
 def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[str, list[str]]:
     """Which program is made from which CL files."""
-    place = arguments.output
+    place, files = arguments.output, arguments.files
     if place == "-":
-        return {"-": arguments.files}
-    folder = place is not None and (Path(place).is_dir() or place.endswith(("/", os.sep)))
-    if place is not None and not folder:
-        return {place: arguments.files}
-    if place is None and len(arguments.files) > 1:
+        return {"-": files}
+    if place is None and len(files) > 1:
         raise InputError(Problem("post", 0, "several CL files, and no output named", "write --output FILE or FOLDER"))
-    into = Path(place or ".")
-    if not into.is_dir():
-        raise InputError(Problem(str(into), 0, "is not a folder", "make it first"))
+    into = output_folder(place)
+    if into is None:
+        _check_joined(place, files, machine)
+        return {place: files}
     extension = load_control(machine.control).extension
     targets: dict[str, list[str]] = {}
     for file in arguments.files:
@@ -75,3 +80,11 @@ def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[st
     if twice:
         raise InputError(Problem(twice[1], 0, f"would write over the program of {twice[0]}", "rename one of them"))
     return targets
+
+
+def _check_joined(place: str, files: Sequence[str], machine: Machine) -> None:
+    """Raise ``InputError`` for one program of several CL files whose name looks like that of a folder."""
+    extension = load_control(machine.control).extension
+    if len(files) > 1 and extension and not Path(place).suffix and not Path(place).exists():
+        cure = f"make it first for one program a CL file, or name one program of all, such as {place}{extension}"
+        raise InputError(Problem(place, 0, "there is no such folder", cure))

@@ -1,14 +1,16 @@
 """What a command tells on stderr while it works: warnings, decisions, checks, and a progress bar."""
 
+import os
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from pathlib import Path
 from typing import BinaryIO
 
 from trunnion.api.observer import Observer
 from trunnion.cli.progress import progress
 from trunnion.cli.wording import in_command_words, problem_line
-from trunnion.errors import Problem
+from trunnion.errors import InputError, Problem
 from trunnion.model.motion import Plan
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 
@@ -78,6 +80,23 @@ def output_place(output: str) -> str | BinaryIO:
         return output
     sys.stdout.flush()
     return sys.stdout.buffer
+
+
+def output_folder(output: str | None) -> Path | None:
+    """The folder that takes results under the names of what they are made from; None: the output is one file.
+
+    Raises
+    ------
+    InputError
+        If it is written as a folder, and there is none.
+    """
+    if output is None:
+        return Path()
+    if output not in ("", "-") and Path(output).is_dir():
+        return Path(output)
+    if output.endswith(("/", os.sep)):
+        raise InputError(Problem(output, 0, "there is no such folder", "make it first, or name a file"))
+    return None
 
 
 def _exceeds_rotary_speed(verification: Verification) -> bool:

@@ -4,8 +4,11 @@ import argparse
 import sys
 from typing import Final
 
-from trunnion.api.reports import check_report_name, write_report
+from trunnion.api.input_files import definition_files
+from trunnion.api.reading import load_machine
+from trunnion.api.reports import check_report, write_report
 from trunnion.api.verifying import verify
+from trunnion.cli.results import print_result
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
@@ -17,11 +20,13 @@ _MANY_ERRORS: Final = 5
 
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program; 0 if every check has passed, else 1."""
-    if arguments.report:
-        check_report_name(arguments.report)
+    machine = load_machine(arguments.machine)
+    if arguments.report is not None:
+        read = [arguments.file, *arguments.cl, *arguments.subprograms]
+        check_report(arguments.report, [*read, *definition_files(arguments.machine, machine)])
     verification = verify(
         arguments.file,
-        machine=arguments.machine,
+        machine=machine,
         cl=arguments.cl,
         subprograms=arguments.subprograms,
         tolerance=arguments.tolerance,
@@ -34,12 +39,12 @@ def run(arguments: argparse.Namespace) -> int:
         frame=arguments.frame,
         zero=arguments.zero or None,
         tool_length=arguments.tool_length or None,
-        columns=bool(arguments.report),
+        columns=arguments.report is not None,
     )
     if hint := _control_hint(verification):
         print(hint, file=sys.stderr)
-    print(*check_lines(verification), *place_lines(verification), *time_lines(verification), sep="\n")
-    if arguments.report:
+    print_result(*check_lines(verification), *place_lines(verification), *time_lines(verification))
+    if arguments.report is not None:
         write_report(verification, arguments.report)
     return 0 if verification.passed else 1
 

@@ -41,7 +41,16 @@ def write_report(
     InputError
         For any other suffix, and for a file that cannot be written.
     """
-    _write(path, collect_content(verification, control, made, decisions), lambda: collect_series(verification))
+    pieces = render_report(verification, path, control=control, made=made, decisions=decisions)
+    with atomic_file(path) as sink:
+        sink.writelines(pieces)
+
+
+def render_report(
+    verification: Verification, path: Path, *, control: str = "", made: str = "", decisions: Sequence[Decision] = ()
+) -> Iterator[bytes]:
+    """The bytes of a report, piece by piece; arguments and errors as ``write_report`` has them, but writes nothing."""
+    return _renderer(path)(collect_content(verification, control, made, decisions), collect_series(verification))
 
 
 def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, path: Path) -> None:
@@ -61,16 +70,17 @@ def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, p
     InputError
         For any other suffix, and for a file that cannot be written.
     """
-    _write(path, refused_content(machine, program, problems), no_series)
+    pieces = _renderer(path)(refused_content(machine, program, problems), no_series())
+    with atomic_file(path) as sink:
+        sink.writelines(pieces)
 
 
-def _write(path: Path, content: ReportContent, series: Callable[[], PlotSeries]) -> None:
+def _renderer(path: Path) -> Callable[[ReportContent, PlotSeries], Iterator[bytes]]:
+    """What makes a report of the form that a name asks for."""
     render = RENDERERS.get(path.suffix.lower())
     if render is None:
         raise InputError(Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json"))
-    with atomic_file(str(path)) as sink:
-        for piece in render(content, series()):
-            sink.write(piece)
+    return render
 
 
 #: Suffix -> the function that yields the bytes, piece by piece.

@@ -1,0 +1,32 @@
+"""The files that a call reads, none of which it may write over."""
+
+import os
+from collections.abc import Iterable, Sequence
+
+from trunnion.api.reading import FilePath, MachineLike, ToolpathLike
+from trunnion.controls import control_library
+from trunnion.definitions import resolve_extends
+from trunnion.machines import Machine
+from trunnion.model.toolpath import Toolpath
+from trunnion.verification import Verification
+
+
+def cl_files(cl: ToolpathLike | Iterable[ToolpathLike]) -> list[FilePath]:
+    """CL files, as far as they are known before any is read: an iterator is left alone."""
+    if isinstance(cl, str | os.PathLike | Toolpath):
+        cl = [cl]
+    return [each.file if isinstance(each, Toolpath) else each for each in cl] if isinstance(cl, Sequence) else []
+
+
+def definition_files(machine: MachineLike, loaded: Machine) -> list[FilePath]:
+    """The files of a machine's definition and of its control's."""
+    named = [machine] if isinstance(machine, str | os.PathLike) and os.fspath(machine).endswith(".toml") else []
+    control = resolve_extends(loaded.control.unread_copy(), control_library())
+    return [*named, *loaded.files, *control.files()]
+
+
+def verified_files(verification: Verification) -> list[FilePath]:
+    """The files that a verification is about."""
+    run = verification.run
+    cl = {operation.cl_file for operation in verification.operations}
+    return [verification.program, *run.files, *cl, *definition_files(run.machine, run.machine)]

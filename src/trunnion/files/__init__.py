@@ -1,0 +1,18 @@
+"""Output files: settled before any work, complete or not there at all, alone or several together."""
+
+from trunnion.files.output import OutputFiles, atomic_file, atomic_output
+from trunnion.files.places import OutputPlace, check_outputs, resolve_output
+from trunnion.files.streams import check_stream
+from trunnion.files.write_progress import WriteProgress, WritingStoppedError
+
+__all__ = [
+    "OutputFiles",
+    "OutputPlace",
+    "WriteProgress",
+    "WritingStoppedError",
+    "atomic_file",
+    "atomic_output",
+    "check_outputs",
+    "check_stream",
+    "resolve_output",
+]

@@ -1,0 +1,44 @@
+"""Ctrl-C that waits where an interruption would leave half of something behind."""
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from threading import current_thread, main_thread
+from types import FrameType
+from typing import Any, Final
+
+#: Signals whose Python handlers may raise an exception at any moment.
+_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
+
+
+@contextmanager
+def held_interrupts() -> Iterator[None]:
+    """Let Ctrl-C wait until the block has ended, for blocks that take no time.
+
+    The handlers of the process are back when the block ends, and handle then what has come meanwhile. Threads besides
+    the main one are never interrupted.
+    """
+    if current_thread() is not main_thread():
+        yield
+        return
+    came: list[tuple[Callable[..., Any], int, FrameType | None]] = []
+    held: dict[signal.Signals, tuple[Callable[..., Any], Callable[..., None]]] = {}
+    try:
+        for number in _SIGNALS:
+            handler = signal.getsignal(number)
+            if callable(handler):
+
+                def note(
+                    signum: int, frame: FrameType | None, handler: Callable[..., Any] = handler
+                ) -> None:  # called in place of the handler
+                    came.append((handler, signum, frame))
+
+                held[number] = handler, note
+                signal.signal(number, note)
+        yield
+    finally:
+        for number, (handler, note) in held.items():
+            if signal.getsignal(number) is note:
+                signal.signal(number, handler)
+        for handler, signum, frame in came[:1]:
+            handler(signum, frame)

@@ -1,0 +1,254 @@
+"""Output files that appear complete or not at all, alone or several together."""
+
+import io
+import os
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO, TypeAlias
+
+from trunnion.errors import InputError, Problem
+from trunnion.files.hidden_folders import HiddenFolders, move_all
+from trunnion.files.interrupts import held_interrupts
+from trunnion.files.places import Claims, OutputPlace, cannot_write, resolve_output
+from trunnion.files.streams import open_stream, send, stream_name
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+
+#: Where a first file goes: its place, or a stream that takes its bytes.
+Destination: TypeAlias = OutputPlace | BinaryIO
+
+
+class _RawFile(io.FileIO):
+    """A file whose errors of writing name it as the caller does; errors of anything else stay what they are."""
+
+    def __init__(self, path: Path, known_as: str) -> None:
+        self._known_as = known_as
+        try:
+            super().__init__(path, "w+")
+        except OSError as error:
+            raise cannot_write(known_as, error) from None
+
+    def write(self, data: "ReadableBuffer", /) -> int:
+        try:
+            return super().write(data)
+        except OSError as error:
+            raise cannot_write(self._known_as, error) from None
+
+
+class OutputFiles:
+    """A file being written, and further files beside it, in a hidden folder until all of them are complete.
+
+    main   sink of the first file
+    path   path at which it can be read back after ``flush``
+    """
+
+    def __init__(self, folder: Path, name: str, place: OutputPlace | None = None, claims: Claims | None = None) -> None:
+        self.path = folder / name
+        self._place, self._claims = place, claims or Claims()
+        self.main: BinaryIO = _open(self.path, place.name if place else name)
+        self._subprograms: dict[Path, tuple[BinaryIO, OutputPlace]] = {}
+        self._report: tuple[Path, BinaryIO, OutputPlace] | None = None
+        self._sync_thread: ThreadPoolExecutor | None = None
+
+    def add_file(self, name: str) -> BinaryIO:
+        """Begin a further file in the same folder, and return its sink.
+
+        Raises
+        ------
+        InputError
+            If there cannot be a file of this name beside the first, or if it is one that is read or written already.
+        """
+        assert self._place is not None, "a stream is one file"
+        place = resolve_output(Path(self._place.name).with_name(name))
+        if place.is_stream:
+            raise InputError(Problem(place.name, 0, "a subprogram cannot be written to a device", "remove it"))
+        self._claims.write(place)
+        path = self.path.parent / name
+        self._subprograms[path] = _open(path, place.name), place
+        return self._subprograms[path][0]
+
+    def add_report(self, place: OutputPlace) -> BinaryIO:
+        """Begin a report of the first file, which appears with it, and return its sink."""
+        assert self._report is None, "one report"
+        folder = self.path.parent / ".report"
+        try:
+            folder.mkdir()
+        except OSError as error:
+            raise cannot_write(place.name, error) from None
+        path = folder / place.path.name
+        self._report = path, _open(path, place.name), place
+        return self._report[1]
+
+    def protect(self, files: Iterable[str | os.PathLike[str]]) -> None:
+        """Never write over these files.
+
+        Raises
+        ------
+        InputError
+            If one of them is going to be written.
+        """
+        self._claims.read(files)
+
+    @property
+    def other_paths(self) -> list[Path]:
+        """Paths of the further files, in the order in which they were begun."""
+        return list(self._subprograms)
+
+    def flush(self) -> None:
+        """Make everything written readable at the paths."""
+        for sink in self._all_sinks():
+            sink.flush()
+
+    def start_sync(self) -> None:
+        """Begin to bring the first file to the disk in a thread, so that ``sync`` has less to wait for."""
+        self.flush()
+        self._sync_thread = self._sync_thread or ThreadPoolExecutor(1)
+        self._sync_thread.submit(os.fsync, self.main.fileno())
+
+    def sync(self) -> None:
+        """Bring all files to the disk, so that a power failure cannot leave half a file under its final name."""
+        self.flush()
+        for sink in self._all_sinks():
+            try:
+                os.fsync(sink.fileno())
+            except OSError as error:
+                raise cannot_write(self._place.name if self._place else self.path.name, error) from None
+
+    def restart(self) -> None:
+        """Discard everything written."""
+        self.main.seek(0)
+        self.main.truncate()
+        for path, (sink, place) in self._subprograms.items():
+            sink.close()
+            path.unlink()
+            self._claims.release(place)
+        self._subprograms.clear()
+
+    def close(self) -> None:
+        """Close all files; what could not be written has been reported before."""
+        with held_interrupts():
+            if self._sync_thread is not None:
+                self._sync_thread.shutdown()
+            for sink in self._all_sinks():
+                with suppress(InputError):
+                    sink.close()
+
+    def publish(self, hidden: HiddenFolders, stream: BinaryIO | None) -> None:
+        """Bring all files to their places, once they are closed; the first one goes to the stream if there is one."""
+        files = [(path, place) for path, (_, place) in self._subprograms.items()]
+        if self._place is not None and stream is None:
+            files.append((self.path, self._place))
+        report = [] if self._report is None else [(self._report[0], self._report[2])]
+        files += [(path, place) for path, place in report if not place.is_stream]
+        moves = [(hidden.bring(path, place), place) for path, place in files]
+        if stream is not None:
+            _send(self.path, stream, self._place.name if self._place else stream_name(stream))
+        for path, place in report:
+            if place.is_stream:
+                with open_stream(place) as device:
+                    _send(path, device, place.name)
+        if moves:
+            move_all(moves, [place for _, place in report])
+
+    def sinks(self) -> list[BinaryIO]:
+        """Return the sinks of all files of the program, the first file's first; not that of its report."""
+        return [self.main, *(sink for sink, _ in self._subprograms.values())]
+
+    def _all_sinks(self) -> list[BinaryIO]:
+        return [*self.sinks(), *([] if self._report is None else [self._report[1]])]
+
+
+def _open(path: Path, known_as: str) -> BinaryIO:
+    return io.BufferedRandom(_RawFile(path, known_as))
+
+
+def _send(path: Path, stream: BinaryIO, name: str) -> None:
+    """Write a complete file to a stream; one whose reader has gone away raises a ``BrokenPipeError``."""
+    with path.open("rb") as source:
+        try:
+            send(source, stream)
+        except BrokenPipeError:
+            raise
+        except (OSError, ValueError) as error:
+            shown = error if isinstance(error, OSError) else OSError(str(error))
+            raise cannot_write(name, shown) from None
+
+
+@contextmanager
+def atomic_output(
+    target: str | os.PathLike[str] | Destination,
+    *,
+    report: OutputPlace | None = None,
+    inputs: Iterable[str | os.PathLike[str]] = (),
+) -> Iterator[OutputFiles]:
+    """Files that reach their places together when the block ends, or not at all if it raises.
+
+    Parameters
+    ----------
+    target
+        Of the first file: a path, whose folder takes the others, or a stream, which takes one file only.
+    report
+        A file that will be written as well: none of the others may be it.
+    inputs
+        Files that are read: none of them is written over.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written. For the first file this is known when the block begins. Earlier files of the same
+        names stay as they were.
+    """
+    place = resolve_output(target) if isinstance(target, str | os.PathLike) else target
+    claims = Claims()
+    claims.read(inputs)
+    for each in (place, report):
+        if isinstance(each, OutputPlace):
+            claims.write(each)
+    hidden = HiddenFolders()
+    # An interruption of the first removal leaves the second one to do it.
+    try:
+        try:
+            with ExitStack() as opened:
+                yield from _fill_and_publish(place, claims, hidden, opened)
+        finally:
+            hidden.remove()
+    finally:
+        hidden.remove()
+
+
+def _fill_and_publish(
+    place: Destination, claims: Claims, hidden: HiddenFolders, opened: ExitStack
+) -> Iterator[OutputFiles]:
+    """Yield the files to be filled, and bring them to their places."""
+    stream = None if isinstance(place, OutputPlace) else place
+    own = place if isinstance(place, OutputPlace) else None
+    if own is not None and own.is_stream:
+        stream = opened.enter_context(open_stream(own))
+    folder = hidden.temporary() if stream is not None or own is None else hidden.beside(own)
+    name = "stream" if stream is not None or own is None else Path(own.name).name
+    files = OutputFiles(folder, name, own, claims)
+    # An interruption of the first closing leaves the second one to do it.
+    try:
+        try:
+            yield files
+            files.sync()
+        finally:
+            files.close()
+    finally:
+        files.close()
+    files.publish(hidden, stream)
+
+
+@contextmanager
+def atomic_file(
+    target: str | os.PathLike[str] | OutputPlace, *, inputs: Iterable[str | os.PathLike[str]] = ()
+) -> Iterator[BinaryIO]:
+    """The sink of a single file, as ``atomic_output`` makes it.
+
+    Its ``name`` is the path at which the file can be read back after a flush.
+    """
+    with atomic_output(target, inputs=inputs) as files:
+        yield files.main

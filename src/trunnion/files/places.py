@@ -1,0 +1,192 @@
+"""Where output goes: names that are no files, links, devices, and files that a command reads, before any work.
+
+In:     what a caller names.
+Out:    an ``OutputPlace``, or an ``InputError`` that says what is wrong with it.
+"""
+
+import os
+import stat
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from trunnion.errors import InputError, Problem
+
+
+@dataclass(frozen=True, slots=True)
+class OutputPlace:
+    """A file that is going to be written.
+
+    name       as the caller wrote it
+    path       of the file itself, behind symbolic links
+    is_stream  a device or a pipe: takes bytes, and is never replaced by a file
+    """
+
+    name: str
+    path: Path
+    is_stream: bool = False
+
+    @property
+    def entry(self) -> Hashable:
+        """The same for two names of one place in one folder."""
+        return file_identity(self.path.parent), self.path.name.casefold()
+
+
+def resolve_output(file: object) -> OutputPlace:
+    """Find out where a file will be written.
+
+    Parameters
+    ----------
+    file
+        A path as text or as ``os.PathLike``.
+
+    Raises
+    ------
+    InputError
+        If it names no file, a folder, or what cannot be written: something of another type, a name with a NUL or with
+        a slash at its end, a file in a folder that does not exist, a disk.
+    """
+    name = _file_name(file)
+    path = Path(name)
+    try:
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return OutputPlace(name, _new_file(name))
+    except OSError as error:
+        raise cannot_write(name, error) from None
+    if stat.S_ISDIR(mode):
+        raise InputError(Problem(name, 0, "cannot be written: it is a folder", "name a file in it"))
+    if not os.access(path, os.W_OK):
+        raise cannot_write(name, PermissionError(13, "Permission denied"))
+    if stat.S_ISCHR(mode) or stat.S_ISFIFO(mode):
+        return OutputPlace(name, path, is_stream=True)
+    if not stat.S_ISREG(mode):
+        raise InputError(Problem(name, 0, "cannot be written: it is no file, and no device or pipe", _OTHER))
+    real = Path(os.path.realpath(path))
+    # The descriptor of a file that has been removed has no name that could be replaced.
+    if not real.exists():
+        return OutputPlace(name, path, is_stream=True)
+    return OutputPlace(name, _in_writable_folder(name, real))
+
+
+_OTHER = "name another file"
+
+
+def _file_name(file: object) -> str:
+    """The name as text."""
+    name = os.fspath(file) if isinstance(file, str | os.PathLike) else None
+    if not isinstance(name, str):
+        cure = "give a path, as text or as a Path"
+        raise InputError(Problem(f"{file!r:.60}", 0, "is no name of a file", cure))
+    if not name or "\0" in name or not _is_encodable(name):
+        raise InputError(Problem(repr(name), 0, "cannot be the name of a file", _OTHER))
+    if name.endswith((os.sep, os.altsep or os.sep)):
+        raise InputError(Problem(name, 0, "cannot be written: it names a folder", "name a file in it"))
+    return name
+
+
+def _is_encodable(name: str) -> bool:
+    try:
+        os.fsencode(name)
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _new_file(name: str) -> Path:
+    """Path of a file that does not exist, but can be made."""
+    real = Path(os.path.realpath(name))
+    try:
+        if not stat.S_ISDIR(real.parent.stat().st_mode):
+            raise NotADirectoryError(20, f"{real.parent} is no folder")
+    except FileNotFoundError:
+        what = f"cannot be written: there is no folder {real.parent}"
+        raise InputError(Problem(name, 0, what, "make it first, or name another file")) from None
+    except OSError as error:
+        raise cannot_write(name, error) from None
+    return _in_writable_folder(name, real)
+
+
+def _in_writable_folder(name: str, path: Path) -> Path:
+    """The path, unless its folder takes no new files: a file appears by being moved there."""
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        raise cannot_write(name, PermissionError(13, f"nothing may be written into {path.parent}"))
+    return path
+
+
+def cannot_write(name: str, error: OSError) -> InputError:
+    """The error for a file that the system does not let us write."""
+    return InputError(Problem(name, 0, f"cannot be written: {error.strerror or error}", _OTHER))
+
+
+def file_identity(path: str | os.PathLike[str]) -> Hashable:
+    """The same for all names of a file, hard links too; for what does not exist, the same for all spellings."""
+    try:
+        found = Path(path).stat()
+        if found.st_ino:
+            return found.st_dev, found.st_ino
+    except (OSError, ValueError):
+        pass
+    try:
+        return os.path.realpath(path).casefold()
+    except (OSError, ValueError):
+        return os.fspath(path)
+
+
+class Claims:
+    """The files that are read and those that are written: none may be two of them."""
+
+    def __init__(self) -> None:
+        self._read: set[Hashable] = set()
+        self._written: dict[Hashable, OutputPlace] = {}
+
+    def read(self, files: Iterable[str | os.PathLike[str]]) -> None:
+        """Files that are read.
+
+        Raises
+        ------
+        InputError
+            If one of them is going to be written.
+        """
+        self._read.update(map(file_identity, files))
+        for place in self._written.values():
+            self._check_input(place)
+
+    def write(self, place: OutputPlace) -> None:
+        """A file that is going to be written.
+
+        Raises
+        ------
+        InputError
+            If it is read, or written already.
+        """
+        self._check_input(place)
+        if place.entry in self._written:
+            what = f"would be written twice: {self._written[place.entry].name} is the same file"
+            raise InputError(Problem(place.name, 0, what, _OTHER))
+        self._written[place.entry] = place
+
+    def release(self, place: OutputPlace) -> None:
+        """A file that is not going to be written after all."""
+        self._written.pop(place.entry, None)
+
+    def _check_input(self, place: OutputPlace) -> None:
+        if file_identity(place.path) in self._read:
+            what = "would be written over, although it is read or has just been written"
+            raise InputError(Problem(place.name, 0, what, _OTHER))
+
+
+def check_outputs(outputs: Iterable[object], inputs: Iterable[str | os.PathLike[str]]) -> list[OutputPlace]:
+    """Find out where files will be written that must neither be among those that are read nor the same file twice.
+
+    Raises
+    ------
+    InputError
+        As ``resolve_output`` and ``Claims`` raise it.
+    """
+    claims = Claims()
+    claims.read(inputs)
+    places = [resolve_output(file) for file in outputs]
+    for place in places:
+        claims.write(place)
+    return places

@@ -1,0 +1,78 @@
+"""Streams that take output: those of the caller, and devices or pipes."""
+
+import io
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import BinaryIO, Final, cast
+
+from trunnion.errors import InputError, Problem
+from trunnion.files.places import OutputPlace, cannot_write
+
+_PIECE: Final = 1 << 20
+
+
+def check_stream(stream: object) -> None:
+    """Raise ``InputError`` for what does not take bytes: a text stream, a closed one, no stream at all."""
+    name, what, cure = f"{stream!r:.80}", "is no file and no stream", "give a path, or a stream that takes bytes"
+    write = getattr(stream, "write", None)
+    if callable(write):
+        try:
+            write(b"")
+        except TypeError:
+            what, cure = "takes text, and a program is bytes", "give a binary stream, such as sys.stdout.buffer"
+        except (OSError, ValueError) as error:
+            name, reason = stream_name(stream), getattr(error, "strerror", None) or error
+            what = f"cannot be written: {reason}"
+        else:
+            return
+    raise InputError(Problem(name, 0, what, cure))
+
+
+def stream_name(stream: object) -> str:
+    """What messages call a stream."""
+    name = getattr(stream, "name", None)
+    return name if isinstance(name, str) else "the stream"
+
+
+@contextmanager
+def open_stream(place: OutputPlace) -> Iterator[BinaryIO]:
+    """Open a device or a pipe, as it is.
+
+    Raises
+    ------
+    InputError
+        If it cannot be opened.
+    """
+
+    def open_existing(path: str, flags: int) -> int:
+        return os.open(path, flags & ~(os.O_CREAT | os.O_TRUNC))
+
+    try:
+        stream = open(place.path, "wb", buffering=0, opener=open_existing)  # noqa: SIM115 - closed below
+    except OSError as error:
+        raise cannot_write(place.name, error) from None
+    with stream:
+        yield cast("BinaryIO", stream)
+
+
+def send(source: BinaryIO, stream: BinaryIO) -> None:
+    """Write all of a file to a stream, however little it takes at a time.
+
+    Raises
+    ------
+    OSError
+        If it does not take everything.
+    """
+    source.seek(0)
+    while piece := source.read(_PIECE):
+        while piece:
+            taken = stream.write(piece)
+            if taken is None and not isinstance(stream, io.RawIOBase):
+                break  # streams that do not count take everything
+            if not taken:
+                raise BlockingIOError(11, "it takes no more bytes")
+            piece = piece[taken:]
+    flush = getattr(stream, "flush", None)
+    if callable(flush):
+        flush()

@@ -1,0 +1,178 @@
+"""Where results and reports go: never over a file that is read, and settled before any work."""
+
+import io
+import os
+import shutil
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import trunnion
+from tests.support.locations import YL569
+from tests.support.machines import machine_without_tcp
+from trunnion.cli import main
+
+CL = YL569 / "3_blade_finish.cls"
+NC = YL569 / "3_blade_finish.expected.mpf"
+READ = "would be written over, although"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a CL file, a program and a definition; each has a link and a hard link."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(CL, "part.cls")
+    shutil.copy(NC, "part.mpf")
+    shutil.copy(NC, "part.json")
+    Path("mine.toml").write_text('extends = "yl569"\n', encoding="utf-8")
+    for name in ("part.cls", "part.mpf", "part.json", "mine.toml"):
+        Path(f"link-{name}").symlink_to(name)
+        os.link(name, f"hard-{name}")
+    Path("sub").mkdir()
+    return tmp_path
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+def spellings(name: str) -> list[str]:
+    return [name, f"./{name}", f"sub/../{name}", f"link-{name}", f"hard-{name}", os.path.realpath(name)]
+
+
+def test_no_result_is_written_over_what_it_is_made_from(folder: Path) -> None:
+    before = contents(folder)
+    for output in [*spellings("part.cls"), *spellings("mine.toml")]:
+        forms: list[Any] = ["part.cls", ["part.cls"], iter([trunnion.read_cl("part.cls")])]
+        for cl in forms:
+            with pytest.raises(trunnion.InputError, match=READ):
+                trunnion.post(cl, machine="mine.toml", output=output)
+        assert main(["post", "part.cls", "--machine", "mine.toml", "--output", output]) == 2
+        assert contents(folder) == before
+    for output in [*spellings("part.mpf"), *spellings("mine.toml"), "part.json"]:
+        subprograms = ["part.json"] if output == "part.json" else []
+        for target in ({"to_cl": True}, {"to_machine": "mine.toml"}):
+            arguments: dict[str, Any] = {"machine": "mine.toml", "subprograms": subprograms, **target}
+            with pytest.raises(trunnion.InputError, match=READ):
+                trunnion.convert("part.mpf", output=output, **arguments)
+        assert contents(folder) == before
+
+
+def test_no_report_is_written_over_what_it_is_about(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    before = contents(folder)
+    verified = trunnion.verify("part.json", machine="mine.toml", cl="part.cls")
+    for report in spellings("part.json"):
+        assert main(["verify", "part.json", "--machine", "mine.toml", "--report", report]) == 2
+        assert main(["verify", "part.mpf", "--machine", "mine.toml", "--cl", "part.json", "--report", report]) == 2
+        assert main(["verify", "part.mpf", "--machine", "mine.toml", "--with", "part.json", "--report", report]) == 2
+        assert capfd.readouterr().err.count(READ) == 3
+        with pytest.raises(trunnion.InputError, match=READ):
+            trunnion.write_report(verified, report)
+        with pytest.raises(trunnion.InputError, match=READ):
+            trunnion.post("part.json", machine="mine.toml", report=report)
+    for output, report in (("new.json", "new.json"), ("new.json", "sub/../new.json")):
+        with pytest.raises(trunnion.InputError, match="would be written twice"):
+            trunnion.post("part.cls", machine="mine.toml", output=output, report=report)
+        command = ["post", "part.cls", "--machine", "mine.toml", "--output", output, "--report", report]
+        assert main(command) == 2
+    assert contents(folder) == before
+
+
+def test_no_report_is_written_over_its_program_afterwards(folder: Path) -> None:
+    result = trunnion.post("part.cls", machine="mine.toml", output="new.json")
+    before = contents(folder)
+    for report in ("new.json", "part.cls.json"):
+        if report == "part.cls.json":
+            os.link("part.cls", report)
+            before = contents(folder)
+        with pytest.raises(trunnion.InputError, match=READ):
+            result.write_report(report)
+    assert contents(folder) == before
+
+
+def test_no_subprogram_is_written_over_a_cl_file_or_a_report(folder: Path) -> None:
+    settings = {"programs": "operations"}
+    shutil.copy("part.cls", "BLADE_FINISH.spf")
+    before = contents(folder)
+    with pytest.raises(trunnion.InputError, match=READ):
+        trunnion.post("BLADE_FINISH.spf", machine="mine.toml", output="main.mpf", settings=settings)
+    assert contents(folder) == before
+
+
+def test_a_folder_of_programs_writes_over_none_of_them(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Two programs with an operation of the same name would call the same subprogram."""
+    shutil.copy("part.cls", "other.cls")
+    shutil.copy("part.cls", "other.mpf")
+    command = ["post", "part.cls", "other.cls", "--machine", "mine.toml", "--output", "sub", "--set"]
+    assert main([*command, "programs=operations"]) == 2
+    assert "BLADE_FINISH.spf: error: would be written over, although" in capfd.readouterr().err
+    assert sorted(contents(folder / "sub")) == ["BLADE_FINISH.spf", "part.mpf"]
+    before = contents(folder)
+    assert main(["post", "other.cls", "other.mpf", "--machine", "mine.toml", "--output", "."]) == 2
+    assert contents(folder) == before
+
+
+@pytest.mark.parametrize("wrong", [b"p.mpf", 7, "p\0.mpf", "", "missing/", ".", io.StringIO()], ids=repr)
+def test_an_output_that_cannot_be_is_an_input_error_before_any_work(wrong: Any, folder: Path) -> None:
+    calls: list[Callable[[], object]] = [
+        lambda: trunnion.post("missing.cls", machine="yl569", output=wrong),
+        lambda: trunnion.convert("missing.mpf", machine="yl569", to_cl=True, output=wrong),
+        lambda: trunnion.post("missing.cls", machine="yl569", report=wrong),
+        lambda: trunnion.write_report(None, wrong),  # type: ignore[arg-type]
+    ]
+    for call in calls:
+        with pytest.raises(trunnion.InputError) as error:
+            call()
+        assert "missing.cls" not in str(error.value)
+        assert "missing.mpf" not in str(error.value)
+        assert error.value.problems[0].cure
+
+
+class Stopping(trunnion.Observer):
+    """Stops when the program is proven."""
+
+    def verified(self, verification: trunnion.Verification) -> None:
+        raise KeyboardInterrupt
+
+
+def test_a_stopped_post_leaves_program_and_report_as_they_were(folder: Path) -> None:
+    Path("p.mpf").write_text("old")
+    Path("r.json").write_text("old")
+    before, threads = contents(folder), threading.active_count()
+    with pytest.raises(KeyboardInterrupt):
+        trunnion.post("part.cls", machine="yl569", output="p.mpf", report="r.json", observer=Stopping())
+    assert contents(folder) == before
+    assert [path for path in folder.iterdir() if path.name.startswith(".")] == []
+    assert threading.active_count() == threads
+
+
+def test_a_report_that_cannot_be_written_keeps_its_program_back(folder: Path) -> None:
+    Path("p.mpf").write_text("old")
+    with pytest.raises(trunnion.InputError, match="there is no folder"):
+        trunnion.post("missing.cls", machine="yl569", output="p.mpf", report="nowhere/r.json")
+    assert Path("p.mpf").read_text() == "old"
+
+
+def test_a_program_that_fails_its_proof_leaves_its_report_alone(folder: Path) -> None:
+    machine = machine_without_tcp(folder)
+    with pytest.raises(trunnion.ProofFailedError):
+        trunnion.post("part.cls", machine=machine, output="p.mpf", report="r.json")
+    assert (Path("p.mpf").exists(), Path("r.json").exists()) == (False, True)
+    trunnion.post("part.cls", machine=machine, output="p.mpf", report="forced.json", force=True)
+    assert Path("r.json").read_bytes() == Path("forced.json").read_bytes()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")
+def test_a_pipe_takes_the_program_and_is_no_file_of_the_result(folder: Path) -> None:
+    os.mkfifo("pipe.mpf")
+    taken: list[bytes] = []
+    reader = threading.Thread(target=lambda: taken.append(Path("pipe.mpf").read_bytes()))
+    reader.start()
+    result = trunnion.post("part.cls", machine="yl569", output="pipe.mpf")
+    reader.join()
+    kept = trunnion.post("part.cls", machine="yl569").text
+    assert (result.output, result.text, [data.decode() for data in taken]) == (None, None, [kept])
+    assert Path("pipe.mpf").is_fifo()
