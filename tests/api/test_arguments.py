@@ -100,7 +100,9 @@ PLACES = {"zero": "settings", "tool_length": "settings"}
 
 
 @pytest.mark.parametrize(
-    ("function", "arguments", "name", "value"), CASES, ids=lambda value: getattr(value, "__name__", repr(value)[:30])
+    ("function", "arguments", "name", "value"),
+    CASES,
+    ids=[f"{function.__name__}-{name}-{n}" for n, (function, _, name, _) in enumerate(CASES)],
 )
 def test_a_wrong_argument_is_named(
     function: Callable[..., Any], arguments: dict[str, Any], name: str, value: Any, tmp_path: Path

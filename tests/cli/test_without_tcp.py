@@ -234,11 +234,14 @@ def test_another_clamping_on_a_table_is_found(shop: Shop) -> None:
     assert " FAIL " in checks["tip"]
 
 
-def test_points_that_nobody_asked_for_are_faults(shop: Shop) -> None:
+def test_points_between_cl_points_are_faults_unless_they_lie_on_the_way(shop: Shop) -> None:
     assert shop.post(CL, *TABLE, "axis_tolerance=0.01")[0] == 0
-    code = main(["verify", str(shop.program), "--machine", TABLE[0], "--cl", str(shop.cl)])
-    assert code == 1
-    assert shop.verify("--machine", TABLE[0])[0] == 0
+    arguments = ["verify", str(shop.program), "--machine", TABLE[0], "--cl", str(shop.cl)]
+    assert main(arguments) == 0
+    text = shop.program.read_text(encoding="utf-8")
+    assert "Y1.12679 B5.16035" in text
+    shop.program.write_text(text.replace("Y1.12679 B5.16035", "Y1.22679 B5.16035"), encoding="utf-8")
+    assert main(arguments) == 1
 
 
 def test_a_program_reads_back_as_the_toolpath_with_its_points(shop: Shop, tmp_path: Path) -> None:

@@ -37,6 +37,7 @@ class ToyControl(Rs274Control):
     """The virtual toy control."""
 
     relative_centres = False
+    knows_units = True
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
