@@ -115,7 +115,11 @@ def test_a_folder_of_programs_writes_over_none_of_them(folder: Path, capfd: pyte
     assert contents(folder) == before
 
 
-@pytest.mark.parametrize("wrong", [b"p.mpf", 7, "p\0.mpf", "", "missing/", ".", io.StringIO()], ids=repr)
+@pytest.mark.parametrize(
+    "wrong",
+    [b"p.mpf", 7, "p\0.mpf", "", "missing/", ".", io.StringIO()],
+    ids=lambda wrong: type(wrong).__name__ + (repr(wrong) if isinstance(wrong, str) else ""),
+)
 def test_an_output_that_cannot_be_is_an_input_error_before_any_work(wrong: Any, folder: Path) -> None:
     calls: list[Callable[[], object]] = [
         lambda: trunnion.post("missing.cls", machine="yl569", output=wrong),

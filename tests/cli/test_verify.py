@@ -39,7 +39,7 @@ def test_it_also_looks_at_a_program_alone(capfd: pytest.CaptureFixture[str]) -> 
     code, out, _ = verify(capfd, PROGRAM)
     assert code == 0
     assert [line.split()[0] for line in out.splitlines() if " ok " in line] == [
-        "offset", "span", "travel", "speed", "acceleration", "turns", "modal", "words",
+        "offset", "span", "travel", "speed", "acceleration", "rpm", "turns", "modal", "words",
     ]  # fmt: skip
 
 
@@ -140,7 +140,7 @@ def assert_reported(report: Path, lines: list[str]) -> None:
 CHECKS = [
     "order", "tip", "axis", "kind", "feed", "spindle", "tool", "coolant", "compensation",
     "stops", "offset", "home", "holes", "span", "travel",
-    "speed", "acceleration", "turns", "modal", "words",
+    "speed", "acceleration", "rpm", "turns", "modal", "words",
 ]  # fmt: skip
 
 

@@ -221,7 +221,7 @@ def closed() -> io.BytesIO:
 )
 def test_what_takes_no_bytes_is_an_input_error(stream: object, what: str) -> None:
     with pytest.raises(InputError, match=what) as refused:
-        check_stream(stream)
+        check_stream(stream, "output")
     assert refused.value.problems[0].cure
 
 

@@ -218,7 +218,7 @@ class _ProgramConverter:
         lost = sorted(stated.keys() - carried.keys())
         if "work_offset" in lost and ":" in stated["work_offset"] and "work_offset" not in job.settings:
             what = f"operations have different work offsets ({stated['work_offset']}), which {target.name} cannot take"
-            self._refuse([Problem(self._file, 0, what, "--set work_offset=… says them as the other control does")])
+            self._refuse([Problem(self._file, 0, what, "setting work_offset=… says them as the other control does")])
         for key in lost:
             what = f"{key} is {stated[key]!r}, which is not carried over"
             known = key in target.settings

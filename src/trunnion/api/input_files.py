@@ -15,7 +15,8 @@ def cl_files(cl: ToolpathLike | Iterable[ToolpathLike]) -> list[FilePath]:
     """CL files, as far as they are known before any is read: an iterator is left alone."""
     if isinstance(cl, str | os.PathLike | Toolpath):
         cl = [cl]
-    return [each.file if isinstance(each, Toolpath) else each for each in cl] if isinstance(cl, Sequence) else []
+    files = [each.file if isinstance(each, Toolpath) else each for each in cl] if isinstance(cl, Sequence) else []
+    return [file for file in files if isinstance(file, str | os.PathLike)]
 
 
 def definition_files(machine: MachineLike, loaded: Machine) -> list[FilePath]:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import BinaryIO, Final
 
 from trunnion import reporting
-from trunnion.api.arguments import wrong_argument
+from trunnion.api.arguments import check_path, wrong_argument
 from trunnion.api.input_files import verified_files
 from trunnion.api.reading import FilePath
 from trunnion.errors import InputError, Problem
@@ -24,7 +24,7 @@ def check_report_name(file: FilePath) -> OutputPlace:
     InputError
         If it is of an unknown form, or cannot be written.
     """
-    place = resolve_output(file)
+    place = resolve_output(check_path("report", file))
     if Path(place.name).suffix.lower() not in _SUFFIXES:
         cure = f"let its name end in {' or '.join(_SUFFIXES)}"
         raise InputError(Problem(place.name, 0, "a report is a page or data", cure))

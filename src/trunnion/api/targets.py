@@ -67,7 +67,7 @@ def open_target(
     memory = io.BytesIO() if place is None else None
     stream: BinaryIO | None = memory if place is None else place
     assert stream is not None
-    check_stream(stream)
+    check_stream(stream, "output")
     with atomic_output(stream, report=beside, inputs=inputs) as files:
         yield Target(files, memory=memory, report=beside)
 

@@ -12,9 +12,9 @@ from trunnion.files.places import OutputPlace, cannot_write
 _PIECE: Final = 1 << 20
 
 
-def check_stream(stream: object) -> None:
-    """Raise ``InputError`` for what does not take bytes: a text stream, a closed one, no stream at all."""
-    name, what, cure = f"{stream!r:.80}", "is no file and no stream", "give a path, or a stream that takes bytes"
+def check_stream(stream: object, argument: str) -> None:
+    """Raise ``InputError`` for an argument that takes no bytes: a text stream, a closed one, no stream at all."""
+    name, what, cure = argument, "is no file and no stream", "give a path, or a stream that takes bytes"
     write = getattr(stream, "write", None)
     if callable(write):
         try:
