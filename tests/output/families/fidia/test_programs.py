@@ -209,7 +209,7 @@ def test_each_cycle_has_its_word(mode: str, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "what"),
     [
-        (f"CYCLE/BORE,NODRAG,90,{HEIGHTS}MMPM,90\nGOTO/10,5,2\n", "no cycle on this control"),
+        (f"CYCLE/BORE,NODRAG,90,{HEIGHTS}MMPM,90\nGOTO/10,5,2\n", "no documented cycle for BORE,NODRAG"),
         (f"CYCLE/TAP,{HEIGHTS}MMPR,1.0001\nGOTO/10,5,2\n", "the pitch would be wrong"),
         (f"SPINDL/RPM,500,CCLW\nCYCLE/TAP,{HEIGHTS}MMPR,1\nGOTO/10,5,2\n", "left hand"),
         ("FEDRAT/MMPR,0.2\nGOTO/10,5,2\n", "feed per revolution"),

@@ -218,10 +218,11 @@ def test_a_tool_change_within_an_operation_is_refused(post: Post) -> None:
     assert "part.cls:12: error: tool change within an operation" in err
 
 
-def test_what_is_left_out_of_the_program_is_said(post: Post) -> None:
-    code, _, err = post.all(HEAD + "SELECT/TOOL,8\nGOTO/20,0,5\n" + FOOT)
-    assert code == 0
-    assert "part.cls:12: warning: SELECT/TOOL,8 is not written" in err
+def test_a_tool_that_the_file_selects_is_preselected_there(post: Post) -> None:
+    code, out, err = post.all(HEAD + "SELECT/TOOL,8\nGOTO/20,0,5\n" + FOOT)
+    assert code == 0, err
+    at = out.index("T=8")
+    assert out[at - 1 : at + 2] == ["G1 X10. Z5. F500.", "T=8", "X20."]
 
 
 @pytest.mark.parametrize(
