@@ -76,6 +76,11 @@ class Comment:
 EventValue = float | str | tuple[float | str | None, ...] | None
 
 
+def _plain_offset_name(number: int) -> str:
+    """Name a work offset where the family has no words of its own."""
+    return f"work offset {number}"
+
+
 @dataclass(frozen=True, slots=True)
 class RunEvent:
     """Something that happens before row ``before_row``, or after the last row where that is n.
@@ -273,7 +278,7 @@ class Run:
     diagnostics: tuple[Diagnostic, ...] = ()
     uses_length_numbers: bool = False
     units_from: int | None = 0
-    work_offset_name: Callable[[int], str] = field(default="work offset {}".format)
+    work_offset_name: Callable[[int], str] = field(default=_plain_offset_name)
     spindle_holes: tuple[SpindleHole, ...] = ()
 
     def __post_init__(self) -> None:
