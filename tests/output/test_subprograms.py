@@ -380,7 +380,10 @@ def test_a_folder_in_the_way_stays(tmp_path: Path) -> None:
 
 REFUSED = {
     "no control for it": (["--machine", "hs664rt", "--set", "programs=operations"], "no words for subprograms"),
-    "stdout": (["--machine", "yl569", "--set", "programs=operations", "--output", "-"], "stdout takes one file"),
+    "stdout": (
+        ["--machine", "yl569", "--set", "programs=operations", "--output", "-"],
+        "a program of several files needs a place",
+    ),
     "split alone": (["--machine", "yl569", "--set", "split=1000000"], "write programs=operations too"),
     "too small": (["--machine", "yl569", "--set", "programs=operations", "--set", "split=99"], "at least 20480"),
     "another word": (["--machine", "yl569", "--set", "programs=many"], "write programs=one or programs=operations"),

@@ -58,6 +58,8 @@ def default_points(file: str, machine: Machine, motion: Motion, tolerance: float
         Of the tool axis in this operation, degrees.
     """
     moves = motion.operation.moves
+    if moves.normal is not None:  # between CL points no surface normal is known
+        return DefaultPoints(None)
     rows = _rows_off_path(machine, moves, continuous_positions(machine, motion.rotary), tolerance)
     if not len(rows):
         return DefaultPoints(None)

@@ -22,6 +22,7 @@ from trunnion.readers.program.limits import (
     MAX_CALL_DEPTH,
     MAX_DIAGNOSTICS,
     MAX_SUBPROGRAMS,
+    SCANNED_BLOCKS_PER_STEP,
     StepCounter,
 )
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
@@ -191,7 +192,7 @@ class Interpreter(ABC, Generic[A]):
             size = position - source.position
             source.position, source.line = position, source.line + count
             control.line = source.line
-            self._counter.count_blocks(count, size - CHARACTERS_PER_STEP * count)
+            self._counter.count_blocks(-(-count // SCANNED_BLOCKS_PER_STEP), size - CHARACTERS_PER_STEP * count)
             if count < limit and position < len(source.buffer):
                 break
         return source.line - begin

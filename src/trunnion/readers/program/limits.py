@@ -13,6 +13,9 @@ MAX_DIAGNOSTICS: Final = 10_000
 #: Longer blocks and texts count once more for every so many characters; real ones are shorter.
 CHARACTERS_PER_STEP: Final = 128
 
+#: So many blocks of plain motion, which a kernel reads, take less time than one that is interpreted.
+SCANNED_BLOCKS_PER_STEP: Final = 16
+
 #: Working out the axes for a plane, a frame or a position takes as long as so many blocks; and how often a line may ask
 #: for it.
 BLOCKS_PER_RESOLUTION: Final = 16

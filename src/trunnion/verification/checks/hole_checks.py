@@ -75,7 +75,7 @@ def _floating_threads(context: ComparedContext, matches: Mapping[int, MatchedHol
             rigid = True
         elif match.first > before:
             rigid = False
-        if hole.cycle.mode[:1] == ("TAP",) and "OPTION" not in hole.cycle.mode and not (rigid or match.by_motion):
+        if hole.cycle.mode[:1] == ("TAP",) and not (hole.cycle.floating or rigid or match.by_motion):
             text = f"cuts a thread as with a compensating chuck: M{code} is missing"
             place = context.place(match.first, 0.0, text)
             yield Place(place.nc_line, place.number, 0.0, place.text, hole.file, hole.line)

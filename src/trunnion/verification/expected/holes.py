@@ -28,6 +28,7 @@ class HoleCycle:
     pecks        of STEP: the first peck, how much each next one is shorter, the shortest; empty: one peck
     feed         mm/min, or mm/rev where ``per_rev``
     dwell        seconds, or spindle revolutions where ``dwell_turns``
+    floating     the tap is in a compensating chuck (OPTION)
     """
 
     mode: tuple[str, ...]
@@ -39,6 +40,7 @@ class HoleCycle:
     per_rev: bool
     dwell: float
     dwell_turns: bool
+    floating: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -172,6 +174,7 @@ def _hole_cycle(operation: Operation, cycle: CycleOn, cycle_first: int, row: int
         per_rev=bool(values.get("MMPR")) or ("MMPM" not in values and bool(moves.per_rev[row])),
         dwell=_value(cycle, "DWELL", 0.0),
         dwell_turns=words.get("DWELL") == "REV",
+        floating="OPTION" in words,
     )
 
 

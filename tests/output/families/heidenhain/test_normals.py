@@ -16,6 +16,7 @@ from tests.support.posting import FOOT, HEAD
 from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.errors import InputError, RefusedError
+from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.verification import Verification
 
@@ -129,7 +130,9 @@ def test_normals_beside_a_tool_axis_that_changes_are_proven(name: str, moves: Mo
     moves = touched(replace(moves, tip=np.round(moves.tip + shift, 5)), seed)
     try:
         given = {"orientation": "vector", "normals": "contact", "mode": "tcp"}
-        found = proven(toolpath_of(moves), MACHINES[name], CONTROLS["mikron_600u"], folder, **given)
+        # Coarse steps stay as they are: between CL points no normal is known.
+        control = replace(CONTROLS["mikron_600u"], axis_tolerance=AxisTolerance(180.0, 180.0))
+        found = proven(toolpath_of(moves), MACHINES[name], control, folder, **given)
     except (RefusedError, InputError):
         event("refused")
         assume(False)
