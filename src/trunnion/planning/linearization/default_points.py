@@ -31,7 +31,7 @@ _SHARES: Final = np.linspace(0.0, 1.0, 17)[1:-1]
 _USED_PART: Final = 0.5
 
 #: Sine of the angle to the pole below which a tool axis is in it.
-_AT_POLE: Final = 1e-5
+_AT_POLE: Final = 1e-7
 
 #: Rows that are named one by one.
 _NAMED: Final = 5
