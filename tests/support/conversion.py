@@ -118,7 +118,9 @@ def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tup
 def converted(run: Run, one: Site, two: Site, target: Path) -> Run:
     """The run of a program of one control that is posted for another, without losing anything."""
     found = convert(run, one.control)
-    assert [str(remark) for remark in found.warnings] == []
+    # An operation may be divided: a rewind or a Fidia's M242 leaves the part.
+    lost = [str(warning) for warning in found.warnings if "the operation is divided" not in str(warning)]
+    assert lost == []
     return posted(found.toolpath, two, transfer_settings(found.settings, one.control, two.control), target)
 
 
