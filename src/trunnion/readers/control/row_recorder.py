@@ -158,10 +158,6 @@ class RowRecorder:
         self.modal.tool.set(self.row, self._selected_tool)
         self.add_event("tool_change", self._tool_names[self._selected_tool])
 
-    def add_thread(self, hand: float) -> None:
-        """Record that the cycle that follows cuts a thread: 1 right-hand, -1 left-hand."""
-        self.add_event("thread", 1.0 if hand > 0.0 else -1.0)
-
     def add_tolerance(self, tolerance: float) -> None:
         """Record within which tolerance the control may round off the path from now on, mm; 0: none."""
         self.add_event("tolerance", tolerance)

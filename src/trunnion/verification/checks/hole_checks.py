@@ -31,7 +31,7 @@ def check_holes(context: ComparedContext) -> Check:
     matches = match_holes(run, expected)
     by_index = {match.index: match for match in matches}
     dwells = _dwells_by_row(run)
-    hands = {e.before_row: e.value for e in run.events if e.kind == "thread" and isinstance(e.value, float)}
+    work = {each.first: each.work for each in run.spindle_holes}
     places: list[Place] = []
     count = 0
     before: _Drilled | None = None
@@ -42,7 +42,7 @@ def check_holes(context: ComparedContext) -> Check:
             places.append(Place(context.last_line, -1, 0.0, "nothing drills this hole", hole.file, hole.line))
             continue
         drilled = _Drilled(hole, match)
-        faults = list(hole_faults(run, hole, match, dwells, hands, _clearance_on_the_way(context, before, drilled)))
+        faults = list(hole_faults(run, hole, match, dwells, work, _clearance_on_the_way(context, before, drilled)))
         faults += _faults_around(context, drilled)
         before = drilled
         count += len(faults)

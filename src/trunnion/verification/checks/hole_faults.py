@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.model.run import Run
+from trunnion.model.run import Run, SpindleTask, SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.drill_motions import DrillMotions, HoleFault
 from trunnion.verification.checks.peck_faults import peck_faults
@@ -33,7 +33,7 @@ def hole_faults(
     hole: Hole,
     match: MatchedHole,
     dwells: Mapping[int, list[float]],
-    hands: Mapping[int, float],
+    spindle_work: Mapping[int, SpindleWork],
     clearance: float | None = None,
 ) -> Iterator[HoleFault]:
     """What is wrong with one hole.
@@ -42,8 +42,8 @@ def hole_faults(
     ----------
     dwells
         The dwells of the run by row, in seconds, or spindle revolutions if negative.
-    hands
-        The hands of threads by the row at which their cycle begins: 1 right, -1 left.
+    spindle_work
+        What cycles do with the spindle, by the row at which they begin.
     clearance
         As ``clearance_between_holes`` gives it, from the hole before.
     """
@@ -75,7 +75,7 @@ def hole_faults(
     yield from _feed_faults(run, hole, motions.row[kind == Kind.LINEAR], rpm)
     yield from _dwell_faults(hole, match, bottom, dwells, rpm)
     yield from _spindle_faults(run, hole, match, bottom)
-    yield from _thread_faults(hole, match, hands)
+    yield from _thread_faults(hole, match, spindle_work)
 
 
 def _approach_faults(
@@ -149,16 +149,17 @@ def _dwell_faults(
         yield HoleFault(elsewhere[0], 0.0, "waits in the hole where the CL file does not want it")
 
 
-def _thread_faults(hole: Hole, match: MatchedHole, hands: Mapping[int, float]) -> Iterator[HoleFault]:
+def _thread_faults(hole: Hole, match: MatchedHole, spindle_work: Mapping[int, SpindleWork]) -> Iterator[HoleFault]:
     """A thread of the other hand than the sense of the CL file's spindle, and one where it wants none."""
-    row = next((row for row in range(match.first, match.end) if row in hands), None)
+    rows = (row for row in range(match.first, match.end) if row in spindle_work)
+    row = next((row for row in rows if spindle_work[row].task is SpindleTask.TAP), None)
     if row is None:
         return
-    hand = hands[row]
+    hand = spindle_work[row].hand  # 0: that of the spindle, which is judged by itself
     if hole.cycle.mode[:1] != ("TAP",):
         yield HoleFault(min(row, match.end - 1), 0.0, "cuts a thread where the CL file wants none")
-    elif hole.spindle is not None and hole.spindle.sense and hand != hole.spindle.sense:
-        which, wants = ("left", "right") if hand < 0.0 else ("right", "left")
+    elif hand and hole.spindle is not None and hole.spindle.sense and hand != hole.spindle.sense:
+        which, wants = ("left", "right") if hand < 0 else ("right", "left")
         text = f"cuts a {which}-hand thread; the CL file wants a {wants}-hand one"
         yield HoleFault(min(row, match.end - 1), hand, text)
 

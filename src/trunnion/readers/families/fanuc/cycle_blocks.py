@@ -71,8 +71,6 @@ class CycleInterpreter(OffsetInterpreter):
             self._counter.count_blocks(len(motions) + 1)
             control.motion = RAPID
             control.move(in_plane, None)
-            if hand := cycles.HANDS.get(self.motion_code):
-                control.add_thread(hand)
             control.drill(motions, work)
         control.motion = motion
 

@@ -23,10 +23,6 @@ CHIP_BREAK: Final = 1.0
 ABOVE: Final = 1.0
 
 
-#: Threads, and their hand.
-HANDS: Final = {840: 1.0, 740: -1.0}
-
-
 @dataclass(frozen=True, slots=True)
 class Hole:
     """The values of a cycle at a hole.

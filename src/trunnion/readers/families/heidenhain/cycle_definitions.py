@@ -53,9 +53,6 @@ _FIELDS: Final = {
     17: {1: "DIST", 2: "DEPTH", 3: "PITCH"},
 }
 
-#: The Q parameter of a pitch.
-_PITCH: Final = 239
-
 #: Rapid as a feed of a cycle.
 _RAPID: Final = ("MAX", "FMAX")
 
@@ -258,12 +255,6 @@ class Definitions:
         self._control.set_offset(int(preset), f"preset {preset:g}")
 
     # Calls
-
-    @property
-    def pitch(self) -> float:
-        """The pitch of the defined cycle, whose sign is the hand of the thread; 0 if it cuts none."""
-        cycle = self.defined_cycle
-        return 0.0 if cycle is None else cycle.q_values.get(_PITCH, 0.0) or cycle.values.get("PITCH", 0.0)
 
     def spindle_work(self) -> SpindleWork | None:
         """Return how the defined cycle drives the spindle; None: it turns as programmed."""

@@ -321,8 +321,6 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._note(f"the cycle {error}: it is not executed", Severity.ERROR)
             return
         self._counter.count_blocks(len(motions))
-        if pitch := self._definitions.pitch:
-            self.control.add_thread(pitch)
         self.control.drill(motions, self._definitions.spindle_work())
 
     # Planes

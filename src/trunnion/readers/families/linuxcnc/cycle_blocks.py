@@ -136,7 +136,5 @@ class CycleInterpreter(OffsetInterpreter):
             place[along] = above * unit
             if not control.add_row(Kind.RAPID, place, bits=bits):
                 return
-            if hand := cycles.HANDS.get(self.motion_code):
-                control.add_thread(hand)
             work = cycles.spindle_work(self.motion_code)
             control.drill([HoleMotion(True, hole.retract), *motions] if above > hole.retract else motions, work)

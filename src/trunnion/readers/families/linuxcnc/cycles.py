@@ -26,10 +26,6 @@ MODAL_WORDS: Final = "RZPQIJK"
 CLEARANCE: Final = 0.01
 
 
-#: Threads, and their hand.
-HANDS: Final = {840: 1.0, 740: -1.0}
-
-
 @dataclass(frozen=True, slots=True)
 class Hole:
     """The values of a cycle at a hole.

@@ -53,12 +53,6 @@ def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotio
     return [HoleMotion(True, heights.start), *motions, HoleMotion(True, heights.retract)]
 
 
-def signed_pitch(name: str, arguments: Arguments) -> float:
-    """Return the pitch or size of the thread of a cycle, whose sign is its hand; 0 if it cuts none or says none."""
-    places = {"CYCLE84": (9, 8), "CYCLE840": (11, 10)}.get(name, ())
-    return next((value for place in places if (value := _or(arguments, place))), 0.0)
-
-
 def spindle_work(name: str, arguments: Arguments) -> SpindleWork | None:
     """Return how a cycle drives the spindle; None: it turns as programmed."""
     clearance = abs(_or(arguments, 3))
@@ -78,7 +72,7 @@ def spindle_work(name: str, arguments: Arguments) -> SpindleWork | None:
         case "CYCLE840":
             size, pitch = _get(arguments, 10), _get(arguments, 11)
             lead = _pitch(size, pitch, _or(arguments, 13)) if size or pitch else math.nan
-            hand = -1 if (pitch or size or 0.0) < 0.0 else 0
+            hand = int(math.copysign(1, pitch or size or 1.0)) if pitch or size else 0
             return SpindleWork(SpindleTask.TAP, pitch=lead, hand=hand, floating=True, clearance=clearance)
         case "CYCLE86":
             lifts = any(_or(arguments, place) for place in (8, 9, 10))

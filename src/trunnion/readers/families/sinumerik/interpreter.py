@@ -350,8 +350,6 @@ class SinumerikInterpreter(CallInterpreter):
             self._note(f"{call.name} {error}: it is not executed", Severity.ERROR)
             return
         self._counter.count_blocks(len(motions))
-        if pitch := cycles.signed_pitch(call.name, numbers):
-            self.control.add_thread(pitch)
         self.control.drill(motions, work)
 
 
