@@ -36,7 +36,7 @@ for line in sys.stdin:
             code = main(json.loads(line))
         except SystemExit as end:
             code = end.code
-        except Exception as error:
+        except Exception as error:  # a crash is a result too, and never an equal one
             code = f"{type(error).__name__}: {error}"
     print(json.dumps([code, err.getvalue()]), flush=True)
 """
@@ -106,7 +106,7 @@ def main() -> int:
                     runs += 1
                     written += "PROGRAM.NC" in found
                     messages += err != err_2
-                    if (code, found) != (code_2, found_2):
+                    if (code, found) != (code_2, found_2) or isinstance(code_2, str):
                         differ += 1
                         print(f"DIFFERS: {file.name} on {machine} {' '.join(variant)}: {code} and {code_2}")
     for checkout in checkouts:

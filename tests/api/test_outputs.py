@@ -125,7 +125,6 @@ def test_an_output_that_cannot_be_is_an_input_error_before_any_work(wrong: Any, 
         lambda: trunnion.post("missing.cls", machine="yl569", output=wrong),
         lambda: trunnion.convert("missing.mpf", machine="yl569", to_cl=True, output=wrong),
         lambda: trunnion.post("missing.cls", machine="yl569", report=wrong),
-        lambda: trunnion.write_report(None, wrong),  # type: ignore[arg-type]
     ]
     for call in calls:
         with pytest.raises(trunnion.InputError) as error:
@@ -133,6 +132,19 @@ def test_an_output_that_cannot_be_is_an_input_error_before_any_work(wrong: Any, 
         assert "missing.cls" not in str(error.value)
         assert "missing.mpf" not in str(error.value)
         assert error.value.problems[0].cure
+
+
+@pytest.mark.parametrize("wrong", [b"r.json", 7, "r\0.json", "", "missing/r.json", ".", "r.txt"])
+def test_a_report_that_cannot_be_is_an_input_error(wrong: Any, folder: Path) -> None:
+    verification = trunnion.post("part.cls", machine="yl569").verification
+    assert verification is not None
+    before = contents(folder)
+    with pytest.raises(trunnion.InputError) as error:
+        trunnion.write_report(verification, wrong)
+    assert error.value.problems[0].cure
+    assert contents(folder) == before
+    trunnion.write_report(verification, "r.json")
+    assert (folder / "r.json").stat().st_size > 0
 
 
 class Stopping(trunnion.Observer):

@@ -268,8 +268,11 @@ def check_tolerance(argument: str, value: object, *, optional: bool = False) -> 
     """Raise ``InputError`` for a tolerance, mm or degrees, that is no number above 0; an optional one may be None."""
     if value is None and optional:
         return
-    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    if not (is_number and 0.0 < float(value) < _GREATEST_TOLERANCE):  # type: ignore[arg-type]
+    if isinstance(value, int | float | np.number) and not isinstance(value, bool | np.complexfloating):
+        is_tolerance = 0.0 < float(value) < _GREATEST_TOLERANCE
+    else:
+        is_tolerance = False
+    if not is_tolerance:
         raise InputError(argument_problem(argument, f"is {value!r}", "give a number above 0, such as 0.001"))
 
 

@@ -62,8 +62,9 @@ class Template:
         return number_format.text(number)
 
     def _number(self, name: str, value: Value) -> float:
+        assert value is not None  # such lines are left out
         try:
-            return float(value)  # type: ignore[arg-type]  # lines with None are left out
+            return float(value)
         except ValueError:
             raise InputError(
                 Problem(self.file, self.line, f"setting {name} is {value!r}", f"write a number: setting {name}=0.5")

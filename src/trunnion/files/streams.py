@@ -1,5 +1,6 @@
 """Streams that take output: those of the caller, and devices or pipes."""
 
+import errno
 import io
 import os
 from collections.abc import Iterator
@@ -71,7 +72,7 @@ def send(source: BinaryIO, stream: BinaryIO) -> None:
             if taken is None and not isinstance(stream, io.RawIOBase):
                 break  # streams that do not count take everything
             if not taken:
-                raise BlockingIOError(11, "it takes no more bytes")
+                raise BlockingIOError(errno.EAGAIN, "it takes no more bytes")
             piece = piece[taken:]
     flush = getattr(stream, "flush", None)
     if callable(flush):
