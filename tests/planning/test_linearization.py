@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 import pytest
@@ -79,6 +80,29 @@ def off(model: Machine, tip: Floats, axis: Floats, spans: DividedPath, tcp: bool
 steps = st.tuples(st.floats(-30.0, 30.0), st.floats(-30.0, 30.0), st.floats(-20.0, 20.0))
 leans = st.tuples(st.floats(-0.6, 0.6), st.floats(-0.6, 0.6))
 
+#: Steps of the tip, each with the lean of the tool axis in X and Y.
+Path: TypeAlias = list[tuple[tuple[float, float, float], tuple[float, float]]]
+
+
+def points(path: Path) -> tuple[Floats, Floats]:
+    """Tips and tool axes (n, 3)."""
+    tip = np.cumsum([step for step, _ in path], axis=0)
+    assume(np.linalg.norm(np.diff(tip, axis=0), axis=1).min() > 0.1)
+    axis = np.array([[i, j, 1.0] for _, (i, j) in path])
+    return tip, axis / np.linalg.norm(axis, axis=1)[:, None]
+
+
+def divided(
+    model: Machine, tip: Floats, axis: Floats, tcp: bool, tip_tolerance: float, axis_tolerance: float
+) -> tuple[Floats, DividedPath]:
+    """Rotary positions (n, 2), and the path with its points."""
+    rotary = axes_of(model, tip, axis)
+    assume(np.isfinite(rotary).all())
+    divisible = np.ones(len(tip), bool)
+    return rotary, divide_path(
+        model, tip, axis, rotary, divisible, tcp=tcp, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance
+    )
+
 
 @settings(deadline=None, max_examples=60, phases=[Phase.generate])
 @given(
@@ -89,23 +113,11 @@ leans = st.tuples(st.floats(-0.6, 0.6), st.floats(-0.6, 0.6))
     st.sampled_from([0.01, 0.05, 0.5]),
 )
 def test_the_tool_stays_within_its_tolerances(
-    name: str,
-    path: list[tuple[tuple[float, float, float], tuple[float, float]]],
-    tcp: bool,
-    tip_tolerance: float,
-    axis_tolerance: float,
+    name: str, path: Path, tcp: bool, tip_tolerance: float, axis_tolerance: float
 ) -> None:
     model = machine(name)
-    tip = np.cumsum([step for step, _ in path], axis=0)
-    assume(np.linalg.norm(np.diff(tip, axis=0), axis=1).min() > 0.1)
-    axis = np.array([[i, j, 1.0] for _, (i, j) in path])
-    axis /= np.linalg.norm(axis, axis=1)[:, None]
-    rotary = axes_of(model, tip, axis)
-    assume(np.isfinite(rotary).all())
-    spans = divide_path(
-        model, tip, axis, rotary, np.ones(len(tip), bool),
-        tcp=tcp, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance,
-    )  # fmt: skip
+    tip, axis = points(path)
+    rotary, spans = divided(model, tip, axis, tcp, tip_tolerance, axis_tolerance)
     last = np.flatnonzero(np.diff(np.append(spans.source, len(tip))))
     np.testing.assert_array_equal(spans.tip[last], tip)
     np.testing.assert_array_equal(spans.rotary[last], rotary)
@@ -153,24 +165,12 @@ def fewest(
     st.sampled_from([0.01, 0.05, 0.5]),
 )
 def test_points_are_at_most_a_tenth_more_than_the_fewest(
-    name: str,
-    path: list[tuple[tuple[float, float, float], tuple[float, float]]],
-    tcp: bool,
-    tip_tolerance: float,
-    axis_tolerance: float,
+    name: str, path: Path, tcp: bool, tip_tolerance: float, axis_tolerance: float
 ) -> None:
     model = machine(name)
-    tip = np.cumsum([step for step, _ in path], axis=0)
-    assume(np.linalg.norm(np.diff(tip, axis=0), axis=1).min() > 0.1)
-    axis = np.array([[i, j, 1.0] for _, (i, j) in path])
-    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    tip, axis = points(path)
     assume(np.abs(axis[:, :2]).max(axis=1).min() > 1e-3)  # turns at rest in the pole are no spans
-    rotary = axes_of(model, tip, axis)
-    assume(np.isfinite(rotary).all())
-    spans = divide_path(
-        model, tip, axis, rotary, np.ones(len(tip), bool),
-        tcp=tcp, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance,
-    )  # fmt: skip
+    rotary, spans = divided(model, tip, axis, tcp, tip_tolerance, axis_tolerance)
     made = np.bincount(spans.source)
     for row in range(1, len(tip)):
         way = slice(row - 1, row + 1)
