@@ -1,4 +1,7 @@
-"""The library gives what the commands give, byte for byte: programs, CL files, reports, checks and differences."""
+"""The library gives what the commands give, byte for byte: programs, CL files, reports, checks and differences.
+
+Its messages differ by nothing but the names of arguments, which the commands translate.
+"""
 
 import io
 from dataclasses import dataclass
@@ -10,6 +13,7 @@ import trunnion
 from tests.support.golden_controls import CASES as CONTROL_CASES
 from tests.support.locations import FIDIA, FIDIA_HEAD, GOLDEN, HEADS, YL569
 from trunnion.cli import main
+from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.verification import check_lines, place_lines, time_lines
 
 Capture = pytest.CaptureFixture[bytes]
@@ -61,9 +65,9 @@ def test_a_program_is_the_same_and_so_is_its_proof(name: str, tmp_path: Path, ca
     assert (code, result.passed) == (0, True)
     assert stream.getvalue() == out
     assert result.verification is not None
-    remarks = [str(remark) for toolpath in result.toolpaths for remark in toolpath.remarks]
-    others = [str(problem) for problem in result.problems][len(remarks) :]
-    decisions = [str(decision) for decision in result.decisions]
+    remarks = [problem_line(remark) for toolpath in result.toolpaths for remark in toolpath.remarks]
+    others = [problem_line(problem) for problem in result.problems][len(remarks) :]
+    decisions = [in_command_words(str(decision)) for decision in result.decisions]
     proof = [*check_lines(result.verification), *place_lines(result.verification, failed_only=True)]
     printed = err.decode().splitlines()
     assert printed[: len(remarks) + len(decisions)] == [*remarks, *(decisions or [""])][: len(remarks) + len(decisions)]

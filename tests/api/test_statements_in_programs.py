@@ -124,7 +124,7 @@ def test_a_cycle_that_would_make_nothing_is_refused(tmp_path: Path, cycle: str) 
 
 def test_a_tilted_msys_of_the_first_operation_is_named_where_axes_are_out_of_reach(tmp_path: Path) -> None:
     flipped = HEAD.replace("0.0000000,1.0000000,0.0000000\n", "0.0000000,-1.0000000,0.0000000\n")
-    with pytest.raises(trunnion.RefusedError, match=r"--set frame=absolute: .* tilted by 180 degrees"):
+    with pytest.raises(trunnion.RefusedError, match=r"setting frame=absolute: .* tilted by 180 degrees"):
         posted(tmp_path, flipped + FOOT + HEAD.replace("OP1", "OP2") + FOOT)
     (tmp_path / "part.cls").write_text(HEAD.replace("0.0,0.0,1.0", "0.0,0.0,-1.0") + FOOT)
     with pytest.raises(trunnion.RefusedError) as caught:
