@@ -107,6 +107,19 @@ def test_a_coolant_without_a_code_names_the_key_to_write(tmp_path: Path, machine
 
 
 @pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("tilt", ["0.0,0.0,1.0", "0.6,0.0,0.8"])
+@pytest.mark.parametrize("statement", ["SPINDL/RPM,4000.0000,CLW\n", "COOLNT/ON\n", "CUTCOM/LEFT\n"])
+def test_a_statement_that_is_said_twice_is_written_where_one_is(
+    tmp_path: Path, machine: str, tilt: str, statement: str
+) -> None:
+    cut = "GOTO/20,4,5\nCUTCOM/OFF\nGOTO/30,4,5\n"
+    text = HEAD.replace("0.0,50.0,0.0,0.0,1.0", f"4.0,50.0,{tilt}").replace("10.0,0.0,5.0", "10.0,4.0,5.0") + cut + FOOT
+    text = text if statement in text else text.replace("RAPID\n", f"{statement}RAPID\n", 1)
+    twice = text.replace(statement, 2 * statement, 1)
+    assert words(posted(tmp_path, twice, machine)) == words(posted(tmp_path, text, machine))
+
+
+@pytest.mark.parametrize("machine", MACHINES)
 def test_a_hole_of_no_depth_is_made_as_motion_to_its_point(tmp_path: Path, machine: str) -> None:
     holes = "CYCLE/DRILL,RAPTO,3,FEDTO,0,RTRCTO,20,MMPM,100\nGOTO/50,0,0\nGOTO/60,0,0\nCYCLE/OFF\n"
     result = posted(tmp_path, CLEAR + holes + FOOT, machine)

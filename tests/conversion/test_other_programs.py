@@ -182,6 +182,26 @@ def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> No
     ]
 
 
+@pytest.mark.parametrize(
+    ("begin", "turn", "kept"),
+    [
+        ("B0 C0", "C90", 2),
+        ("B0 C0", "X0 C90", 2),
+        ("B0 C0", "C90 M8", 3),  # with an event of its own
+        ("B0 C0", "X1 C90", 3),
+        ("B30 C0", "B-30 C180", 3),  # the tool axis swings through +Z and back
+        ("B30 C0", "C90", 3),
+    ],
+)
+def test_a_turn_about_the_tool_axis_at_rest_is_no_point(programs: Programs, begin: str, turn: str, kept: int) -> None:
+    operation = programs.one("TRAORI", f"G0 X0 Y0 Z0 {begin}", "; look", f"G1 {turn} F7", "; here", "X2")
+    assert len(operation.moves) == kept
+    assert operation.moves.tip[-1].tolist() == [2.0, 0.0, 0.0]
+    assert operation.moves.feed.tolist()[1:] == [7.0] * (kept - 1)
+    messages = [(event.row, event.text) for event in operation.events if isinstance(event, Message)]
+    assert messages == [(1, "look"), (kept - 1, "here")]
+
+
 def warnings_for(programs: Programs, *lines: str) -> list[tuple[int, str]]:
     """Line and text of the warnings."""
     return [(remark.line, remark.what) for remark in programs.all(*lines).warnings]
@@ -275,7 +295,9 @@ def test_files_of_others_convert(tmp_path: Path) -> None:
     files = sorted((SHARED / "data" / "sinumerik").glob("*.mpf"))
     if not files:
         pytest.skip("no files of others here")
-    for file in files:
-        run = run_program(file, MACHINE)
-        converted = convert(run, CONTROL)
-        assert sum(len(operation.moves) for operation in converted.toolpath.operations) > 0
+    found = {file.name: convert(run_program(file, MACHINE), CONTROL) for file in files}
+    # Some cut before X, Y and Z have been programmed, which is refused: nobody knows the workpiece zero here.
+    whole = {name: converted.toolpath.operations for name, converted in found.items() if not converted.errors}
+    assert whole
+    for name, operations in whole.items():
+        assert sum(len(operation.moves) for operation in operations) > 0, name

@@ -1,13 +1,14 @@
 """From every control to every other and back: the tool follows the same path, as far as the programs' digits go."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from tests.support.conversion import Site, converted, made, paths, posted, roomy, same
+from tests.support.conversion import Site, converted, losses, made, paths, posted, roomy, same
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.conversion import convert, transfer_settings
@@ -153,7 +154,7 @@ def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_fil
         if curved and MachiningMode.TILTED not in two.control.modes({}):
             continue  # lines for circles that are rounded already: the proof may find their ends beyond the tolerance
         found = convert(run, one.control)
-        assert [str(remark) for remark in found.warnings] == []
+        assert losses(found) == []
         carried = transfer_settings(found.settings, one.control, two.control)
         there, other = made(found.toolpath, two, carried, folder / f"two{two.control.extension}")
         both = [added(*pair) for pair in zip(expected.tolerances, other.tolerances, strict=True)]
@@ -181,6 +182,33 @@ def drilled(run: Run, operation: Operation, allowed: float) -> None:
 def added(one: Tolerances, other: Tolerances) -> Tolerances:
     """The tolerances of a program that was posted from another one."""
     return Tolerances(one.tip + other.tip, one.angle + other.angle, one.chord + other.chord, one.feed + other.feed)
+
+
+@pytest.mark.parametrize("source", sorted(SITES))
+def test_turns_at_the_pole_are_no_points_and_come_back_once(tmp_path: Path, source: str) -> None:
+    site = SITES[source]
+    lean = np.array([[0.0, -0.2], [0.0, -0.1], [0.0, 0.0], [0.0, 0.0], [0.1, 0.0], [0.2, 0.0]])
+    axis = np.column_stack((lean, np.sqrt(1.0 - (lean**2).sum(axis=1))))
+    n = len(axis)
+    kind = np.array([Kind.RAPID] + [Kind.LINEAR] * (n - 1), np.uint8)
+    tip = np.column_stack((10.0 * np.arange(n), np.full(n, 5.0), np.full(n, 20.0)))
+    phase = np.where(kind == Kind.RAPID, np.uint8(Phase.RAPID), np.uint8(Phase.CUT))
+    feed = np.array([np.nan] + [400.0] * (n - 1))
+    moves = Moves(tip, axis, kind, phase, feed, np.zeros(n, bool), np.arange(1, n + 1, dtype=np.int32))
+    tool = Tool("MILL", "D10", 10.0, 5.0, 80.0)
+    events = LoadTool(0, 1, 3), SpindleOn(0, 1, 2000.0, Sense.CLW)
+    path = Toolpath("made.cls", (Operation("OP1", tool, Frame(), moves, Arcs.empty(), events, 1, 0.01, 0.01),))
+    run = posted(path, site, {}, tmp_path / "one")
+    turns = np.abs(np.diff(run.rotary, axis=0)).max(axis=1) > 1e-9
+    at_rest = np.abs(np.diff(run.tip, axis=0)).max(axis=1) < 1e-9
+    assert (turns & at_rest & run.tcp[1:] & run.tcp[:-1]).any()
+    found = convert(run, site.control)
+    (operation,) = found.toolpath.operations
+    again = posted(
+        found.toolpath, site, transfer_settings(found.settings, site.control, site.control), tmp_path / "two"
+    )
+    assert np.linalg.norm(np.diff(operation.moves.tip, axis=0), axis=1).min() > 1e-6
+    assert len(again) == len(run)
 
 
 VECTORS = sorted(key for key, site in SITES.items() if "orientation" in site.control.settings)

@@ -61,7 +61,8 @@ def test_mangled_programs_are_run_or_refused(folder: Path, seed: int) -> None:
 def test_what_is_mangled_is_understood_when_it_is_whole(folder: Path, data: bytes) -> None:
     run = klartext.judge(data, folder, "dmu65")
     assert run is not None
-    assert run.diagnostics == ()
+    delta = ["DL adds 0.1 mm to the tool: the path is that without it"] if b"DL+0.1" in data else []
+    assert [finding.text for finding in run.diagnostics] == delta
 
 
 ENDLESS = {

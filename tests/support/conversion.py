@@ -11,7 +11,7 @@ from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
 from trunnion.controls import Control
-from trunnion.conversion import convert, transfer_settings
+from trunnion.conversion import Conversion, convert, transfer_settings
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import (
@@ -118,10 +118,13 @@ def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tup
 def converted(run: Run, one: Site, two: Site, target: Path) -> Run:
     """The run of a program of one control that is posted for another, without losing anything."""
     found = convert(run, one.control)
-    # An operation may be divided: a rewind or a Fidia's M242 leaves the part.
-    lost = [str(warning) for warning in found.warnings if "the operation is divided" not in str(warning)]
-    assert lost == []
+    assert losses(found) == []
     return posted(found.toolpath, two, transfer_settings(found.settings, one.control, two.control), target)
+
+
+def losses(found: Conversion) -> list[str]:
+    """What a conversion has lost. An operation may be divided: a rewind or a Fidia's M242 leaves the part."""
+    return [str(problem) for problem in found.warnings if "the operation is divided" not in str(problem)]
 
 
 def same(one: Run, first: Site, two: Run, second: Site) -> None:

@@ -34,7 +34,7 @@ from trunnion.conversion.unsupported import (
     warn_of_poses,
     warn_of_register_changes,
 )
-from trunnion.conversion.workpiece_rows import workpiece_stretches
+from trunnion.conversion.workpiece_rows import without_turns_in_place, workpiece_stretches
 from trunnion.errors import Problem, Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Event, Frame, LoadTool, Operation, Toolpath
@@ -142,7 +142,8 @@ class _ToolpathBuilder:
         self, section: ProgramSection, events: Sequence[ProgramEvent], phases: PhaseComments, builder: EventBuilder
     ) -> Operation:
         run, values = self._run, section.values
-        holes = read_spindle_holes(run, section.rows, events, self._warn)
+        own_blocks = {(event.line, event.file) for event in events if event.kind != "comment"}
+        holes = read_spindle_holes(run, without_turns_in_place(run, section.rows, own_blocks), events, self._warn)
         rows, events = holes.rows, holes.without_own_events(events, self._rigid_tap)
         section.stretches = [rows]
         found = holes.with_cycles(builder.build(events, rows, section.line))

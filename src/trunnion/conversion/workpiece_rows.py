@@ -4,6 +4,8 @@ Where the tool leaves the workpiece and comes back, the rows are divided: each s
 and between operations every program goes home.
 """
 
+from collections.abc import Collection
+
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
@@ -18,6 +20,9 @@ _POSITION = _XYZ | ProgrammedWord.VECTOR
 
 #: Rotary positions within this, degrees, are the same.
 _SAME_ANGLE = 1e-9
+
+#: Tips, mm, and tool axes within this are the same.
+_AT_REST = 1e-9
 
 #: A tip that leaves its straight line by more than this half-way, mm, goes another way.
 _SWING = 1.0
@@ -65,6 +70,28 @@ def workpiece_stretches(
             _warn_of_division(run, int(stretches[-1][-1]) + 1, int(stretch[0]), warn)
         stretches.append(_with_arc_start(run, known, stretch, warn))
     return stretches
+
+
+def without_turns_in_place(run: Run, rows: Ints, blocks: Collection[tuple[int, int]]) -> Ints:
+    """The ``rows`` (n,) of a stretch without those that turn rotary axes about the tool axis, at rest under TCP.
+
+    They are moves of the machine (at the pole, for instance): posting plans its own. Those with events in their own
+    block stay.
+
+    blocks   line and file of each block with events
+    """
+    before = np.maximum(rows - 1, 0)
+    turns = (np.abs(run.rotary[rows] - run.rotary[before]) > _SAME_ANGLE).any(axis=1)
+    here = np.flatnonzero(turns & run.tcp[rows] & run.tcp[before] & (run.kind[rows] != Kind.ARC) & (rows > rows[0]))
+    if not len(here):
+        return rows
+    start, end = run.positions(before[here]), run.positions(rows[here])
+    half_way = forward(run.machine, 0.5 * (start.joints + end.joints))[1]
+    at_rest = np.abs(end.tip - start.tip).max(axis=1) < _AT_REST
+    for axis in (end.axis, half_way):
+        at_rest &= np.abs(axis - start.axis).max(axis=1) < _AT_REST
+    bare = [(int(run.line[row]), int(run.file[row])) not in blocks for row in rows[here]]
+    return np.delete(rows, here[at_rest & np.array(bare)])
 
 
 def _with_arc_start(run: Run, known: Flags, stretch: Ints, warn: Warnings) -> Ints:

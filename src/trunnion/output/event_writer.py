@@ -75,8 +75,10 @@ class EventWriter:
             self._spindle_turns = False
             if not any(isinstance(event, SpindleOn) and event.row == 0 for event in motion.operation.events):
                 self._restart_spindle(0)
-        for event in motion.operation.events:
-            self._write_event(event, end_lines if event.row == rows else ())
+        events = motion.operation.events
+        for k, event in enumerate(events):
+            if not _is_said_again(events, k):
+                self._write_event(event, end_lines if event.row == rows else ())
         self._write_rows(rows)
         for event in self._joining_events:
             if event.row == rows:
@@ -214,3 +216,20 @@ class EventWriter:
                 self._blocks, self._motion, first, last, self._joining_events, self._phase, self._cycle
             )
         self._next_row = max(first, last)
+
+
+def _is_said_again(events: Sequence[Event], index: int) -> bool:
+    """Whether an event says what one before it in the same row does, with nothing but switching in between.
+
+    Off is no such event: conversions of M5 and M9 in a block of their own say it twice.
+    """
+    event = events[index]
+    if not isinstance(event, SpindleOn | Coolant | CutterComp) or (isinstance(event, Coolant) and event.kind == "OFF"):
+        return False
+    for k in range(index - 1, -1, -1):
+        earlier = events[k]
+        if earlier.row != event.row or not isinstance(earlier, SpindleOn | Coolant | CutterComp):
+            return False
+        if type(earlier) is type(event):
+            return replace(earlier, line=event.line) == event
+    return False

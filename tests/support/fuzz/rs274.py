@@ -152,8 +152,8 @@ FIDIA: Final = Language(
     },
     (
         (GOLDEN / "hs664rt" / "radial_holes.expected.txt").read_bytes(),
-        b"N1 G90\nN2 G17 Q1\nN3 G71\nN4 M6 T12\nN5 S9000 M3\nN6 G196\nN7 G1 X10 Y5 Z20 A12.5 C30 F1500\nN8 G197\n"
-        b"G1 X10. Y5. Z20.\n"
+        b"N1 G90\nN2 G17 Q1\nN3 G71\nN4 M6 T12\nG55 O1\nN5 S9000 M3\nN6 G196\nN7 G1 X10 Y5 Z20 A12.5 C30 F1500\n"
+        b"N8 G197\nG1 X10. Y5. Z20.\n"
         b"N9 G2 X20. Y5. I15. J5.\nN10 G81 X1. Z30. R5. E-5.\nX2.\nN11 G80\nN12 G4 HD2.5\nN13 G290 Z0\nN14 M5\n"
         b"N15 M2\n",
     ),
