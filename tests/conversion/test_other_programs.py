@@ -187,7 +187,8 @@ def test_a_turn_under_an_upright_tool_is_remarked_upon(programs: Programs) -> No
     [
         ("B0 C0", "C90", 2),
         ("B0 C0", "X0 C90", 2),
-        ("B0 C0", "C90 M8", 3),  # with an event of its own
+        ("B0 C0", "C90 M8", 2),
+        ("B0 C0", "C90 M9", 3),  # after the motion
         ("B0 C0", "X1 C90", 3),
         ("B30 C0", "B-30 C180", 3),  # the tool axis swings through +Z and back
         ("B30 C0", "C90", 3),

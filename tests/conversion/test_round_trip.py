@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.posting import FOOT, HEAD
 from tests.support.toolpath_strategies import SAYABLE, sensible, toolpaths
 from trunnion.cl import read_cl
 from trunnion.cl.write import write_cl
@@ -118,3 +119,12 @@ def test_whatever_the_toolpath_the_tool_does_the_same(
     (folder / "b.mpf").write_bytes(second)
     found = compare(run_program(folder / "a.mpf", MACHINE), run_program(folder / "b.mpf", MACHINE), 1e-6)
     assert found.same, "\n".join(found.lines())
+
+
+def test_a_tool_whose_name_is_a_number_is_called_by_its_name_again(tmp_path: Path) -> None:
+    text = HEAD.replace("TOOL,D10", "TOOL,7").replace("LOAD/TOOL,1,ADJUST,1\n", "") + FOOT
+    (tmp_path / "part.cls").write_text(text + text.replace("OP1", "OP2"))
+    first = posted(read_cl(tmp_path / "part.cls"), {"tool_call": "name"})
+    assert first is not None
+    assert first.count(b'T="7"') == 1
+    assert there_and_back(first, tmp_path) == first

@@ -89,6 +89,7 @@ class _ToolpathBuilder:
         self._coolants = _coolant_words(control)
         self._warn = Warnings(run.files)
         self._rigid_tap = control.settings.get("rigid_tap", "")
+        self._called_as: dict[str, str] = {}  # tool -> number or quoted name, as its call has it
 
     def build(self) -> Conversion:
         """Convert the whole program."""
@@ -142,8 +143,8 @@ class _ToolpathBuilder:
         self, section: ProgramSection, events: Sequence[ProgramEvent], phases: PhaseComments, builder: EventBuilder
     ) -> Operation:
         run, values = self._run, section.values
-        own_blocks = {(event.line, event.file) for event in events if event.kind != "comment"}
-        holes = read_spindle_holes(run, without_turns_in_place(run, section.rows, own_blocks), events, self._warn)
+        off_blocks = {(event.line, event.file) for event in events if event.value == "off"}
+        holes = read_spindle_holes(run, without_turns_in_place(run, section.rows, off_blocks), events, self._warn)
         rows, events = holes.rows, holes.without_own_events(events, self._rigid_tap)
         section.stretches = [rows]
         found = holes.with_cycles(builder.build(events, rows, section.line))
@@ -151,6 +152,8 @@ class _ToolpathBuilder:
         moves = build_moves(run, rows, phase, self._warn)
         default_name = f"TOOL_{builder.tool}" if builder.tool else Path(run.files[0]).stem
         name = values.get("operation", "") or default_name
+        # An operation with the tool of the one before does not call it.
+        values["tool"] = self._called_as[builder.tool] = values.get("tool") or self._called_as.get(builder.tool, "")
         return Operation(
             name=name if section.part == 1 else f"{name}_{section.part}",
             tool=build_tool(values, builder.tool, self._control),

@@ -75,10 +75,10 @@ def workpiece_stretches(
 def without_turns_in_place(run: Run, rows: Ints, blocks: Collection[tuple[int, int]]) -> Ints:
     """The ``rows`` (n,) of a stretch without those that turn rotary axes about the tool axis, at rest under TCP.
 
-    They are moves of the machine (at the pole, for instance): posting plans its own. Those with events in their own
-    block stay.
+    They are moves of the machine (at the pole, for instance): posting plans its own. Those stay whose
+    block switches something off after the motion.
 
-    blocks   line and file of each block with events
+    blocks   line and file of each block that switches off
     """
     before = np.maximum(rows - 1, 0)
     turns = (np.abs(run.rotary[rows] - run.rotary[before]) > _SAME_ANGLE).any(axis=1)

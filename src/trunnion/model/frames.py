@@ -9,8 +9,9 @@ from trunnion.arrays import Floats
 from trunnion.model.toolpath import Frame, From, Operation
 
 #: Greatest error of a coordinate that was turned into another coordinate system, mm: CL files have seven decimals of a
-#: direction, which is two last digits of the finest control at an arm of 400 mm.
-TURNING_NOISE: Final = 2e-5
+#: direction, which is two last digits of the finest control at an arm of 400 mm. All that prints as two digits is
+#: within, so that what is printed stays what it is when it is turned again.
+TURNING_NOISE: Final = 2.5e-5
 
 #: Decimals of the lengths that parts are drawn with.
 _DRAWN_DECIMALS: Final = 3
