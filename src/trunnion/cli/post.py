@@ -84,7 +84,9 @@ def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[st
 
 def _check_joined(place: str, files: Sequence[str], machine: Machine) -> None:
     """Raise ``InputError`` for one program of several CL files whose name looks like that of a folder."""
+    if len(files) == 1 or Path(place).suffix or Path(place).exists():
+        return
     extension = load_control(machine.control).extension
-    if len(files) > 1 and extension and not Path(place).suffix and not Path(place).exists():
+    if extension:
         cure = f"make it first for one program a CL file, or name one program of all, such as {place}{extension}"
         raise InputError(Problem(place, 0, "there is no such folder", cure))

@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from importlib.resources.abc import Traversable
 from pathlib import Path, PurePosixPath
 from typing import Final, TypeAlias
@@ -49,6 +50,14 @@ def _read(source: _DefinitionFile) -> LocatedValue:
         raise InputError(Problem(label, 0, f"cannot be read: {error.strerror or error}")) from None
     if len(data) > MAX_FILE_BYTES:
         raise InputError(Problem(label, 0, f"has more than {MAX_FILE_BYTES} bytes", "a definition is a small file"))
+    root = _parse(label, data)
+    assert isinstance(root.value, dict)
+    return LocatedValue(dict(root.value), root.file, root.line)  # its ``extends`` will be taken out
+
+
+@lru_cache(maxsize=32)
+def _parse(label: str, data: bytes) -> LocatedValue:
+    """The values of a file: a post needs those of its control four times."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -10,6 +10,18 @@ from typing import Final, TypeAlias
 MAX_KEY_DEPTH: Final = 32
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_BLANKS = re.compile(r"[ \t]*+")
+_BLANK_LINES = re.compile(r"(?:[ \t\r\n]++|#[^\n]*+)*+")
+_UNQUOTED_VALUE = re.compile(r"[^,\]}#\n]*+")
+
+#: What follows an opening quote, with the closing one. A multi-line string may end with up to two quotes of its own
+#: before the closing three.
+_STRING_ENDS: Final = {
+    '"': re.compile(r'(?:[^"\\]++|\\.)*+"', re.DOTALL),
+    "'": re.compile(r"[^']*+'"),
+    '"""': re.compile(r'(?:[^"\\]++|\\.|"(?!""))*+"{3,}+', re.DOTALL),
+    "'''": re.compile(r"(?:[^']++|'(?!''))*+'{3,}+"),
+}
 
 KeyPath: TypeAlias = tuple[str | int, ...]
 
@@ -97,20 +109,13 @@ class _KeyLineScanner:
 
     def _skip_blanks(self, *, newlines: bool) -> bool:
         """Skip blanks (with newlines: also lines and comments); return whether text is left."""
-        blanks = " \t\r\n" if newlines else " \t"
-        while self.at < len(self.text):
-            letter = self.text[self.at]
-            if letter in blanks:
-                self.at += 1
-            elif newlines and letter == "#":
-                self._skip_to("\n")
-            else:
-                return True
-        return False
+        self._skip(_BLANK_LINES if newlines else _BLANKS)
+        return self.at < len(self.text)
 
-    def _skip_to(self, mark: str) -> None:
-        end = self.text.find(mark, self.at)
-        self.at = len(self.text) if end < 0 else end
+    def _skip(self, pattern: re.Pattern[str]) -> None:
+        """Skip what a pattern matches; without a match, all that is left."""
+        match = pattern.match(self.text, self.at)
+        self.at = match.end() if match else len(self.text)
 
     def _key(self) -> list[str]:
         """Read a dotted key, up to what follows it."""
@@ -166,8 +171,7 @@ class _KeyLineScanner:
         elif letter and letter in "\"'":
             self._string()
         else:
-            while self.at < len(self.text) and self.text[self.at] not in ",]}#\n":
-                self.at += 1
+            self._skip(_UNQUOTED_VALUE)
 
     def _items(self, close: str, path: KeyPath, *, array: bool) -> None:
         self.at += 1
@@ -188,9 +192,4 @@ class _KeyLineScanner:
         if self.text.startswith(quote * 3, self.at):
             quote *= 3
         self.at += len(quote)
-        while self.at < len(self.text) and not self.text.startswith(quote, self.at):
-            self.at += 2 if self.text[self.at] == "\\" and quote[0] == '"' else 1
-        self.at += len(quote)
-        # A multi-line string may end with up to two quotes of its own before the closing three.
-        while len(quote) == 3 and self.text.startswith(quote[0], self.at):
-            self.at += 1
+        self._skip(_STRING_ENDS[quote])
