@@ -33,6 +33,9 @@ _USED_PART: Final = 0.5
 #: Sine of the angle to the pole below which a tool axis is in it.
 _AT_POLE: Final = 1e-7
 
+#: Rows that are looked at together, so that their columns stay in the processor's cache.
+_CHUNK: Final = 16384
+
 #: Rows that are named one by one.
 _NAMED: Final = 5
 
@@ -60,8 +63,7 @@ def default_points(file: str, machine: Machine, motion: Motion, tolerance: float
     moves = motion.operation.moves
     if moves.normal is not None:  # between CL points no surface normal is known
         return DefaultPoints(None)
-    rows = _rows_off_path(machine, moves, continuous_positions(machine, motion.rotary), tolerance)
-    if not len(rows):
+    if not _leaves_path(machine, motion, tolerance):
         return DefaultPoints(None)
     turning = rotary_motion(machine, moves, motion.rotary)
     positions = turning.positions
@@ -86,10 +88,21 @@ def default_points(file: str, machine: Machine, motion: Motion, tolerance: float
     return DefaultPoints(path, tuple(_problems(file, moves.line[failed].tolist(), tolerance)))
 
 
+def _leaves_path(machine: Machine, motion: Motion, tolerance: float) -> bool:
+    """Whether a step does; asked of a chunk of rows at a time, as few toolpaths have such a step."""
+    moves = motion.operation.moves
+    chunks = (slice(max(0, first - 1), first + _CHUNK) for first in range(0, len(moves), _CHUNK))
+    return any(
+        len(_rows_off_path(machine, moves.select(rows), continuous_positions(machine, motion.rotary[rows]), tolerance))
+        for rows in chunks
+    )
+
+
 def _rows_off_path(machine: Machine, moves: Moves, positions: Floats, tolerance: float) -> Ints:
     """Rows of a cut in which the rotary axes, turning evenly, lead the tool axis too far off its great circle."""
     cuts = (moves.kind[1:] == Kind.LINEAR) & (contact_of(moves)[1:] != NO_CONTACT)
-    turn = np.radians(np.abs(np.diff(positions, axis=0)).sum(axis=1))
+    turns = np.abs(np.diff(positions, axis=0))
+    turn = np.radians(turns[:, 0] + turns[:, 1])
     # A curve with a second derivative of the square of the turn is off its chord by an eighth of it; so is the circle.
     rows = 1 + np.flatnonzero(cuts & (0.25 * turn * turn > math.radians(_USED_PART * tolerance)))
     if not len(rows):

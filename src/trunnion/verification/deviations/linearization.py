@@ -9,11 +9,12 @@ Each motion is sampled at several positions on its way.
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Floats2, Floats3, Ints
+from trunnion.arrays import Flags, Floats, Floats2, Floats3, Ints, Lines
 from trunnion.jit import inner, kernel
 from trunnion.machines.forward import KinematicChain, forward_row, kinematic_chain
 from trunnion.model.axis_tolerance import AxisTolerance, allowed_deviation
@@ -77,20 +78,28 @@ class LinearizationErrors:
         self._chain = kinematic_chain(run.machine)
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._expected = expected
+        self._matching = matching
         self._by_default = by_default
-        self._cl_row = np.full(len(run), -1, np.int32)
-        if expected is not None and matching is not None:
-            for nc, cl in matching.all_pair_chunks():
-                no_line = np.isin(cl, expected.first_rows) | (expected.kind(cl) == Kind.ARC)
-                self._cl_row[nc] = np.where(no_line, -1, cl)
         self.tip = WorstRows(tip_limit, max_rows)
         self.axis = WorstRows(0.0 if by_default else math.inf if axis_limit is None else axis_limit, max_rows)
+
+    @cached_property
+    def _cl_row(self) -> Lines:
+        """(n,) int32: the CL row that each row leads to on a line, else -1. Most runs have no row that needs it."""
+        cl_row = np.full(len(self._run), -1, np.int32)
+        if self._expected is not None and self._matching is not None:
+            for nc, cl in self._matching.all_pair_chunks():
+                no_line = np.isin(cl, self._expected.first_rows) | (self._expected.kind(cl) == Kind.ARC)
+                cl_row[nc] = np.where(no_line, -1, cl)
+        return cl_row
 
     def add(self, first: int, end: int, positions: RowPositions) -> None:
         """Add rows, in order; ``positions`` is the ``Run.chunk`` of them."""
         kind = self._run.kind[first:end]
         tcp = self._run.state.tcp.part(first, end)
         rows = self._rows_to_sample(first, end, positions, tcp)
+        if not len(rows):
+            return
         tips, axes = self._path_ends(first, rows, positions)
         off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
         _linearization_errors(
@@ -127,10 +136,10 @@ class LinearizationErrors:
         run = self._run
         kind, frame = run.kind[first:end], run.state.machine_frame.part(first, end)
         moves_tip = (run.programmed[first:end] & int(POSITION_WORDS)) != 0
-        turned = np.abs(np.diff(positions.joints[:, self._rotary], axis=0)).max(axis=1) > _STILL
-        sampled = turned & ~frame & (kind != Kind.ARC)
+        turns = np.abs(np.diff(positions.joints[:, self._rotary], axis=0))
+        sampled = (turns > _STILL).any(axis=1) & ~frame & (kind != Kind.ARC)
         if self._by_default is not None and math.isinf(self.tip.limit):
-            total = np.radians(np.abs(np.diff(positions.joints[:, self._rotary], axis=0)).sum(axis=1))
+            total = np.radians(turns[:, 0] + turns[:, 1])
             sampled &= 0.25 * total * total > math.radians(self._by_default.tolerance.finishing)
         sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & math.isfinite(self.tip.limit))
         sampled &= ~tcp | (run.orientation_between(first, end) == Orientation.ANGLES)
