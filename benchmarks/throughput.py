@@ -6,6 +6,8 @@ motion blocks of the three programs must agree. Prints a table; exit code 1 if a
 """
 
 import argparse
+import compileall
+import importlib.util
 import math
 import os
 import platform
@@ -43,6 +45,12 @@ LETTERS = "XYZBC"
 LAST_DIGIT = 1e-5
 SLACK = 1e-9  # what rounding in the arithmetic before may move a number
 SHOWN = 5
+
+#: Passes of the loop that says how fast the machine is.
+PASSES = 10_000_000
+
+#: What contestants run in. Users have byte-compiled sources, whatever the shell of a developer says.
+ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +115,7 @@ def run(command: Sequence[str], environment: Mapping[str, str] | None = None) ->
     """Run a process to its end and say what it took; ``environment`` is what it has besides this one's."""
     with tempfile.TemporaryFile() as errors:
         start = time.perf_counter()
-        environment = {**os.environ, **(environment or {})}
+        environment = {**ENVIRONMENT, **(environment or {})}
         process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=errors)
         if sys.platform == "win32":
             process.wait()
@@ -129,6 +137,26 @@ def run(command: Sequence[str], environment: Mapping[str, str] | None = None) ->
 def trunnion(source: Path, target: Path) -> list[str]:
     """The command that posts ``source`` with Trunnion."""
     return [sys.executable, "-m", "trunnion", "post", str(source), "--machine", MACHINE, "--output", str(target)]
+
+
+def compile_sources() -> None:
+    """Byte-compile Trunnion and the naive post, as an installation does."""
+    found = importlib.util.find_spec("trunnion")
+    if found is None:
+        sys.exit("Trunnion is not installed in this Python")
+    for folder in (*(found.submodule_search_locations or ()), str(HERE)):
+        compileall.compile_dir(folder, quiet=2)
+
+
+def machine_seconds() -> float:
+    """How fast the machine is: the seconds of a plain loop of Python, the least of five runs of it."""
+    times = []
+    for _ in range(5):
+        start, total = time.perf_counter(), 0
+        for number in range(PASSES):
+            total += number
+        times.append(time.perf_counter() - start)
+    return min(times)
 
 
 def make_cls(points: int, file: Path) -> None:
@@ -364,7 +392,9 @@ def measure(points: int, runs: int, folder: Path) -> list[Figure]:
     size = source.stat().st_size
     large = points >= MILLION
     print(f"{points:,} points, {size / 1e6:.1f} MB; {runs} runs after a warm-up, medians of whole processes")
-    print(f"{platform.platform()}, {os.cpu_count()} processors, Python {platform.python_version()}\n")
+    print(f"{platform.platform()}, {os.cpu_count()} processors, Python {platform.python_version()}")
+    compile_sources()
+    print(f"this machine: {machine_seconds():.3f} s for {PASSES:,} passes of a plain loop of Python\n")
 
     started = contestants(source, folder)
     able = race(started, runs)
