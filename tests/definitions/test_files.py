@@ -2,6 +2,7 @@
 
 import math
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -119,6 +120,36 @@ def test_lines_are_the_same_with_windows_line_ends() -> None:
 @pytest.mark.parametrize("text", ["", "\n", "=", "[", "[[", "[[a", "a", "a=", 'a="', "a={", "a=[{", '"', "a.", "]]"])
 def test_a_text_that_is_no_toml_does_not_trip_the_index(text: str) -> None:
     key_lines(text)
+
+
+@pytest.mark.parametrize(
+    ("value", "lines"),
+    [
+        ('"""a""" # """', 1),
+        ('"""""', 0),
+        ('"""""\n"""""', 2),
+        ('"""a\n""\\""""', 2),
+        ("'''a\n''b'''''", 2),
+        ("'''\\'''", 1),
+        ('"\\\\"', 1),
+        ("'\\'", 1),
+        ('"# \\" ]"', 1),
+    ],
+)
+def test_a_string_ends_where_the_toml_parser_ends_it(value: str, lines: int) -> None:
+    """0: it does not end, and nothing follows it."""
+    text = f"a = {value}\nb = 2\n"
+    assert key_lines(text).get(("b",), 0) == (lines + 1 if lines else 0)
+    if lines:
+        assert tomllib.loads(text)["b"] == 2
+
+
+def test_a_definition_that_changes_is_read_anew(tmp_path: Path) -> None:
+    file, base = tmp_path / "own.toml", tmp_path / "base.toml"
+    file.write_text('extends = "base.toml"\nb = 1\n', encoding="utf-8")
+    for value in (1, 1, 2, 1):
+        base.write_text(f"a = {value}\n", encoding="utf-8")
+        assert load_table(str(file), tmp_path).to_dict() == {"a": value, "b": 1}
 
 
 def test_a_key_remembers_its_place(tmp_path: Path) -> None:

@@ -54,6 +54,19 @@ def test_the_table_turns_at_the_pole_in_a_block_of_its_own(tmp_path: Path, machi
     assert check(found, "span").worst == pytest.approx(0.0, abs=0.01)
 
 
+@pytest.mark.parametrize("chunk", [1, 2, 3, 4, 5])
+def test_the_step_is_found_wherever_a_chunk_of_rows_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, chunk: int
+) -> None:
+    file = tmp_path / "cap.cls"
+    file.write_text(CAP, encoding="utf-8")
+    whole = plan(file, machine="dmu65").motions[0]
+    monkeypatch.setattr("trunnion.planning.linearization.default_points._CHUNK", chunk)
+    motion = plan(file, machine="dmu65").motions[0]
+    assert len(motion.operation.moves) == len(whole.operation.moves) > 8
+    assert np.array_equal(motion.rotary, whole.rotary)
+
+
 def test_a_turn_joined_with_a_step_of_the_cut_is_found(tmp_path: Path) -> None:
     file, program = tmp_path / "cap.cls", tmp_path / "cap.h"
     file.write_text(CAP, encoding="utf-8")
