@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from trunnion.api.comparing import diff as diff
     from trunnion.api.converting import ConvertResult as ConvertResult
     from trunnion.api.converting import convert as convert
+    from trunnion.api.describing import ControlDescription as ControlDescription
+    from trunnion.api.describing import describe_control as describe_control
+    from trunnion.api.describing import describe_controls as describe_controls
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.planning import plan as plan
     from trunnion.api.post_result import PostResult as PostResult
@@ -63,6 +66,7 @@ __version__ = "0.1.0"
 _MODULES: Final = {
     "Axis": "machines.machine",
     "Check": "verification.results",
+    "ControlDescription": "api.describing",
     "Comparison": "verification.comparison.result",
     "ConvertResult": "api.converting",
     "Decision": "model.motion",
@@ -83,6 +87,8 @@ _MODULES: Final = {
     "TrunnionError": "errors",
     "Verification": "verification.results",
     "convert": "api.converting",
+    "describe_control": "api.describing",
+    "describe_controls": "api.describing",
     "diff": "api.comparing",
     "load_machine": "api.reading",
     "plan": "api.planning",
@@ -97,6 +103,7 @@ __all__ = [
     "Axis",
     "Check",
     "Comparison",
+    "ControlDescription",
     "ConvertResult",
     "Decision",
     "InputError",
@@ -117,6 +124,8 @@ __all__ = [
     "Verification",
     "__version__",
     "convert",
+    "describe_control",
+    "describe_controls",
     "diff",
     "load_machine",
     "plan",

@@ -28,6 +28,16 @@ def test_every_shipped_machine_is_good(name: str, capfd: pytest.CaptureFixture[s
     assert main(["check", name]) == 0
 
 
+def test_the_file_of_a_control_is_checked_as_one(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "ours.toml"
+    file.write_text('extends = "fanuc_31i"\nname = "Ours"\n', encoding="utf-8")
+    assert main(["check", str(file)]) == 0
+    assert "ours.toml: good" in capfd.readouterr().out
+    file.write_text('extends = "fanuc_31i"\nname = "Ours"\n[codes]\nrapidd = 0\n', encoding="utf-8")
+    assert main(["check", str(file)]) == 2
+    assert "ours.toml:4: error: codes.rapidd is not a key" in capfd.readouterr().err
+
+
 def test_mistakes_of_machine_and_control_come_all_at_once_with_their_lines(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
+from trunnion.api.run_settings import RUN_SETTINGS
 from trunnion.api.settings import (
-    RUN_SETTINGS,
     Settings,
     apply_setup,
     as_texts,
@@ -193,5 +193,5 @@ def _parse_clearance(text: str) -> Clearance:
     least = -10000.0 if surface is ClearanceSurface.PLANE else 0.1
     if least <= value <= 10000.0:
         return Clearance(value, surface)
-    cure = "write clearance=MM, how far the tool draws back for a rewind, such as clearance=50; or plane:Z, sphere:R"
+    cure = RUN_SETTINGS["clearance"].cure("clearance")
     raise InputError(argument_problem("settings", f"clearance is {text!r}", cure))

@@ -13,52 +13,18 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from trunnion import readers
+from trunnion.api.run_settings import RUN_SETTINGS
 from trunnion.controls import Control
 from trunnion.controls.setting_rules import is_one_line
-from trunnion.controls.vocabulary import PROGRAM_CHOICES
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.machines import Machine
-from trunnion.model.motion import PoleStrategy
-from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
 
 #: A setting as text, as a number, as several numbers (``zero``), on or off, or None: it is not set.
 SettingValue: TypeAlias = str | float | bool | datetime.date | Iterable[float] | None
 
 #: Settings by their keys.
 Settings: TypeAlias = Mapping[str, SettingValue]
-
-#: Settings with few values, the default first.
-_CHOICES: Final = {
-    "units": ("mm", "inch"),
-    "numbers": ("on", "off"),
-    "programs": ("one", "operations"),
-    "tcp": ("on", "off"),
-    "frame": ("first", "absolute"),
-    "rewind": ("insert", "none"),
-    "pole": tuple(PoleStrategy),
-    "lower_feed": ("no", "yes"),
-    "cycles": ("on", "off"),
-    **PROGRAM_CHOICES,
-}
-
-#: Settings that are numbers: lowest and highest value, and what to write.
-_NUMBERS: Final = {
-    "pole_angle": (1e-3, 10.0, "pole_angle=DEG, by how much the tool axis may lean near the pole, such as 0.1"),
-    "tip_tolerance": (1e-4, 10.0, "tip_tolerance=MM, how far the tip may be off between points, such as 0.005"),
-    "axis_tolerance": (1e-3, 10.0, "axis_tolerance=DEGREES, how far the tool axis may be off, such as 0.05"),
-    "split": (
-        MIN_SUBPROGRAM_BYTES,
-        1e12,
-        f"split=BYTES, the largest size of a subprogram, at least {MIN_SUBPROGRAM_BYTES}",
-    ),
-    "tool_retract": (0.0, 1e4, "tool_retract=MM, how far along the tool axis before it goes home, such as 50"),
-    "limit_margin": (0.0, 1e3, "limit_margin=NUMBER, how far axes stay from their limits, mm and degrees, such as 0.5"),
-    "tool_length": (0.0, 1e4, "tool_length=MM, from the spindle's gauge point to the tip, such as tool_length=120.5"),
-}
-
-#: Settings of the post itself; all others belong to the control, whose templates print them.
-RUN_SETTINGS: Final = (*_CHOICES, *_NUMBERS, "mode", "zero", "clearance")
 
 #: What True and False mean, as far as a setting has such a word.
 _SWITCHES: Final = {True: ("on", "yes"), False: ("off", "no")}
@@ -99,7 +65,7 @@ def as_texts(settings: Settings | None) -> dict[str, str]:
 def _as_text(key: str, value: object) -> str | None:
     """A setting as text; None if it is of a type that settings do not have."""
     if isinstance(value, bool | np.bool_):
-        words = _CHOICES.get(key, ())
+        words = RUN_SETTINGS[key].choices if key in RUN_SETTINGS else ()
         return next((word for word in _SWITCHES[bool(value)] if word in words), None)
     if isinstance(value, str | int | np.integer | datetime.date):
         return str(value)
@@ -125,14 +91,22 @@ def check_settings(settings: Mapping[str, str], control: Control, machine: Machi
         if key not in control.settings and not is_one_line(value)
     ]
     problems += [
-        _problem(key, settings[key], f"write {' or '.join(f'{key}={one}' for one in choices)}")
-        for key, choices in _CHOICES.items()
-        if settings.get(key, choices[0]) not in choices
+        _problem(key, settings[key], setting.cure(key))
+        for key, setting in RUN_SETTINGS.items()
+        if key in settings and setting.choices and settings[key] not in setting.choices
     ]
     known = {**control.settings, **settings}
-    problems += [_problem(key, known[key], cure) for key, cure in control_setting_faults(settings, control, machine)]
+    problems += [
+        _problem(key, known[key], f"{cure}{_meaning(key, control)}")
+        for key, cure in control_setting_faults(settings, control, machine)
+    ]
     if problems:
         raise InputError(problems)
+
+
+def _meaning(key: str, control: Control) -> str:
+    meaning = control.setting_meanings.get(key)
+    return f". {meaning}" if meaning else ""
 
 
 def control_setting_faults(settings: Mapping[str, str], control: Control, machine: Machine) -> list[tuple[str, str]]:
@@ -220,13 +194,15 @@ def number_setting(settings: Mapping[str, str], key: str) -> float | None:
     text = settings.get(key)
     if text is None:
         return None
-    low, high, cure = _NUMBERS[key]
+    setting = RUN_SETTINGS[key]
+    assert setting.bounds is not None
+    low, high = setting.bounds
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if not low <= value <= high:
-        raise InputError(_problem(key, text, f"write {cure}"))
+        raise InputError(_problem(key, text, setting.cure(key)))
     return value
 
 
@@ -307,6 +283,5 @@ def _point_setting(text: str) -> tuple[float, float, float]:
     except ValueError:
         x = y = z = math.nan
     if not max(abs(x), abs(y), abs(z)) <= _FARTHEST_ZERO or math.isnan(x + y + z):
-        cure = "write zero=X,Y,Z: the workpiece zero on the machine, mm, such as zero=0,0,120.5"
-        raise InputError(_problem("zero", text, cure))
+        raise InputError(_problem("zero", text, RUN_SETTINGS["zero"].cure("zero")))
     return x, y, z

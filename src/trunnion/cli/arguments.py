@@ -62,7 +62,8 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
         commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
     )
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
-    _add_check(commands.add_parser("check", help="validate a machine definition"))
+    _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
+    _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
     return parser.parse_args(list(argv))
 
 
@@ -157,6 +158,12 @@ def _add_machines(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_lazy_command("definitions", "machines"))
 
 
+def _add_controls(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", nargs="?", metavar="NAME_OR_FILE", help="control to explain, or a machine's")
+    parser.add_argument("--json", action="store_true", help="data in place of text")
+    parser.set_defaults(run=_lazy_command("controls", "controls"))
+
+
 def _add_check(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="MACHINE.toml", help="definition to validate")
+    parser.add_argument("file", metavar="DEFINITION.toml", help="definition to validate")
     parser.set_defaults(run=_lazy_command("definitions", "check"))

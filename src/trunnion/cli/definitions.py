@@ -5,6 +5,7 @@ from pathlib import Path
 
 from trunnion.cli.results import print_result
 from trunnion.controls import load_control
+from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
 from trunnion.machines import load_machine, shipped_machines
@@ -28,8 +29,12 @@ def machines(arguments: argparse.Namespace) -> int:
 
 
 def check(arguments: argparse.Namespace) -> int:
-    """Validate a definition: every mistake of the machine and of its control at once."""
+    """Validate the definition of a machine with its control, or of a control: every mistake at once."""
     problems: list[Problem] = []
+    if is_control_file(Path(arguments.file)):
+        load_control(load_control_table(arguments.file))
+        print_result(f"{arguments.file}: good")
+        return 0
     for load in (load_machine, _load_control, _load_known_words):
         try:
             load(arguments.file)

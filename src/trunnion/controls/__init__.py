@@ -5,6 +5,6 @@ Out:    ``Control``, read and checked.
 """
 
 from trunnion.controls.definition import Control
-from trunnion.controls.loading import control_library, load_control
+from trunnion.controls.loading import control_library, load_control, shipped_controls
 
-__all__ = ["Control", "control_library", "load_control"]
+__all__ = ["Control", "control_library", "load_control", "shipped_controls"]

@@ -103,6 +103,8 @@ class Control:
     """A control's language, read and checked.
 
     family                the writer module of its family
+    family_name           its key in ``trunnion.families``
+    description           a sentence about it; may be empty
     extension             of program files
     longest_line          most bytes of a line
     continued             what ends a line whose block continues in the next line; empty: blocks have one line
@@ -114,6 +116,7 @@ class Control:
                           empty for nothing
     settings              name -> default value
     setting_rules         name -> what the setting may be; any text of one line where there is no rule
+    setting_meanings      name -> what the setting changes, in sentences
     method_defaults       setting -> (part of a method's name, value): defaults that depend on the machining method;
                           the first part that occurs in the name decides
     tool_types, phases    texts for templates and for comments between motions
@@ -133,7 +136,9 @@ class Control:
     """
 
     name: str
+    description: str
     family: FamilyWriter
+    family_name: str
     extension: str
     longest_line: int
     continued: str
@@ -146,6 +151,7 @@ class Control:
     statements: Mapping[str, str]
     settings: Mapping[str, str]
     setting_rules: Mapping[str, SettingRule]
+    setting_meanings: Mapping[str, str]
     method_defaults: Mapping[str, tuple[tuple[str, str], ...]]
     tool_types: Mapping[str, str]
     phases: Mapping[str, str]
@@ -181,8 +187,7 @@ class Control:
         A number that a template prints must not print as 0 unless it is 0.
         """
         formats = [self.formats[number_format] for field, number_format in self._printed_fields() if field == name]
-        rule = self.setting_rules.get(name, SettingRule())
-        rule = SettingRule(SettingKind.NUMBER) if formats and not rule.is_number else rule
+        rule = self.setting_rule(name)
         if not rule.allows(text):
             return rule.cure()
         if rule.kind is SettingKind.TOOL and tool_number(text or "0") is None:
@@ -194,6 +199,13 @@ class Control:
             if float(text) and number_format.text(float(text)) == number_format.text(0.0):
                 return f"write at least {10.0**-number_format.decimals:.9g}: the program would say 0"
         return None
+
+    def setting_rule(self, name: str) -> SettingRule:
+        """Return what a setting may be; a setting that a template prints with a number format is a number."""
+        rule = self.setting_rules.get(name, SettingRule())
+        if rule.is_number or name not in {field for field, _ in self._printed_fields()}:
+            return rule
+        return SettingRule(SettingKind.NUMBER)
 
     def _printed_fields(self) -> set[tuple[str, str]]:
         """Name and format of each number in the templates."""

@@ -57,17 +57,19 @@ class ArcWords:
 class FamilyWriter(Protocol):
     """The writer of a control family: a module of functions without state.
 
-    WORDS            words of its motion blocks besides the axes; a definition must define all of them
-    CODES            codes that its definitions must give
-    PLANE_COMMANDS   its commands for tilted planes, the default first; template names end with them
-    SETTING_CHOICES  settings of its definitions with a fixed set of values, the default first
-    TEMPLATE_FIELDS  values that its templates may print besides the common ones: the keys of ``template_values``
+    WORDS             words of its motion blocks besides the axes; a definition must define all of them
+    CODES             codes that its definitions must give
+    PLANE_COMMANDS    its commands for tilted planes, the default first; template names end with them
+    SETTING_CHOICES   settings of its definitions with a fixed set of values, the default first
+    SETTING_MEANINGS  what each of these settings changes, in sentences
+    TEMPLATE_FIELDS   values that its templates may print besides the common ones: the keys of ``template_values``
     """
 
     WORDS: tuple[str, ...]
     CODES: tuple[str, ...]
     PLANE_COMMANDS: tuple[str, ...]
     SETTING_CHOICES: Mapping[str, tuple[str, ...]]
+    SETTING_MEANINGS: Mapping[str, str]
     TEMPLATE_FIELDS: frozenset[str]
 
     def comment(self, text: str) -> list[str]:

@@ -24,7 +24,7 @@ from trunnion.controls.vocabulary import (
     WITHOUT_TCP,
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat
-from trunnion.definitions import Table, resolve_extends
+from trunnion.definitions import Table, definition_names, resolve_extends
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance
 
@@ -32,6 +32,11 @@ from trunnion.model.axis_tolerance import AxisTolerance
 def control_library() -> Traversable:
     """Return the folder of the shipped control definitions."""
     return files("trunnion.controls").joinpath("library")
+
+
+def shipped_controls() -> list[str]:
+    """Return the names of the shipped controls, sorted."""
+    return definition_names(control_library())
 
 
 def load_control(own: Table) -> Control:
@@ -55,7 +60,9 @@ def load_control(own: Table) -> Control:
     plane_from_pose = table.flag("plane_from_pose", False)
     control = Control(
         name=table.text("name"),
+        description=table.text("description", ""),
         family=family,
+        family_name=table.text("family"),
         extension=table.text("extension"),
         longest_line=table.integer("longest_line", 1 << 20, at_least=40, at_most=1 << 20),
         continued=table.text("continued", ""),
@@ -68,6 +75,7 @@ def load_control(own: Table) -> Control:
         statements=_read_statements(table.table("statements")),
         settings=_read_settings(settings, family),
         setting_rules=_read_setting_rules(table.table("setting_rules"), settings, family),
+        setting_meanings=_read_setting_meanings(table.table("setting_meanings"), settings, family),
         method_defaults=_read_method_defaults(table.tables("by_method"), settings),
         tool_types=_read_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_read_texts(table.table("phases"), PHASES),
@@ -198,6 +206,16 @@ def _read_setting_rules(table: Table, settings: Table, family: FamilyWriter) -> 
         for name, words in family.SETTING_CHOICES.items()
     }
     return read_setting_rules(table, settings) | choices
+
+
+def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) -> dict[str, str]:
+    """What each setting changes; the family explains its own."""
+    own = {name: table.text(name) for name in list(table.keys())}
+    for name in own:
+        if name not in settings and name not in family.SETTING_CHOICES:
+            table.add_problem(name, "explains no setting", "add the setting to [control.settings]")
+    table.report_unread_keys()
+    return {**family.SETTING_MEANINGS, **own}
 
 
 def _check_settings(table: Table, by_method: Sequence[Table], control: Control) -> None:

@@ -26,6 +26,16 @@ PROGRAM_CHOICES: Final = {
     "restart": ("off", "on"),
 }
 
+#: What each of them changes.
+PROGRAM_MEANINGS: Final = {
+    "times": "Machining times of each operation and of the program as comments. By default Klartext has them, and the "
+    "other controls do not.",
+    "tool_list": "With on, all tools with their data are comments at the head.",
+    "preselect": "With on, the program selects the next other tool after each tool change; without it SELECT/TOOL of "
+    "the CL file does.",
+    "restart": "With on, every operation calls its tool and its speed, so that the program can be entered there.",
+}
+
 #: Templates that every definition must have.
 REQUIRED_TEMPLATES: Final = (
     "program_start", "operation_start", "first_tool", "tool_change", "approach_three_axis", "operation_end_three_axis",
@@ -40,6 +50,12 @@ WITHOUT_TCP: Final = "without_tcp"
 
 #: Templates that every program has once.
 PROGRAM_TEMPLATES: Final = ("program_start", "program_end")
+
+#: Beginnings of template names in the order in which a program has them.
+TEMPLATE_ORDER: Final = (
+    "program_start", "operation_start", "first_tool", "tool_change", "spindle_on", "approach_", "plane_on_",
+    "next_axis_", "draw_back_", "next_plane_", "operation_end_", "program_end", "subprogram_",
+)  # fmt: skip
 
 #: The template that starts the spindle, on controls where that takes blocks of its own.
 SPINDLE_ON: Final = "spindle_on"

@@ -8,7 +8,7 @@ A definition may come from anyone, so reading one runs nothing, and opens nothin
 that are shipped with Trunnion, or that lie beside or below the file that extends them.
 """
 
-from trunnion.definitions.extends import MAX_FILE_BYTES, definition_names, load_table, resolve_extends
+from trunnion.definitions.extends import MAX_FILE_BYTES, definition_names, load_table, own_keys, resolve_extends
 from trunnion.definitions.source_lines import LocatedValue, key_lines
 from trunnion.definitions.table import Table
 from trunnion.definitions.units import unit_of
@@ -20,6 +20,7 @@ __all__ = [
     "definition_names",
     "key_lines",
     "load_table",
+    "own_keys",
     "resolve_extends",
     "unit_of",
 ]

@@ -190,6 +190,18 @@ def load_table(
     return Table(root, "", problems)
 
 
+def own_keys(path: Path) -> frozenset[str]:
+    """Return the keys at the top of a definition file, without those of what it extends.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or is not TOML.
+    """
+    content = _read(_DefinitionFile(path, str(path), path.parent)).value
+    return frozenset(content) if isinstance(content, dict) else frozenset()
+
+
 def _check_is_name(text: str, kind: str) -> None:
     """Raise ``InputError`` for the path of a folder or of a file of another kind, which is no name."""
     try:

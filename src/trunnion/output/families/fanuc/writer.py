@@ -36,6 +36,11 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "contour": ("none", "G05.1", "G05"),
     "orientation": ("angles", "vector"),
 }
+SETTING_MEANINGS: Mapping[str, str] = {
+    "contour": "AI contour control (look-ahead) that is on while an operation cuts: none, G05.1 Q1 or G05 P10000.",
+    "orientation": "How the tool axis is programmed with TCP: angles writes rotary words (G43.4), vector writes I J K "
+    "(G43.5) for whole operations.",
+}
 _PLANE_FIELDS: Final = ("plane_first", "plane_second", "plane_third")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {*_PLANE_FIELDS, "contour_on", "contour_off", "call_word", "call_arguments"}

@@ -27,6 +27,7 @@ WORDS: tuple[str, ...] = (
 CODES: tuple[str, ...] = tuple(code for code in iso.CODES if not code.startswith("feed_"))
 PLANE_COMMANDS: tuple[str, ...] = ("g154",)
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
+SETTING_MEANINGS: Mapping[str, str] = {}
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.

@@ -26,6 +26,7 @@ WORDS: tuple[str, ...] = iso.WORDS
 CODES: tuple[str, ...] = iso.CODES
 PLANE_COMMANDS: tuple[str, ...] = ()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
+SETTING_MEANINGS: Mapping[str, str] = {}
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: Bytes of a text in one line: a line has room for 255, with the block number and what surrounds the text.

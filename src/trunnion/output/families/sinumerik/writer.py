@@ -34,6 +34,16 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "orientation": ("angles", "vector"),
     HOLES_SETTING: (HOLES_IN_PLANES, "torot", "positions"),
 }
+SETTING_MEANINGS: Mapping[str, str] = {
+    "plane": "The command for a tilted plane: CYCLE800, or frames (TRAORI, TRANS, AROT).",
+    "swivel_mode": "Axes of the three rotations of CYCLE800: 57 X Y Z, 27 Z Y X, 39 Z X Y, 45 X Z Y, 30 Y Z X, 54 Y X "
+    "Z.",
+    "orientation": "How the tool axis is programmed with TCP: angles writes rotary words (ORIAXES), vector writes A3= "
+    "B3= C3= (ORIVECT).",
+    HOLES_SETTING: "Holes between which the tool axis changes: planes gives each tool axis a plane; torot (a frame by "
+    "TOROT at each hole) and positions (MCALL and position blocks) stay under TCP. positions is for cycles that drill "
+    "along the tool, which cycles_along_tool = true under [control.reading] declares.",
+}
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, "interpolation"})
 

@@ -1,0 +1,155 @@
+"""Settings of a post itself: what each changes, what it may be, and what holds where it is not given.
+
+All other settings belong to a control, whose definition explains them.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.controls.vocabulary import PROGRAM_CHOICES, PROGRAM_MEANINGS
+from trunnion.model.motion import PoleStrategy
+from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
+from trunnion.planning import PlanOptions
+from trunnion.planning.options import AXIS_TOLERANCE_WITHOUT_TCP
+
+_PLANNED: Final = PlanOptions()
+
+
+@dataclass(frozen=True, slots=True)
+class RunSetting:
+    """A setting of a post.
+
+    meaning    what it changes, in sentences
+    default    what holds where it is not given, in words
+    choices    its values, the default first; empty: any text of its form
+    bounds     lowest and highest value of a number; None: it is none
+    form       what to write, such as ``MM``
+    example    a value
+    """
+
+    meaning: str
+    default: str = "none"
+    choices: tuple[str, ...] = ()
+    bounds: tuple[float, float] | None = None
+    form: str = ""
+    example: str = ""
+
+    @property
+    def allowed(self) -> str:
+        """What it may be, in words."""
+        if self.choices:
+            return " or ".join(self.choices)
+        if self.bounds is None:
+            return f"{self.form}, such as {self.example}"
+        low, high = self.bounds
+        return f"{self.form}, {low:.12g} to {high:.12g}, such as {self.example}"
+
+    def cure(self, key: str) -> str:
+        """Return what to write instead of a value that cannot be."""
+        if self.choices:
+            return f"write {' or '.join(f'{key}={choice}' for choice in self.choices)}. {self.meaning}"
+        return f"write {key}={self.allowed}. {self.meaning}"
+
+
+def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
+    return RunSetting(meaning, default or choices[0], choices)
+
+
+#: Settings of the post by their names; all others belong to the control, whose templates print them.
+RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
+    "units": _choice("Length unit of the CL files.", "mm", "inch", default="what the files say"),
+    "zero": RunSetting(
+        "Position of the workpiece zero on the machine, mm. With it every slide is checked against its limits; without "
+        "it only whether the program fits into the travel somewhere.",
+        "the definition's workpiece.zero_mm",
+        form="X,Y,Z",
+        example="0,0,120.5",
+    ),
+    "tcp": _choice(
+        "With off the program holds positions of slides and rotary axes instead of the tip, with points inserted.",
+        "on",
+        "off",
+        default="on where the control has TCP",
+    ),
+    "tool_length": RunSetting(
+        "Length from the spindle's gauge point to the tip. Slide limits are checked with it; without TCP it is "
+        "required on machines whose head turns the tool.",
+        bounds=(0.0, 1e4),
+        form="MM",
+        example="120.5",
+    ),
+    "tip_tolerance": RunSetting(
+        "Without TCP: how far the tip may leave its line between CL points.",
+        f"{_PLANNED.tip_tolerance:g}",
+        bounds=(1e-4, 10.0),
+        form="MM",
+        example="0.005",
+    ),
+    "axis_tolerance": RunSetting(
+        "How far the tool axis may leave its great circle between CL points.",
+        f"{AXIS_TOLERANCE_WITHOUT_TCP:g} without TCP; with TCP none, and the proof judges by the control's",
+        bounds=(1e-3, 10.0),
+        form="DEGREES",
+        example="0.05",
+    ),
+    "numbers": _choice("With off blocks have no numbers.", "on", "off"),
+    "programs": _choice(
+        "One file with all operations, or a main program that calls a subprogram for each operation.",
+        "one",
+        "operations",
+    ),
+    "split": RunSetting(
+        "Largest size of a subprogram; a larger operation continues in further files.",
+        bounds=(MIN_SUBPROGRAM_BYTES, 1e12),
+        form="BYTES",
+        example="1000000",
+    ),
+    "rewind": _choice(
+        "Insert a retract where a rotary axis must rewind in the cut, or refuse such a program.", "insert", "none"
+    ),
+    "frame": _choice(
+        "The program's coordinate system: that of the first operation, or the CAM's absolute one.", "first", "absolute"
+    ),
+    "mode": RunSetting(
+        "Machining mode: auto, three-axis, tilted or tcp, of all operations or of one.",
+        "auto",
+        form="MODE or OPERATION:MODE",
+        example="OP1:tcp,OP2:tilted",
+    ),
+    "cycles": _choice("With off holes become motion wherever motion can make them.", "on", "off"),
+    "tool_retract": RunSetting(
+        "How far the tool leaves along its axis, at rapid, before it goes home from a tilted or simultaneous "
+        "operation.",
+        bounds=(0.0, 1e4),
+        form="MM",
+        example="50",
+    ),
+    "limit_margin": RunSetting(
+        "How far the planner keeps axes from the limits of their travel, mm and degrees; the proof judges the limits.",
+        "0",
+        bounds=(0.0, 1e3),
+        form="NUMBER",
+        example="0.5",
+    ),
+    "clearance": RunSetting(
+        "How far the tool retracts along its axis for a rewind: a distance, up to a plane, or out of a sphere, mm.",
+        f"{_PLANNED.clearance.value:g}",
+        form="MM or plane:Z or sphere:R",
+        example="plane:120",
+    ),
+    "pole": _choice(
+        "What is done near the pole where a rotary axis would be too fast: off changes nothing, hold keeps its angle, "
+        "spread turns it evenly along the path, lean tilts the tool axis just enough.",
+        *PoleStrategy,
+    ),
+    "pole_angle": RunSetting(
+        "How far the tool axis may lean near the pole.",
+        f"{_PLANNED.pole_angle:g}",
+        bounds=(1e-3, 10.0),
+        form="DEGREES",
+        example="0.1",
+    ),
+    "lower_feed": _choice("With yes the feed is lowered where a rotary axis would be too fast.", "no", "yes"),
+    **{key: RunSetting(PROGRAM_MEANINGS[key], words[0], words) for key, words in PROGRAM_CHOICES.items()},
+}

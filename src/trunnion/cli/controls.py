@@ -1,0 +1,84 @@
+"""``trunnion controls``."""
+
+import argparse
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Final
+
+from trunnion.api.describing import (
+    ControlDescription,
+    SettingDescription,
+    WordDescription,
+    describe_control,
+    describe_controls,
+)
+from trunnion.cli.results import print_result
+
+_INDENT: Final = "  "
+
+
+def controls(arguments: argparse.Namespace) -> int:
+    """List the shipped controls, or explain one."""
+    if arguments.name:
+        control = describe_control(arguments.name)
+        print_result(*([_as_json(asdict(control))] if arguments.json else _control_lines(control)))
+        return 0
+    found = describe_controls()
+    print_result(*([_as_json([_list_entry(control) for control in found])] if arguments.json else _list_lines(found)))
+    return 0
+
+
+def _as_json(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
+
+
+def _list_entry(control: ControlDescription) -> dict[str, object]:
+    return {
+        "key": control.key,
+        "name": control.name,
+        "family": control.family,
+        "description": control.description,
+        "settings": len(control.settings),
+        "run_settings": len(control.run_settings),
+    }
+
+
+def _list_lines(found: Sequence[ControlDescription]) -> Iterator[str]:
+    widths = [max(len(text) for text in texts) for texts in zip(*((c.key, c.family) for c in found), strict=True)]
+    for control in found:
+        columns = f"{control.key:<{widths[0]}}  {control.family:<{widths[1]}}  {len(control.settings):2} settings"
+        yield f"{columns}  {control.name}: {control.description}"
+
+
+def _control_lines(control: ControlDescription) -> Iterator[str]:
+    yield f"{control.name} ({control.key})"
+    yield f"family {control.family}, programs *{control.extension}"
+    yield from [control.description] if control.description else []
+    yield from ("", "What it can do")
+    yield from (_INDENT + ability for ability in control.abilities)
+    yield from ("", "Words of its motion blocks, in their order")
+    yield from (_INDENT + _word_line(word) for word in control.words)
+    yield from ("", "Texts of its programs, in their order; {field} stands for a value")
+    for text in control.texts:
+        yield _INDENT + text.name
+        yield from (_INDENT * 2 + line for line in text.lines)
+    yield from ("", "Settings of this control: --set NAME=VALUE, or --set NAME=OPERATION:VALUE where it says so")
+    yield from _setting_lines(control.settings)
+    yield from ("", "Settings of every control")
+    yield from _setting_lines(control.run_settings)
+
+
+def _word_line(word: WordDescription) -> str:
+    if word.decimals is None:
+        return f"{word.name:<20} {word.letter:<10} no number"
+    five, three = word.decimals
+    decimals = f"{five} decimals" if five == three else f"{five} decimals, {three} in three-axis operations"
+    return f"{word.name:<20} {word.letter:<10} {decimals}{', modal' if word.modal else ''}"
+
+
+def _setting_lines(settings: Sequence[SettingDescription]) -> Iterator[str]:
+    for setting in settings:
+        own = "; by operation" if setting.by_operation else ""
+        yield f"{_INDENT}{setting.name} = {setting.default}  [{setting.allowed}{own}]"
+        yield _INDENT * 3 + (setting.meaning or "not explained in its definition: add it to [setting_meanings]")
