@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from trunnion.api.describing import ControlDescription as ControlDescription
     from trunnion.api.describing import describe_control as describe_control
     from trunnion.api.describing import describe_controls as describe_controls
+    from trunnion.api.describing_machine import MachineDescription as MachineDescription
+    from trunnion.api.describing_machine import describe_machine as describe_machine
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.planning import plan as plan
     from trunnion.api.post_result import PostResult as PostResult
@@ -72,6 +74,7 @@ _MODULES: Final = {
     "Decision": "model.motion",
     "InputError": "errors",
     "Machine": "machines.machine",
+    "MachineDescription": "api.describing_machine",
     "Motion": "model.motion",
     "Observer": "api.observer",
     "Operation": "model.toolpath",
@@ -89,6 +92,7 @@ _MODULES: Final = {
     "convert": "api.converting",
     "describe_control": "api.describing",
     "describe_controls": "api.describing",
+    "describe_machine": "api.describing_machine",
     "diff": "api.comparing",
     "load_machine": "api.reading",
     "plan": "api.planning",
@@ -108,6 +112,7 @@ __all__ = [
     "Decision",
     "InputError",
     "Machine",
+    "MachineDescription",
     "Motion",
     "Observer",
     "Operation",
@@ -126,6 +131,7 @@ __all__ = [
     "convert",
     "describe_control",
     "describe_controls",
+    "describe_machine",
     "diff",
     "load_machine",
     "plan",

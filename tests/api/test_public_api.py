@@ -27,7 +27,7 @@ def test_every_public_name_is_there_and_documented() -> None:
     for name in trunnion.__all__:
         assert inspect.getdoc(getattr(trunnion, name)) or name == "__version__", name
     assert FUNCTIONS == [
-        "convert", "describe_control", "describe_controls",
+        "convert", "describe_control", "describe_controls", "describe_machine",
         "diff", "load_machine", "plan", "post", "read_cl", "read_program", "verify", "write_report",
     ]  # fmt: skip
 

@@ -1,5 +1,6 @@
 """``trunnion machines`` and ``trunnion check``."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,37 @@ def test_the_file_of_a_control_is_checked_as_one(tmp_path: Path, capfd: pytest.C
     file.write_text('extends = "fanuc_31i"\nname = "Ours"\n[codes]\nrapidd = 0\n', encoding="utf-8")
     assert main(["check", str(file)]) == 2
     assert "ours.toml:4: error: codes.rapidd is not a key" in capfd.readouterr().err
+
+
+def test_what_a_definition_means_is_shown_as_text_and_as_data(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'extends = "dmu65"\nname = "Ours"\n[workpiece]\nzero_mm = [0, 0, 5]\n'
+        '[[axis]]\nname = "A"\nprefer = "negative"\n',
+        encoding="utf-8",
+    )
+    assert main(["check", str(file)]) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert lines[0].endswith("mine.toml: good")
+    assert "From the workpiece to the tool: C A bed X Y Z" in lines
+    assert "Workpiece zero: (0, 0, 5) mm." in lines
+    assert "A+ 10°     the tool axis points to (0, -0.174, 0.985) of the workpiece, leaning to -Y" in lines
+    assert "  A-30 C+0   tool axis (0, 0.5, 0.866)           gauge point (0, 0, -5)" in lines
+    assert "Of two such positions cuts begin in the one with A negative, where that needs no more rewinds." in lines
+    assert (
+        "           turns about the line through (0, 0, 0) along +X; travel -90 to 0°; home 0°, which is not stated"
+        in lines
+    )
+    assert "  approach_five_axis" in lines
+    assert "    BEGIN PGM {program} MM" in lines
+    assert main(["check", str(file), "--json"]) == 0
+    data = json.loads(capfd.readouterr().out)
+    assert data["jogs"]["order"] == ["C", "A", "bed", "X", "Y", "Z"]
+    assert data["jogs"]["axes"][0]["axis"]["low"] is None
+    assert data["jogs"]["axes"][1]["iron"].startswith("the table turns 10° clockwise seen from +X")
+    assert data["workpiece_zero_mm"] == [0, 0, 5]
 
 
 def test_mistakes_of_machine_and_control_come_all_at_once_with_their_lines(

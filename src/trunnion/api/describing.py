@@ -157,6 +157,16 @@ def describe_controls() -> tuple[ControlDescription, ...]:
     return tuple(describe_control(key) for key in shipped_controls())
 
 
+def main_texts(control: Control) -> tuple[TemplateDescription, ...]:
+    """Return the texts that a program with one tool has in any machining mode, by the control's own settings."""
+    suffixes = {control.template_suffix(mode, {}) for mode in MachiningMode} - {""}
+    starts = ("approach", "plane_on", "next_plane", "operation_end")
+    wanted = {f"{start}_{suffix}" for start in starts for suffix in suffixes}
+    wanted |= {"program_start", "operation_start", "tool_change", "spindle_on", "program_end"}
+    names = sorted(wanted & control.templates.keys(), key=_template_rank)
+    return tuple(TemplateDescription(name, control.templates[name].lines) for name in names)
+
+
 def load_any_control(name: str) -> Control:
     """Return the control of a shipped control or machine, or of a file that defines one of them.
 

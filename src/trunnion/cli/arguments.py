@@ -166,4 +166,5 @@ def _add_controls(parser: argparse.ArgumentParser) -> None:
 
 def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="DEFINITION.toml", help="definition to validate")
+    parser.add_argument("--json", action="store_true", help="what it means as data in place of text")
     parser.set_defaults(run=_lazy_command("definitions", "check"))

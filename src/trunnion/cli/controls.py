@@ -1,7 +1,6 @@
 """``trunnion controls``."""
 
 import argparse
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Final
@@ -13,7 +12,7 @@ from trunnion.api.describing import (
     describe_control,
     describe_controls,
 )
-from trunnion.cli.results import print_result
+from trunnion.cli.results import as_json, print_result
 
 _INDENT: Final = "  "
 
@@ -22,15 +21,11 @@ def controls(arguments: argparse.Namespace) -> int:
     """List the shipped controls, or explain one."""
     if arguments.name:
         control = describe_control(arguments.name)
-        print_result(*([_as_json(asdict(control))] if arguments.json else _control_lines(control)))
+        print_result(*([as_json(asdict(control))] if arguments.json else control_lines(control)))
         return 0
     found = describe_controls()
-    print_result(*([_as_json([_list_entry(control) for control in found])] if arguments.json else _list_lines(found)))
+    print_result(*([as_json([_list_entry(control) for control in found])] if arguments.json else _list_lines(found)))
     return 0
-
-
-def _as_json(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
 
 
 def _list_entry(control: ControlDescription) -> dict[str, object]:
@@ -51,7 +46,8 @@ def _list_lines(found: Sequence[ControlDescription]) -> Iterator[str]:
         yield f"{columns}  {control.name}: {control.description}"
 
 
-def _control_lines(control: ControlDescription) -> Iterator[str]:
+def control_lines(control: ControlDescription) -> Iterator[str]:
+    """A control and all that can be set, in lines."""
     yield f"{control.name} ({control.key})"
     yield f"family {control.family}, programs *{control.extension}"
     yield from [control.description] if control.description else []

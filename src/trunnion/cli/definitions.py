@@ -1,11 +1,16 @@
 """``trunnion machines`` and ``trunnion check``."""
 
 import argparse
+from dataclasses import asdict
 from pathlib import Path
 
-from trunnion.cli.results import print_result
+from trunnion.api.describing import describe_control
+from trunnion.api.describing_machine import describe_machine
+from trunnion.cli.controls import control_lines
+from trunnion.cli.machine_text import machine_data, machine_lines
+from trunnion.cli.results import as_json, print_result
 from trunnion.controls import load_control
-from trunnion.controls.definition_files import is_control_file, load_control_table
+from trunnion.controls.definition_files import is_control_file
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
 from trunnion.machines import load_machine, shipped_machines
@@ -29,12 +34,16 @@ def machines(arguments: argparse.Namespace) -> int:
 
 
 def check(arguments: argparse.Namespace) -> int:
-    """Validate the definition of a machine with its control, or of a control: every mistake at once."""
-    problems: list[Problem] = []
+    """Validate the definition of a machine with its control, or of a control, and show what it means.
+
+    Every mistake comes at once.
+    """
     if is_control_file(Path(arguments.file)):
-        load_control(load_control_table(arguments.file))
-        print_result(f"{arguments.file}: good")
+        control = describe_control(arguments.file)
+        good = f"{arguments.file}: good"
+        print_result(*([as_json(asdict(control))] if arguments.json else [good, "", *control_lines(control)]))
         return 0
+    problems: list[Problem] = []
     for load in (load_machine, _load_control, _load_known_words):
         try:
             load(arguments.file)
@@ -42,7 +51,9 @@ def check(arguments: argparse.Namespace) -> int:
             problems += [problem for problem in error.problems if problem not in problems]
     if problems:
         raise InputError(problems)
-    print_result(f"{arguments.file}: good")
+    found = describe_machine(arguments.file)
+    good = f"{arguments.file}: good"
+    print_result(*([as_json(machine_data(found))] if arguments.json else [good, "", *machine_lines(found)]))
     return 0
 
 

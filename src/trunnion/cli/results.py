@@ -1,5 +1,6 @@
 """Results on stdout."""
 
+import json
 import sys
 
 from trunnion.errors import InputError, Problem
@@ -23,3 +24,8 @@ def print_result(*lines: str, end: str = "\n") -> None:
     except OSError as error:
         what = f"cannot be written: {error.strerror or error}"
         raise InputError(Problem("stdout", 0, what, "let it go elsewhere")) from None
+
+
+def as_json(value: object) -> str:
+    """Data as text."""
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)

@@ -1,0 +1,120 @@
+"""What a machine's definition means, as text and as data for ``trunnion check``."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Final
+
+from trunnion.api.describing_machine import MachineDescription
+from trunnion.machines import Axis, Machine
+from trunnion.machines.jog_table import AxisJog, JogTable, RotaryPose, named_direction, number_text
+from trunnion.machines.machine import Vector
+
+_LEGEND: Final = (
+    "Jog the machine and compare. X Y Z are the directions of the definition; the table is what carries the part,",
+    "the head what carries the tool. With Z up and -Y towards the operator what goes to +Z rises, and -Y is the front.",
+)
+
+
+def machine_lines(found: MachineDescription) -> Iterator[str]:
+    """What the definition means, in lines."""
+    machine, jogs = found.machine, found.jogs
+    yield f"{machine.name} ({machine.key})"
+    yield from [machine.description] if machine.description else []
+    yield from ("", *_LEGEND, "")
+    yield f"From the workpiece to the tool: {' '.join(jogs.order)}"
+    yield from _spindle_lines(machine)
+    yield ""
+    for jog in jogs.axes:
+        yield from _axis_lines(jog)
+    yield from (
+        "",
+        "Where the tool points, in directions of the workpiece, and where the spindle's gauge point is then;",
+    )
+    yield "slides at zero, positions in mm from the workpiece zero"
+    yield from _pose_lines(jogs)
+    yield ""
+    yield from _solution_lines(jogs)
+    yield from ("", f"Texts of {found.control}; {{field}} stands for a value")
+    for text in found.texts:
+        yield f"  {text.name}"
+        yield from (f"    {line}" for line in text.lines)
+
+
+def machine_data(found: MachineDescription) -> dict[str, object]:
+    """The same as plain data: what is not limited or not known is None."""
+    machine = found.machine
+    return {
+        "key": machine.key,
+        "name": machine.name,
+        "description": machine.description,
+        "spindle_direction": list(machine.spindle_direction),
+        "spindle_point_mm": list(machine.spindle_point),
+        "workpiece_zero_mm": _plain(machine.workpiece_zero),
+        "jogs": _plain(found.jogs),
+        "control": found.control,
+        "texts": _plain(found.texts),
+    }
+
+
+def _plain(value: object) -> object:
+    if is_dataclass(value):
+        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _spindle_lines(machine: Machine) -> Iterator[str]:
+    along = named_direction(machine.spindle_direction)
+    yield f"Spindle, all axes at zero: from the tip of the tool to the holder it points to {along}."
+    yield f"Tool lengths begin at {_point(machine.spindle_point)} mm, all axes at zero."
+    zero = machine.workpiece_zero
+    yield f"Workpiece zero: {f'{_point(zero)} mm' if zero else 'not stated, taken for (0, 0, 0)'}."
+
+
+def _axis_lines(jog: AxisJog) -> Iterator[str]:
+    axis = jog.axis
+    unit = "°" if axis.is_rotary else " mm"
+    label = f"{axis.name}+ {jog.step:g}{unit}"
+    yield f"{label:<10} {jog.tool}"
+    yield f"{'':<10} {jog.iron}"
+    line = f"turns about the line through {_point(axis.point)} along {named_direction(axis.direction)}; "
+    yield f"{'':<10} {line if axis.is_rotary else ''}{_travel(axis, unit)}; {_home(axis, unit)}"
+
+
+def _travel(axis: Axis, unit: str) -> str:
+    if axis.endless:
+        return "endless, " + ("turns add up" if axis.output == "none" else f"written in {axis.output}")
+    if not axis.has_limits:
+        return "travel not stated, and not checked"
+    return f"travel {number_text(axis.low, 4)} to {number_text(axis.high, 4)}{unit}"
+
+
+def _home(axis: Axis, unit: str) -> str:
+    return f"home {number_text(axis.home, 4)}{unit}{'' if axis.home_is_stated else ', which is not stated'}"
+
+
+def _pose_lines(jogs: JogTable) -> Iterator[str]:
+    width = max(len(_values(pose)) for pose in jogs.poses)
+    for pose in jogs.poses:
+        place = f"{_point(pose.tool_axis):<24}  gauge point {_point(pose.gauge_point)}"
+        yield f"  {_values(pose):<{width}}  tool axis {place}{'' if pose.in_travel else '  out of travel'}"
+
+
+def _solution_lines(jogs: JogTable) -> Iterator[str]:
+    one, other = (f"{_values(pose)}{'' if pose.in_travel else ' (out of travel)'}" for pose in jogs.same_axis)
+    yield f"The same tool axis: {one}, and {other}."
+    yield f"Of two such positions cuts begin in {jogs.preferred}."
+
+
+def _values(pose: RotaryPose) -> str:
+    return " ".join(
+        f"{name}{'-' if value < 0 else '+'}{number_text(abs(value), 3)}" for name, value in pose.values.items()
+    )
+
+
+def _point(vector: Vector) -> str:
+    return f"({', '.join(number_text(part, 3) for part in vector)})"
