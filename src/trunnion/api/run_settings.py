@@ -15,6 +15,9 @@ from trunnion.planning.options import AXIS_TOLERANCE_WITHOUT_TCP
 
 _PLANNED: Final = PlanOptions()
 
+#: Greatest size in bytes: none that matters.
+_UNLIMITED: Final = 1e12
+
 
 @dataclass(frozen=True, slots=True)
 class RunSetting:
@@ -43,7 +46,8 @@ class RunSetting:
         if self.bounds is None:
             return f"{self.form}, such as {self.example}"
         low, high = self.bounds
-        return f"{self.form}, {low:.12g} to {high:.12g}, such as {self.example}"
+        limits = f"{low:g} to {high:g}" if high < _UNLIMITED else f"at least {low:g}"
+        return f"{self.form}, {limits}, such as {self.example}"
 
     def cure(self, key: str) -> str:
         """Return what to write instead of a value that cannot be."""
@@ -101,7 +105,7 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
     ),
     "split": RunSetting(
         "Largest size of a subprogram; a larger operation continues in further files.",
-        bounds=(MIN_SUBPROGRAM_BYTES, 1e12),
+        bounds=(MIN_SUBPROGRAM_BYTES, _UNLIMITED),
         form="BYTES",
         example="1000000",
     ),
