@@ -18,6 +18,7 @@ from trunnion.api.settings import Settings, control_setting_faults, set_up_machi
 from trunnion.api.targets import OutputLike, open_target, written_text
 from trunnion.cl.write import write_cl
 from trunnion.controls import Control, load_control
+from trunnion.controls.vocabulary import INCH
 from trunnion.conversion import Conversion
 from trunnion.conversion.program_events import COMPENSATION_FINDINGS
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem
@@ -135,13 +136,14 @@ def convert(
         compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
         divided = job.subprograms(target.files, target.path) is not None
         converter = _ProgramConverter(str(nc), observer, force)
-        converted = converter.read(
-            read_program(program, machine=source, subprograms=others), control, None if to_cl else job.machine
-        )
+        run = read_program(program, machine=source, subprograms=others)
+        converted = converter.read(run, control, None if to_cl else job.machine)
         if subprograms and not (divided or to_cl):
             converter.warn_of_one_program(1 + len(subprograms))
         carried = converter.carry(converted.settings, control, job)
         if to_cl:
+            if run.state.inches.values[-1] and control.settings.get("units") != INCH:
+                carried["units"] = INCH
             comments = [f"--set {key}={value}" for key, value in carried.items()]
             converter.report(write_cl(converted.toolpath, target.files.main, comments=comments))
             posted = None
@@ -154,10 +156,11 @@ def convert(
 
 def _check_settings(job: PostJob, to_cl: bool) -> None:
     """Raise ``InputError`` for settings that have no meaning in a conversion."""
-    if "units" in job.settings:
-        raise InputError(
-            argument_problem("settings", "units has no meaning here", "an NC program says its units itself")
-        )
+    if "cl_units" in job.settings:
+        what, cure = "cl_units has no meaning here", "an NC program says its unit itself"
+        raise InputError(argument_problem("settings", what, cure))
+    if "units" in job.settings and to_cl:
+        raise InputError(argument_problem("settings", "units has no meaning here", "a CL file is written in mm"))
     if "zero" in job.settings and to_cl:
         raise InputError(argument_problem("settings", "zero has no meaning in a CL file", "give it to trunnion post"))
 

@@ -11,6 +11,7 @@ from typing import Final
 
 from trunnion.api.settings import m_code, work_offset_setting
 from trunnion.api.tolerances import program_tolerances
+from trunnion.controls import Control
 from trunnion.model.motion import MachiningMode
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
@@ -68,9 +69,19 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
         smoothing=max(float(each.get(key) or 0.0) for each in every for key in _SMOOTHING),
         rigid_tap=m_code(values.get("rigid_tap", "")),
         tool_deltas={
-            word: tuple({float(each[key]) for each in every if each.get(key)}) for key, word in _TOOL_DELTAS.items()
+            word: tuple({_as_printed(program.control, key, float(each[key])) for each in every if each.get(key)})
+            for key, word in _TOOL_DELTAS.items()
         },
     )
+
+
+def _as_printed(control: Control, name: str, value: float) -> float:
+    """A setting as the digits of its templates print it."""
+    fields = {field for template in control.templates.values() for field in template.fields()}
+    formats = [
+        control.formats[number_format] for field, number_format in sorted(fields) if field == name and number_format
+    ]
+    return formats[0].three_axis.rounded(value) if formats else value
 
 
 def _operation_settings(program: Program, values: Mapping[str, str]) -> tuple[str, int | None, int | None]:

@@ -17,7 +17,8 @@ from trunnion.api.settings import (
     with_limit_margin,
 )
 from trunnion.controls import Control, load_control
-from trunnion.controls.vocabulary import PROGRAM_CHOICES
+from trunnion.controls.inches import in_units
+from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputFiles
 from trunnion.machines import Machine
@@ -125,6 +126,7 @@ def prepare(
     """
     control = load_control(machine.control)
     texts = as_texts(settings)
+    control = in_units(control, texts.get("units") or control.settings.get("units", MM))
     texts, own = split_by_operation(texts, control, machine)
     check_settings(texts, control, machine)
     if texts.get("numbers") == "off":

@@ -11,6 +11,7 @@ from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
 from trunnion.api.settings import Settings, check_operation_names, number_setting
+from trunnion.controls.vocabulary import INCH
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
@@ -86,7 +87,9 @@ def load_toolpaths(
     InputError
         If a file cannot be used, or there is none.
     """
-    toolpaths = as_toolpaths(cl, job.settings.get("units"), strict, observer)
+    toolpaths = as_toolpaths(cl, job.settings.get("cl_units"), strict, observer)
+    if job.control.units == INCH:
+        _check_units_of(toolpaths)
     toolpaths = replace_unknown_statements(toolpaths, job.control.statements)
     if not toolpaths:
         raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
@@ -97,6 +100,14 @@ def load_toolpaths(
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
+
+
+def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
+    """Raise ``InputError`` for a CL file that would be taken for one in mm while the program counts in inches."""
+    what, cure = "nothing says whether it is in mm or inches", "write setting cl_units=mm or setting cl_units=inch"
+    unknown = [Problem(toolpath.file, 0, what, cure) for toolpath in toolpaths if not toolpath.states_unit]
+    if unknown:
+        raise InputError(unknown)
 
 
 def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:

@@ -62,7 +62,7 @@ def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
 
 #: Settings of the post by their names; all others belong to the control, whose templates print them.
 RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
-    "units": _choice("Length unit of the CL files.", "mm", "inch", default="what the files say"),
+    "cl_units": _choice("Length unit of the CL files.", "mm", "inch", default="what the files say"),
     "zero": RunSetting(
         "Position of the workpiece zero on the machine, mm. With it every slide is checked against its limits; without "
         "it only whether the program fits into the travel somewhere.",

@@ -79,7 +79,7 @@ def _half_digits(program: Program, motion: Motion) -> dict[str, float]:
     machine = program.machine
     primary, secondary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
     words = program.control.block_words(primary, secondary, motion.three_axis)
-    return {word.key: 0.5 * 10.0**-word.format.decimals + _SLACK for word in words}
+    return {word.key: 0.5 * word.format.digit + _SLACK for word in words}
 
 
 def _in_program_frame(program: Program, motion: Motion, half: Mapping[str, float]) -> tuple[float, float, float]:

@@ -1,7 +1,7 @@
 """Verification of any NC program, with or without the CL files that it was made from."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Literal
+from typing import Final, Literal
 
 from trunnion import readers, verification
 from trunnion.api import kernels
@@ -19,6 +19,10 @@ from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import Run
 from trunnion.verification import ExpectedValues, Tolerances, Verification
 
+#: How far the tip may be off its CL point, mm; and in a program in inches, half of 0.0001 inch.
+_DEFAULT_TOLERANCE: Final = 0.001
+_DEFAULT_INCH_TOLERANCE: Final = 0.0013
+
 #: Chords stand for arcs within this, mm, however small the tolerance of coordinates is.
 _LEAST_CHORD = 0.001
 
@@ -29,7 +33,7 @@ def verify(
     machine: MachineLike,
     cl: ToolpathLike | Iterable[ToolpathLike] = (),
     subprograms: Sequence[FilePath] = (),
-    tolerance: float = 0.001,
+    tolerance: float = _DEFAULT_TOLERANCE,
     span: float | None = None,
     span_tip: float | None = None,
     tool: str | int = "",
@@ -56,7 +60,8 @@ def verify(
     subprograms
         Files of the subprograms that it calls. No others are opened.
     tolerance
-        How far coordinates may be off, mm, and rotary axes, degrees.
+        How far coordinates may be off, mm, and rotary axes, degrees. The default is 0.0013 mm for a program in inches,
+        half of 0.0001 inch.
     span
         How far the tool axis may be off its way between points, degrees; by default as the control's definition says.
     span_tip
@@ -127,7 +132,7 @@ def verify(
     return verification.verify(
         run,
         toolpaths,
-        tolerances=Tolerances(tip=tolerance, angle=tolerance, chord=max(_LEAST_CHORD, tolerance)),
+        tolerances=Tolerances(tip=_tip_tolerance(run, tolerance), angle=tolerance, chord=max(_LEAST_CHORD, tolerance)),
         settings=ExpectedValues(
             tool=tool,
             work_offset=_work_offset(work_offset, loaded, defaults.get("work_offset", "G54"), bool(toolpaths)),
@@ -141,6 +146,12 @@ def verify(
         ),
         columns=columns,
     )
+
+
+def _tip_tolerance(run: Run, tolerance: float) -> float:
+    """How far coordinates may be off, mm."""
+    in_inches = tolerance == _DEFAULT_TOLERANCE and bool(run.state.inches.values.any())
+    return _DEFAULT_INCH_TOLERANCE if in_inches else tolerance
 
 
 def _tool(tool: object) -> str:

@@ -95,6 +95,11 @@ class ClsfInterpreter:
             last = state.builders[-1]
             last.events.extend(replace(event, row=last.stop - last.first) for event in state.builder.events)
 
+    def knows_unit(self, given: str | None) -> bool:
+        """Whether the user, UNITS or the feeds say the length unit of the file."""
+        state = self._state
+        return bool(given or state.length_unit or state.first_mm_feed or state.first_inch_feed)
+
     def unit(self, given: str | None) -> float:
         """Return the length unit of the file in mm: ``given`` by the user, else as UNITS or else the feeds say."""
         if given is not None:
@@ -106,13 +111,13 @@ class ClsfInterpreter:
             self._diagnostics.error(
                 max(mm, inch),
                 f"feeds in mm (line {mm}) and in inches (line {inch}), and no UNITS",
-                "give the unit of lengths with setting units=mm or setting units=inch",
+                "write setting cl_units=mm or setting cl_units=inch (setting units=… is that of the program)",
             )
         if inch and not mm:
             self._diagnostics.remark(
                 inch,
                 "all feeds are in inches, so lengths are taken as inches too",
-                "if they are not, write setting units=mm",
+                "if they are not, write setting cl_units=mm",
             )
             return MM_PER_INCH
         return 1.0

@@ -115,7 +115,7 @@ def read_in_chunks(
         columns.tip[: scanner.rows] *= unit
     operations = tuple(assemble_operation(builder, columns, unit, diagnostics) for builder in interpreter.builders)
     diagnostics.raise_errors()
-    toolpath = Toolpath(str(path), operations, interpreter.part, unit=unit)
+    toolpath = Toolpath(str(path), operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units))
     for problem in unknown_statement_problems(toolpath):
         diagnostics.remark(problem.line, problem.what, problem.cure)
     return replace(toolpath, remarks=diagnostics.remarks)

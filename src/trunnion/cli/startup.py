@@ -18,7 +18,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         compile_ahead(kernels.POSTING)
     with ThreadPoolExecutor(1) as executor:
-        coming = read_toolpaths(arguments.files, dict(arguments.settings).get("units"), arguments.strict, executor)
+        coming = read_toolpaths(arguments.files, dict(arguments.settings).get("cl_units"), arguments.strict, executor)
         from trunnion.cli.post import post
 
         return post(arguments, coming)

@@ -6,6 +6,7 @@ What these cannot express is code, in the writer module of the control's family.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
 from trunnion.controls.setting_rules import SettingKind, SettingRule, tool_number
@@ -14,6 +15,10 @@ from trunnion.controls.vocabulary import (
     FIVE_AXIS,
     HOLES_IN_PLANES,
     HOLES_SETTING,
+    INCH,
+    LENGTH_FIELDS,
+    LENGTH_UNITS,
+    MM,
     ORIENT_BY_VECTOR_WORD,
     PROGRAM_CHOICES,
     PROGRAM_SETTINGS,
@@ -27,6 +32,9 @@ from trunnion.controls.vocabulary import (
 from trunnion.controls.words import BlockNumbers, NumberFormat, Word
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.motion import MachiningMode
+
+#: Millimetres of an inch.
+MM_PER_INCH: Final = 25.4
 
 #: The format of words without a number.
 _NO_NUMBER = NumberFormat(0)
@@ -54,10 +62,11 @@ class SubprogramNaming:
 
 @dataclass(frozen=True, slots=True)
 class FormatPair:
-    """A number format for five-axis and for three-axis operations."""
+    """A number format for five-axis and for three-axis operations; ``inch`` for lengths in programs in inches."""
 
     five_axis: NumberFormat
     three_axis: NumberFormat
+    inch: "FormatPair | None" = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +142,9 @@ class Control:
     holes_from            one of ``HOLE_APPROACH_HEIGHTS``
     subprograms           how subprograms are named; None: a program cannot call any
     templates             by name
+    unit_words            the word of each unit of lengths: ``mm``, and ``inch`` where programs can count in inches
+    length_settings       settings of lengths in mm whose rules do not say so
+    units                 in which programs count; ``trunnion.controls.inches`` changes it with the formats
     """
 
     name: str
@@ -168,6 +180,20 @@ class Control:
     holes_from: str
     subprograms: SubprogramNaming | None
     templates: Mapping[str, Template] = field(repr=False)
+    unit_words: Mapping[str, str] = field(default_factory=dict)
+    length_settings: tuple[str, ...] = ()
+    units: str = MM
+
+    @property
+    def unit(self) -> float:
+        """A length of one in a program, mm."""
+        return MM_PER_INCH if self.units == INCH else 1.0
+
+    @property
+    def length_fields(self) -> frozenset[str]:
+        """Values of templates that are lengths or feeds, in mm."""
+        rules = self.setting_rules.items()
+        return LENGTH_FIELDS | {name for name, rule in rules if rule.is_number and rule.unit in LENGTH_UNITS}
 
     def differs_by_operation(self, setting: str) -> bool:
         """Whether operations of one program can have different values of a setting."""
@@ -197,7 +223,7 @@ class Control:
                 return rule.cure()
         for number_format in (each for pair in formats if text for each in (pair.five_axis, pair.three_axis)):
             if float(text) and number_format.text(float(text)) == number_format.text(0.0):
-                return f"write at least {10.0**-number_format.decimals:.9g}: the program would say 0"
+                return f"write at least {number_format.digit:.9g}: the program would say 0"
         return None
 
     def setting_rule(self, name: str) -> SettingRule:

@@ -1,10 +1,11 @@
 """From the ``[control]`` table of a definition to a ``Control``, with every mistake reported at once."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
-from trunnion.controls.definition import ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
+from trunnion.controls.definition import MM_PER_INCH, ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.setting_rules import SettingKind, SettingRule, read_setting_rules
 from trunnion.controls.template import Template
@@ -15,7 +16,10 @@ from trunnion.controls.vocabulary import (
     FEEDS_WITHOUT_TCP,
     FIVE_AXIS,
     HOLE_APPROACH_HEIGHTS,
+    INCH,
+    MM,
     PHASES,
+    PROGRAM_CHOICES,
     RADIUS_ARC_WORDS,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
@@ -57,7 +61,7 @@ def load_control(own: Table) -> Control:
     words = (*AXIS_WORDS, *family.WORDS)
     formats = {entry.text("name"): _read_format(entry) for entry in table.tables("format")}
     templates, settings = table.table("templates"), table.table("settings")
-    plane_from_pose = table.flag("plane_from_pose", False)
+    plane_from_pose, units = table.flag("plane_from_pose", False), table.table("units")
     control = Control(
         name=table.text("name"),
         description=table.text("description", ""),
@@ -94,12 +98,15 @@ def load_control(own: Table) -> Control:
         templates=_read_templates(
             templates, _template_names(templates, family, plane_from_pose, "subprograms" in table)
         ),
+        length_settings=units.texts("settings", ()),
+        unit_words=_read_unit_words(units),
     )
     defined = {word.name for word in control.words}
     for missing in dict.fromkeys(name for name in words if name not in defined):
         table.add_problem("word", f"has no entry {missing!r}, which programs of this family need", "write it")
     _check_templates(templates, control)
     _check_settings(settings, table.tables("by_method"), control)
+    units.report_unread_keys()
     table.report_unread_keys()
     table.raise_problems()
     return control
@@ -130,11 +137,31 @@ def _read_format(entry: Table) -> FormatPair:
     if len(zero) > 8:
         entry.add_problem("zero", f"is {zero!r}", "write at most 8 characters")
         zero = ""
-    entry.report_unread_keys()
     pair = [
         NumberFormat(n, zero=zero, least=least, greatest=greatest, **common) for n in (decimals, decimals_three_axis)
     ]
-    return FormatPair(*pair)
+    inch = _read_inch_format(entry.table("inch"), pair) if "inch" in entry else None
+    entry.report_unread_keys()
+    return FormatPair(pair[0], pair[1], inch)
+
+
+def _read_inch_format(entry: Table, pair: Sequence[NumberFormat]) -> FormatPair:
+    """The formats of lengths in inches: limits as they are printed, ``part`` the inches of a printed unit."""
+    decimals = entry.integer("decimals", at_least=0, at_most=9)
+    decimals_three_axis = entry.integer("decimals_three_axis", decimals, at_least=0, at_most=9)
+    unit = MM_PER_INCH * entry.number("part", 1.0, above=0.0, at_most=1.0)
+    least, greatest = entry.number("least", pair[0].least / unit), entry.number("greatest", pair[0].greatest / unit)
+    entry.report_unread_keys()
+    five_axis, three_axis = (
+        replace(number_format, decimals=n, least=least * unit, greatest=greatest * unit, unit=unit)
+        for number_format, n in zip(pair, (decimals, decimals_three_axis), strict=True)
+    )
+    return FormatPair(five_axis, three_axis)
+
+
+def _read_unit_words(table: Table) -> dict[str, str]:
+    found = {MM: table.text(MM)} if table.keys() else {}
+    return found | {INCH: table.text(INCH)} if INCH in table else found
 
 
 def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[str]) -> WordDefinition:
@@ -221,6 +248,9 @@ def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) 
 def _check_settings(table: Table, by_method: Sequence[Table], control: Control) -> None:
     """Report defaults that their own rules do not allow."""
     for name, value in control.settings.items():
+        choices = PROGRAM_CHOICES.get(name)
+        if choices and value not in choices:
+            table.add_problem(name, f"is {value!r}", f"write {' or '.join(choices)}")
         cure = control.setting_cure(name, value)
         if cure and name in table:
             table.add_problem(name, f"is {value!r}", cure)
@@ -316,13 +346,14 @@ def _check_templates(table: Table, control: Control) -> None:
     if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
         table.add_problem(call.name, "does not say which subprogram it calls", "write {subprogram} in it")
     for template in control.templates.values():
-        for name, number_format in sorted(template.fields()):
+        for name, _ in sorted(template.fields()):
             if name not in known:
                 table.add_problem(
                     template.name,
                     f"prints {{{name}}}, which is neither a template field nor a setting",
                     f"write one of {', '.join(sorted(known))}, or add it to [control.settings]",
                 )
+        for name, number_format in sorted(template.fields() | template.numbers()):
             if number_format and number_format not in control.formats:
                 table.add_problem(
                     template.name,

@@ -2,11 +2,12 @@
 
 A template prints values and nothing else: it computes nothing and reads nothing. A line with a field whose value is
 absent is left out, so that a program without a date has no line for one. A part in double brackets, such as
-``TOOL CALL {tool}[[ S{speed}]]``, is left out alone.
+``TOOL CALL {tool}[[ S{speed}]]``, is left out alone. A number for a name, such as ``{50:coordinate}``, is that number:
+a format that has inches prints it as a length in mm.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 
 from trunnion.controls.words import NumberFormat, WordRangeError
@@ -16,6 +17,7 @@ Value = str | float | None
 
 _OPTIONAL_PART = re.compile(r"\[\[(.*?)\]\]")
 _FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
+_NUMBER_FIELD = re.compile(r"\{([-+]?(?:\d+\.?\d*|\.\d+)):([A-Za-z_][A-Za-z0-9_]*)\}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +33,20 @@ class Template:
         """Return the (name, format) of every field; the format is empty where the field has none."""
         return {(name, number_format or "") for text in self.lines for name, number_format in _FIELD.findall(text)}
 
-    def expand(self, values: Mapping[str, Value], formats: Mapping[str, NumberFormat]) -> list[str]:
+    def numbers(self) -> set[tuple[str, str]]:
+        """Return the (number, format) of every field that is a number."""
+        return {(number, number_format) for text in self.lines for number, number_format in _NUMBER_FIELD.findall(text)}
+
+    def expand(
+        self,
+        values: Mapping[str, Value],
+        formats: Mapping[str, NumberFormat],
+        lengths: Container[str] = (),
+        unit: float = 1.0,
+    ) -> list[str]:
         """Return the lines with their values, without the lines and bracketed parts whose values are absent.
+
+        ``lengths`` are the values in mm that a program of another ``unit`` (mm) prints in it, also without a format.
 
         Raises
         ------
@@ -46,13 +60,16 @@ class Template:
             value = values[match[1]]
             if match[2]:
                 return self._number_text(match[1], value, formats[match[2]])
+            if unit != 1.0 and match[1] in lengths:
+                return f"{self._number(match[1], value) / unit:.6g}"
             return f"{value:g}" if isinstance(value, float) else str(value)
 
         def is_complete(text: str) -> bool:
             return all(values[name] not in (None, "") for name, _ in _FIELD.findall(text))
 
         lines = [_OPTIONAL_PART.sub(lambda part: part[1] if is_complete(part[1]) else "", text) for text in self.lines]
-        return [_FIELD.sub(field_text, text) for text in lines if is_complete(text)]
+        complete = [_FIELD.sub(field_text, text) for text in lines if is_complete(text)]
+        return [_NUMBER_FIELD.sub(lambda field: formats[field[2]].text(float(field[1])), text) for text in complete]
 
     def _number_text(self, name: str, value: Value, number_format: NumberFormat) -> str:
         number = self._number(name, value)
@@ -69,3 +86,8 @@ class Template:
             raise InputError(
                 Problem(self.file, self.line, f"setting {name} is {value!r}", f"write a number: setting {name}=0.5")
             ) from None
+
+
+def without_fields(text: str) -> str:
+    """Return a line of a template with a zero byte for each field."""
+    return _NUMBER_FIELD.sub("\0", _FIELD.sub("\0", text))

@@ -13,13 +13,30 @@ COMMON_TEMPLATE_FIELDS: Final = frozenset(
         "zero_x", "zero_y", "zero_z", "time", "total_time", "time_shown", "total_time_shown",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
         "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",
-        "spindle_speed", "new_speed", "spindle_code", "subprogram",
+        "spindle_speed", "new_speed", "spindle_code", "subprogram", "unit_word",
     }
 )  # fmt: skip
 
-#: Settings of a program that every control has: what it says about times and tools, and which tools it calls. The
-#: default is the first value.
+#: Units of lengths and feeds in programs.
+MM: Final = "mm"
+INCH: Final = "inch"
+
+#: Fields that are lengths, besides settings; and words of motion blocks that are lengths or feeds.
+LENGTH_FIELDS: Final = frozenset(
+    {
+        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "gauge_length", "zero_x", "zero_y",
+        "zero_z", "home_x", "home_y", "home_z", "plane_x", "plane_y", "plane_z",
+    }
+)  # fmt: skip
+LENGTH_WORDS: Final = frozenset({*"XYZIJK", "arc_radius", "arc_rise", "feed", "feed_per_rev"})
+
+#: Units of numbers in setting rules that a program in inches converts.
+LENGTH_UNITS: Final = ("mm", "mm/min")
+
+#: Settings of a program that every control has: what it says about times and tools, which tools it calls, and the unit
+#: of its lengths. The default is the first value.
 PROGRAM_CHOICES: Final = {
+    "units": (MM, INCH),
     "times": ("default", "on", "off"),
     "tool_list": ("off", "on"),
     "preselect": ("off", "on"),
@@ -28,6 +45,7 @@ PROGRAM_CHOICES: Final = {
 
 #: What each of them changes.
 PROGRAM_MEANINGS: Final = {
+    "units": "What lengths and feeds of the program count in. Settings that are lengths stay in mm.",
     "times": "Machining times of each operation and of the program as comments. By default Klartext has them, and the "
     "other controls do not.",
     "tool_list": "With on, all tools with their data are comments at the head.",
@@ -56,6 +74,9 @@ TEMPLATE_ORDER: Final = (
     "program_start", "operation_start", "first_tool", "tool_change", "spindle_on", "approach_", "plane_on_",
     "next_axis_", "draw_back_", "next_plane_", "operation_end_", "program_end", "subprogram_",
 )  # fmt: skip
+
+#: Templates that say in which unit a file counts.
+PROGRAM_START_TEMPLATES: Final = ("program_start", "subprogram_start")
 
 #: The template that starts the spindle, on controls where that takes blocks of its own.
 SPINDLE_ON: Final = "spindle_on"

@@ -30,6 +30,7 @@ class NumberFormat:
     plus             ``+20.`` rather than ``20.``
     zero             the text for zero, such as ``0.0``; empty: by the other rules
     least, greatest  limits of the value; a program with a number beyond them is refused
+    unit             what one printed unit is: 25.4 for lengths in mm that are printed in inches, else 1
     """
 
     decimals: int
@@ -40,14 +41,33 @@ class NumberFormat:
     zero: str = ""
     least: float = -99999999.0
     greatest: float = 99999999.0
+    unit: float = 1.0
+
+    @property
+    def digit(self) -> float:
+        """The value of the last printed digit, in the unit of the values."""
+        return self.unit * 10.0**-self.decimals
+
+    def counts(self, value: Floats) -> Ints:
+        """Return values (n,) as counts, (n,); ``ABSENT`` for NaN. Errors as ``round_to_counts``."""
+        value = np.ascontiguousarray(value)
+        return round_to_counts(value if self.unit == 1.0 else value / self.unit, self.decimals)
+
+    def values(self, count: Ints) -> Floats:
+        """Return the values (n,) that counts (n,) are printed for."""
+        return np.asarray(count / 10.0**self.decimals * self.unit)
+
+    def count(self, value: float) -> int:
+        """Return a value as a count."""
+        return int(self.counts(np.array([value]))[0])
 
     def rounded(self, value: float) -> float:
-        """Return the number that ``value`` is printed as."""
-        return float(round_to_counts(np.array([value]), self.decimals)[0]) / 10.0**self.decimals
+        """Return the value that is printed for ``value``."""
+        return self.count(value) / 10.0**self.decimals * self.unit
 
     def text(self, value: float) -> str:
         """Return ``value`` as it is printed."""
-        return self.text_of_count(int(round_to_counts(np.array([value]), self.decimals)[0]))
+        return self.text_of_count(self.count(value))
 
     def text_of_count(self, count: int) -> str:
         """Return the printed form of a count; the reference implementation of the block kernel's digits."""

@@ -14,8 +14,11 @@ from trunnion.controls.definition import Control
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
+from trunnion.conversion.settings import parse_number
 from trunnion.conversion.template_matching import LinePattern, TemplatePatterns, match_lines
 from trunnion.model.run import ProgrammedWord, Run
+
+_MM_PER_INCH = 25.4
 
 #: The beginnings of the names of the templates that make the header and the end of an operation.
 _HEADER_TEMPLATES = ("operation_start", "first_tool", "tool_change", "approach_", "plane_on_")
@@ -66,11 +69,19 @@ class HeaderReader:
             section.end_event = _first_event_at(ended, section, events)
             section.values = {
                 **program_values,
-                **section.values,
+                **self._in_millimetres(section),
                 **self._plane_setting(section.line, first),
                 **self.offset_settings(section),
                 **self._orientation_setting(section.rows),
             }
+
+    def _in_millimetres(self, section: ProgramSection) -> dict[str, str]:
+        """The values in a header, with those that are lengths in mm whatever the program counts in there."""
+        row = section.first_row
+        if not (row < len(self._run) and self._run.state.inches[row]):
+            return section.values
+        lengths = {*self._control.length_fields, *self._control.length_settings}
+        return {name: _in_mm(text) if name in lengths else text for name, text in section.values.items()}
 
     def _matching_lines(self, events: Iterable[ProgramEvent], patterns: Sequence[LinePattern]) -> set[int]:
         """The lines of events in the main file that match one of the patterns."""
@@ -122,3 +133,9 @@ def _first_event_at(lines: set[int], section: ProgramSection, events: Sequence[P
     inside = range(section.first_event, section.end_event)
     found = (n for n in inside if events[n].file == 0 and events[n].line in lines and events[n].kind != "skip")
     return next(found, section.end_event)
+
+
+def _in_mm(text: str) -> str:
+    """A number in inches as one in mm, with as many digits as inches of seven decimals have; another text as it is."""
+    value = parse_number(text)
+    return text if value is None else f"{_MM_PER_INCH * value:.5f}".rstrip("0").rstrip(".")

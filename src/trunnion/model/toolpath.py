@@ -316,6 +316,7 @@ class Toolpath:
     part        name of the part
     remarks     warnings of the reader
     unit        length unit of the file, mm
+    states_unit  the file says its unit, or its feeds do; else mm are assumed
     """
 
     file: str
@@ -323,6 +324,7 @@ class Toolpath:
     part: str = ""
     remarks: tuple[Problem, ...] = field(default=())
     unit: float = 1.0
+    states_unit: bool = True
 
     def __repr__(self) -> str:
         """Return what matters in a notebook: the columns would fill pages."""

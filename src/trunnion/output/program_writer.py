@@ -12,7 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.controls.template import Value
-from trunnion.controls.words import WordRangeError, round_to_counts
+from trunnion.controls.words import WordRangeError
 from trunnion.machines import SweptPart
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn
@@ -180,7 +180,9 @@ class _ProgramWriter:
         """Comment lines with the tools in the order of their calls, if they are asked for."""
         if self._program.effective_setting("tool_list") != "on":
             return []
-        texts = dict.fromkeys(tool_text(call, operation.tool) for call, operation in self._tool_calls)
+        texts = dict.fromkeys(
+            tool_text(call, operation.tool, self._control.unit) for call, operation in self._tool_calls
+        )
         return [line for text in ("TOOL LIST", *texts) for line in self._control.family.comment(text)]
 
     def _preselect_next(self, tool: str) -> None:
@@ -284,6 +286,6 @@ class _ProgramWriter:
         if has_events or operation.moves.kind[0] != Kind.RAPID:
             return False
         last = self._last_tip(before)
-        decimals = self._blocks.writer.word("X").format.decimals
-        reached = round_to_counts(tip_after_turn(self._program.machine, last, before, motion), decimals)
-        return bool((reached == round_to_counts(np.ascontiguousarray(operation.moves.tip[0]), decimals)).all())
+        counts = self._blocks.writer.word("X").format.counts
+        reached = counts(tip_after_turn(self._program.machine, last, before, motion))
+        return bool((reached == counts(operation.moves.tip[0])).all())

@@ -3,6 +3,7 @@
 A value is None where there is none: a template leaves out the line that names it.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,7 +13,7 @@ from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.setting_rules import tool_number
 from trunnion.controls.template import Value
 from trunnion.errors import InputError, Problem
-from trunnion.machines import inverse
+from trunnion.machines import Axis, inverse
 from trunnion.machines.motion_time import format_duration
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn, Tool
@@ -81,6 +82,7 @@ class TemplateValues:
             **dict(zip(("zero_x", "zero_y", "zero_z"), machine.workpiece_zero or _NO_POSITION, strict=True)),
             "subprogram": None,
             "machine": machine.name,
+            "unit_word": self._program.control.unit_words.get(self._program.control.units),
             "gauge_length": machine.tool_length,
             "operation": operation.name,
             "intol": operation.intol,
@@ -98,7 +100,8 @@ class TemplateValues:
         values: dict[str, Value] = {**control.settings, **self._program.settings_of(operation)}
         if values.get("blank") == EXTENTS:
             values["blank"] = self._extents()
-        values |= self._family.template_values(values, None if motion.plane is None else motion.plane.matrix())
+        plane = None if motion.plane is None else motion.plane.matrix()
+        values |= self._family.template_values(self._in_program_unit(values), plane)
         if not values.get("tolerance"):
             given = operation.intol is not None and operation.outtol is not None
             values["tolerance"] = (
@@ -108,6 +111,14 @@ class TemplateValues:
         for setting in control.method_defaults:
             values[setting] = values[setting] or control.default_for_method(setting, method)
         return values
+
+    def _in_program_unit(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Settings for the family, of which those that are texts of lengths are in the unit of the program."""
+        control, found = self._program.control, dict(values)
+        for name in control.length_settings if control.unit != 1.0 else ():
+            numbers = [float(part) / control.unit for part in str(values.get(name) or "").split(",") if part]
+            found[name] = ",".join(f"{number:.5f}".rstrip("0").rstrip(".") for number in numbers)
+        return found
 
     def _extents(self) -> str:
         """The corners of the block form around all cuts; empty if nothing is cut."""
@@ -167,12 +178,22 @@ class TemplateValues:
     def _home_values(self) -> dict[str, Value]:
         """The home position, for templates that move in machine coordinates."""
         machine = self._program.machine
-        linear = {axis.name: axis.home for axis in machine.axes if not axis.is_rotary}
+        linear = {axis.name: self._printed_home(axis) for axis in machine.axes if not axis.is_rotary}
         return {
             **{f"home_{name.lower()}": linear.get(name) for name in "XYZ"},
             "primary_home": machine.axes[machine.primary].home,
             "secondary_home": machine.axes[machine.secondary].home,
         }
+
+    def _printed_home(self, axis: Axis) -> float:
+        """The home of a slide as a program can say it: in inches a last digit off it, but never beyond a limit."""
+        if self._program.control.unit == 1.0:
+            return axis.home
+        number_format = self._program.control.number_formats(three_axis=True)["coordinate"]
+        home = number_format.rounded(axis.home)
+        if home > axis.high:
+            return home - number_format.digit
+        return home + number_format.digit if home < axis.low else home
 
     def _tool_values(self, operation: Operation) -> dict[str, Value]:
         tool = operation.tool
@@ -229,10 +250,11 @@ def estimated_seconds(program: Program) -> list[float]:
     return seconds
 
 
-def tool_text(call: str, tool: Tool) -> str:
-    """Return a tool with its data, for the list of tools."""
+def tool_text(call: str, tool: Tool, unit: float = 1.0) -> str:
+    """Return a tool with its data, for the list of tools; ``unit`` is that of the program, mm."""
     known = tool.kind != "UNKNOWN"
-    data = f", diameter {tool.diameter:g}, corner {tool.corner_radius:g}, length {tool.length:g}" if known else ""
+    lengths = ("diameter", tool.diameter), ("corner", tool.corner_radius), ("length", tool.length)
+    data = "".join(f", {what} {length / unit:g}" for what, length in lengths) if known else ""
     name = f" {tool.name}" if tool.name and tool.name != call.strip('"') else ""
     return f"T{call}{name}{data}"
 

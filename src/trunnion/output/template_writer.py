@@ -13,6 +13,7 @@ class TemplateWriter:
     def __init__(self, blocks: MotionBlockWriter) -> None:
         self._blocks = blocks
         self._control = blocks.control
+        self._lengths = self._control.length_fields
         self._speed: Value = None
 
     def write(self, name: str, values: Mapping[str, Value], motion: Motion, notices: Sequence[str] = ()) -> None:
@@ -23,7 +24,8 @@ class TemplateWriter:
         formats = self._control.number_formats(motion.three_axis)
         template = self._control.templates[name]
         speed = values["spindle_speed"]
-        lines = template.expand({**values, "new_speed": None if speed == self._speed else speed}, formats)
+        values = {**values, "new_speed": None if speed == self._speed else speed}
+        lines = template.expand(values, formats, self._lengths, self._control.unit)
         first = self._control.first_lines if notices else 0
         self._blocks.write_lines([*lines[:first], *notices, *lines[first:]])
         if any(field in ("spindle_speed", "new_speed") for field, _ in template.fields()):

@@ -10,6 +10,7 @@ Text from outside is cleaned here of characters that no file can hold.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -22,10 +23,17 @@ from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, durations, operation_usage, tool_usages
 from trunnion.verification.results import Check, Place, Verification
 
+#: Units of a program by whether they are inches.
+_UNITS: Final = {False: "mm", True: "inch"}
+
 
 @dataclass(frozen=True, slots=True)
 class ReportContent:
-    """Everything in a report except its plots; ``untimed`` counts motions whose time is not known."""
+    """Everything in a report except its plots.
+
+    ``untimed`` counts motions whose time is not known; ``units`` are those that the program counts in, which the report
+    does not: its lengths are mm.
+    """
 
     program: str
     machine_key: str
@@ -44,6 +52,7 @@ class ReportContent:
     decisions: tuple[Decision, ...]
     tip: tuple[TipExtent, ...]
     axes: tuple[AxisExtent, ...]
+    units: tuple[str, ...] = ()
 
 
 def collect_content(
@@ -71,6 +80,7 @@ def collect_content(
         decisions=tuple(map(_clean_decision, decisions)),
         tip=tuple(tip_extent(run, k, cutting) for k in range(3)),
         axes=tuple(axis_extent(run, k, axis) for k, axis in enumerate(machine.axes)),
+        units=tuple(_UNITS[inches] for inches in dict.fromkeys(run.state.inches.values.tolist())),
     )
 
 

@@ -51,6 +51,7 @@ def _title(content: ReportContent) -> str:
         ("in cuts", format_duration(content.cutting_seconds)),
         ("in rapids", format_duration(content.rapid_seconds)),
         ("Made", content.made),
+        ("Lengths", _units_text(content.units)),
     ]
     entries = "".join(
         f"<div><dt>{name}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in items if value
@@ -230,3 +231,8 @@ def _block(block: BlockReference) -> str:
 
 def _number(number: int) -> str:
     return f"N{number}" if number >= 0 else ""
+
+
+def _units_text(units: Sequence[str]) -> str:
+    """In what the report counts, where the program counts otherwise; empty elsewhere."""
+    return f"mm; the program counts in {' and '.join(units)}" if "inch" in units else ""

@@ -50,6 +50,7 @@ def _head(content: ReportContent) -> dict[str, object]:
         "machine": {"key": content.machine_key, "name": content.machine},
         "control": content.control or None,
         "made": content.made or None,
+        "program_units": list(content.units),
         "passed": content.passed,
         "checks": [_check(check) for check in content.checks],
         "motions": content.motions,

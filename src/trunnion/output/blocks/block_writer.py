@@ -6,7 +6,7 @@ from typing import BinaryIO, Final, NamedTuple
 import numpy as np
 
 from trunnion.arrays import Bytes, Ints
-from trunnion.controls.words import ABSENT, BlockNumbers, Word, WordRangeError, round_to_counts
+from trunnion.controls.words import ABSENT, BlockNumbers, Word, WordRangeError
 from trunnion.output.blocks.block_kernel import BARE, DIGITS, LETTERS, MODAL, write_blocks
 
 #: Rows of a table at most: one chunk stays in the processor's cache.
@@ -102,7 +102,7 @@ class BlockWriter:
 
     def to_count(self, key: str, value: float) -> int:
         """Return a value as a count of the word with this key."""
-        return int(round_to_counts(np.array([value]), self._words[key].format.decimals)[0])
+        return self._words[key].format.count(value)
 
     def modal_state(self) -> dict[str, int]:
         """Return the modal words that are known to be active, with their counts."""
@@ -231,16 +231,16 @@ def _lines_before(rows: int, text_before: Ints | None, texts: Sequence[str], lin
 
 def _check_range(word: Word, column: Ints) -> None:
     """Raise ``WordRangeError`` if a number is beyond the limits of the word's format."""
-    scale = 10**word.format.decimals
+    scale, unit = 10**word.format.decimals, word.format.unit
     highest, lowest = int(column.max()), int(column.min())
     if lowest == ABSENT and highest != ABSENT:
         lowest = int(column[column != ABSENT].min())
     for count, limit, beyond in (
-        (highest, word.format.greatest, highest > word.format.greatest * scale),
-        (lowest, word.format.least, lowest < word.format.least * scale),
+        (highest, word.format.greatest, highest > word.format.greatest / unit * scale),
+        (lowest, word.format.least, lowest < word.format.least / unit * scale),
     ):
         if beyond and count != ABSENT:
-            what = f"word {word.letter}{count / scale:g} is beyond {limit:g}"
+            what = f"word {word.letter}{count / scale:g} is beyond {limit / unit:g}"
             raise WordRangeError(what, int(np.argmax(column == count)))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Flags
 from trunnion.controls.family_writer import FamilyWriter
-from trunnion.controls.words import ABSENT, round_to_counts
+from trunnion.controls.words import ABSENT
 from trunnion.model.toolpath import Moves
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import BlockWriter
@@ -54,7 +54,7 @@ class FeedWords:
         for word, absent in zip(FEED_WORDS, (rapid | per_rev, rapid | ~per_rev), strict=True):
             if word == "feed" or per_rev.any():
                 feed = np.where(absent, np.nan, moves.feed[rows])
-                table.columns[word] = round_to_counts(feed, self._writer.word(word).format.decimals)
+                table.columns[word] = self._writer.word(word).format.counts(feed)
         table.columns["feed"][rapid] = self.rapid_feed
         table.columns |= self._family.row_words(rapid, per_rev, self._codes)
 
@@ -67,7 +67,7 @@ class FeedWords:
         key = "inverse_feed" if rule == "inverse_time" else "feed"
         number_format = self._writer.word(key).format
         value, _, _ = feed_words(motion.select(rows), moves.feed[rows], rule, number_format)
-        count = round_to_counts(np.where(turning, value, np.nan), number_format.decimals)
+        count = number_format.counts(np.where(turning, value, np.nan))
         if rule == "inverse_time":
             table.columns["feed"][turning] = ABSENT
             table.columns["feed_mode"][turning] = self._codes["feed_inverse_time"]

@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
-from trunnion.controls.words import ABSENT, WordRangeError, round_to_counts
+from trunnion.controls.words import ABSENT, WordRangeError
 from trunnion.errors import InputError, Problem
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, Phase, SpindleOn
@@ -266,9 +266,8 @@ class MotionBlockWriter:
     def _table_of_rows(self, motion: Motion, rows: slice, rapid: Flags) -> BlockTable:
         """The words of rows as if none were an arc."""
         moves, table = motion.operation.moves, BlockTable(len(rapid))
-        decimals = self.writer.word("X").format.decimals
         for c, word in enumerate("XYZ"):
-            table.columns[word] = round_to_counts(np.ascontiguousarray(moves.tip[rows, c]), decimals)
+            table.columns[word] = self.writer.word(word).format.counts(moves.tip[rows, c])
         contact = contact_rows(motion, rows)
         self._orientation.add_words(table, motion, rows, contact)
         self.feeds.add_words(table, moves, rows, rapid)

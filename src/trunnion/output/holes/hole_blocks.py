@@ -8,7 +8,6 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.controls.family_writer import EACH_HOLE, FIRST_HOLE, WordEvent
 from trunnion.controls.vocabulary import CYCLE_CALL_WORD, HOLES_IN_PLANES, HOLES_SETTING
-from trunnion.controls.words import round_to_counts
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
@@ -83,10 +82,8 @@ class _Holes:
         return int(phases[-1])
 
     def _positions(self, first: int, last: int) -> dict[str, Ints]:
-        tip, decimals = self._motion.operation.moves.tip, self._writer.word("X").format.decimals
-        return {
-            word: round_to_counts(np.ascontiguousarray(tip[first:last, c]), decimals) for c, word in enumerate("XY")
-        }
+        tip, counts = self._motion.operation.moves.tip, self._writer.word("X").format.counts
+        return {word: counts(tip[first:last, c]) for c, word in enumerate("XY")}
 
     def _rapid_columns(self, rows: int) -> dict[str, Ints]:
         """The motion words of rapids: word -> (n,) int64 counts."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.controls.family_writer import WordEvent
-from trunnion.controls.words import round_to_counts
+from trunnion.controls.words import NumberFormat
 from trunnion.model.frames import TURNING_NOISE
 from trunnion.model.motion import Motion
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
@@ -43,7 +43,7 @@ def write_hole_groups(
         Index of the phase comment that was written last.
     """
     noise = 0.0 if motion.plane is None else TURNING_NOISE
-    changes = [first + k for k in _changes(heights, blocks.writer.word("X").format.decimals, noise)]
+    changes = [first + k for k in _changes(heights, blocks.writer.word("X").format, noise)]
     last = first + len(heights)
     edges = {first, last, *changes, *(event.row for event in joining_events if first <= event.row <= last)}
     for begin, end in pairwise(sorted(edges)):
@@ -57,9 +57,9 @@ def write_hole_groups(
     return phase
 
 
-def _changes(heights: Floats, decimals: int, noise: float) -> list[int]:
+def _changes(heights: Floats, number_format: NumberFormat, noise: float) -> list[int]:
     """Indices of the holes whose height prints otherwise than that of the first of their group, by more than noise."""
-    printed = round_to_counts(heights, decimals)
+    printed = number_format.counts(heights)
     changes, first = list[int](), 0
     for k in (1 + np.flatnonzero(np.diff(printed))).tolist():
         if printed[k] != printed[first] and abs(heights[k] - heights[first]) > noise:

@@ -4,7 +4,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
-from trunnion.controls.words import ABSENT, round_to_counts
+from trunnion.controls.words import ABSENT
 from trunnion.model.toolpath import Arcs, Coolant, Kind, Operation, Sense, SpindleOff, SpindleOn
 
 WORDS: tuple[str, ...] = (
@@ -78,10 +78,9 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Format
         "turns": np.where(arcs.full_turns[rows] > 0, arcs.full_turns[rows], ABSENT),
     }
     offset = arcs.centre[rows] - tip[arcs.row[rows] - 1]
-    decimals = formats["I"].decimals
     forced: dict[str, Ints] = {}
     for c, letter in enumerate("IJK"):
         used = np.array([letter in _CENTRE_WORDS[axis] for axis in range(3)])[about]
-        columns[letter] = np.where(used, round_to_counts(np.ascontiguousarray(offset[:, c]), decimals), ABSENT)
+        columns[letter] = np.where(used, formats["I"].counts(offset[:, c]), ABSENT)
         forced["XYZ"[c]] = np.array(["XYZ"[c] in _END_WORDS[axis] for axis in range(3)], np.int64)[about]
     return ArcWords(columns, forced)

@@ -1,10 +1,11 @@
 """Events that a control cannot carry out, or not where they are."""
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
+from trunnion.controls.inches import literal_length
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Problem, Severity
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, LoadTool, SelectTool
+from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, Insert, LoadTool, SelectTool
 from trunnion.output.program import Program
 
 
@@ -32,6 +33,11 @@ def event_problems(program: Program, motion: Motion, event: Event, rpm: float | 
     if isinstance(event, SelectTool) and not control.family.tool_preselection("1"):
         what = f"SELECT/TOOL,{event.number} is not written: how {control.name} preselects a tool is not known"
         return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING)]
+    if isinstance(event, Insert) and control.unit != 1.0:
+        literal = literal_length(control, event.text)
+        if literal:
+            what = f"INSERT/{event.text.strip()}: {literal} may be a length, and nobody says whether in mm or inches"
+            return [Problem(*location, what, "leave it out, or write setting units=mm")]
     if isinstance(event, Coolant) and event.kind not in control.coolant:
         cure = (
             f"use one of {', '.join(control.coolant)}, or write its M code into the machine's definition:"

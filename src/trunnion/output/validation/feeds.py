@@ -58,7 +58,10 @@ def rounding_problem(
 ) -> Problem | None:
     """Return what the digits of a control make of a feed: zero, or another feed; None if they print it well."""
     number_format = feed_format(formats, per_rev)
-    printed = round(feed, number_format.decimals)
+    if per_rev and number_format.unit == 1.0 and formats["feed"].unit != 1.0:
+        what = "a feed per revolution in a program in inches: what the control counts there is not known"
+        return Problem(file, line, what, "write it in mm/min (MMPM), or setting units=mm")
+    printed = number_format.rounded(feed)
     cure = "write it in mm/min (MMPM)" if per_rev else "write a feed that the control can print"
     if printed < number_format.least:
         return Problem(file, line, f"a feed of {feed:g} is below the least that the control reads", cure)

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
-from trunnion.controls.words import NumberFormat, round_to_counts
+from trunnion.controls.words import NumberFormat
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Mount
 from trunnion.model.motion import Motion
@@ -54,6 +54,9 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
         what = "a feed per revolution without TCP while rotary axes turn"
         problems.append(Problem(program.file, int(moves.line[per_rev[0]]), what, "output it in mm/min (FEDRAT/MMPM)"))
     rule = feed_rule(program.control, settings)
+    if len(cuts) and program.control.unit != 1.0 and rule in ("all_axes", "slides"):
+        what = "rotary axes turn in a cut without TCP, and how F counts degrees beside inches is not known"
+        problems.append(Problem(program.file, int(moves.line[cuts[0]]), what, "write setting units=mm"))
     number_format = program.control.number_formats(motion.three_axis)[feed_format(rule)]
     value, below, above = feed_words(coordinates.select(cuts), moves.feed[cuts], rule, number_format)
     if below.any():
@@ -81,7 +84,7 @@ def _rounding_problems(
     program: Program, motion: Motion, cuts: Ints, value: Floats, rule: str, number_format: NumberFormat
 ) -> list[Problem]:
     """What the digits of F make of the feed of blocks; with inverse time a block may be off by a thousandth."""
-    printed = round_to_counts(value, number_format.decimals) / float(10**number_format.decimals)
+    printed = number_format.values(number_format.counts(value))
     error = np.abs(printed - value) / np.maximum(value, number_format.least)
     inverse_time = rule == "inverse_time"
     wrong = np.flatnonzero(error > (TOLD_ERROR + _NOISE if inverse_time else REFUSED_ERROR))

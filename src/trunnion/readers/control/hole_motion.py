@@ -1,7 +1,7 @@
 """The motions of a drilling cycle at one hole."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 #: Faster feeds, mm/min, are mistakes of the program.
@@ -33,6 +33,13 @@ class HoleMotion:
     lateral: tuple[float, float] = (0.0, 0.0)
     dwell: float = 0.0
     turns: int = 0
+
+    def with_lengths_in(self, unit: float) -> "HoleMotion":
+        """Return the motion with its lengths, now mm, in a unit of so many mm."""
+        if unit == 1.0:
+            return self
+        height = None if self.height is None else self.height / unit
+        return replace(self, height=height, lateral=(self.lateral[0] / unit, self.lateral[1] / unit))
 
 
 def check_pecks(depth: float, peck: float, word: str) -> None:

@@ -37,6 +37,10 @@ MAX_DRILLING_AXIS_ERROR: Final = 2e-4
 Circle = Callable[[Floats, Floats], arcs.Arc]
 
 
+#: G93: F is one over the minutes of a block.
+_INVERSE_TIME: Final = 93
+
+
 class VirtualControl(CoordinateControl, ABC):
     """A control that executes motions on a machine.
 
@@ -60,8 +64,13 @@ class VirtualControl(CoordinateControl, ABC):
     def scan_settings(self) -> ScanSettings:
         """Return what programmed numbers mean now."""
         return ScanSettings(
-            self.length_unit, self.feed_unit, self.default_turn_rules, self.position_map, self.vector_map
+            self.length_unit, self.unit_of_feed, self.default_turn_rules, self.position_map, self.vector_map
         )
+
+    @property
+    def unit_of_feed(self) -> float:
+        """Millimetres of the length in F; 1 with inverse time, which counts no length."""
+        return 1.0 if self.modal.feed_mode.current == _INVERSE_TIME else self.feed_unit
 
     def execute_scanned(self, count: int, settings: ScanSettings) -> ScannedRows:
         """Execute the first ``count`` blocks of ``words``, which begin at ``line``."""

@@ -23,7 +23,6 @@ from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, g_code_text, split_line
 from trunnion.readers.rs274.control import CLOCKWISE, COUNTER_CLOCKWISE, Rs274Control
 from trunnion.readers.rs274.expressions import BlockError
-from trunnion.readers.scan.buffers import ScanSettings
 from trunnion.readers.scan.letter_blocks import read_blocks
 
 #: G codes, in tenths, and what they set.
@@ -133,10 +132,6 @@ class Rs274Interpreter(Interpreter[A]):
     def _read_blocks(self, source: SourceText, limit: int) -> tuple[int, int]:
         motion = MOTIONS[self.motion_code]
         return read_blocks(source.buffer, source.position, limit, self._letter_table, False, motion, self.control.words)
-
-    def _scan_settings(self) -> ScanSettings:
-        settings = self.control.scan_settings()
-        return settings._replace(feed_unit=1.0) if self._inverse_time else settings
 
     @property
     def _inverse_time(self) -> bool:

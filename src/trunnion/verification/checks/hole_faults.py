@@ -21,6 +21,9 @@ from trunnion.verification.matching.hole_matching import MatchedHole
 #: Half of the last digit of the feeds of threads, mm/min, and of pitches, mm; and the noise of computing.
 _FEED, _PITCH, _NOISE = 0.005, 5e-6, 1e-6
 
+#: In programs in inches pitches have as many digits, of inches.
+_INCH: Final = 25.4
+
 #: Half of the last digit of dwells, seconds.
 _DWELL: Final = 5.1e-4
 
@@ -126,8 +129,9 @@ def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float) -> Iterator[Hole
     mode, programmed = run.state.feed_mode.at(lines), run.state.feed.at(lines)
     feed = np.where(mode == 95, programmed * rpm, programmed)
     wanted = hole.cycle.feed * rpm if hole.cycle.per_rev else hole.cycle.feed
+    pitch = _PITCH * np.where(run.state.inches.at(lines), _INCH, 1.0)
     digit = (min(hole.feed_tolerance, _FEED) if hole.cycle.mode[0] == "TAP" else hole.feed_tolerance) + _NOISE
-    allowed = np.where(mode == 95, FEED_PER_REV_SHARE * wanted + _NOISE, digit + _PITCH * rpm)
+    allowed = np.where(mode == 95, FEED_PER_REV_SHARE * wanted + _NOISE, digit + pitch * rpm)
     off = ~(np.abs(feed - wanted) <= allowed + 1e-9 * wanted)
     if off.any():
         k = int(np.argmax(off))

@@ -15,8 +15,10 @@ from trunnion.verification.results import Check, Place
 
 _TITLE: Final = "retracts to the machine's home"
 
-#: An axis is at home within this, mm or degrees.
+#: An axis is at home within this, mm or degrees; a slide whose position is programmed in inches within the second, a
+#: ten-thousandth of an inch: few homes are whole numbers of the last digit of inches.
 HOME_TOLERANCE: Final = 1e-6
+INCH_HOME_TOLERANCE: Final = 2.6e-3
 
 _SLIDE_WORDS: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
 
@@ -48,7 +50,15 @@ class _HomeMotions:
                 off[:, k] -= 360.0 * np.rint(off[:, k] / 360.0)
         words = np.array(_axis_words(run.machine))
         named = (run.programmed[rows][:, None] & words) != 0
-        return _HomeMotions(rows, joints, before, named, np.abs(off) <= HOME_TOLERANCE)
+        return _HomeMotions(rows, joints, before, named, np.abs(off) <= home_tolerance(run, rows))
+
+
+def home_tolerance(run: Run, rows: Ints) -> Floats:
+    """Within what axes are at home at rows, (k, 5) mm or degrees."""
+    tolerance = np.full((len(rows), len(run.machine.axes)), HOME_TOLERANCE)
+    for slide in run.machine.linear:
+        tolerance[run.state.inches.at(rows), slide] = INCH_HOME_TOLERANCE
+    return tolerance
 
 
 def _axis_words(machine: Machine) -> list[int]:
@@ -113,5 +123,6 @@ def _slides_stay_home(run: Run, first: int, end: int) -> bool:
     if (run.programmed[first:end] & int(_SLIDE_WORDS)).any():
         return False
     slides = list(run.machine.linear)
-    off = run.positions(np.arange(first, end)).joints[:, slides] - run.machine.home[slides]
-    return bool((np.abs(off) <= HOME_TOLERANCE).all())
+    rows = np.arange(first, end)
+    off = run.positions(rows).joints[:, slides] - run.machine.home[slides]
+    return bool((np.abs(off) <= home_tolerance(run, rows)[:, slides]).all())

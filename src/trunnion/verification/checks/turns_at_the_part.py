@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
 from trunnion.model.run import Run
-from trunnion.verification.checks.home_checks import HOME_TOLERANCE
+from trunnion.verification.checks.home_checks import home_tolerance
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, rotary_positioning_flags
 from trunnion.verification.kinematics.worked_part import worked_part
@@ -113,7 +113,9 @@ class _Judge:
         rows = self._run.state.machine_frame.rows_with(True)
         if self._safe_height is None or not len(rows):
             return set()
-        return set(rows[self._height(rows) >= self._safe_height - HOME_TOLERANCE].tolist())
+        return set(
+            rows[self._height(rows) >= self._safe_height - home_tolerance(self._run, rows)[:, self._along]].tolist()
+        )
 
     def _height_of_retract(self) -> float | None:
         """The height of home, along the spindle; the highest machine position of a program that never goes there."""
@@ -121,7 +123,7 @@ class _Judge:
             return None
         heights = self._height(self._frame)
         home = self._outward * float(self._machine.home[self._along])
-        goes_home = bool((np.abs(heights - home) <= HOME_TOLERANCE).any())
+        goes_home = bool((np.abs(heights - home) <= home_tolerance(self._run, self._frame)[:, self._along]).any())
         return home if goes_home else float(heights.max())
 
     def _height(self, rows: Ints) -> Floats:

@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import FIRST_HOLE, ArcWords, Codes, Formats, UnsupportedFeatureError
 from trunnion.controls.template import Value
-from trunnion.controls.words import ABSENT, round_to_counts
+from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense, Stop
 from trunnion.output.shared import iso
@@ -176,11 +176,10 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Format
     """
     words = iso.arc_words(arcs, tip, rows, codes, formats)
     columns = {word: column for word, column in words.columns.items() if word != "turns"}
-    decimals = formats["I"].decimals
     for c, letter in enumerate("IJK"):
-        centre = round_to_counts(np.ascontiguousarray(arcs.centre[rows, c]), decimals)
+        centre = formats["I"].counts(arcs.centre[rows, c])
         columns[letter] = np.where(columns[letter] == ABSENT, ABSENT, centre)
     for c, letter in enumerate("XYZ"):
-        end = round_to_counts(np.ascontiguousarray(tip[arcs.row[rows], c]), decimals)
+        end = formats["I"].counts(tip[arcs.row[rows], c])
         columns[letter] = np.where(words.forced[letter] == 1, end, ABSENT)
     return ArcWords(columns, words.forced)

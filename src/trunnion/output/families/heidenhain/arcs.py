@@ -10,7 +10,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import MAX_CENTRE_ERROR_DIGITS, ArcWords, Formats
-from trunnion.controls.words import ABSENT, round_to_counts
+from trunnion.controls.words import ABSENT, NumberFormat
 from trunnion.model.arcs import FLAT_ARC
 from trunnion.model.toolpath import Arcs
 
@@ -26,32 +26,31 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, formats: Formats, by_radius: 
     """
     start, end, centre = tip[arcs.row[rows] - 1], tip[arcs.row[rows]], arcs.centre[rows]
     sense = np.sign(arcs.normal[rows, 2])
-    decimals, angle_decimals = formats["Z"].decimals, formats["arc_angle"].decimals
-    rise = round_to_counts(np.ascontiguousarray(end[:, 2]), decimals)
-    rise -= round_to_counts(np.ascontiguousarray(start[:, 2]), decimals)
+    length = formats["Z"]
+    rise = length.counts(end[:, 2]) - length.counts(start[:, 2])
     rises = (rise != 0) & (np.abs(end[:, 2] - start[:, 2]) >= FLAT_ARC)
     helix = rises | (arcs.full_turns[rows] > 0)
     sweep = _sweep(start, end, centre, sense, arcs.full_turns[rows])
-    radius = _radius(start, end, centre, sweep, decimals)
+    radius = _radius(start, end, centre, sweep, length)
     # After a helix the control is where the angle has led it, and not at a printed point.
     after_helix = np.isin(arcs.row[rows] - 1, arcs.row[rows][helix])
-    use_radius = _radius_finds_centre(start, end, centre, sweep, radius, decimals) & ~helix & ~after_helix & by_radius
+    use_radius = _radius_finds_centre(start, end, centre, sweep, radius, length) & ~helix & ~after_helix & by_radius
     columns = {
         "line": np.full(len(rows), ABSENT),
         "arc": np.where(helix | use_radius, ABSENT, 1),
         "arc_by_radius": np.where(use_radius, 1, ABSENT),
         "helix": np.where(helix, 1, ABSENT),
         "arc_radius": np.where(use_radius, radius, ABSENT),
-        "arc_angle": np.where(helix, round_to_counts(sweep, angle_decimals), ABSENT),
+        "arc_angle": np.where(helix, formats["arc_angle"].counts(sweep), ABSENT),
         "arc_rise": np.where(helix & rises, rise, ABSENT),
         "counterclockwise": np.where(sense > 0, 1, ABSENT),
         "clockwise": np.where(sense < 0, 1, ABSENT),
         "Z": np.full(len(rows), ABSENT),
     }
     for c, word in enumerate("XY"):
-        columns[word] = np.where(helix, ABSENT, round_to_counts(np.ascontiguousarray(end[:, c]), decimals))
+        columns[word] = np.where(helix, ABSENT, length.counts(end[:, c]))
     always = np.ones(len(rows), np.int64)
-    centres = _centres(start, centre, decimals).tolist()
+    centres = _centres(start, centre, length).tolist()
     return ArcWords(columns, {"X": always, "Y": always}, _centre_lines(centres, use_radius, formats))
 
 
@@ -62,10 +61,10 @@ def _centre_lines(centres: list[list[int]], use_radius: Flags, formats: Formats)
     return ["" if by_radius else line for line, by_radius in zip(lines, use_radius.tolist(), strict=True)]
 
 
-def _centres(start: Floats, centre: Floats, decimals: int) -> Ints:
+def _centres(start: Floats, centre: Floats, length: NumberFormat) -> Ints:
     """(a, 2) counts: the centres relative to the printed start points, so that nothing is rounded twice."""
-    offsets = [round_to_counts(np.ascontiguousarray((centre - start)[:, c]), decimals) for c in range(2)]
-    starts = [round_to_counts(np.ascontiguousarray(start[:, c]), decimals) for c in range(2)]
+    offsets = [length.counts((centre - start)[:, c]) for c in range(2)]
+    starts = [length.counts(start[:, c]) for c in range(2)]
     return np.column_stack([a + b for a, b in zip(offsets, starts, strict=True)])
 
 
@@ -78,20 +77,19 @@ def _sweep(start: Floats, end: Floats, centre: Floats, sense: Floats, turns: Int
     return np.asarray(sense * (np.where(closed, 360.0, within_turn) + 360.0 * turns))
 
 
-def _radius(start: Floats, end: Floats, centre: Floats, sweep: Floats, decimals: int) -> Ints:
+def _radius(start: Floats, end: Floats, centre: Floats, sweep: Floats, length: NumberFormat) -> Ints:
     """(a,) counts, negative for sweeps of more than half a turn."""
     radii = [np.linalg.norm((point - centre)[:, :2], axis=1) for point in (start, end)]
-    return round_to_counts(np.where(np.abs(sweep) > 180.0, -0.5, 0.5) * (radii[0] + radii[1]), decimals)
+    return length.counts(np.where(np.abs(sweep) > 180.0, -0.5, 0.5) * (radii[0] + radii[1]))
 
 
 def _radius_finds_centre(
-    start: Floats, end: Floats, centre: Floats, sweep: Floats, radius: Ints, decimals: int
+    start: Floats, end: Floats, centre: Floats, sweep: Floats, radius: Ints, number_format: NumberFormat
 ) -> Flags:
     """(a,) whether the control finds the centre by the printed radius, within ``MAX_CENTRE_ERROR_DIGITS``."""
-    digit = 10.0**-decimals
+    digit = number_format.digit
     first, last = (
-        np.column_stack([round_to_counts(np.ascontiguousarray(point[:, c]), decimals) for c in range(2)]) * digit
-        for point in (start, end)
+        np.column_stack([number_format.counts(point[:, c]) for c in range(2)]) * digit for point in (start, end)
     )
     chord = last - first
     length = np.linalg.norm(chord, axis=1)

@@ -55,7 +55,12 @@ _PARAMETER_NAMES: Final = {
     403: "RPM FACTOR",
 }
 
-_PARAMETER_FORMATS: Final = {206: "feed", 208: "feed", 253: "feed", 210: "dwell", 211: "dwell", 336: "angle"}
+#: Formats of parameters that are no lengths; counts, directions and factors print like angles.
+_PARAMETER_FORMATS: Final = {
+    **dict.fromkeys((206, 208, 253), "feed"),
+    **dict.fromkeys((210, 211), "dwell"),
+    **dict.fromkeys((213, 214, 336, 403), "angle"),
+}
 
 #: Greatest value of Q213.
 _MOST_BREAKS: Final = 99999

@@ -15,6 +15,10 @@ from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, Sp
 #: Tool axis of CYCLE83 and CYCLE84: the third axis of the plane G17.
 _THIRD_AXIS: Final = "3"
 
+#: _PITA: the unit of a pitch, whatever the program counts in.
+_MM_PER_TURN: Final = "1"
+_INCHES_PER_TURN: Final = "3"
+
 #: Greatest lift-off in a bore, mm.
 _MAX_LIFT: Final = 100.0
 
@@ -34,7 +38,9 @@ class _Input:
     dwell    seconds at the bottom as printed; empty for none
     lift     lift-off for BORE,NODRAG, mm; None if it is not set
     number   prints a length
+    angle    prints an angle
     pitch    prints a pitch
+    inches   the program counts in inches
     feed     prints the feed of the cycle
     """
 
@@ -43,7 +49,9 @@ class _Input:
     dwell: str
     lift: float | None
     number: Callable[[float], str]
+    angle: Callable[[float], str]
     pitch: Callable[[float], str]
+    inches: bool
     feed: Callable[[float], str]
 
 
@@ -63,7 +71,7 @@ def cycle_statement(
     lift
         How far BORE,NODRAG lifts off along X after the spindle was oriented, mm; None if it is not set.
     formats
-        ``coordinate``, ``pitch``, ``feed``, ``feed_per_rev`` and ``dwell`` of the control.
+        ``coordinate``, ``angle``, ``pitch``, ``feed``, ``feed_per_rev`` and ``dwell`` of the control.
 
     Raises
     ------
@@ -76,7 +84,9 @@ def cycle_statement(
     heights += [number(cycle.rapid_height), number(top - cycle.depth)]
     dwell = formats["dwell"].text(cycle_dwell_seconds(cycle, spindle)) if cycle.dwell else ""
     feed = formats["feed_per_rev" if cycle.per_rev else "feed"].text
-    name, arguments = _CYCLES[cycle.method](_Input(cycle, spindle, dwell, lift, number, formats["pitch"].text, feed))
+    angle, pitch = formats["angle"].text, formats["pitch"]
+    inputs = _Input(cycle, spindle, dwell, lift, number, angle, pitch.text, pitch.unit != 1.0, feed)
+    name, arguments = _CYCLES[cycle.method](inputs)
     return f"{name}({','.join([*heights, *arguments])})"
 
 
@@ -113,14 +123,15 @@ def _sense_code(spindle: SpindleState | None) -> str:
 
 
 def _tap(of: _Input) -> CycleArguments:
-    """Sense after the cycle, no size, pitch, spindle position 0, speed in and out."""
+    """Sense after the cycle, no size, pitch, spindle position 0, speeds; in inches tool axis and unit of PIT."""
     pitch, spindle = _signed_pitch(of)
     speed = f"{spindle.rpm:g}"
-    return "CYCLE84", ["", of.dwell, _sense_code(spindle), "", of.pitch(pitch), "0", speed, speed]
+    unit = [_THIRD_AXIS, _INCHES_PER_TURN] if of.inches else []
+    return "CYCLE84", ["", of.dwell, _sense_code(spindle), "", of.pitch(pitch), "0", speed, speed, *unit]
 
 
 def _tap_in_pecks(of: _Input) -> CycleArguments:
-    """As a tap in one pass; then tool axis, PIT in mm, technology unchanged, VARI, the peck DAM, VRT."""
+    """As a tap in one pass; then tool axis, unit of PIT, technology unchanged, VARI, the peck DAM, VRT."""
     peck, decrement, _ = of.cycle.pecks
     if decrement:
         what = "decreasing peck depths in a thread: the control has constant ones"
@@ -128,13 +139,15 @@ def _tap_in_pecks(of: _Input) -> CycleArguments:
     full = of.cycle.method is HoleMethod.DEEP_TAP
     name, arguments = _tap(of)
     pecks = ["2" if full else "1", of.number(min(peck, of.cycle.depth)), "0" if full else of.number(_CHIP_BREAK)]
-    return name, [*arguments, _THIRD_AXIS, "1", "0", *pecks]
+    unit = [] if of.inches else [_THIRD_AXIS, _MM_PER_TURN]
+    return name, [*arguments, *unit, "0", *pecks]
 
 
 def _floating_tap(of: _Input) -> CycleArguments:
     """The spindle reverses by itself; sense after the cycle, with encoder, no size, pitch."""
     pitch, spindle = _signed_pitch(of)
-    return "CYCLE840", ["", of.dwell, "0", _sense_code(spindle), "0", "", of.pitch(pitch)]
+    unit = [_THIRD_AXIS, _INCHES_PER_TURN] if of.inches else []
+    return "CYCLE840", ["", of.dwell, "0", _sense_code(spindle), "0", "", of.pitch(pitch), *unit]
 
 
 def _ream(of: _Input) -> CycleArguments:
@@ -151,7 +164,7 @@ def _bore(of: _Input) -> CycleArguments:
         what = "BORE,NODRAG does not say how far and to which side the tool lifts off"
         raise HoleCycleError(what, "setting bore_lift=MM says it, along X with the spindle at its angle")
     lift = of.number(of.lift if lifts and of.lift else 0.0)
-    return "CYCLE86", ["", of.dwell, _sense_code(of.spindle), lift, "0", "0", of.number(of.cycle.spindle_angle)]
+    return "CYCLE86", ["", of.dwell, _sense_code(of.spindle), lift, "0", "0", of.angle(of.cycle.spindle_angle)]
 
 
 def _manual(of: _Input) -> CycleArguments:

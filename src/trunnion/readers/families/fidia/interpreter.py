@@ -115,6 +115,8 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             block.take(letter)
         if code in words.UNITS:
             control.set_units(words.UNITS[code], True)
+            if words.UNITS[code]:
+                self._note("G70: what F counts in inches is not known", Severity.ERROR)
         elif code == words.OFFSET:
             number = block.take("O")
             if number is None or number != int(number) or not 1 <= number <= 99:

@@ -81,6 +81,8 @@ class MFunctions:
             control.set_tcp(code == M_TCP)
         elif code in (M_PER_TURN, M_PER_MINUTE):
             control.modal.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
+            if code == M_PER_TURN and control.length_unit != 1.0:
+                control.note("M136 in inches: what F counts per revolution is not known", Severity.ERROR)
         elif code in (M_FEED_AT_TIP, M_FEED_IN_DEGREES):
             control.feed_at_tip(code == M_FEED_AT_TIP)
         elif code == M_RETRACT:

@@ -33,6 +33,20 @@ class Heights:
 
 Arguments = Sequence[float | None]
 
+#: Places of lengths and feeds among the arguments, from 1: the heights of all cycles; the other lengths; the feeds.
+_HEIGHT_PLACES: Final = (1, 2, 3, 4, 5)
+_LENGTH_PLACES: Final[dict[str, tuple[int, ...]]] = {
+    "CYCLE83": (6, 7, 8, 14, 15, 17),
+    "CYCLE84": (9, 17, 18),
+    "CYCLE840": (11,),
+    "CYCLE86": (8, 9, 10),
+}
+_FEED_PLACES: Final[dict[str, tuple[int, ...]]] = {"CYCLE85": (7, 8)}
+
+#: The degression of CYCLE83; the pitch of threads, and its unit (_PITA).
+_DEGRESSION: Final = 8
+_PITCH_PLACES: Final = {"CYCLE84": (9, 14), "CYCLE840": (11, 13)}
+
 
 def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotion]:
     """Return the motions of a cycle at one hole.
@@ -51,6 +65,25 @@ def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotio
     if any(step.feed is not None and abs(step.feed) > MAX_FEED for step in motions):
         raise CycleExecutionError("has a feed that no machine has")
     return [HoleMotion(True, heights.start), *motions, HoleMotion(True, heights.retract)]
+
+
+def in_millimetres(name: str, arguments: Arguments, length_unit: float, feed_unit: float) -> list[float | None]:
+    """Return the arguments of a cycle with lengths in mm and feeds in mm/min.
+
+    A pitch (PIT) without a unit of its own is in that of lengths, and a negative degression (_DAM) is a factor.
+    """
+    found = list(arguments)
+    for place in (*_HEIGHT_PLACES, *_LENGTH_PLACES.get(name, ())):
+        value = _get(found, place)
+        is_factor = name == "CYCLE83" and place == _DEGRESSION and value is not None and value < 0.0
+        has_unit = place == _PITCH_PLACES.get(name, (0, 0))[0] and bool(_or(found, _PITCH_PLACES[name][1]))
+        if value is not None and not is_factor and not has_unit:
+            found[place - 1] = value * length_unit
+    for place in _FEED_PLACES.get(name, ()):
+        value = _get(found, place)
+        if value is not None:
+            found[place - 1] = value * feed_unit
+    return found
 
 
 def spindle_work(name: str, arguments: Arguments) -> SpindleWork | None:

@@ -174,7 +174,7 @@ class SinumerikInterpreter(CallInterpreter):
     def _feed_speed_and_tool(self, block: Block) -> None:
         control = self.control
         if block.feed is not None:
-            control.programmed_feed = block.feed * control.feed_unit
+            control.programmed_feed = block.feed * control.unit_of_feed
         if block.speed is not None and not G_LIMITS.intersection(block.g):
             control.modal.rpm.set(control.row, abs(block.speed))
             control.add_event("speed", abs(block.speed))
@@ -344,13 +344,14 @@ class SinumerikInterpreter(CallInterpreter):
     def _drill(self, call: Call) -> None:
         try:
             numbers = [finite(_number(value)) for value in call.arguments]
-            rpm = float(self.control.modal.rpm.current)
+            control, rpm = self.control, float(self.control.modal.rpm.current)
+            numbers = cycles.in_millimetres(call.name, numbers, control.length_unit, control.feed_unit)
             motions, work = cycles.cycle_motions(call.name, numbers, rpm), cycles.spindle_work(call.name, numbers)
         except CycleExecutionError as error:
             self._note(f"{call.name} {error}: it is not executed", Severity.ERROR)
             return
         self._counter.count_blocks(len(motions))
-        self.control.drill(motions, work)
+        control.drill([motion.with_lengths_in(control.length_unit) for motion in motions], work)
 
 
 def _number(value: Value | None) -> float | None:
