@@ -1,6 +1,7 @@
 """``trunnion machines`` and ``trunnion check``."""
 
 import argparse
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -10,10 +11,10 @@ from trunnion.cli.controls import control_lines
 from trunnion.cli.machine_text import machine_data, machine_lines
 from trunnion.cli.results import as_json, print_result
 from trunnion.controls import load_control
-from trunnion.controls.definition_files import is_control_file
+from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
-from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
 from trunnion.readers import known_words
 
@@ -39,22 +40,35 @@ def check(arguments: argparse.Namespace) -> int:
     Every mistake comes at once.
     """
     if is_control_file(Path(arguments.file)):
+        _check_control_file(arguments.file)
         control = describe_control(arguments.file)
         good = f"{arguments.file}: good"
         print_result(*([as_json(asdict(control))] if arguments.json else [good, "", *control_lines(control)]))
         return 0
-    problems: list[Problem] = []
-    for load in (load_machine, _load_control, _load_known_words):
-        try:
-            load(arguments.file)
-        except InputError as error:
-            problems += [problem for problem in error.problems if problem not in problems]
-    if problems:
-        raise InputError(problems)
+    _raise_all(arguments.file, (load_machine, _load_control, _load_known_words))
     found = describe_machine(arguments.file)
     good = f"{arguments.file}: good"
     print_result(*([as_json(machine_data(found))] if arguments.json else [good, "", *machine_lines(found)]))
     return 0
+
+
+def _raise_all(file: str, loaders: Sequence[Callable[[str], object]]) -> None:
+    """Raise the problems of all loaders together."""
+    problems: list[Problem] = []
+    for load in loaders:
+        try:
+            load(file)
+        except InputError as error:
+            problems += [problem for problem in error.problems if problem not in problems]
+    if problems:
+        raise InputError(problems)
+
+
+def _check_control_file(file: str) -> None:
+    """Raise every mistake of a control's own file, the words that it declares for readers among them."""
+    table = load_control_table(file)
+    machine = Machine(key=file, name=file, axes=(), control=table)
+    _raise_all(file, (lambda _: load_control(table), lambda _: known_words(machine)))
 
 
 def _load_known_words(file: str) -> None:
