@@ -30,7 +30,7 @@ CONTROLS = sorted(
 
 #: Each example is another path; the first one of Hypothesis is the simplest there is.
 FEW = settings(
-    max_examples=3, derandomize=True, database=None, phases=[Phase.explicit, Phase.generate],
+    max_examples=2, derandomize=True, database=None, phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
 )  # fmt: skip
 
