@@ -9,7 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import trunnion
-from tests.support.matrix.pairs import CONTROLS, FEW, pair_of
+from tests.support.matrix.expected import FAMILIES, REFUSED
+from tests.support.matrix.pairs import CONTROLS, FEW, check_refused, pair_of
+from tests.support.matrix.pairs import posted as posted_by_command
 from trunnion.controls.vocabulary import INCH, MM
 
 MACHINE = "generic_head_table_bc"
@@ -101,6 +103,28 @@ def test_all_units_of_path_and_program_are_proven_and_move_alike(control: str, f
             assert len(result.run) == len(first)
             np.testing.assert_allclose(result.run.tip, first.tip, rtol=0.0, atol=0.006)
             np.testing.assert_allclose(result.run.feed, first.feed, rtol=2e-3, equal_nan=True)
+
+    every()
+
+
+#: Reasons for which inches are refused, by the family of controls.
+ONLY_MM = {"heidenhain_itnc530": {"simultaneous milling without TCP": "how F counts degrees beside inches"}}
+
+
+@pytest.mark.parametrize("path", FAMILIES)
+@pytest.mark.parametrize("control", IN_INCHES)
+def test_every_family_of_paths_is_proven_in_inches(control: str, path: str, folder: Path) -> None:
+    pair, (family, asked) = pair_of(control, MACHINE, folder), FAMILIES[path]
+    refused = REFUSED.get(pair.family, {}).get(path) or ONLY_MM.get(pair.family, {}).get(path)
+
+    @settings(parent=FEW, deadline=None, max_examples=2)
+    @given(st.composite(family)(pair.machine))
+    def every(text: str) -> None:
+        done = posted_by_command(text, pair, folder, (*asked, "units=inch"))
+        if refused and done.code:
+            check_refused(done, refused)
+        else:
+            assert (done.code, done.failed) == (0, []), done.err
 
     every()
 
