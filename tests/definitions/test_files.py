@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from trunnion.controls import load_control
 from trunnion.definitions import (
     MAX_FILE_BYTES,
     Table,
@@ -292,6 +293,72 @@ def test_a_link_may_not_lead_elsewhere_either(tmp_path: Path) -> None:
     (tmp_path / "here" / "link.toml").symlink_to(secret)
     with pytest.raises(InputError, match="leads out of the folder"):
         loaded(tmp_path / "here", 'extends = "link.toml"\n')
+
+
+def test_a_definition_may_lie_in_a_folder_beside_the_one_that_extends_it(tmp_path: Path) -> None:
+    written(tmp_path, "shop/base.toml", 'extends = "old/older"\na = 1\n')
+    written(tmp_path, "shop/old/older.toml", "b = 2\n")
+    for name in ("shop/base", "shop/base.toml", "./shop/base"):
+        assert loaded(tmp_path, f'extends = "{name}"\n').to_dict() == {"a": 1, "b": 2}
+
+
+def test_a_file_in_the_folder_reaches_what_is_below_itself_and_nothing_beside_the_folder(tmp_path: Path) -> None:
+    written(tmp_path, "other.toml", "b = 2\n")
+    for name in ("other.toml", "../other.toml", "../other"):
+        written(tmp_path, "shop/base.toml", f'extends = "{name}"\n')
+        with pytest.raises(InputError) as caught:
+            loaded(tmp_path, 'extends = "shop/base"\n')
+        (problem,) = caught.value.problems
+        assert (problem.file, problem.line) == (str(tmp_path / "shop" / "base.toml"), 1)
+
+
+def test_a_missing_file_of_the_folder_is_told_with_its_name(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r'there is no file "shop/base\.toml" beside the definition') as caught:
+        loaded(tmp_path, 'a = 1\nextends = "shop/base"\n')
+    assert caught.value.problems[0].line == 2
+
+
+def test_a_linked_folder_may_not_lead_elsewhere_but_may_stay_inside(tmp_path: Path) -> None:
+    written(tmp_path, "secret/base.toml", "a = 1\n")
+    written(tmp_path, "here/real/base.toml", "a = 2\n")
+    (tmp_path / "here" / "shop").symlink_to(tmp_path / "secret", target_is_directory=True)
+    (tmp_path / "here" / "ours").symlink_to(tmp_path / "here" / "real", target_is_directory=True)
+    with pytest.raises(InputError, match="leads out of the folder"):
+        loaded(tmp_path / "here", 'extends = "shop/base"\n')
+    assert loaded(tmp_path / "here", 'extends = "ours/base"\n').to_dict() == {"a": 2}
+
+
+def test_links_that_go_round_are_no_definition(tmp_path: Path) -> None:
+    (tmp_path / "a").symlink_to(tmp_path / "b")
+    (tmp_path / "b").symlink_to(tmp_path / "a")
+    with pytest.raises(InputError, match=r"leads out of the folder|there is no file"):
+        loaded(tmp_path, 'extends = "a/base"\n')
+
+
+def test_a_circle_through_a_folder_is_told(tmp_path: Path) -> None:
+    written(tmp_path, "shop/a.toml", 'extends = "b.toml"\n')
+    written(tmp_path, "shop/b.toml", 'extends = "./a.toml"\n')
+    with pytest.raises(InputError, match=r"goes in a circle: mine.toml extends a.toml extends b.toml extends a.toml"):
+        loaded(tmp_path, 'extends = "shop/a"\n')
+
+
+def test_the_control_of_a_machine_may_lie_in_a_folder_beside_the_file_that_says_so(tmp_path: Path) -> None:
+    written(tmp_path, "controls/ours.toml", 'extends = "fanuc_31i"\nname = "Ours"\n[settings]\nprogram = "7"\n')
+    path = written(tmp_path, "mill.toml", 'extends = "matsuura_mx330"\n[control]\nextends = "controls/ours"\n')
+    control = load_control(load_machine(path).control)
+    assert (control.name, control.settings["program"]) == ("Ours", "7")
+    above = written(tmp_path, "top/mill.toml", 'extends = "matsuura_mx330"\n[control]\nextends = "../controls/ours"\n')
+    with pytest.raises(InputError, match="not a file that a definition may read"):
+        load_control(load_machine(above).control)
+
+
+@pytest.mark.parametrize(
+    "name", ["/", "./", "shop/", "shop/..", "/shop/base", "shop\\\\base", "D:shop/base", "shop/base.txt"]
+)
+def test_a_folder_alone_or_a_path_of_another_kind_is_no_definition(tmp_path: Path, name: str) -> None:
+    written(tmp_path, "shop/base.toml", "a = 1\n")
+    with pytest.raises(InputError, match=r"not a file that a definition may read|there is no file"):
+        loaded(tmp_path, f'extends = "{name}"\n')
 
 
 def test_a_definition_extends_one_other_and_no_list(tmp_path: Path) -> None:

@@ -138,3 +138,11 @@ def test_a_template_may_call_a_file_that_exists_already(tmp_path: Path) -> None:
     target = str(tmp_path / "part.nc")
     words = ["post", str(tmp_path / "part.cls"), "--machine", str(machine), "--output", target, "--with", str(macro)]
     assert main(words) == 0
+
+
+@pytest.mark.parametrize("base", [name for name in HEADS if name != "hs664rt"])
+def test_a_declared_word_switches_tcp_on_in_every_language(base: str, tmp_path: Path) -> None:
+    assert not read(tmp_path, base, "M77").tcp[-1]
+    run = read(tmp_path, base, "M77", 'M77 = "tcp on"')
+    assert run.errors == ()
+    assert run.tcp[-1]

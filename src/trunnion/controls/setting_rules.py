@@ -29,6 +29,7 @@ class SettingKind(StrEnum):
     PATH    a folder of the control
     NUMBER  a number, without an exponent
     WHOLE   a whole number, without a sign
+    G_CODE  G and a number of up to three digits, with a tenth at most
     M_CODE  M and a number of up to four digits
     CHOICE  one of some words
     TOOL    a tool number, or the name of a tool where the family calls tools by name
@@ -40,6 +41,7 @@ class SettingKind(StrEnum):
     PATH = "path"
     NUMBER = "number"
     WHOLE = "whole"
+    G_CODE = "g_code"
     M_CODE = "m_code"
     CHOICE = "choice"
     TOOL = "tool"
@@ -50,6 +52,7 @@ _FORMS: Final = {
     SettingKind.STRING: (re.compile(r'[^"]*'), "a text without quotation marks"),
     SettingKind.QUOTED: (re.compile(r'"[^"]*"'), "a text in quotation marks"),
     SettingKind.PATH: (re.compile(r"[A-Za-z0-9_:./\\-]*"), "a folder: letters, digits and _ - . : / \\"),
+    SettingKind.G_CODE: (re.compile(r"G[0-9]{1,3}(\.[1-9])?"), "a G code, such as G43.4"),
     SettingKind.M_CODE: (re.compile(r"M[0-9]{1,4}"), "an M code, such as M29"),
 }
 

@@ -94,18 +94,28 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
             cure = did_you_mean(name, names) or "write one of " + ", ".join(names)
             raise InputError(Problem(file, line, f'extends: nothing shipped is called "{name}"', cure))
         return found
-    cure = "write the name of a shipped definition, or a path to a .toml file in the same folder or below it"
+    cure = "write the name of a shipped definition, or the path of a .toml file in the same folder or below it"
     pure = PurePosixPath(name)
     outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name)
+    if "/" in name and pure.name and not pure.suffix:
+        pure = pure.with_suffix(".toml")
     if outside or pure.suffix != ".toml" or child.folder is None:
         raise InputError(Problem(file, line, f'extends: "{name}" is not a file that a definition may read', cure))
     location = child.folder / pure
     # A link may lead out of the folder although its name does not.
-    if not location.resolve().is_relative_to(child.folder.resolve()):
+    if not _is_within(location, child.folder):
         raise InputError(Problem(file, line, f'extends: "{name}" leads out of the folder of the definition', cure))
     if not location.is_file():
-        raise InputError(Problem(file, line, f'extends: there is no file "{name}" beside the definition', cure))
+        raise InputError(Problem(file, line, f'extends: there is no file "{pure}" beside the definition', cure))
     return _DefinitionFile(location, str(location), location.parent)
+
+
+def _is_within(location: Path, folder: Path) -> bool:
+    """Whether a path leads into a folder, wherever links go; links that go round lead nowhere."""
+    try:
+        return location.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):
+        return False
 
 
 def _identity(source: _DefinitionFile) -> str:

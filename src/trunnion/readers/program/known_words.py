@@ -17,11 +17,13 @@ from trunnion.readers.program.settings import control_of
 #: What a word may do.
 EFFECTS: Final = (
     "no effect", "comes back", "comes back home", "stop", "optional stop", "tool change", "spindle clockwise",
-    "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant off", "tcp off",
+    "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant off", "tcp on", "tcp off",
 )  # fmt: skip
 
 #: Effects that act before the motion of their block; all others act after it.
-_BEFORE_MOTION: Final = ("spindle clockwise", "spindle counter-clockwise", "coolant flood", "coolant mist")
+_BEFORE_MOTION: Final = (
+    "spindle clockwise", "spindle counter-clockwise", "coolant flood", "coolant mist", "tcp on",
+)  # fmt: skip
 
 #: Effects that are not events of their own: the word itself says what happens.
 _SILENT: Final = frozenset({"no effect", "comes back", "comes back home"})
@@ -145,8 +147,8 @@ class KnownWords:
                 control.add_event(effect.replace(" ", "_"))
             case "tool change":
                 control.change_tool()
-            case "tcp off":
-                control.set_tcp(False)
+            case "tcp on" | "tcp off":
+                control.set_tcp(value == "on")
             case "comes back home":
                 control.go_home()
             case _ if kind == "spindle":

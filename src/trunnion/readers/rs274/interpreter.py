@@ -23,6 +23,7 @@ from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, g_code_text, split_line
 from trunnion.readers.rs274.control import CLOCKWISE, COUNTER_CLOCKWISE, Rs274Control
 from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.word_meanings import WordMeanings
 from trunnion.readers.scan.letter_blocks import read_blocks
 
 #: G codes, in tenths, and what they set.
@@ -163,6 +164,11 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _report_repeated_word(self, letter: str) -> None:
         self._note(f"{letter} is written twice: the last one counts", Severity.ERROR)
+
+    def _translate(self, block: Block, meanings: WordMeanings) -> None:
+        """Put the family's words in place of the control's own; report those that the control does not have."""
+        for word in meanings.translate(block):
+            self._note(f"unknown word {word}", Severity.ERROR)
 
     def _modal_g_code(self, code: int) -> bool:
         """Execute a G code that all these languages share; False if it is another one."""

@@ -49,9 +49,9 @@ TEMPLATE_FIELDS: frozenset[str] = frozenset(
 #: AI contour control on and off: in the control's own form, and in that of older controls.
 _CONTOUR_CONTROL: Final = {"none": (None, None), "G05.1": ("G05.1 Q1", "G05.1 Q0"), "G05": ("G05 P10000", "G05 P0")}
 
-#: G word of the tool length along Z, and along the tool axis with TCP, by the setting ``orientation``.
+#: G word of the tool length along Z, and the setting that has the one with TCP, by the setting ``orientation``.
 _LENGTH_CODE: Final = 43.0
-_TCP_CODES: Final = {"angles": 43.4, "vector": 43.5}
+_TCP_SETTINGS: Final = {"angles": "tcp_on", "vector": "tcp_on_vector"}
 
 #: Characters of a comment besides letters and digits; others become a question mark. ``%`` would end the program.
 _COMMENT_SIGNS: Final = frozenset(" .,=+-*/_#[]'!?&<>@")
@@ -130,11 +130,12 @@ def event_words(event: WordEvent, codes: Codes, coolant: Codes) -> dict[str, flo
 
 
 def first_block_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:
-    """Return G43, G43.4 or G43.5 with H: the register that LOAD/TOOL names, or else the tool number.
+    """Return G43, or the word for TCP, with H: the register that LOAD/TOOL names, or else the tool number.
 
     With the motion to the first point they work whether or not the control moves where they are alone (parameter TOS).
     """
-    length = _TCP_CODES[settings["orientation"]] if motion.mode is MachiningMode.TCP else _LENGTH_CODE
+    tcp = motion.mode is MachiningMode.TCP
+    length = float(settings[_TCP_SETTINGS[settings["orientation"]]].removeprefix("G")) if tcp else _LENGTH_CODE
     return {"length": length, "length_number": float(register or tool)}
 
 
@@ -150,7 +151,7 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Return invalid numbers, calls and shifts."""
+    """Return invalid numbers, calls and shifts, and tool vectors on a control that has no word for them."""
     program = settings.get("program", "1")
     wrong = []
     if not (program.isdecimal() and program.isascii() and 0 < int(program) < 10**_PROGRAM_NUMBER_DIGITS):
@@ -158,6 +159,8 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
         wrong.append(("program", f"write the program's number, at most {digits} digits, such as program=1234"))
     if not _is_call(settings.get("call", "M98")):
         wrong.append(("call", "write M98, or G65, with arguments such as G65 A1. B-2.5, each letter once"))
+    if settings.get("orientation") == "vector" and not settings.get("tcp_on_vector", ""):
+        wrong.append(("orientation", "write angles: this control has no TCP that takes the tool axis as a vector"))
     if not is_valid_shift(settings.get("bore_lift", "")):
         wrong.append(("bore_lift", "write millimetres above 0, such as 0.5, or nothing"))
     return wrong

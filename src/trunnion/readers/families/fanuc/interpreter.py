@@ -69,7 +69,9 @@ class FanucInterpreter(CycleInterpreter):
         reader = block_reader(text, ARITHMETIC, self._variables)
         if self._flow.accept(active, line, reader):
             return
-        self._execute_words(active, line, read_block(reader, self._report_repeated_word))
+        block = read_block(reader, self._report_repeated_word)
+        self._translate(block, self.control.settings.words)
+        self._execute_words(active, line, block)
 
     def _program_number(self, active: ActiveProgram, line: int, text: str) -> None:
         """Start a program at its O number; if another program runs into it, that one ends."""

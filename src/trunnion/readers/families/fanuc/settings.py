@@ -6,6 +6,7 @@ from typing import Final
 from trunnion.machines import Machine
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number
+from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
 
 #: Letters whose whole numbers count in least increments: lengths, and angles.
 LENGTHS: Final = "XYZUVWIJKRQ"
@@ -24,11 +25,13 @@ class Settings:
     calculator   numbers without a point are millimetres, inches and degrees, not least increments
     unit         mm or inch, as long as a program states none; empty: not known
     increment    the least increment, mm and degrees; a tenth of it for inches
+    words        words that the control has in place of the family's
     """
 
     calculator: bool = False
     increment: float = 0.001
     unit: str = ""
+    words: WordMeanings = NO_WORDS
 
     def length(self, inches: bool) -> float:
         """Return the unit of whole numbers that are lengths, in mm or inches."""
@@ -74,6 +77,7 @@ def settings_of(machine: Machine) -> Settings:
     numbers = table.text("whole_numbers", "increments", one_of=("increments", "calculator"))
     increment = table.number("least_increment_mm", 0.001, above=0.0)
     unit = unit_of(table)
+    words = read_word_meanings(table)
     table.report_unread_keys()
     table.raise_problems()
-    return Settings(numbers == "calculator", increment, unit)
+    return Settings(numbers == "calculator", increment, unit, words)

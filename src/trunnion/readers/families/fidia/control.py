@@ -1,6 +1,7 @@
 """The virtual control of a Fidia: planes of the present rotary position, and absolute centres of circles."""
 
 import math
+from dataclasses import dataclass
 
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine
@@ -13,17 +14,28 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
+from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
 
 
-def settings_of(machine: Machine) -> tuple[FeedPath, str]:
-    """Return what F refers to where rotary axes turn without TCP, slides by default; and the unit, as ``unit_of``."""
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How a control is set: what F refers to where rotary axes turn without TCP, the unit, and words of its own."""
+
+    feed_path: FeedPath
+    unit: str
+    words: WordMeanings
+
+
+def settings_of(machine: Machine) -> Settings:
+    """Read the settings of a machine's control; InputError if they are wrong."""
     table = reading_of(machine)
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
     unit = unit_of(table)
+    words = read_word_meanings(table)
     table.report_unread_keys()
     table.raise_problems()
-    return FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit
+    return Settings(FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit, words)
 
 
 class FidiaControl(Rs274Control):
@@ -34,9 +46,9 @@ class FidiaControl(Rs274Control):
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
-        feed_path, unit = settings_of(machine)
-        self.modal.feed_path.set(0, int(feed_path))
-        self.count_in(unit)
+        self.settings = settings_of(machine)
+        self.modal.feed_path.set(0, int(self.settings.feed_path))
+        self.count_in(self.settings.unit)
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """Always (unconfirmed), except for axes whose output has all turns."""

@@ -68,6 +68,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         # The time of a dwell has two letters.
         reader = block_reader(text.replace("HD", "H"), _NO_ARITHMETIC, _NO_PARAMETERS)
         block = read_block(reader, self._report_repeated_word)
+        self._translate(block, self.control.settings.words)
         if block.assignments:
             raise BlockError("parameters are not simulated")
         self._execute_words(block, None if tool is None else tool.group(1))

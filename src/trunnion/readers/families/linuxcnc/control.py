@@ -14,6 +14,7 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
+from trunnion.readers.rs274.word_meanings import read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
 
 #: Axes in the order of LinuxCNC's tables.
@@ -43,6 +44,7 @@ class LinuxcncControl(Rs274Control):
     system             number of the work offset in force, 1 for G54
     axis_offset        offset of G92 or G52, (6,) mm and degrees
     axis_offset_active whether it counts
+    own_words          words that the control has in place of the family's
     """
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
@@ -54,6 +56,7 @@ class LinuxcncControl(Rs274Control):
         self.axis_offset_active = False
         table = reading_of(machine)
         unit = unit_of(table)
+        self.own_words = read_word_meanings(table)
         table.report_unread_keys()
         table.raise_problems()
         self.count_in(unit)

@@ -96,6 +96,7 @@ class LinuxcncInterpreter(CycleInterpreter):
             self._o_word(active, line, reader)
             return
         block = read_block(reader, self._report_repeated_word)
+        self._translate(block, self.control.own_words)
         self._execute_words(block)
         for key, value in block.assignments:
             self._parameters.set(key, value or 0.0)

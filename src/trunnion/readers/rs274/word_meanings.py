@@ -1,0 +1,91 @@
+"""G and M words that a control has in place of the family's: ``[control.reading.words]``.
+
+The table maps a word to the word of the family that means the same, to one of the meanings that have no word of
+their own there, or to ``unknown`` where the control does not have the word, or has it with another meaning.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.definitions import Table
+from trunnion.readers.rs274.block import Block, g_code_text
+
+#: The control does not have the word.
+UNKNOWN: Final = "unknown"
+
+_WORD: Final = re.compile(r"G0*([0-9]{1,4})(?:\.([0-9]))?|M0*([0-9]{1,9})")
+
+#: G codes that plain blocks are made of, in tenths: they keep their meaning.
+_PLAIN: Final = frozenset({0, 10, 20, 30})
+
+
+@dataclass(frozen=True, slots=True)
+class WordMeanings:
+    """What words of a control mean.
+
+    g   G code, in tenths -> the family's, in tenths; None: unknown
+    m   M code -> the family's; None: unknown
+    """
+
+    g: Mapping[int, int | None]
+    m: Mapping[int, int | None]
+
+    def translate(self, block: Block) -> list[str]:
+        """Put the family's words in place of the control's; return the words that the control does not have."""
+        if not self.g and not self.m:
+            return []
+        unknown = [g_code_text(code) for code in block.g if self.g.get(code, code) is None]
+        unknown += [f"M{code}" for code in block.m if self.m.get(code, code) is None]
+        block.g = [found for code in block.g if (found := self.g.get(code, code)) is not None]
+        block.m = [found for code in block.m if (found := self.m.get(code, code)) is not None]
+        return unknown
+
+
+#: All words are the family's.
+NO_WORDS: Final = WordMeanings({}, {})
+
+
+def read_word_meanings(table: Table, meanings: Mapping[str, int] | None = None) -> WordMeanings:
+    """Read the words of a control; mistakes are added to the table's problems.
+
+    Parameters
+    ----------
+    table
+        ``[control.reading]``.
+    meanings
+        Meanings of G words besides those that the family has words for: name -> code that stands for it, in tenths.
+    """
+    own = table.table("words")
+    g: dict[int, int | None] = {}
+    m: dict[int, int | None] = {}
+    names = meanings or {}
+    for key in list(own.keys()):
+        value = own.text(key)
+        word, target = _code(key), _code(value)
+        if word is None or (word[0] == "G" and word[1] in _PLAIN):
+            own.add_problem(key, "is no word that could mean another", "write such as G234 or M128; G0 to G3 stay")
+            continue
+        letter, code = word
+        if value == UNKNOWN:
+            (g if letter == "G" else m)[code] = None
+        elif letter == "G" and value in names:
+            g[code] = names[value]
+        elif target is not None and target[0] == letter:
+            (g if letter == "G" else m)[code] = target[1]
+        else:
+            others = ", ".join((*(names if letter == "G" else ()), UNKNOWN))
+            own.add_problem(key, f"is {value!r}", f"write the {letter} word that means the same, or {others}")
+    own.report_unread_keys()
+    return WordMeanings(g, m)
+
+
+def _code(text: str) -> tuple[str, int] | None:
+    """The letter and number of a word, of G in tenths."""
+    match = _WORD.fullmatch(text)
+    if match is None:
+        return None
+    if match[3] is not None:
+        return "M", int(match[3])
+    return "G", 10 * int(match[1]) + int(match[2] or 0)
