@@ -37,6 +37,13 @@ def test_the_yl569_takes_the_angles_of_the_published_table(b: float, c: float, i
     assert found[machine.column("C")] == pytest.approx(c, abs=open_deg / np.sin(np.radians(b)))
 
 
+def test_the_umc750_points_its_tool_as_in_the_example_of_its_manual() -> None:
+    # The example of G234 approaches along the tool at B47.137 C116.354; its points have four decimals of an inch.
+    start, end = np.array([-0.9762, 1.9704, 1.0907]), np.array([-0.5688, 1.1481, 0.2391])
+    _, axis = forward(load_machine("haas_umc750"), in_order("haas_umc750", B=47.137, C=116.354))
+    np.testing.assert_allclose(axis[0], (start - end) / np.linalg.norm(start - end), rtol=0, atol=1e-4)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_the_ucp800_moves_its_slides_by_the_published_equations(seed: int) -> None:
     random = np.random.default_rng(seed)

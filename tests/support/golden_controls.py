@@ -1,4 +1,4 @@
-"""The golden programs for Fanuc and LinuxCNC, and what they are posted from."""
+"""The golden programs for Fanuc, Haas and LinuxCNC, and what they are posted from."""
 
 from dataclasses import dataclass
 
@@ -25,6 +25,12 @@ CASES = {
     "fanuc/blade_by_vectors.expected.nc": Case(_BLADE, "matsuura_mx330", ("orientation=vector",)),
     "fanuc/blade_without_options.expected.nc": Case(
         _BLADE, "fanuc/without_options.toml", ("zero=0,0,120", "tool_length=120", "numbers=off")
+    ),
+    "haas/blade.expected.nc": Case(_BLADE, "haas_umc750", ("smoothing=G187 P3",)),
+    "haas/flange.expected.nc": Case(
+        "fanuc/flange.cls",
+        "haas_umc750",
+        ("program=07118", "title=Flange 7-1182 Rev B", "work_offset=G154 P3", "smoothing=G187 P3"),
     ),
     "linuxcnc/blade.expected.ngc": Case(_BLADE, "xyzac_trt"),
     "linuxcnc/blade_without_tcp.expected.ngc": Case(_BLADE, "xyzac_trt", ("tcp=off", "zero=0,0,0")),

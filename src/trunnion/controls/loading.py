@@ -13,6 +13,7 @@ from trunnion.controls.vocabulary import (
     AXIS_WORDS,
     COMMON_TEMPLATE_FIELDS,
     COOLANTS,
+    DRAW_BACK,
     FEEDS_WITHOUT_TCP,
     FIVE_AXIS,
     HOLE_APPROACH_HEIGHTS,
@@ -74,7 +75,7 @@ def load_control(own: Table) -> Control:
         formats=formats,
         words=tuple(_read_word(entry, formats, words) for entry in table.tables("word")),
         codes=_read_integers(table.table("codes"), family.CODES),
-        coolant=_read_integers(table.table("coolant"), COOLANTS, complete=False),
+        coolant=_read_coolant(table.table("coolant")),
         initial_modal_state=_read_integers(table.table("in_force"), words, complete=False),
         statements=_read_statements(table.table("statements")),
         settings=_read_settings(settings, family),
@@ -203,6 +204,13 @@ def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) 
     return found
 
 
+def _read_coolant(table: Table) -> dict[str, int]:
+    """The M codes of coolants; ``"none"`` takes away what the definition extends."""
+    taken = [name for name, value in table.to_dict().items() if value == "none"]
+    table.mark_read(*taken)
+    return _read_integers(table, tuple(name for name in COOLANTS if name not in taken), complete=False)
+
+
 def _read_texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
     found = {name: table.text(name, "") for name in names}
     table.report_unread_keys()
@@ -315,16 +323,17 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     """Return the names of the templates that a definition must have.
 
     Those of TCP, of operations without it and of each plane command are needed only if one of them is there. The
-    template that leads from home to the next tool axis of an operation with holes is optional. Where a tilted plane
-    is taken from the rotary position, the tool may have to be retracted before the next one.
+    template that leads from home to the next tool axis of an operation with holes is optional, and so is the one that
+    retracts the tool where a tilted plane is taken from the rotary position: without it the tool always goes home.
     """
-    plane_parts = ("approach", "plane_on", *(("draw_back",) if plane_from_pose else ()), "next_plane", "operation_end")
+    plane_parts = ("approach", "plane_on", "next_plane", "operation_end")
     groups: list[tuple[str, ...]] = [(SPINDLE_ON,)]
     groups += [
         tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in (FIVE_AXIS, WITHOUT_TCP)
     ]
     groups += [(f"next_axis_{suffix}",) for suffix in (FIVE_AXIS, WITHOUT_TCP)]
     groups += [tuple(f"{part}_{plane}" for part in plane_parts) for plane in family.PLANE_COMMANDS]
+    groups += [(f"{DRAW_BACK}_{plane}",) for plane in family.PLANE_COMMANDS if plane_from_pose]
     used = [name for group in groups if any(name in table for name in group) for name in group]
     return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used]
 

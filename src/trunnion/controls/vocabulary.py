@@ -137,5 +137,7 @@ FEEDS_WITHOUT_TCP: Final = ("inverse_time", "all_axes", "slides", UNKNOWN_FEED)
 HOLE_APPROACH_HEIGHTS: Final = ("above", "retract", "initial")
 
 PHASES: Final = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
+#: Beginning of the template that retracts the tool before it turns to the next plane where it stands.
+DRAW_BACK: Final = "draw_back"
 COOLANTS: Final = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
 TOOL_TYPES: Final = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")

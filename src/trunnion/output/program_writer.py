@@ -12,6 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.controls.template import Value
+from trunnion.controls.vocabulary import DRAW_BACK
 from trunnion.controls.words import WordRangeError
 from trunnion.machines import SweptPart
 from trunnion.model.motion import Motion
@@ -207,7 +208,7 @@ class _ProgramWriter:
         retracted = must_retract or not from_plane
         self._blocks.begin_motion(motion, str(values["tool"]), from_plane=from_plane, retracted=retracted)
         if must_retract:
-            self._templates.write(f"draw_back_{suffix}", values, motion)
+            self._templates.write(f"{DRAW_BACK}_{suffix}", values, motion)
         self._approach(motion, suffix, values)
         written = replace(motion, operation=motion.as_written())
         first = 1 if not must_retract and self._is_at_first_point(written) else 0
@@ -253,7 +254,9 @@ class _ProgramWriter:
 
     def _continues_from_plane(self, motion: Motion) -> bool:
         """Whether the tool comes from another plane of the same operation, and not from home."""
-        return not motion.starts_operation and motion.plane is not None and self._control.plane_from_pose
+        if motion.starts_operation or motion.plane is None or not self._control.plane_from_pose:
+            return False
+        return f"{DRAW_BACK}_{self._program.template_suffix(motion)}" in self._control.templates
 
     def _may_turn_here(self, motion: Motion) -> bool:
         """Whether the rotary axes may turn to a plane where the CL file has left the tool."""

@@ -77,6 +77,8 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
             Problem(machine.key, 0, what, f"name a machine with one of {', '.join(filter(_has_reader, FAMILIES))}")
         )
     reader: FamilyReader = load_reader(name)
+    if reader.offsets_of is not None:
+        reader = replace(reader, work_offsets=reader.offsets_of(machine))
     return reader
 
 

@@ -39,6 +39,7 @@ NAMES: Final = {
     "fanuc_30i": "Fanuc",
     "fanuc_31i_basic": "Fanuc without options",
     "fidia_nc15": "Fidia",
+    "haas_ngc": "Haas",
     "heidenhain_itnc530": "Heidenhain",
     "linuxcnc": "LinuxCNC",
     "sinumerik_840d": "Sinumerik",
@@ -66,6 +67,11 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
         "TAP,DEEP": _NO_CYCLE,
         "BORE,NODRAG": _NO_CYCLE,
         "BORE,MANUAL": _NO_CYCLE,
+    },
+    "haas_ngc": {
+        **_FANUC,
+        "the same, the tool axis as a vector": "this control has no TCP that takes the tool axis as a vector",
+        "BORE,MANUAL": "for which this control has no cycle",
     },
     "heidenhain_itnc530": {
         "BORE,NODRAG": "does not say to which side the tool moves off the wall",

@@ -23,6 +23,7 @@ class FamilyReader:
     comments             regular expression of comments and texts, in which words mean nothing
     work_offsets         how programs select work offsets
     uses_length_numbers  programs select the tool length by a number (H); it is the column ``Run.edge``
+    offsets_of           makes ``work_offsets`` for controls of the family that have other words; None: all have these
     """
 
     interpreter: Callable[[Path, Machine, RunOptions], Interpreter[Any]]
@@ -30,6 +31,7 @@ class FamilyReader:
     work_offsets: WorkOffsetWords
     comments: bytes = RS274_COMMENTS
     uses_length_numbers: bool = False
+    offsets_of: Callable[[Machine], WorkOffsetWords] | None = None
 
 
 def g_words(tenths: frozenset[int]) -> frozenset[str]:

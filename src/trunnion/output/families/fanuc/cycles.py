@@ -8,7 +8,7 @@ from typing import Final
 
 from trunnion.controls.family_writer import FIRST_HOLE, Formats
 from trunnion.model.toolpath import Sense
-from trunnion.output.shared.spindle import running_spindle, thread
+from trunnion.output.shared.spindle import cycle_dwell_seconds, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 
 #: The G word of each cycle, without a dwell and with one; None: it has no word for a dwell.
@@ -37,7 +37,7 @@ def cycle_lines(
     """Return the lines that make a cycle modal, the last with the first hole; as ``FamilyWriter.cycle_call``."""
     assert cycle.retract_height is not None
     number = formats["coordinate"].text
-    dwell = formats["dwell"].text(_dwell_milliseconds(cycle, spindle)) if cycle.dwell else ""
+    dwell = formats["dwell"].text(dwell_parts(formats) * cycle_dwell_seconds(cycle, spindle)) if cycle.dwell else ""
     if cycle.method not in _CYCLES:
         what = f"CYCLE/{cycle.method}: whether G84 pecks, and how, is a parameter of the control"
         raise HoleCycleError(what, "leave DEEP or BRKCHP out, or output the holes as motion")
@@ -46,6 +46,10 @@ def cycle_lines(
     if code is None:
         what = f"{cycle.method} with a dwell at the bottom, for which {plain} has no word"
         raise UnsupportedCycleError(what, "leave DWELL out")
+    missing = [word.strip() for word in settings.get("missing_cycles", "").split(",")]
+    if code in missing or (dwell and f"{code} P" in missing):
+        what = f"{cycle.method}{' with a dwell' if code not in missing else ''}, for which this control has no cycle"
+        raise UnsupportedCycleError(what, "output the holes as motion")
     before: list[str] = []
     if cycle.method in (HoleMethod.TAP, HoleMethod.FLOATING_TAP):
         _, running = thread(cycle, spindle)
@@ -71,11 +75,9 @@ def is_valid_shift(text: str) -> bool:
         return False
 
 
-def _dwell_milliseconds(cycle: Cycle, spindle: SpindleState | None) -> float:
-    """P: spindle revolutions become the time that they take."""
-    if not cycle.dwell_in_revolutions:
-        return 1000.0 * cycle.dwell
-    return 60000.0 * cycle.dwell / running_spindle(spindle, "DWELL,REV").rpm
+def dwell_parts(formats: Formats) -> float:
+    """Return what a second of a dwell counts: 1000 in milliseconds, 1 where the format has decimals."""
+    return 1.0 if formats["dwell"].decimals else 1000.0
 
 
 def _peck_depth(cycle: Cycle) -> float:

@@ -18,7 +18,7 @@ from trunnion.controls.template import Value
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
-from trunnion.output.families.fanuc.cycles import cycle_lines, is_valid_shift
+from trunnion.output.families.fanuc.cycles import cycle_lines, dwell_parts, is_valid_shift
 from trunnion.output.shared import iso
 from trunnion.output.shared.iso import row_words as row_words
 from trunnion.output.shared.lines import program_stop
@@ -31,7 +31,7 @@ WORDS: tuple[str, ...] = (
     *("length", "length_number", "radius_number", "axis_x", "axis_y", "axis_z"),
 )
 CODES: tuple[str, ...] = iso.CODES
-PLANE_COMMANDS: tuple[str, ...] = ("g68_2",)
+PLANE_COMMANDS: tuple[str, ...] = ("g68_2", "g254")
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "contour": ("none", "G05.1", "G05"),
     "orientation": ("angles", "vector"),
@@ -107,8 +107,8 @@ def tool_preselection(call: str) -> list[str]:
 
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
-    """Return ``G4 P`` with milliseconds."""
-    return [f"G4 P{dwell_text(dwell_seconds(event, rpm), formats['dwell'], 1000.0)}"]
+    """Return ``G4 P`` with milliseconds, or with seconds where the format has decimals."""
+    return [f"G4 P{dwell_text(dwell_seconds(event, rpm), formats['dwell'], dwell_parts(formats))}"]
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:

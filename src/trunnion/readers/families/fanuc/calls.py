@@ -24,9 +24,6 @@ _MAX_REPEATS: Final = 1_000_000_000
 #: How deep macros may nest, from the manual (B-63684EN).
 _MAX_MACRO_DEPTH: Final = 4
 
-#: Program numbers of M98 without L have four digits; the digits before them are the number of repeats.
-_FOUR_DIGITS: Final = 10_000
-
 
 class CallInterpreter(Rs274Interpreter[ActiveProgram]):
     """Executes calls and returns."""
@@ -81,14 +78,15 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             self._enter_subprogram(active.modal.number, active.modal.repeats, dict(active.modal.arguments))
 
     def _call(self, block: Block) -> None:
-        """M98: P is the program, L the number of repeats; without L the digits of P before the last four."""
+        """M98: P is the program, L the number of repeats; without L the digits of P before those of the program."""
         number, repeats = block.take("P"), block.take("L")
         if number is None:
             raise BlockError("M98 needs P")
         program = _program_number(number)
-        if repeats is None and program >= _FOUR_DIGITS:
-            repeats = float(program // _FOUR_DIGITS)
-            program %= _FOUR_DIGITS
+        programs = 10**self.control.settings.program_digits
+        if repeats is None and program >= programs:
+            repeats = float(program // programs)
+            program %= programs
         self._enter_subprogram(program, _repeats(repeats), None)
 
     def _enter_subprogram(self, number: int, repeats: int, arguments: dict[int, float] | None) -> None:
@@ -114,7 +112,7 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
         begin = here.source.program(number)
         if begin is not None:
             return ActiveProgram(here.source.restarted(), here.file, repeats), begin
-        names = (f"O{number:04d}", f"O{number}", f"{number:04d}", f"{number}")
+        names = (f"O{number:04d}", f"O{number:05d}", f"O{number}", f"{number:04d}", f"{number}")
         path = next((path for name in names if (path := self._subprograms.find(name))), None)
         if path is None:
             raise BlockError(f"missing subprogram O{number:04d}; name its file")

@@ -26,15 +26,17 @@ class FanucControl(Rs274Control):
     local     the shift of G52, (3,) mm
     rotation  G68 as one map
     vectors   G43.5: words I J K of lines are vectors
+    plane_of_pose  the tilted plane is that of the rotary position
     """
 
     def __init__(self, machine: Machine, note: Note, settings: Settings, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.settings = settings
         self._letter_tables = {
-            (whole_feeds, vectors): self._make_table(whole_feeds, vectors)
+            (whole_feeds, vectors, turning): self._make_table(whole_feeds, vectors, turning)
             for whole_feeds in (True, False)
             for vectors in (True, False)
+            for turning in (True, False)
         }
         self.system = 1
         self._offset_values: dict[int, Floats] = {}
@@ -42,6 +44,7 @@ class FanucControl(Rs274Control):
         self.local = np.zeros(3)
         self.rotation = AffineMap()
         self.vectors = False
+        self.plane_of_pose = False
         self.count_in(settings.unit)
         # Of two axes in one table or one head the one that carries the other decides, on mixed machines the table.
         self.deciding_axis = 1 if all(machine.axes[k].mount is Mount.PART for k in machine.rotary) else 0
@@ -50,11 +53,11 @@ class FanucControl(Rs274Control):
         """Always, as on axes that are set to roll over, except for axes whose output has all turns."""
         return axis.output is not AngleOutput.NONE
 
-    def _make_table(self, whole_feeds: bool, vectors: bool) -> Codes:
+    def _make_table(self, whole_feeds: bool, vectors: bool, turning: bool) -> Codes:
         """Return a letter table; ``whole_feeds`` if a whole number after F counts as it is."""
         first, second = self.rotary_names
-        # Rotary words are no plain words where the tool axis is a vector.
-        plain = ("", "") if vectors else (first, second)
+        # Rotary words are no plain words where the tool axis is a vector, or where they must not turn axes.
+        plain = ("", "") if vectors or not turning else (first, second)
         need_point = "" if self.settings.calculator else f"XYZ{first}{second}IJK" + ("" if whole_feeds else "F")
         return letter_table(plain, gaps=True, need_point=need_point, vector="IJK" if vectors else "")
 
@@ -62,7 +65,8 @@ class FanucControl(Rs274Control):
     def letter_table(self) -> Codes:
         """The letter table for the present modes."""
         whole_feeds = self.modal.feed_mode.current in (93, 94) and self.length_unit == 1.0
-        return self._letter_tables[whole_feeds, self.vectors]
+        whole_feeds = whole_feeds and not self.settings.whole_feeds_count
+        return self._letter_tables[whole_feeds, self.vectors, not self.plane_of_pose]
 
     # Frames
 
@@ -121,6 +125,25 @@ class FanucControl(Rs274Control):
             self.set_plane(None)
             self.add_event("tilt", "")
         self.update_frame()
+
+    def take_plane_of_pose(self) -> None:
+        """Take the plane normal to the tool as it stands, about the zero of the work offset."""
+        if self.tcp:
+            self.note(
+                "the plane of the rotary position while TCP is on: the control has one or the other", Severity.ERROR
+            )
+        self.resolve_rows()
+        first, second = (float(self.current_joints[column]) for column in self.machine.rotary)
+        self.rotation = AffineMap()
+        self.set_plane(AffineMap(tool_orientation.tool_frame(self.machine, (first, second)), self._shift))
+        self.plane_of_pose = True
+
+    def leave_plane_of_pose(self) -> None:
+        """End the plane of the rotary position."""
+        if self.plane_of_pose:
+            self.plane_of_pose = False
+            self.set_plane(None)
+            self.update_frame()
 
     def align_with_plane(self) -> None:
         """G53.1: turn the rotary axes so that the tool is normal to the plane, with the least rotation."""

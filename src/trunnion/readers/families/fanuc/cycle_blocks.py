@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Final
 
+from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.virtual_control import RAPID
@@ -25,10 +26,14 @@ class CycleInterpreter(OffsetInterpreter):
         self._to_initial = True
         self._initial: float | None = None
         self._modal_words: dict[str, float] = {}
+        # A thread has stopped the spindle, and the program has not started it since.
+        self._stopped_by_thread = False
 
     def _select_motion(self, code: int) -> None:
         """Select a motion or a cycle, or cancel the cycle."""
         control = self.control
+        if self.motion_code in cycles.THREADS and code not in cycles.THREADS:
+            self._stopped_by_thread = control.settings.threads_stop_spindle
         if code in cycles.CYCLES:
             if self._initial is None:
                 self._initial = float(control.programmed_position[control.plane_axis])
@@ -44,6 +49,7 @@ class CycleInterpreter(OffsetInterpreter):
         """Drill at the position of a block."""
         control = self.control
         along = "XYZ"[control.plane_axis]
+        self._check_words(block)
         given = {
             letter: value
             for letter in cycles.MODAL_WORDS
@@ -52,7 +58,8 @@ class CycleInterpreter(OffsetInterpreter):
         if along in axes:
             given["Z"] = axes[along][0]
         self._modal_words |= given
-        repeats = block.take("K")
+        letter = control.settings.repeat_letter
+        repeats = block.take(letter)
         block.take("L")
         if not axes and not ({"R", "Z"} & given.keys()):
             return
@@ -60,7 +67,9 @@ class CycleInterpreter(OffsetInterpreter):
         self._require_words(self._modal_words, "ZR" + "Q" * (self.motion_code in cycles.NEED_Q))
         holes = 1 if repeats is None else int(repeats)
         if not 0 <= holes <= _MAX_HOLES:
-            raise BlockError("K of a cycle is how often it drills")
+            raise BlockError(f"{letter} of a cycle is how often it drills")
+        if letter == "L" and holes > 1 and control.absolute:
+            raise BlockError("L repeats a cycle with G91 only")
         self._check_cycle_feed()
         hole = self._hole()
         motions = self._cycle_motions(lambda: cycles.cycle_motions(self.motion_code, hole))
@@ -73,6 +82,23 @@ class CycleInterpreter(OffsetInterpreter):
             control.move(in_plane, None)
             control.drill(motions, work)
         control.motion = motion
+
+    def _check_spindle(self) -> None:
+        """Report a cut for which a thread has left the spindle standing."""
+        if self._stopped_by_thread and self.motion_code not in (0, *cycles.THREADS):
+            self._stopped_by_thread = False
+            self._note("cuts while the spindle stands still: a thread has stopped it", Severity.ERROR)
+
+    def _check_words(self, block: Block) -> None:
+        """Refuse words that describe pecks and retracts on some controls, and dwells whose unit is in doubt."""
+        settings = self.control.settings
+        if settings.repeat_letter == "L":
+            pecks = "K" if self.motion_code == cycles.FINE_BORE else "IJK"
+            if found := [letter for letter in pecks if letter in block.words]:
+                raise BlockError(f"{found[0]} of a cycle, which describes pecks or a retract, is not simulated")
+        dwell = block.words.get("P")
+        if settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value:
+            raise BlockError("P of a cycle without a point: no source says whether it counts seconds or milliseconds")
 
     def _hole(self) -> cycles.Hole:
         control, words = self.control, self._modal_words

@@ -8,6 +8,7 @@ from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine, Mount
 from trunnion.model.run import Orientation
+from trunnion.readers.control import iso_m_codes
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.fanuc import cycles, words
@@ -43,7 +44,7 @@ class FanucInterpreter(CycleInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        return self._stack[-1].modal is None and super()._may_scan(source)
+        return self._stack[-1].modal is None and not self._stopped_by_thread and super()._may_scan(source)
 
     def _system_value(self, key: int) -> float | None:
         control = self.control
@@ -99,8 +100,11 @@ class FanucInterpreter(CycleInterpreter):
         tool = block.take("T")
         if tool is not None:
             control.select_tool(f"{tool:g}")
+        last = control.settings.m_codes_last
+        if last and len(block.m) > 1:
+            self._note("two M words in a block: the control takes one", Severity.ERROR)
         for code in block.m:
-            if code not in words.AFTER_MOTION:
+            if not last and code not in words.AFTER_MOTION:
                 self._m_code(code)
         with_axis_words = self._g_codes(block)
         number = block.take("H")
@@ -117,7 +121,7 @@ class FanucInterpreter(CycleInterpreter):
             self._align_with_plane(block)
         assign(self._variables, block)
         for code in block.m:
-            if code in words.AFTER_MOTION:
+            if last or code in words.AFTER_MOTION:
                 self._m_code_after_motion(active, line, code, block)
         self._report_unused_words(block)
 
@@ -127,6 +131,7 @@ class FanucInterpreter(CycleInterpreter):
         for code in block.g:
             if code in _SCALING:
                 self._modal_g_code(code)
+        control.settings.scale_dwell(block)
         if words.DWELL not in block.g:
             angles = "IJKR" if words.TILT in block.g else ""
             mode, inches = control.modal.feed_mode.current, control.length_unit != 1.0
@@ -154,6 +159,10 @@ class FanucInterpreter(CycleInterpreter):
             self._work_offset(code, block)
         elif code in (words.TCP, words.TCP_VECTOR):
             self._tcp(code, block)
+        elif code == words.PLANE_OF_POSE:
+            control.take_plane_of_pose()
+        elif code == words.NO_PLANE_OF_POSE:
+            control.leave_plane_of_pose()
         elif code in (words.LENGTH_OFF, 430, 440):
             block.take("H")
             control.vectors = False
@@ -188,6 +197,8 @@ class FanucInterpreter(CycleInterpreter):
             self._note("G43.4 and G43.5 change without G49 between them: taken as if it were there", Severity.WARNING)
         if vectors and any(letter in block.words for letter in "IJK") and not self._only_head_turns:
             self._note("I J K in the block of G43.5: an alarm where a table turns (PS5421)", Severity.ERROR)
+        if control.plane_of_pose:
+            self._note("TCP in the plane of the rotary position: the control has one or the other", Severity.ERROR)
         control.set_tcp(True)
         control.set_length(True)
         control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
@@ -198,6 +209,8 @@ class FanucInterpreter(CycleInterpreter):
         return all(self._machine.axes[column].mount is Mount.TOOL for column in self._machine.rotary)
 
     def _m_code(self, code: int) -> None:
+        if code in iso_m_codes.SPINDLE:
+            self._stopped_by_thread = False
         if not self._common_m_code(code):
             self.control.add_event("m", float(code))
 
@@ -219,9 +232,13 @@ class FanucInterpreter(CycleInterpreter):
         """Execute the motion or cycle in force."""
         control = self.control
         axes = self._axis_words(block)
+        if axes:
+            self._check_spindle()
         vector = self._vector(block) if control.vectors and self.motion_code in (0, 10) else None
         if control.vectors and axes.keys() & set(control.rotary_names) and words.MACHINE not in block.g:
             self._note("rotary words under G43.5, which takes I J K: an alarm (PS5421)", Severity.ERROR)
+        if control.plane_of_pose and axes.keys() & set(control.rotary_names):
+            self._note("rotary axes turn in the plane of the rotary position: end it first", Severity.ERROR)
         if self.motion_code in cycles.CYCLES:
             self._cycle(block, axes)
             if axes:

@@ -57,6 +57,8 @@ class OffsetInterpreter(CallInterpreter):
 
     def _dwell(self, block: Block) -> None:
         number = block.words.get("X") or block.words.get("U")
+        if number is not None and self.control.settings.point_is_seconds:
+            raise BlockError("the time of a dwell is P on this control")
         for letter in "XU":
             block.take(letter)
         milliseconds = block.take("P")

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.machines import Machine
+from trunnion.readers.families.fanuc.words import MEANINGS
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
@@ -26,12 +27,24 @@ class Settings:
     unit         mm or inch, as long as a program states none; empty: not known
     increment    the least increment, mm and degrees; a tenth of it for inches
     words        words that the control has in place of the family's
+    point_is_seconds   P of a dwell counts seconds if it has a point, milliseconds if not
+    m_codes_last       M codes act at the end of their block, which may have one
+    repeat_letter      the letter of how often a cycle drills: K, or L where I, J and K describe pecks
+    program_digits     digits of program numbers in M98 P; more say how often
+    threads_stop_spindle  the spindle stands still after threads, until M3 or M4
+    whole_feeds_count  whole numbers of F count in least increments, whatever the feed mode
     """
 
     calculator: bool = False
     increment: float = 0.001
     unit: str = ""
     words: WordMeanings = NO_WORDS
+    point_is_seconds: bool = False
+    m_codes_last: bool = False
+    repeat_letter: str = "K"
+    program_digits: int = 4
+    threads_stop_spindle: bool = False
+    whole_feeds_count: bool = False
 
     def length(self, inches: bool) -> float:
         """Return the unit of whole numbers that are lengths, in mm or inches."""
@@ -51,6 +64,8 @@ class Settings:
 
     def feed(self, mode: int, inches: bool) -> float:
         """Return the unit of whole numbers that are feeds; 1 for inverse time."""
+        if self.whole_feeds_count and not self.calculator:
+            return self.length(inches)
         return 1.0 if self.calculator else _FEEDS.get((mode, inches), 1.0)
 
     def scale(self, block: Block, mode: int, inches: bool, *, angles: str = "") -> None:
@@ -70,6 +85,12 @@ class Settings:
                 continue
             block.words[letter] = Number(number.value * factor)
 
+    def scale_dwell(self, block: Block) -> None:
+        """Turn seconds of a dwell into milliseconds, where a point means seconds."""
+        dwell = block.words.get("P")
+        if self.point_is_seconds and dwell is not None and not dwell.whole:
+            block.words["P"] = Number(dwell.value / _SECONDS)
+
 
 def settings_of(machine: Machine) -> Settings:
     """Read the settings of a machine's control; InputError if they are wrong."""
@@ -77,7 +98,18 @@ def settings_of(machine: Machine) -> Settings:
     numbers = table.text("whole_numbers", "increments", one_of=("increments", "calculator"))
     increment = table.number("least_increment_mm", 0.001, above=0.0)
     unit = unit_of(table)
-    words = read_word_meanings(table)
+    settings = Settings(
+        numbers == "calculator",
+        increment,
+        unit,
+        read_word_meanings(table, MEANINGS),
+        point_is_seconds=table.text("dwells", "milliseconds", one_of=("milliseconds", "point")) == "point",
+        m_codes_last=table.text("m_codes", "each", one_of=("each", "last")) == "last",
+        repeat_letter=table.text("cycles_repeat_with", "K", one_of=("K", "L")),
+        program_digits=table.integer("program_digits", 4, at_least=4, at_most=8),
+        threads_stop_spindle=table.flag("threads_stop_spindle", False),
+        whole_feeds_count=table.text("whole_feeds", "feeds", one_of=("feeds", "increments")) == "increments",
+    )
     table.report_unread_keys()
     table.raise_problems()
-    return Settings(numbers == "calculator", increment, unit, words)
+    return settings

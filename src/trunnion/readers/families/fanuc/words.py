@@ -24,6 +24,11 @@ TCP: Final = 434
 TCP_VECTOR: Final = 435
 LENGTH_OFF: Final = 490
 
+#: Meanings for which the family has no words, only some of its controls: codes that no program can write.
+PLANE_OF_POSE: Final = -1
+NO_PLANE_OF_POSE: Final = -2
+MEANINGS: Final = {"plane of the rotary position": PLANE_OF_POSE, "no plane of the rotary position": NO_PLANE_OF_POSE}
+
 #: G codes that take the axis words of their block, which then makes no other motion.
 TAKING_AXIS_WORDS: Final = frozenset(
     {DWELL, SET_DATA, HOME, OTHER_HOME, LOCAL, MACRO, MODAL_MACRO, ROTATE, TILT, PRESET}

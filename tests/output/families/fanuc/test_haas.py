@@ -1,0 +1,121 @@
+"""Programs for a Haas: its own words for TCP, planes, dwells and offsets, written and proven."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.fanuc import POINTLESS
+from tests.support.locations import GOLDEN
+from trunnion.controls import load_control
+from trunnion.errors import InputError
+
+MACHINE = "haas_umc750"
+SAMPLES = sorted(path.relative_to(GOLDEN).as_posix() for path in GOLDEN.rglob("*.cls"))
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_every_sample_is_posted_and_proven(name: str) -> None:
+    posted = trunnion.post(GOLDEN / name, machine=MACHINE)
+    assert posted.passed
+    blocks = [line for line in (posted.text or "").splitlines() if line.startswith("N")]
+    assert not [line for line in blocks if POINTLESS.search(line)], "every length, angle and feed has a point"
+    assert not [line for line in blocks if len(re.findall(r"M\d", line)) > 1], "one M word a block"
+    assert not [line for line in blocks if re.search(r" G(43\.4|68\.2|53\.1|86|87|88|5\.1|52|92)\b", line)]
+    plane = tcp = False
+    for line in blocks:
+        plane = "G254" in line or (plane and "G255" not in line)
+        tcp = "G234" in line or (tcp and "G49" not in line)
+        assert not (plane and tcp), "G254 and G234 exclude each other"
+        assert not (plane and re.search(r" [BC]-?[\d.]", line)), "G255 comes before rotary axes turn"
+        assert not (("G234" in line or "G43" in line) and " H" not in line)
+    assert not plane
+    assert not tcp
+
+
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ("G255", ""),
+        ("G254", ""),
+        ("G43 H3", "H3"),
+        (" P.2 ", " P200 "),
+        ("G154 P3", "G154 P4"),
+        ("F750.", "F750"),
+    ],
+)
+def test_faults_are_found(good: str, bad: str, tmp_path: Path) -> None:
+    text = (GOLDEN / "haas" / "flange.expected.nc").read_text()
+    assert good in text
+    (tmp_path / "part.nc").write_text(text.replace(good, bad, 1))
+    cl = GOLDEN / "fanuc" / "flange.cls"
+    assert trunnion.verify(GOLDEN / "haas" / "flange.expected.nc", machine=MACHINE, cl=cl, work_offset="G154 P3").passed
+    assert not trunnion.verify(tmp_path / "part.nc", machine=MACHINE, cl=cl, work_offset="G154 P3").passed
+
+
+@pytest.mark.parametrize(("good", "bad"), [("G234 H2", "G43 H2"), ("G49\n", "\n"), ("B59.186", "B-59.186")])
+def test_faults_of_tcp_are_found(good: str, bad: str, tmp_path: Path) -> None:
+    text = (GOLDEN / "haas" / "blade.expected.nc").read_text()
+    assert good in text
+    head, found, tail = text.rpartition(good)
+    (tmp_path / "part.nc").write_text(head + bad + tail if found else text)
+    cl = GOLDEN / "yl569" / "3_blade_finish.cls"
+    assert not trunnion.verify(tmp_path / "part.nc", machine=MACHINE, cl=cl).passed
+
+
+@pytest.mark.parametrize("coolant", ["THRU", "MIST"])
+def test_coolants_that_the_control_has_otherwise_are_refused(coolant: str, tmp_path: Path) -> None:
+    text = (GOLDEN / "fanuc" / "flange.cls").read_text().replace("COOLNT/FLOOD", f"COOLNT/{coolant}")
+    (tmp_path / "part.cls").write_text(text)
+    with pytest.raises(InputError, match=f"has no coolant {coolant}"):
+        trunnion.post(tmp_path / "part.cls", machine=MACHINE)
+
+
+@pytest.mark.parametrize(
+    "setting",
+    [
+        {"orientation": "vector"},
+        {"plane": "g68_2"},
+        {"smoothing": "G187 P4"},
+        {"tcp_on": "G43.4"},
+        {"work_offset": "G54.1 P3"},
+    ],
+)
+def test_what_only_a_fanuc_has_is_refused(setting: str) -> None:
+    key, _, value = setting.partition("=")
+    with pytest.raises(trunnion.TrunnionError):
+        trunnion.post(GOLDEN / "yl569" / "3_blade_finish.cls", machine=MACHINE, settings={key: value})
+
+
+def test_subprograms_have_five_digits(tmp_path: Path) -> None:
+    cl, target = GOLDEN / "yl569" / "3_blade_finish.cls", tmp_path / "blade.nc"
+    posted = trunnion.post(cl, machine=MACHINE, output=target, settings={"programs": "operations"})
+    assert posted.passed
+    assert (tmp_path / "O01001.nc").read_text().startswith("%\nO01001")
+
+
+def test_a_definition_may_take_a_coolant_away(tmp_path: Path) -> None:
+    assert "MIST" not in load_control(trunnion.load_machine(MACHINE).control).coolant
+    (tmp_path / "ours.toml").write_text(f'extends = "{MACHINE}"\n[control.coolant]\nMIST = 83\nON = "nothing"\n')
+    with pytest.raises(InputError, match=r"coolant\.ON"):
+        load_control(trunnion.load_machine(tmp_path / "ours.toml").control)
+
+
+@pytest.mark.parametrize("name", ["flange", "blade"])
+def test_a_program_converted_to_its_own_machine_says_the_same(name: str) -> None:
+    program = GOLDEN / "haas" / f"{name}.expected.nc"
+    before = program.read_text()
+    after = trunnion.convert(program, machine=MACHINE, to_machine=MACHINE).text or ""
+    for word in ("G254", "G234", "G154 P3", "G187 P3", "G84", "M6"):
+        assert (word in before) == (word in after)
+    cuts = [[line for line in text.splitlines() if " B" in line and "F" not in line] for text in (before, after)]
+    assert name == "flange" or cuts[0] == cuts[1]
+
+
+def test_a_fanuc_program_with_planes_becomes_one_of_this_control() -> None:
+    program = GOLDEN / "fanuc" / "flange.expected.nc"
+    text = trunnion.convert(program, machine="matsuura_mx330", to_machine=MACHINE).text or ""
+    assert "G254" in text
+    assert "G84" in text
+    assert not re.search(r"M29|G68\.2|G53\.1|G54\.1|G0?5\.1", text)

@@ -1,0 +1,104 @@
+"""What a Haas does otherwise than a Fanuc, read from programs; facts from its operator's manual."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from trunnion.model.run import Run
+
+HEAD = "%\nO00001\nG21 G90 G94\nT5 M6\nG54\nS500 M3\nG43 H5 G0 X0. Y0. Z50.\n"
+
+
+def read(folder: Path, lines: str, machine: str = "haas_umc750") -> Run:
+    (folder / "part.nc").write_text(f"{HEAD}{lines}\nM30\n%\n")
+    return trunnion.read_program(folder / "part.nc", machine=machine)
+
+
+def errors(folder: Path, lines: str) -> list[str]:
+    return [error.text for error in read(folder, lines).errors]
+
+
+@pytest.mark.parametrize(
+    ("words", "seconds"), [("G4 P2.", 2.0), ("G4 P1500", 1.5), ("G98 G82 X1. Z-5. R2. P.5 F100.", 0.5)]
+)
+def test_a_dwell_with_a_point_is_in_seconds(words: str, seconds: float, tmp_path: Path) -> None:
+    run = read(tmp_path, words)
+    assert run.errors == ()
+    assert [event.value for event in run.events if event.kind == "dwell"] == [pytest.approx(seconds)]
+
+
+@pytest.mark.parametrize(
+    ("lines", "what"),
+    [
+        ("G98 G82 X1. Z-5. R2. P500 F100.", "seconds or milliseconds"),
+        ("G4 X2.", "the time of a dwell is P"),
+        ("G98 G83 X1. Z-5. R2. I2. J.5 K1. F100.", "describes pecks or a retract"),
+        ("G98 G83 X1. Z-5. R2. Q2. K3 F100.", "describes pecks or a retract"),
+        ("G98 G84 X1. Z-5. R2. J2 F500.", "describes pecks or a retract"),
+        ("G98 G81 X1. Z-5. R2. L3 F100.", "L repeats a cycle with G91 only"),
+        ("G98 G86 X1. Z-5. R2. F100.", "unknown word G86"),
+        ("G98 G88 X1. Z-5. R2. F100.", "unknown word G88"),
+        ("G43.4 H5 Z60.", "unknown word G43.4"),
+        ("G68.2 X0. Y0. Z0. I0. J30. K0.", "unknown word G68.2"),
+        ("G268 X0. Y0. Z0. I0. J30. K0.", "unknown word G268"),
+        ("G143 H5 Z60.", "unknown word G143"),
+        ("G52 X10.", "unknown word G52"),
+        ("G92 X10.", "unknown word G92"),
+        ("M97 P100", "unknown word M97"),
+        ("M8 M3", "two M words in a block"),
+        ("G254\nG0 B30.", "rotary axes turn in the plane of the rotary position"),
+        ("G254\nG234 H5 Z60.", "the control has one or the other"),
+        ("G234 H5 Z60.\nG254", "the control has one or the other"),
+        ("G98 G84 X1. Z-5. R2. F500.\nG80\nG1 X5. F100.", "a thread has stopped it"),
+        ("G98 G84 X1. Z-5. R2. F500.\nG81 X5. Z-5. R2. F100.", "a thread has stopped it"),
+    ],
+)
+def test_what_is_not_settled_or_not_there_is_an_error(lines: str, what: str, tmp_path: Path) -> None:
+    assert any(what in error for error in errors(tmp_path, lines)), errors(tmp_path, lines)
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "G98 G84 X1. Z-5. R2. F500.\nG80\nG0 Z60.\nM3\nG1 X5. F100.",
+        "G98 G84 X1. Z-5. R2. F500.\nX5.\nG80\nG0 Z60.",
+        "G0 B30. C-400.\nG254\nX0. Y0.\nZ60.\nG53 Z0.\nG255\nB0. C0.",
+        "G234 H5 Z60.\nG1 X1. B5. F100.\nG49\nG0 G53 Z0.",
+        "G154 P3\nG0 X1.",
+        "G187 P3 E0.02\nM11\nM13\nM16 T6",
+    ],
+)
+def test_what_the_manual_has_is_understood(lines: str, tmp_path: Path) -> None:
+    assert errors(tmp_path, lines) == []
+
+
+def test_m_words_act_at_the_end_of_their_block(tmp_path: Path) -> None:
+    run = read(tmp_path, "M5\nG1 X5. F100. M3\nX6.")
+    assert [int(value) for value in run.spindle[-2:]] == [0, 1]
+    assert [int(value) for value in read(tmp_path, "M5\nG1 X5. F100. M3\nX6.", "matsuura_mx330").spindle[-2:]] == [1, 1]
+
+
+def test_a_whole_feed_counts_in_increments(tmp_path: Path) -> None:
+    run = read(tmp_path, "G1 X5. F100\nX6.\nX7. F100.")
+    assert [float(value) for value in run.feed[-3:]] == pytest.approx([0.1, 0.1, 100.0])
+
+
+def test_five_digits_after_m98_are_one_program(tmp_path: Path) -> None:
+    (tmp_path / "O40008.nc").write_text("%\nO40008\nG0 X7.\nM99\n%\n")
+    (tmp_path / "part.nc").write_text(f"{HEAD}M98 P40008\nM30\n%\n")
+    run = trunnion.read_program(tmp_path / "part.nc", machine="haas_umc750", subprograms=[tmp_path / "O40008.nc"])
+    assert run.errors == ()
+    assert len(run.files) == 2
+
+
+def test_the_plane_of_the_rotary_position_is_that_of_the_work_offset(tmp_path: Path) -> None:
+    run = read(tmp_path, "G0 B90. C90.\nG254\nX1. Y2.\nZ3.")
+    # Along the tool, which lies along Y of the workpiece, and across it.
+    assert run.tip[-1] == pytest.approx([-2.0, 3.0, -1.0], abs=1e-9)
+
+
+def test_coolant_through_the_spindle_stops_it(tmp_path: Path) -> None:
+    run = read(tmp_path, "M88\nG1 X5. F100.")
+    assert run.errors == ()
+    assert int(run.spindle[-1]) == 0
