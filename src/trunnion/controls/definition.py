@@ -134,6 +134,7 @@ class Control:
     feed_without_tcp      one of ``FEEDS_WITHOUT_TCP``
     shorter_way           endless axes take the shorter way, so that none crosses the end of its displayed turn
     own_blocks            spindle, coolant and radius compensation have blocks of their own
+    threads_stop_spindle  the spindle stands still after a thread, until the program starts it again
     first_lines           lines at the start of a program before which nothing may be written, not even a comment
     axis_tolerance        how far the tool axis may leave its path between CL points where no setting says it
     level_approach        after a retract the tool goes to X and Y first, then to Z, not only in tilted planes
@@ -173,6 +174,7 @@ class Control:
     feed_without_tcp: str
     shorter_way: bool
     own_blocks: bool
+    threads_stop_spindle: bool
     first_lines: int
     axis_tolerance: AxisTolerance
     level_approach: bool

@@ -90,6 +90,7 @@ def load_control(own: Table) -> Control:
         feed_without_tcp=table.text("feed_without_tcp", "inverse_time", one_of=FEEDS_WITHOUT_TCP),
         shorter_way=table.flag("shorter_way", False),
         own_blocks=table.flag("own_blocks", False),
+        threads_stop_spindle=table.flag("threads_stop_spindle", False),
         first_lines=table.integer("first_lines", 0, at_least=0, at_most=9),
         axis_tolerance=_read_axis_tolerance(table.table("between_points")),
         level_approach=table.flag("level_approach", False),

@@ -21,6 +21,7 @@ from trunnion.model.toolpath import (
     Dwell,
     Event,
     Insert,
+    Kind,
     Message,
     SelectTool,
     SpindleOff,
@@ -130,7 +131,9 @@ class EventWriter:
         if isinstance(event, CycleOn | CycleOff):
             self._write_rows(event.row)
             self._joining_events = [joining for joining in self._joining_events if joining.row >= event.row]
-            self._cycle = event if isinstance(event, CycleOn) else None
+            was, self._cycle = self._cycle, event if isinstance(event, CycleOn) else None
+            if was is not None:
+                self._turn_again_after_thread(was, event)
         elif isinstance(event, SpindleOn | SpindleOff | Coolant | CutterComp):
             self._write_word_event(event, end_lines)
             if isinstance(event, SpindleOn | SpindleOff):
@@ -183,6 +186,20 @@ class EventWriter:
             self._restart_spindle(event.row)
         elif stops:
             self._spindle_turns = False
+
+    def _turn_again_after_thread(self, cycle: CycleOn, event: CycleOn | CycleOff) -> None:
+        """Start the spindle after a thread at which the control stops it, unless no cut follows, or it is switched."""
+        if not self._control.threads_stop_spindle or cycle.mode[:1] != ("TAP",) or not self._spindle_turns:
+            return
+        if isinstance(event, CycleOn) and event.mode[:1] == ("TAP",):
+            return
+        operation = self._motion.operation
+        cuts = bool((operation.moves.kind[event.row :] != Kind.RAPID).any()) or isinstance(event, CycleOn)
+        cuts |= any(isinstance(each, CycleOn) and each.row >= event.row for each in operation.events)
+        switched = any(isinstance(each, SpindleOn | SpindleOff) and each.row == event.row for each in operation.events)
+        if cuts and not switched and self._blocks.spindle is not None:
+            self._blocks.writer.forget(*self._blocks.event_words(self._blocks.spindle))
+            self._restart_spindle(event.row)
 
     def _start_spindle(self, event: SpindleOn) -> None:
         self._blocks.spindle = event

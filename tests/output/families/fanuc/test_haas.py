@@ -8,6 +8,7 @@ import pytest
 import trunnion
 from tests.support.fanuc import POINTLESS
 from tests.support.locations import GOLDEN
+from tests.support.posting import CLEAR
 from trunnion.controls import load_control
 from trunnion.errors import InputError
 
@@ -73,14 +74,7 @@ def test_coolants_that_the_control_has_otherwise_are_refused(coolant: str, tmp_p
 
 
 @pytest.mark.parametrize(
-    "setting",
-    [
-        {"orientation": "vector"},
-        {"plane": "g68_2"},
-        {"smoothing": "G187 P4"},
-        {"tcp_on": "G43.4"},
-        {"work_offset": "G54.1 P3"},
-    ],
+    "setting", ["orientation=vector", "plane=g68_2", "smoothing=G187 P4", "tcp_on=G43.4", "work_offset=G54.1 P3"]
 )
 def test_what_only_a_fanuc_has_is_refused(setting: str) -> None:
     key, _, value = setting.partition("=")
@@ -119,3 +113,17 @@ def test_a_fanuc_program_with_planes_becomes_one_of_this_control() -> None:
     assert "G254" in text
     assert "G84" in text
     assert not re.search(r"M29|G68\.2|G53\.1|G54\.1|G0?5\.1", text)
+
+
+def test_the_spindle_turns_again_after_a_thread_before_the_next_cut(tmp_path: Path) -> None:
+    holes = "CYCLE/{0}\nGOTO/0,0,0,0,0,1\nGOTO/15,0,0\nCYCLE/OFF\nRAPID\nGOTO/15,0,50\n"
+    thread, drill = holes.format("TAP,RAPTO,3,FEDTO,-12,MMPR,1.25"), holes.format("DRILL,RAPTO,3,FEDTO,-12,MMPM,90")
+    for then, restarts in (("", 0), (thread, 0), (drill, 1), (thread + drill, 1), (drill + thread, 1)):
+        (tmp_path / "part.cls").write_text(CLEAR + thread + then + "END-OF-PATH\n")
+        posted = trunnion.post(tmp_path / "part.cls", machine=MACHINE)
+        assert posted.passed
+        blocks = re.sub(r"N\d+ ", "", posted.text or "")
+        assert blocks.count("S4000 M3\n") == 1 + restarts, blocks
+        assert blocks.count("G80\nS4000 M3\n") == restarts
+        fanuc = trunnion.post(tmp_path / "part.cls", machine="matsuura_mx330").text or ""
+        assert len(re.findall(r"S4000 M3", fanuc)) == 1
