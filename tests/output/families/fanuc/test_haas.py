@@ -118,7 +118,7 @@ def test_a_fanuc_program_with_planes_becomes_one_of_this_control() -> None:
 def test_the_spindle_turns_again_after_a_thread_before_the_next_cut(tmp_path: Path) -> None:
     holes = "CYCLE/{0}\nGOTO/0,0,0,0,0,1\nGOTO/15,0,0\nCYCLE/OFF\nRAPID\nGOTO/15,0,50\n"
     thread, drill = holes.format("TAP,RAPTO,3,FEDTO,-12,MMPR,1.25"), holes.format("DRILL,RAPTO,3,FEDTO,-12,MMPM,90")
-    for then, restarts in (("", 0), (thread, 0), (drill, 1), (thread + drill, 1), (drill + thread, 1)):
+    for then, restarts in (("", 0), (thread, 1), (drill, 1), (thread + drill, 2), (drill + thread, 1)):
         (tmp_path / "part.cls").write_text(CLEAR + thread + then + "END-OF-PATH\n")
         posted = trunnion.post(tmp_path / "part.cls", machine=MACHINE)
         assert posted.passed
