@@ -1,5 +1,6 @@
 """Canned cycles of a Fanuc, block by block."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Final
 
@@ -28,6 +29,8 @@ class CycleInterpreter(OffsetInterpreter):
         self._modal_words: dict[str, float] = {}
         # A thread has stopped the spindle, and the program has not started it since.
         self._stopped_by_thread = False
+        # Axes whose positions must be stated in a new plane before the tool cuts there.
+        self._not_stated: frozenset[str] = frozenset()
 
     def _select_motion(self, code: int) -> None:
         """Select a motion or a cycle, or cancel the cycle."""
@@ -83,8 +86,14 @@ class CycleInterpreter(OffsetInterpreter):
             control.drill(motions, work)
         control.motion = motion
 
-    def _check_spindle(self) -> None:
-        """Report a cut for which a thread has left the spindle standing."""
+    def _check_cut(self, axes: Collection[str], *, of_machine: bool) -> None:
+        """Report a cut that a thread has left without a spindle, or that a new plane has left without a position."""
+        if self._not_stated and not of_machine:
+            if self.motion_code != 0:
+                missing = ", ".join(sorted(self._not_stated))
+                self._note(f"cuts in a new plane before {missing} is stated at rapid there", Severity.ERROR)
+                self._not_stated = frozenset()
+            self._not_stated -= set(axes)
         if self._stopped_by_thread and self.motion_code not in (0, *cycles.THREADS):
             self._stopped_by_thread = False
             self._note("cuts while the spindle stands still: a thread has stopped it", Severity.ERROR)

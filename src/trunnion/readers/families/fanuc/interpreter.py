@@ -44,7 +44,8 @@ class FanucInterpreter(CycleInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        return self._stack[-1].modal is None and not self._stopped_by_thread and super()._may_scan(source)
+        in_doubt = self._stopped_by_thread or self._not_stated
+        return self._stack[-1].modal is None and not in_doubt and super()._may_scan(source)
 
     def _system_value(self, key: int) -> float | None:
         control = self.control
@@ -161,8 +162,10 @@ class FanucInterpreter(CycleInterpreter):
             self._tcp(code, block)
         elif code == words.PLANE_OF_POSE:
             control.take_plane_of_pose()
+            self._not_stated = frozenset("XYZ")
         elif code == words.NO_PLANE_OF_POSE:
             control.leave_plane_of_pose()
+            self._not_stated = frozenset()
         elif code in (words.LENGTH_OFF, 430, 440):
             block.take("H")
             control.vectors = False
@@ -233,7 +236,7 @@ class FanucInterpreter(CycleInterpreter):
         control = self.control
         axes = self._axis_words(block)
         if axes:
-            self._check_spindle()
+            self._check_cut(axes, of_machine=words.MACHINE in block.g)
         vector = self._vector(block) if control.vectors and self.motion_code in (0, 10) else None
         if control.vectors and axes.keys() & set(control.rotary_names) and words.MACHINE not in block.g:
             self._note("rotary words under G43.5, which takes I J K: an alarm (PS5421)", Severity.ERROR)
