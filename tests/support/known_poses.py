@@ -47,6 +47,12 @@ POSES: Final[dict[str, list[tuple[dict[str, float], Vector, Vector]]]] = {
         ({"B": 90, "C": 0}, (186.7767, 145.0, 55.0), (-0.70711, -0.5, 0.5)),
         ({"B": 90, "C": 60}, (-32.18534, 234.25336, 55.0), (0.07946, -0.86237, 0.5)),
     ],
+    # the example of G234 in the manual: u = (sinB cosC, sinB sinC, cosB); the third is its first pose
+    "haas_umc750": [
+        ({"B": 30, "C": 0}, (-26.33975, 20.0, -65.62178), (0.5, 0.0, 0.86603)),
+        ({"B": 30, "C": 90}, (-20.0, -26.33975, -65.62178), (0.0, 0.5, 0.86603)),
+        ({"B": 47.137, "C": 116.354}, (1.83568, -48.759, -54.94716), (-0.32538, 0.6568, 0.68025)),
+    ],
     # published: u = Rz(C) Rx(A) z
     "hs664rt": [
         ({"A": 30, "C": 0}, (10.0, 52.32051, -50.62178), (0.0, -0.5, 0.86603)),
@@ -130,6 +136,14 @@ FACTS: Final[dict[str, list[str]]] = {
         "Z linear tool -200..600 home 0 either none",
         "B rotary tool 0..200 home 0 either none",
         "primary B, secondary C, zero None, at most 18000.0 rpm",
+    ],
+    "haas_umc750": [
+        "C rotary part endless home 0 either none",
+        "B rotary part -35..120 home 0 positive none",
+        "X linear tool -762..0 home 0 either none",
+        "Y linear tool -508..0 home 0 either none",
+        "Z linear tool -508..0 home 0 either none",
+        "primary B, secondary C, zero None, at most 8100.0 rpm",
     ],
     "hs664rt": [
         "C rotary part endless home 0 either 0..360",
