@@ -31,19 +31,19 @@ from trunnion.model.toolpath import (
     Tool,
     Toolpath,
 )
-from trunnion.readers.program.settings import family_of
+from trunnion.readers.program.settings import family_of, reading_of
 from trunnion.verification import Tolerances, failures, verify
 
 
 def sites() -> Iterator[tuple[str, Site]]:
-    """The first shipped machine of each family of controls that has a writer and TCP."""
+    """The first shipped machine of each family of controls that has a writer and TCP, with the family's own words."""
     for name in shipped_machines():
         machine = roomy(load_machine(name))
         try:
             control = load_control(machine.control.unread_copy())
         except InputError:
             continue
-        if control.tcp and "approach_five_axis" in control.templates:
+        if control.tcp and "approach_five_axis" in control.templates and not reading_of(machine).table("words").keys():
             formats = control.number_formats(three_axis=False)
             digits = (0.5 * 10.0 ** -formats[key].decimals for key in ("coordinate", "angle"))
             yield family_of(machine), Site(machine, control, *digits)
