@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 import pytest
 
-from tests.machines.test_fifty_machines import CONTRADICTIONS, ROWS, load
 from tests.support import machine_mutants
+from tests.support.fifty_machines import CONTRADICTIONS, ROWS, load
 from tests.support.known_poses import FACTS, LENGTH, POSES, SLIDES, check_facts, check_known_poses
 from tests.support.locations import TESTS
 from trunnion.definitions import Table
