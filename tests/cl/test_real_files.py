@@ -3,11 +3,12 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.support.locations import SHARED
 from trunnion.cl import read_cl
-from trunnion.model.toolpath import Kind, Phase
+from trunnion.model.toolpath import CycleOff, CycleOn, Kind, LoadTool, Operation, Phase
 
 FILES = sorted([*SHARED.glob("golden/*/*.cls"), *SHARED.glob("data/nx/*.cls")])
 
@@ -57,3 +58,55 @@ def test_the_phases_are_those_that_the_machine_s_program_names() -> None:
     assert len(phases) == len(operation.moves)
     assert all(phase in named for phase, named in zip(operation.moves.phase.tolist(), phases, strict=True))
     assert operation.moves.kind.tolist().count(Kind.ARC) == len(operation.arcs.row)
+
+
+APT_FILES = sorted([*SHARED.glob("data/creo/*"), *SHARED.glob("data/solidworks/*.apt")])
+_NUMBER = re.compile(r"[-+]?[0-9]*\.?[0-9]+")
+
+
+def plain_scan(path: Path) -> dict[str, object]:
+    """Points, arcs, holes and tools of an APT file, counted with a few lines of text."""
+    text = re.sub(r"\$[ \t]*\r?\n", " ", path.read_text(encoding="latin-1"))
+    points, arcs, holes, loaded, is_hole = [], 0, 0, [], False
+    for line in text.splitlines():
+        word = re.sub(r"\s", "", line.partition("/")[0]).upper()
+        rest = line.partition("/")[2]
+        if word == "GOTO":
+            points.append([float(number) for number in _NUMBER.findall(rest)[:3]])
+            holes += is_hole
+        elif word == "CIRCLE":
+            arcs += 1
+        elif word == "CYCLE":
+            is_hole = not re.match(r"\s*(OFF|INIT|CLEAR)", rest)
+        elif word in ("LOAD", "LOADTL"):
+            number = int(_NUMBER.findall(rest)[0])
+            if loaded[-1:] != [number]:
+                loaded.append(number)
+    low, high = np.min(points, axis=0).tolist(), np.max(points, axis=0).tolist()
+    return {"points": len(points), "arcs": arcs, "holes": holes, "tools": loaded, "extents": (low, high)}
+
+
+def hole_rows(operation: Operation) -> int:
+    """Rows of an operation that are holes."""
+    count, row, is_hole = 0, 0, False
+    for event in [*operation.events, CycleOff(len(operation.moves), 0)]:
+        if isinstance(event, CycleOn | CycleOff):
+            count += is_hole * int((operation.moves.kind[row : event.row] != Kind.RAPID).sum())
+            row, is_hole = event.row, isinstance(event, CycleOn)
+    return count
+
+
+@pytest.mark.skipif(not APT_FILES, reason="the files of others are not beside the project")
+@pytest.mark.parametrize("path", APT_FILES, ids=lambda path: path.name)
+def test_a_real_apt_file_is_read_whole(path: Path) -> None:
+    toolpath = read_cl(path, strict=True)
+    assert toolpath.dialect == ("ncl" if ".ncl" in path.name else "solidworks")
+    tip = np.concatenate([operation.moves.tip for operation in toolpath.operations])
+    events = [event for operation in toolpath.operations for event in operation.events]
+    assert plain_scan(path) == {
+        "points": len(tip),
+        "arcs": sum(len(operation.arcs.row) for operation in toolpath.operations),
+        "holes": sum(hole_rows(operation) for operation in toolpath.operations),
+        "tools": [event.number for event in events if isinstance(event, LoadTool)],
+        "extents": (tip.min(axis=0).tolist(), tip.max(axis=0).tolist()),
+    }

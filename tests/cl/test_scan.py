@@ -12,14 +12,16 @@ from hypothesis import strategies as st
 from tests.support.naive import cl_scan as naive
 from trunnion.arrays import Floats, Lines
 from trunnion.cl.read import read_cl, read_in_chunks
-from trunnion.cl.scan import MAKES_ROW, SPAN_COLUMNS, UNFINISHED, PointColumns, fill_modal_axes, scan
+from trunnion.cl.scan import COMMENT, MAKES_ROW, SPAN_COLUMNS, UNFINISHED, PointColumns, fill_modal_axes, scan
 from trunnion.errors import InputError
 from trunnion.model.toolpath import Toolpath
 
 QUICK = settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
-def scan_all(data: bytes, spans: int = 64) -> tuple[Floats, Floats, Lines, list[tuple[str, int, int, int]]]:
+def scan_all(
+    data: bytes, spans: int = 64, *, apt: bool = False
+) -> tuple[Floats, Floats, Lines, list[tuple[str, int, int, int]]]:
     """Scan whole bytes; return tip, axis, line, and the statements as (text, line, row, marks)."""
     data += b"" if data.endswith(b"\n") else b"\n"
     n = data.count(b"\n") + 1
@@ -29,7 +31,9 @@ def scan_all(data: bytes, spans: int = 64) -> tuple[Floats, Floats, Lines, list[
     at, number, rows = 0, 1, 0
     found = []
     while at < len(data):
-        at, number, rows, count = scan(array, at, len(data), True, number, rows, PointColumns(tip, axis, line), room)
+        at, number, rows, count = scan(
+            array, at, len(data), True, False, number, rows, PointColumns(tip, axis, line), room
+        )
         for begin, length, where, row, mark in room[:count].tolist():
             found.append((naive.blank(data[begin : begin + length].decode("latin-1")), where, row, mark))
     return tip[:rows], axis[:rows], line[:rows], found
@@ -271,3 +275,28 @@ def test_a_file_whose_lines_get_shorter_has_room_for_all_its_points(tmp_path: Pa
     assert (moves.axis == [0.0, 0.0, 1.0]).all()
     assert (moves.line == np.arange(303, 40_303)).all()
     assert (moves.feed == 100.0).all()
+
+
+def test_a_point_may_go_on_in_the_next_line() -> None:
+    tip, axis, line, found = scan_all(
+        b"GOTO / 1.5, 2, 3,  $\n 0.0, 0.6,$\r\n0.8\nGOTO/4,5,$ $$ more\n6\nGOTO/7,8,9,$\n"
+    )
+    assert tip[0].tolist() == [1.5, 2, 3]
+    assert axis[0].tolist() == [0, 0.6, 0.8]
+    assert line.tolist() == [1, 4, 6]
+    assert found == [("GOTO/4,5,$ $$ more\n6", 4, 1, MAKES_ROW), ("GOTO/7,8,9,$", 6, 2, MAKES_ROW | UNFINISHED)]
+
+
+def test_comments_are_spans_only_where_they_may_be_statements() -> None:
+    data = b"$$-> CSYS / 1, $\n 2\n $$ TEXT $\nGOTO/1,2,3 $$ here\nTLON, GOFWD/(CIRCLE)\nRETRCT\nRETRCTS\nGO FWD/1\n"
+    *_, found = scan_all(data, apt=True)
+    assert found == [
+        ("-> CSYS / 1, $\n 2", 1, 0, 0),
+        ("$$ TEXT $", 3, 0, COMMENT),
+        ("TLON, GOFWD/(CIRCLE)", 5, 1, MAKES_ROW),
+        ("RETRCT", 6, 2, MAKES_ROW),
+        ("RETRCTS", 7, 3, 0),
+        ("GO FWD/1", 8, 3, MAKES_ROW),
+    ]
+    *_, found = scan_all(data)
+    assert [text for text, *_ in found] == ["2", "TLON, GOFWD/(CIRCLE)", "RETRCT", "RETRCTS", "GO FWD/1"]

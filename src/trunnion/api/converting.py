@@ -156,6 +156,9 @@ def convert(
 
 def _check_settings(job: PostJob, to_cl: bool) -> None:
     """Raise ``InputError`` for settings that have no meaning in a conversion."""
+    if "dialect" in job.settings:
+        what, cure = "dialect has no meaning here", "an NC program is no CL file: leave it out"
+        raise InputError(argument_problem("settings", what, cure))
     if "cl_units" in job.settings:
         what, cure = "cl_units has no meaning here", "an NC program says its unit itself"
         raise InputError(argument_problem("settings", what, cure))

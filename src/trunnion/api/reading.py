@@ -8,6 +8,7 @@ from typing import Final, TypeAlias
 from trunnion import machines, readers
 from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths, wrong_argument
 from trunnion.api.observer import SILENT, Observer
+from trunnion.cl import DIALECTS, other_system
 from trunnion.cl import read_cl as read_cl_file
 from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
@@ -29,8 +30,15 @@ ToolpathLike: TypeAlias = FilePath | Toolpath
 _NO_CONTENT: Final = {"key", "name", "description", "files", "workpiece_zero", "tool_length", "control"}
 
 
-def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, observer: Observer = SILENT) -> Toolpath:
-    """Read a CL file (NX CLSF).
+def read_cl(
+    path: FilePath,
+    *,
+    units: str | None = None,
+    dialect: str | None = None,
+    strict: bool = False,
+    observer: Observer = SILENT,
+) -> Toolpath:
+    """Read a CL file: NX CLSF, CATIA APTSOURCE, Creo NCL, SolidWorks CAM APT or other APT CL data.
 
     Parameters
     ----------
@@ -38,6 +46,8 @@ def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, o
         The file.
     units
         Length unit of the file, ``"mm"`` or ``"inch"``; by default the file decides.
+    dialect
+        ``"clsf"``, ``"catia"``, ``"ncl"``, ``"solidworks"`` or ``"apt"``; by default the content of the file decides.
     strict
         Raise an error for an unknown statement instead of keeping it with a remark.
     observer
@@ -65,6 +75,8 @@ def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, o
     check_observer(observer)
     if units is not None:
         check_choice("units", units.lower() if isinstance(units, str) else units, ("mm", "inch"))
+    if dialect is not None:
+        check_choice("dialect", dialect, tuple(DIALECTS))
     size = path.stat().st_size if unusable_file(path, "a CL file") is None else 0
     with observer.progress(path.name, size, "B") as advance:
         done = 0
@@ -74,7 +86,7 @@ def read_cl(path: FilePath, *, units: str | None = None, strict: bool = False, o
             advance(total - done)
             done = total
 
-        return read_cl_file(path, units=units, strict=strict, progress=read)
+        return read_cl_file(path, units=units, dialect=dialect, strict=strict, progress=read)
 
 
 def load_machine(machine: FilePath) -> Machine:
@@ -190,16 +202,31 @@ def as_machine(machine: MachineLike, argument: str = "machine") -> Machine:
 
 
 def as_toolpaths(
-    cl: ToolpathLike | Iterable[ToolpathLike], units: str | None, strict: bool, observer: Observer
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    units: str | None,
+    strict: bool,
+    observer: Observer,
+    dialect: str | None = None,
 ) -> list[Toolpath]:
-    """Toolpaths in their order, read if they are named; ``units`` and ``strict`` as ``read_cl`` has them."""
+    """Toolpaths in their order, read if they are named; ``units``, ``dialect``, ``strict`` as ``read_cl`` has them.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, or the points of two files are in different coordinate systems.
+    """
     if isinstance(cl, str | os.PathLike | Toolpath):
         cl = [cl]
     if isinstance(cl, bytes | Mapping) or not isinstance(cl, Iterable):
         raise wrong_argument("cl", cl, "give CL files: a path, a Toolpath, or a list of them")
     check_observer(observer)
     paths = (each if isinstance(each, Toolpath) else check_path("cl", each) for each in cl)
-    return [
-        each if isinstance(each, Toolpath) else read_cl(each, units=units, strict=strict, observer=observer)
+    toolpaths = [
+        each
+        if isinstance(each, Toolpath)
+        else read_cl(each, units=units, dialect=dialect, strict=strict, observer=observer)
         for each in paths
     ]
+    if problem := other_system(toolpaths):
+        raise InputError(problem)
+    return toolpaths

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.cl import DIALECTS
 from trunnion.controls.vocabulary import PROGRAM_CHOICES, PROGRAM_MEANINGS
 from trunnion.model.motion import PoleStrategy
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
@@ -63,6 +64,7 @@ def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
 #: Settings of the post by their names; all others belong to the control, whose templates print them.
 RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
     "cl_units": _choice("Length unit of the CL files.", "mm", "inch", default="what the files say"),
+    "dialect": _choice("What the CL files are written in.", *DIALECTS, default="what their content says"),
     "zero": RunSetting(
         "Position of the workpiece zero on the machine, mm. With it every slide is checked against its limits; without "
         "it only whether the program fits into the travel somewhere.",

@@ -40,6 +40,7 @@ def verify(
     work_offset: str | None = None,
     edge: int | str | None = None,
     units: str | None = None,
+    dialect: str | None = None,
     frame: Literal["first", "absolute"] = "first",
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
@@ -74,6 +75,8 @@ def verify(
         Number of the cutting edge (D); by default that of the control's definition where there is a CL file.
     units
         Length unit of CL files that do not state it: ``"mm"`` or ``"inch"``.
+    dialect
+        What the CL files are written in, as ``read_cl`` has it; by default their content decides.
     frame
         Coordinate system of the program: that of the ``first`` operation, or the CAM's ``absolute`` one.
     zero : (3,) float, mm
@@ -120,7 +123,7 @@ def verify(
     loaded = set_up_machine(loaded, zero, tool_length)
     control = written_control(loaded)
     defaults = default_settings(loaded)
-    toolpaths = as_toolpaths(cl, units, False, observer)
+    toolpaths = as_toolpaths(cl, units, False, observer, dialect)
     toolpaths = replace_unknown_statements(toolpaths, control.statements if control else {})
     run = as_run(nc, loaded, subprograms)
     if len(run.normals):

@@ -1,10 +1,12 @@
-"""Readers of cutter-location files: an NX CLSF becomes a ``trunnion.model.toolpath.Toolpath``."""
+"""Readers of cutter-location files: a file of any dialect becomes a ``trunnion.model.toolpath.Toolpath``."""
 
+from trunnion.cl.dialects import DIALECTS
 from trunnion.cl.read import read_cl
 from trunnion.cl.scan import fill_modal_axes, scan
+from trunnion.cl.systems import other_system
 from trunnion.cl.unknown import statement_words, unknown_statement_problems
 
 #: Kernels that every file needs.
 KERNELS = (scan, fill_modal_axes)
 
-__all__ = ["KERNELS", "read_cl", "statement_words", "unknown_statement_problems"]
+__all__ = ["DIALECTS", "KERNELS", "other_system", "read_cl", "statement_words", "unknown_statement_problems"]

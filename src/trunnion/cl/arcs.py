@@ -1,6 +1,7 @@
 """CIRCLE statements become arcs, checked against their start and end points."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -59,10 +60,14 @@ def arcs_of(
     length = np.sqrt(np.sum(numbers[:, 3:6] * numbers[:, 3:6], axis=1))
     normal = numbers[:, 3:6] / np.where(length > 0, length, 1.0)[:, None]
     arcs = Arcs(row, numbers[:, 0:3] * unit, normal, numbers[:, 6] * unit, full_turns)
-    start = tip[np.maximum(row - 1, 0)]
+    start = tip[np.maximum(row - 1, 0)]  # a copy: rows are chosen by an array
     for index, circle in enumerate(usable):
         if circle.row in from_tips:
             start[index] = from_tips[circle.row]
+    from_start = np.isnan(arcs.radius)
+    if from_start.any():
+        radius = np.where(from_start, distance_from_line(start - arcs.centre, normal), arcs.radius)
+        arcs = replace(arcs, radius=radius)
     has_unit_normal = np.abs(length - 1) <= _NORMAL_TOLERANCE
     _check(arcs, usable, has_unit_normal, start, tip[row], diagnostics)
     return arcs

@@ -12,10 +12,10 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Lines
 from trunnion.cl.arcs import arc_lengths, arcs_of, complete_circles
-from trunnion.cl.builder import FeedChange, FromStatement, MoveColumns, OperationBuilder, SurfaceSpeed
+from trunnion.cl.builder import FeedChange, MoveColumns, OperationBuilder, SurfaceSpeed
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
-from trunnion.cl.scan import fill_modal_axes
+from trunnion.cl.tool_axes import fill_tool_axes
 from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Frame, From, Kind, Moves, Operation, SpindleOn, Tool
 
 #: No machine reaches farther, mm: a coordinate beyond it is a mistake in the file.
@@ -27,7 +27,7 @@ CYCLE_LENGTHS = frozenset({"RAPTO", "FEDTO", "RTRCTO", "CLEAR", "STEP", "CSKDIA"
 
 
 def assemble_operation(
-    builder: OperationBuilder, columns: MoveColumns, unit: float, diagnostics: Diagnostics
+    builder: OperationBuilder, columns: MoveColumns, unit: float, modal_axis: Floats, diagnostics: Diagnostics
 ) -> Operation:
     """Return the operation, in mm.
 
@@ -39,6 +39,8 @@ def assemble_operation(
         Columns of the file; rows ``builder.first:builder.stop`` belong to the operation, tip in mm.
     unit
         Length unit of the file, mm.
+    modal_axis : (3,) float64
+        The last tool axis of the operation before; on return that of this one.
     diagnostics
         Takes what is wrong with it.
     """
@@ -52,7 +54,7 @@ def assemble_operation(
     fill_phases(columns.phase[rows], rapids, builder.colours)
     _report_unknown_colours(builder, diagnostics)
     _report_far_points(tip, columns.line[rows], builder, unit, diagnostics)
-    starts = _fill_tool_axes(columns, builder, unit, diagnostics)
+    starts = fill_tool_axes(columns, builder, unit, modal_axis, diagnostics)
     circles = complete_circles(builder.circles, kind, diagnostics)
     kind[[circle.row for circle in circles]] = Kind.ARC
     arcs = arcs_of(circles, starts, tip, unit, diagnostics)
@@ -146,42 +148,6 @@ def _report_far_points(
     farthest = max(map(abs, builder.frame.origin)) * unit
     if farthest > _MAX_COORDINATE:
         diagnostics.error(builder.line, f"an MSYS with its origin {farthest:.10g} mm away", _NO_SUCH_MACHINE)
-
-
-def _fill_tool_axes(
-    columns: MoveColumns, builder: OperationBuilder, unit: float, diagnostics: Diagnostics
-) -> list[From]:
-    """Write the modal tool axis into each row; return the FROM events with theirs."""
-    modal_axis = np.array([0.0, 0.0, 1.0])
-    bad_rows = np.empty(MAX_LISTED + 1, np.int64)
-    at = builder.first
-    events = []
-    for start in [*builder.starts, None]:
-        stop = builder.first + start.row if start else builder.stop
-        bad_count = fill_modal_axes(columns.axis, at, stop, modal_axis, bad_rows)
-        for row in bad_rows[: min(bad_count, len(bad_rows))].tolist():
-            _report_bad_axis(columns.axis[row], int(columns.line[row]), diagnostics)
-        at = stop
-        if start:
-            events.append(_from_event(start, modal_axis, unit, diagnostics))
-    return events
-
-
-def _from_event(start: FromStatement, modal_axis: Floats, unit: float, diagnostics: Diagnostics) -> From:
-    """Return the event of a FROM; ``modal_axis`` (3,) becomes the tool axis that it gives."""
-    if start.axis:
-        given = np.array([start.axis])
-        if fill_modal_axes(given, 0, 1, modal_axis, np.empty(1, np.int64)):
-            _report_bad_axis(given[0], start.line, diagnostics)
-    x, y, z = start.tip
-    i, j, k = modal_axis.tolist()
-    return From(start.row, start.line, (x * unit, y * unit, z * unit), (i, j, k))
-
-
-def _report_bad_axis(vector: Floats, line: int, diagnostics: Diagnostics) -> None:
-    length = float(np.sqrt(np.sum(vector * vector)))
-    what = "the tool-axis vector is zero" if length == 0 else f"the tool-axis vector has the length {length:.6g}, not 1"
-    diagnostics.error(line, what, "write i, j, k as a unit vector from the tip to the holder")
 
 
 def _event_in_mm(event: Event, unit: float, tool: Tool, diagnostics: Diagnostics) -> Event:

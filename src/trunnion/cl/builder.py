@@ -5,6 +5,7 @@ here, and ``trunnion.cl.assemble`` makes operations of them when the file has be
 """
 
 from dataclasses import dataclass, field
+from enum import Enum, auto
 from typing import NamedTuple
 
 import numpy as np
@@ -76,7 +77,10 @@ class FeedChange(NamedTuple):
 
 
 class CircleStatement(NamedTuple):
-    """A CIRCLE: xc, yc, zc, i, j, k, r in units of the file, and the number of turns that it begins (TIMES)."""
+    """An arc: xc, yc, zc, i, j, k, r in units of the file, and the number of turns that it begins (TIMES).
+
+    A radius that is NaN is the distance of the start point.
+    """
 
     row: int
     line: int
@@ -93,18 +97,40 @@ class FromStatement(NamedTuple):
     axis: tuple[float, float, float] | None
 
 
+class NoAxis(Enum):
+    """The tool axis of a point that gives none."""
+
+    MODAL = auto()  # that of the point before
+    Z = auto()  # (0, 0, 1)
+    DOUBTFUL = auto()  # that of the point before, which must be (0, 0, 1): systems differ in any other case
+    NEVER = auto()  # each point must give one
+
+
+class AxisStatement(NamedTuple):
+    """A statement about tool axes from ``row`` on (TLAXIS, MULTAX): an axis, and that of points that give none."""
+
+    row: int
+    line: int
+    axis: tuple[float, float, float] | None
+    no_axis: NoAxis
+
+
 @dataclass(slots=True)
 class OperationBuilder:
     """An operation while it is read. Rows count from ``first``, the row of the columns at which it begins.
 
-    colours  (row, colour) of each PAINT/COLOR
-    rapids   rows before which a RAPID stands
+    continues  it goes on where the one before ends: with its last point and tool axis
+    colours    (row, colour) of each PAINT/COLOR
+    rapids     rows before which a RAPID stands
+    axes       statements about the tool axis
+    upright    (row, line, word) of statements that are understood for the tool axis (0, 0, 1) only
     """
 
     name: str
     line: int
     first: int
     stop: int = 0
+    continues: bool = False
     tool: Tool = field(default_factory=Tool)
     frame: Frame = field(default_factory=Frame)
     intol: float | None = None
@@ -115,3 +141,5 @@ class OperationBuilder:
     rapids: list[int] = field(default_factory=list)
     circles: list[CircleStatement] = field(default_factory=list)
     starts: list[FromStatement] = field(default_factory=list)
+    axes: list[AxisStatement] = field(default_factory=list)
+    upright: list[tuple[int, int, str]] = field(default_factory=list)

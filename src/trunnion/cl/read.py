@@ -1,4 +1,4 @@
-"""Reads an NX CLSF into a ``Toolpath``.
+"""Reads a CL file of any dialect into a ``Toolpath``.
 
 The file is read twice, in pieces: first for its encoding and the length of its lines, from which the columns are
 sized; then for its content. Points never become Python objects.
@@ -15,7 +15,8 @@ from trunnion.arrays import Ints
 from trunnion.cl.assemble import assemble_operation
 from trunnion.cl.builder import MoveColumns
 from trunnion.cl.diagnostics import Diagnostics
-from trunnion.cl.nx import ClsfInterpreter
+from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
+from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.cl.unknown import unknown_statement_problems
 from trunnion.encoding import EncodingDetector
@@ -25,6 +26,8 @@ from trunnion.model.toolpath import Toolpath
 #: Bytes read at a time.
 CHUNK = 4 << 20
 _SURVEY_CHUNK = CHUNK
+#: Bytes by which the dialect is recognized.
+_HEAD = 1 << 16
 #: Statements that one call of the scan writes down at most.
 _MAX_SPANS = 1 << 15
 #: No statement that makes a row is shorter.
@@ -42,22 +45,25 @@ class Survey:
     rows       estimated number of rows
     encoding   Python's name of it
     complete   whether the last line has a line end
+    head       first bytes of the file, behind the byte order mark
     """
 
     bom_bytes: int
     rows: int
     encoding: str
     complete: bool
+    head: bytes
 
 
 def read_cl(
     path: Path,
     *,
     units: str | None = None,
+    dialect: str | None = None,
     strict: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
-    """Read an NX CLSF.
+    """Read a CL file.
 
     Parameters
     ----------
@@ -65,6 +71,8 @@ def read_cl(
         The file.
     units
         Length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says.
+    dialect
+        A key of ``trunnion.cl.dialects.DIALECTS``; None: told by the content of the file.
     strict
         Make an unknown statement an error instead of a remark.
     progress
@@ -80,7 +88,7 @@ def read_cl(
     InputError
         If the file cannot be used, with every problem found.
     """
-    return read_in_chunks(path, CHUNK, units=units, strict=strict, progress=progress)
+    return read_in_chunks(path, CHUNK, units=units, dialect=dialect, strict=strict, progress=progress)
 
 
 def read_in_chunks(
@@ -88,6 +96,7 @@ def read_in_chunks(
     chunk: int,
     *,
     units: str | None = None,
+    dialect: str | None = None,
     strict: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
@@ -95,16 +104,22 @@ def read_in_chunks(
     diagnostics = Diagnostics(str(path))
     if units is not None and units.lower() not in ("mm", "inch"):
         raise diagnostics.fatal(0, f"units are {units!r}", "units are mm or inch")
+    if dialect is not None and dialect not in DIALECTS:
+        raise diagnostics.fatal(0, f"dialect is {dialect!r}", f"dialects are {', '.join(DIALECTS)}")
     unusable = unusable_file(path, "a CL file")
     if unusable:
         raise InputError(unusable)
     try:
         with path.open("rb", buffering=0) as file:
             survey = _survey(file, diagnostics)
+            if dialect is None:
+                recognized = recognize_dialect(survey.head)
+            else:
+                recognized = Recognition(DIALECTS[dialect], "as it was asked for")
             columns = MoveColumns.allocate(survey.rows)
-            interpreter = ClsfInterpreter(columns, diagnostics, survey.encoding, strict)
+            interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, strict)
             file.seek(survey.bom_bytes)
-            scanner = _Scanner(columns, interpreter, diagnostics)
+            scanner = _Scanner(columns, interpreter, diagnostics, apt=not recognized.dialect.in_sections)
             scanner.read(file, chunk, survey.bom_bytes, progress)
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
@@ -113,9 +128,16 @@ def read_in_chunks(
     unit = interpreter.unit(units)
     if unit != 1.0:
         columns.tip[: scanner.rows] *= unit
-    operations = tuple(assemble_operation(builder, columns, unit, diagnostics) for builder in interpreter.builders)
+    modal_axis = np.array([0.0, 0.0, 1.0])
+    operations = tuple(
+        assemble_operation(builder, columns, unit, modal_axis, diagnostics) for builder in interpreter.builders
+    )
     diagnostics.raise_errors()
-    toolpath = Toolpath(str(path), operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units))
+    toolpath = Toolpath(
+        str(path), operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units), dialect=recognized.dialect.name,
+        recognized=f"{recognized.dialect.title}: {recognized.why}",
+        system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
+    )  # fmt: skip
     for problem in unknown_statement_problems(toolpath):
         diagnostics.remark(problem.line, problem.what, problem.cure)
     return replace(toolpath, remarks=diagnostics.remarks)
@@ -127,12 +149,14 @@ def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:
     bom_bytes = size = 0
     per_byte = 1.0
     complete = lines = False
+    head = b""
     while piece := file.read(_SURVEY_CHUNK):
         if size == 0:
             if piece.startswith((b"\xff\xfe", b"\xfe\xff")):
                 raise diagnostics.fatal(1, "unknown encoding: this is UTF-16", _PLAIN_TEXT)
             bom_bytes = len(_BOM) if piece.startswith(_BOM) else 0
             per_byte = (piece.count(b"\n") + 1) / len(piece)
+            head = piece[bom_bytes:_HEAD]
         if (nul := piece.find(0)) >= 0:
             line = _line_at(file, size + nul)
             raise diagnostics.fatal(line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT)
@@ -147,7 +171,7 @@ def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:
     if size == bom_bytes:
         raise diagnostics.fatal(0, "the file is empty", "write the tool path out of the CAM system again")
     rows = min(1.02 * per_byte * size, size / _MIN_ROW_BYTES)
-    return Survey(bom_bytes, int(rows) + 16, detector.encoding(), complete)
+    return Survey(bom_bytes, int(rows) + 16, detector.encoding(), complete, head)
 
 
 def _line_at(file: BinaryIO, offset: int) -> int:
@@ -167,12 +191,15 @@ class _Scanner:
     line   line that comes next
     """
 
-    def __init__(self, columns: MoveColumns, interpreter: ClsfInterpreter, diagnostics: Diagnostics) -> None:
+    def __init__(
+        self, columns: MoveColumns, interpreter: ClInterpreter, diagnostics: Diagnostics, *, apt: bool
+    ) -> None:
         self.rows = 0
         self.line = 1
         self._columns = columns
         self._interpreter = interpreter
         self._diagnostics = diagnostics
+        self._apt = apt
         self._spans = np.empty((_MAX_SPANS, SPAN_COLUMNS), np.int64)
 
     def read(self, file: BinaryIO, chunk: int, done: int, progress: Callable[[int], None] | None) -> None:
@@ -208,7 +235,7 @@ class _Scanner:
         while at < stop:
             before = at
             at, self.line, self.rows, count = scan(
-                array, at, stop, last, self.line, self.rows, self._columns.points(), self._spans
+                array, at, stop, last, self._apt, self.line, self.rows, self._columns.points(), self._spans
             )
             self._interpret(data, self._spans[:count])
             if self.rows == len(self._columns.line):

@@ -28,14 +28,19 @@ MAKES_ROW = 1
 UNFINISHED = 2
 #: The statement is longer than ``MAX_STATEMENT_BYTES``.
 TOO_LONG = 4
+#: A line that is nothing but a ``$$`` comment.
+COMMENT = 8
 
 
 _TAB, _NEWLINE, _RETURN, _BLANK = 9, 10, 13, 32
-_DOLLAR, _PLUS, _COMMA, _MINUS, _POINT, _SLASH, _ZERO, _NINE = 36, 43, 44, 45, 46, 47, 48, 57
+_DOLLAR, _PLUS, _COMMA, _MINUS, _POINT, _SLASH, _ZERO, _NINE, _ARROW = 36, 43, 44, 45, 46, 47, 48, 57, 62
 
 _GOTO = np.frombuffer(b"GOTO", np.uint8)
 _GODLTA = np.frombuffer(b"GODLTA", np.uint8)
 _GOHOME = np.frombuffer(b"GOHOME", np.uint8)
+_TLON = np.frombuffer(b"TLON", np.uint8)
+_GOFWD = np.frombuffer(b"GOFWD", np.uint8)
+_RETRCT = np.frombuffer(b"RETRCT", np.uint8)
 #: Major words whose text is taken as it stands, dollar signs included.
 _TEXT_MAJORS = (
     np.frombuffer(b"PPRINT", np.uint8),
@@ -46,6 +51,7 @@ _TEXT_MAJORS = (
     np.frombuffer(b"TOOLPATH", np.uint8),
     np.frombuffer(b"STOP", np.uint8),
     np.frombuffer(b"OPSTOP", np.uint8),
+    np.frombuffer(b"REMARK", np.uint8),
 )
 
 
@@ -64,12 +70,13 @@ class PointColumns(NamedTuple):
 
 @kernel(writes="columns spans")
 def scan(
-    data: Bytes, start: int, stop: int, last: bool, line: int, row: int, columns: PointColumns, spans: Ints2
+    data: Bytes, start: int, stop: int, last: bool, apt: bool, line: int, row: int, columns: PointColumns, spans: Ints2
 ) -> tuple[int, int, int, int]:
     """Read the lines of ``data[start:stop]`` until these, the rows or the spans are used up.
 
     data     (b,)   uint8      whole lines: ``data[stop - 1]`` is a newline
     last     the file ends at ``stop``
+    apt      comments are spans as well, since some carry statements, and GOFWD and RETRCT are motions
     line     line of the file that begins at ``start``
     row      first row of ``columns`` to write
     spans    (s, 5) int64      written from 0 on, see ``SPAN_COLUMNS``
@@ -82,21 +89,21 @@ def scan(
     count = 0
     at = start
     while at < stop and count < spans.shape[0] and row < lines.shape[0]:
-        following = _parse_goto(data, at, tip, axis, row)
+        following, continued = _parse_goto(data, at, stop, tip, axis, row)
         if following > 0 and following - at <= MAX_STATEMENT_BYTES:
             lines[row] = line
             row += 1
-            line += 1
+            line += 1 + continued
             at = following
             continue
-        begin, end, line_count, mark = _find_statement(data, at, stop)
+        begin, end, line_count, mark = _find_statement(data, at, stop, apt)
         if mark & UNFINISHED and not last:
             break
         following = _next_line(data, end)
         if following - at > MAX_STATEMENT_BYTES:
             mark = TOO_LONG
         if end > begin or mark:
-            if _makes_row(data, begin, end):
+            if mark != COMMENT and _makes_row(data, begin, end, apt):
                 mark |= MAKES_ROW
             _write_span(spans[count], begin, end, line, row, mark)
             count += 1
@@ -124,29 +131,34 @@ def _reserve_row(columns: PointColumns, row: int, line: int) -> None:
 
 
 @inlined
-def _parse_goto(data: Bytes, begin: int, tip: Floats2, axis: Floats2, row: int) -> int:
-    """Parse a plain ``GOTO/x,y,z[,i,j,k]`` line into a row; return the start of the next line, or 0 if it is not plain.
+def _parse_goto(data: Bytes, begin: int, stop: int, tip: Floats2, axis: Floats2, row: int) -> tuple[int, int]:
+    """Parse a plain ``GOTO/x,y,z[,i,j,k]`` into a row; return the start of the next line, or 0 if it is not plain.
 
-    Blanks may stand around the numbers, and a ``$$`` comment behind them. No bounds are checked: the newline at the
-    end of the buffer stops every loop.
+    Blanks may stand around the numbers, a ``$$`` comment behind them, and the statement may be continued after a
+    comma; the second value returned counts these lines. Few bounds are checked: the newline at the end of the buffer
+    stops every loop.
     """
+    continued = 0
     at = unsigned(begin)
     for letter in _GOTO:
         if data[at] != letter:
-            return 0
+            return 0, 0
         at += ONE
     at = _skip_spaces(data, at)
     if data[at] != _SLASH:
-        return 0
+        return 0, 0
     count = 0
     while count == 0 or data[at] == _COMMA:
         at = _skip_spaces(data, at + ONE)
+        if data[at] == _DOLLAR:
+            at = _continued_line(data, at, stop)
+            continued += 1
         negative = data[at] == _MINUS
         if negative or data[at] == _PLUS:
             at += ONE
         mantissa, digits, decimals, _, at = parse_decimal(data, at)
         if digits == 0 or digits > MAX_DIGITS or mantissa > MAX_EXACT or count == 6:
-            return 0
+            return 0, 0
         value = mantissa / POWERS_OF_TEN[decimals]
         if negative:
             value = -value
@@ -159,8 +171,8 @@ def _parse_goto(data: Bytes, begin: int, tip: Floats2, axis: Floats2, row: int) 
     if count == 3:
         axis[row, 0] = axis[row, 1] = axis[row, 2] = np.nan
     elif count != 6:
-        return 0
-    return _next_line_after_comment(data, at)
+        return 0, 0
+    return _next_line_after_comment(data, at), continued
 
 
 @inlined
@@ -169,6 +181,17 @@ def _skip_spaces(data: Bytes, at: int) -> int:
     while data[at] == _BLANK:
         at += ONE
     return at
+
+
+@inner
+def _continued_line(data: Bytes, at: int, stop: int) -> int:
+    """First byte behind blanks in the line after the continuation sign at ``at`` (uint64); ``at`` if there is none."""
+    end = _skip_spaces(data, at + ONE)
+    if data[end] == _RETURN:
+        end += ONE
+    if data[end] != _NEWLINE or signed(end + ONE) >= stop:
+        return at
+    return _skip_spaces(data, end + ONE)
 
 
 @inlined
@@ -183,10 +206,15 @@ def _next_line_after_comment(data: Bytes, at: int) -> int:
 
 
 @inner
-def _find_statement(data: Bytes, at: int, stop: int) -> tuple[int, int, int, int]:
+def _find_statement(data: Bytes, at: int, stop: int, apt: bool) -> tuple[int, int, int, int]:
     """Begin, end, lines and mark of the statement at ``at``, without blanks and comment around it; it may be empty."""
     while _is_blank(data[at]) and data[at] != _NEWLINE:
         at += 1
+    if apt and data[at] == _DOLLAR and data[at + 1] == _DOLLAR:
+        if data[at + 2] != _MINUS or data[at + 3] != _ARROW:
+            content, end = _find_content_end(data, at, True)
+            return at, content, 1, COMMENT
+        at += 2  # "$$-> WORD / ..." is a statement, which may be continued
     begin = at
     content, end = _find_content_end(data, at, False)
     dollars = data[end] == _DOLLAR or (content > at and data[content - 1] == _DOLLAR)
@@ -243,11 +271,21 @@ def _skip_word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
 
 
 @inner
-def _makes_row(data: Bytes, begin: int, end: int) -> bool:
-    """Whether a statement is a motion: GOTO/, GODLTA/, or GOHOME/ with a number."""
+def _makes_row(data: Bytes, begin: int, end: int, apt: bool) -> bool:
+    """Whether a statement is a motion: GOTO/, GODLTA/, GOHOME/ with a number; in APT also [TLON,]GOFWD/ and RETRCT."""
     for word in (_GOTO, _GODLTA):
         at = _skip_word(data, begin, end, word)
         if at and at < end and data[at] == _SLASH:
+            return True
+    if apt:
+        at = _skip_word(data, begin, end, _TLON)
+        if at and at < end and data[at] == _COMMA:
+            at += 1
+        at = _skip_word(data, max(at, begin), end, _GOFWD)
+        if at and at < end and data[at] == _SLASH:
+            return True
+        at = _skip_word(data, begin, end, _RETRCT)
+        if at and (at >= end or data[at] == _SLASH):
             return True
     at = _skip_word(data, begin, end, _GOHOME)
     if at == 0 or at >= end or data[at] != _SLASH:

@@ -2,21 +2,37 @@
 
 from dataclasses import dataclass, field, replace
 
-from trunnion.cl.builder import MoveColumns, OperationBuilder, SurfaceSpeed
-from trunnion.cl.diagnostics import Diagnostics
+from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBuilder, SurfaceSpeed
+from trunnion.cl.diagnostics import Diagnostics, StatementError
+from trunnion.cl.dialect import Dialect
 from trunnion.cl.statement import Statement
-from trunnion.model.toolpath import CycleOn, Event, SpindleOn, UnknownStatement
+from trunnion.model.toolpath import CycleOff, CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
 
 MM_PER_INCH = 25.4
+MM_PER_FOOT = 304.8
 
 #: Feed words: mm in the length unit that they name, and whether the feed is per revolution.
-FEED_UNITS = {"MMPM": (1.0, False), "MMPR": (1.0, True), "IPM": (MM_PER_INCH, False), "IPR": (MM_PER_INCH, True)}
+FEED_UNITS = {
+    "MMPM": (1.0, False),
+    "MMPR": (1.0, True),
+    "IPM": (MM_PER_INCH, False),
+    "IPR": (MM_PER_INCH, True),
+    "FPM": (MM_PER_FOOT, False),
+    "FPR": (MM_PER_FOOT, True),
+}
+
+#: Feed words without a unit of their own: feeds in the length unit of the file.
+FILE_UNIT_FEEDS = {"PERMIN": False, "PERREV": True}
+
+#: Numbers of a coordinate system are printed with five decimals or more.
+_SAME_SYSTEM = 2e-5
 
 
 @dataclass(slots=True)
 class ReaderState:
     """What the handlers of statements (``trunnion.cl.statements``) read and change.
 
+    dialect          what the words of the file mean
     strict           an unknown statement is an error
     builders         the operations that are complete
     builder          the operation being read; outside of operations one without a name, which the next one takes over
@@ -33,10 +49,19 @@ class ReaderState:
     first_inch_feed  line of the first feed in inches, 0 if there is none
     spindle, cycle   last ones of the operation, which SPINDL/ON and CYCLE/ON repeat
     spline_reported  the file has splines, and an error says so
+    tool             the last LoadTool of the file
+    cutter_row       row before which a statement last told the form or the name of a tool, -1 if none has
+    no_axis          the tool axis of a point that gives none
+    direction        the direction of INDIRV, for the arc that follows
+    clearance        height of the clearance plane
+    system           the coordinate system of the points as the file gives it, empty if it gives none
+    matrix           lines of a coordinate system in comments, while they are collected
+    note             line and text of the last note
     """
 
     columns: MoveColumns
     diagnostics: Diagnostics
+    dialect: Dialect
     strict: bool
     builders: list[OperationBuilder] = field(default_factory=list)
     builder: OperationBuilder = field(default_factory=lambda: OperationBuilder("", 0, 0))
@@ -55,6 +80,20 @@ class ReaderState:
     spindle: SpindleOn | SurfaceSpeed | None = None
     cycle: CycleOn | None = None
     spline_reported: bool = False
+    tool: LoadTool | None = None
+    cutter_row: int = -1
+    no_axis: NoAxis = NoAxis.MODAL
+    direction: tuple[float, ...] | None = None
+    clearance: float | None = None
+    system: tuple[float, ...] = ()
+    matrix: list[str] | None = None
+    note: tuple[int, str] | None = None
+
+    def __post_init__(self) -> None:
+        self.no_axis = self.dialect.no_axis
+        if not self.dialect.in_sections:
+            self.builder.name, self.builder.line = "OPERATION 1", 1
+            self.builder.axes.append(AxisStatement(0, 0, None, self.no_axis))
 
     @property
     def operation_row(self) -> int:
@@ -64,6 +103,62 @@ class ReaderState:
     def add(self, event: Event) -> None:
         """Add an event to the operation."""
         self.builder.events.append(event)
+
+    def split_operation(self) -> None:
+        """Begin another operation here, where the dialect has no sections; feed, tool and tool axis go on.
+
+        An operation without rows goes on itself.
+        """
+        before = self.builder
+        if self.dialect.in_sections or self.row == before.first:
+            return
+        at = self.operation_row
+        self.builder = OperationBuilder(
+            f"OPERATION {len(self.builders) + 2}", self.line, self.row, continues=True, tool=before.tool,
+            frame=before.frame, intol=before.intol, outtol=before.outtol,
+            feeds=[feed._replace(row=0) for feed in before.feeds[-1:]],
+            rapids=[0] if at in before.rapids else [],
+            starts=[start._replace(row=0) for start in before.starts if start.row == at],
+            axes=[AxisStatement(0, self.line, None, self.no_axis)],
+        )  # fmt: skip
+        cycles = [event for event in before.events if isinstance(event, CycleOn | CycleOff)]
+        if cycles and isinstance(cycles[-1], CycleOn):
+            self.add(replace(cycles[-1], row=0))
+        before.stop = self.row
+        self.builders.append(before)
+
+    def name_operation(self, name: str) -> None:
+        """Begin an operation with a name."""
+        self.split_operation()
+        self.builder.name, self.builder.line = name, self.line
+
+    def load_tool(self, number: int, adjust: int) -> None:
+        """Load a tool, at the beginning of an operation; a tool that is loaded already is not loaded again."""
+        if not self.dialect.in_sections:
+            if self.tool is not None and self.tool.number == number and adjust in (0, self.tool.adjust):
+                return
+            self.split_operation()
+            events = self.builder.events
+            events[:] = [event for event in events if not isinstance(event, LoadTool) or event.number != number]
+        self.tool = LoadTool(self.operation_row, self.line, number, adjust)
+        self.add(self.tool)
+
+    def set_axis(self, axis: tuple[float, float, float] | None, no_axis: NoAxis) -> None:
+        """Set the tool axis of the rows that follow, and that of points that give none."""
+        self.no_axis = no_axis
+        self.builder.axes.append(AxisStatement(self.operation_row, self.line, axis, no_axis))
+
+    def set_system(self, numbers: tuple[float, ...]) -> None:
+        """Note the coordinate system of the points in that of the model, which must stay the same in a file.
+
+        Whether rows or columns of such a matrix are its axes is not settled, so points of two cannot be put together.
+        """
+        if self.system and any(abs(a - b) > _SAME_SYSTEM for a, b in zip(self.system, numbers, strict=True)):
+            raise StatementError(
+                "the coordinate system of the points changes within the file",
+                "output one file for each coordinate system, and post them one at a time",
+            )
+        self.system = numbers
 
     def note_feed_unit(self, word: str) -> None:
         """Remember the first line with a feed in mm, and in inches: they tell the unit of a file without UNITS."""

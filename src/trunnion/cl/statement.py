@@ -8,10 +8,10 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.wording import counted
 
 _TEXT_STATEMENT = re.compile(
-    rb"(?:(TOOL[ \t]*PATH|PPRINT|INSERT|DISPLA?Y|PARTNO|TPRINT)|(STOP|OPSTOP)(?=[ \t]*(?:/|\Z)))[ \t]*(/?)(.*)",
+    rb"(?:(TOOL[ \t]*PATH|PPRINT|INSERT|DISPLA?Y|PARTNO|TPRINT|REMARK)|(STOP|OPSTOP)(?=[ \t]*(?:/|\Z)))[ \t]*(/?)(.*)",
     re.IGNORECASE | re.DOTALL,
 )
-_TEXT_FIRST_BYTES = frozenset(b"TPIDSOtpidso")
+_TEXT_FIRST_BYTES = frozenset(b"TPIDSORtpidsor")
 _CONTINUATION = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n")
 _CONTROL_CHARACTER = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _NUMBER_FIRST = frozenset("+-.0123456789")

@@ -14,6 +14,10 @@ def _key_value(text: str) -> tuple[str, str]:
     return key, value
 
 
+#: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
+DIALECTS = ("clsf", "ncl", "solidworks", "catia", "apt")
+
+
 def _tolerance(text: str) -> float:
     try:
         value = float(text)
@@ -64,7 +68,10 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
-    return parser.parse_args(list(argv))
+    arguments = parser.parse_args(list(argv))
+    if getattr(arguments, "dialect", None) and "settings" in arguments:
+        arguments.settings = [*arguments.settings, ("dialect", arguments.dialect)]
+    return arguments
 
 
 def _add_post(parser: argparse.ArgumentParser) -> None:
@@ -78,6 +85,9 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
         help="what templates print (title, part, date, method, …), or how to read, place and plan; may be repeated",
     )  # fmt: skip
     _add_subprograms(parser, "a template")
+    parser.add_argument(
+        "--dialect", choices=DIALECTS, help="what the CL files are written in; by default their content decides"
+    )
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors at once")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
     parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")
@@ -108,6 +118,7 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--offset", metavar="G", help="work offset of the program; G54 where there is a CL file")
     parser.add_argument("--edge", type=int, metavar="D", help="cutting edge under which the tool works; with --cl 1")
     parser.add_argument("--units", choices=("mm", "inch"), help="length unit of CL files that do not state it")
+    parser.add_argument("--dialect", choices=DIALECTS, help="what the CL files are written in")
     parser.add_argument(
         "--frame", choices=("first", "absolute"), default="first",
         help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",

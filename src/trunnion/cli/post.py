@@ -46,14 +46,17 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
             observer=Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
         )
         written += [*result.subprograms, *([] if result.output is None else [result.output])]
-        _print_summary(target, result)
+        _print_summary(target, result, arguments.explain)
     return 0
 
 
-def _print_summary(target: str, result: PostResult) -> None:
-    """Name the files of a program."""
+def _print_summary(target: str, result: PostResult, explain: bool) -> None:
+    """Name the files of a program, and the dialects of CL files where they are not NX's."""
     if result.output is None:
         return
+    for toolpath in result.toolpaths:
+        if toolpath.dialect != "clsf" or explain:
+            print(f"{toolpath.file}: read as {toolpath.recognized}", file=sys.stderr)
     rows = sum(len(motion.operation.moves) for motion in result.motions)
     operations = sum(motion.starts_operation for motion in result.motions)
     print(f"{target}: {counted(rows, 'point')}, {counted(operations, 'operation')}", file=sys.stderr)

@@ -36,6 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
         work_offset=arguments.offset,
         edge=arguments.edge,
         units=arguments.units,
+        dialect=arguments.dialect,
         frame=arguments.frame,
         zero=arguments.zero or None,
         tool_length=arguments.tool_length or None,

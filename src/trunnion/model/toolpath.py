@@ -317,6 +317,10 @@ class Toolpath:
     remarks     warnings of the reader
     unit        length unit of the file, mm
     states_unit  the file says its unit, or its feeds do; else mm are assumed
+    dialect     what the file is written in, a key of ``trunnion.cl.dialects.DIALECTS``
+    recognized  the title of the dialect, and by what it was recognized
+    system      the coordinate system of the points in that of the model where the file gives it and its meaning is not
+                settled: 3 rows of 4 numbers, mm
     """
 
     file: str
@@ -325,6 +329,9 @@ class Toolpath:
     remarks: tuple[Problem, ...] = field(default=())
     unit: float = 1.0
     states_unit: bool = True
+    dialect: str = "clsf"
+    recognized: str = ""
+    system: tuple[float, ...] = ()
 
     def __repr__(self) -> str:
         """Return what matters in a notebook: the columns would fill pages."""

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 MAJOR = re.compile(r"GOTO/|GODLTA/|GOHOME/[-+.0-9]")
-TEXT = re.compile(r"PPRINT|INSERT|DISPL|PARTNO|TPRINT|TOOLPATH|STOP|OPSTOP")
+TEXT = re.compile(r"PPRINT|INSERT|DISPL|PARTNO|TPRINT|TOOLPATH|STOP|OPSTOP|REMARK")
 
 
 def blank(text: str) -> str:
@@ -52,7 +52,8 @@ def is_row(statement: str) -> bool:
 
 def numbers(statement: str) -> list[float]:
     """The numbers of a GOTO as Python reads them."""
-    return [float(field) for field in statement.partition("/")[2].split(",")]
+    plain = re.sub(r"\$[ \t\r]*\n", "", statement)
+    return [float(field) for field in plain.partition("/")[2].split(",")]
 
 
 def settle(vectors: Sequence[list[float] | None], seed: list[float]) -> list[list[float]]:

@@ -4,18 +4,12 @@ In:     a statement, and the state of the reader with its line and row.
 Out:    the state with what the statement says, in units of the file.
 """
 
-from collections.abc import Callable
-
-from trunnion.cl.state import ReaderState
-from trunnion.cl.statement import Statement
+from trunnion.cl.dialect import Handler
 from trunnion.cl.statements import cycles, events, motion, operations
 
-__all__ = ["HANDLERS", "Handler"]
+__all__ = ["HANDLERS"]
 
-#: Raises ``StatementError`` if the statement cannot be used.
-Handler = Callable[[ReaderState, Statement], None]
-
-#: Every known statement, by its major word.
+#: Every statement of an NX CLSF, by its major word. Those of other dialects are in ``trunnion.cl.dialects``.
 HANDLERS: dict[str, Handler] = {
     "TOOLPATH": operations.tool_path,
     "END-OF-PATH": operations.end_of_path,

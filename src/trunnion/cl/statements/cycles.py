@@ -1,20 +1,20 @@
 """CYCLE: mode words, then couplets of a word and its numbers, in any order."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from trunnion.cl.assemble import CYCLE_LENGTHS
 from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.dialect import CycleParts
 from trunnion.cl.state import FEED_UNITS, ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.model.toolpath import CycleOff, CycleOn
 
-_MODES = frozenset(
-    {"DRILL", "DEEP", "BRKCHP", "CSINK", "TAP", "BORE", "DRAG", "NODRAG", "MANUAL", "FACE", "REAM", "THRU", "BACK"}
-)
 #: Words that need a number.
 _NUMBER_WORDS = CYCLE_LENGTHS | {"DWELL", "TLANGL", "NODRAG"}
 #: Words that may stand without a number.
 _BARE_WORDS = frozenset({"AUTO", "MANUAL", "REV", "OPTION"})
+#: Stands for the unit of a feed until that follows.
+_BARE_FEED = "FEED"
 
 
 def cycle(state: ReaderState, statement: Statement) -> None:
@@ -33,21 +33,13 @@ def cycle(state: ReaderState, statement: Statement) -> None:
     state.add(state.cycle)
 
 
-@dataclass(slots=True)
-class _Parts:
-    """The fields of a ``CycleOn`` while they are collected."""
-
-    mode: list[str] = field(default_factory=list)
-    couplets: list[tuple[str, tuple[float, ...]]] = field(default_factory=list)
-    words: list[tuple[str, str]] = field(default_factory=list)
-
-
-def _parse(state: ReaderState, statement: Statement) -> _Parts:
+def _parse(state: ReaderState, statement: Statement) -> CycleParts:
     values = statement.values
     if not values or not isinstance(values[0], str):
         what = "CYCLE without a word for its kind"
         raise StatementError(what, "write CYCLE/DRILL, CYCLE/TAP, ..., or CYCLE/OFF")
-    found = _Parts()
+    dialect = state.dialect.cycles
+    found = CycleParts()
     at = 0
     while at < len(values):
         word = values[at]
@@ -58,28 +50,53 @@ def _parse(state: ReaderState, statement: Statement) -> _Parts:
         while stop < len(values) and not isinstance(values[stop], str):
             stop += 1
         given = numbers("CYCLE", values[at + 1 : stop])
-        if word in FEED_UNITS:
+        if why := dialect.refused.get(word):
+            raise StatementError(f"CYCLE with {word} cannot be read: {why}", "output the holes as motion")
+        if word in FEED_UNITS and given and len(given) > 1:
+            raise StatementError(f"CYCLE has {len(given)} numbers behind {word}", "name each number of the cycle")
+        if word in FEED_UNITS and not given and found.couplets and found.couplets[-1][0] == _BARE_FEED:
+            _feed(state, found, word, found.couplets.pop()[1])
+        elif word in FEED_UNITS:
             _feed(state, found, word, given)
-        elif word in _MODES and not found.couplets and not found.words:
-            found.mode.append(word)
-            if given:
-                found.couplets.append((word, given))
+        elif word in dialect.modes and not found.couplets and not found.words:
+            found.mode += dialect.modes[word]
+            _positions(state, found, word, given)
         elif not given and (used := _word_pair(found, word, values[stop : stop + 2])):
             stop += used
         else:
-            _couplet(state, statement, found, word, given)
+            _couplet(state, statement, found, dialect.words.get(word, word), given)
         at = stop
+    if any(word == _BARE_FEED for word, _ in found.couplets):
+        raise StatementError("CYCLE has a number too many, or a feed without a unit", "name each number of the cycle")
+    if dialect.settle is not None:
+        dialect.settle(found)
     return found
 
 
-def _feed(state: ReaderState, found: _Parts, word: str, given: tuple[float, ...]) -> None:
+def _positions(state: ReaderState, found: CycleParts, word: str, given: tuple[float, ...]) -> None:
+    """Take the numbers directly behind a mode."""
+    positions = state.dialect.cycles.positions
+    if not given:
+        return
+    if not positions and state.dialect.in_sections:
+        found.couplets.append((word, given))  # such as NODRAG,angle
+        return
+    if not len(positions) <= len(given) <= len(positions) + 1 or not positions:
+        what = f"CYCLE/{word} has numbers without words, which mean something else in each system"
+        raise StatementError(what, "name each number of the cycle, or output the holes as motion")
+    found.couplets += [(name, (number,)) for name, number in zip(positions, given, strict=False)]
+    if len(given) > len(positions):
+        found.couplets.append((_BARE_FEED, given[-1:]))
+
+
+def _feed(state: ReaderState, found: CycleParts, word: str, given: tuple[float, ...]) -> None:
     factor, per_rev = FEED_UNITS[word]
     state.note_feed_unit(word)
     (feed,) = numbers(f"CYCLE {word}", given, 1)
     found.couplets.append(("MMPR" if per_rev else "MMPM", (feed * factor,)))
 
 
-def _word_pair(found: _Parts, word: str, following: tuple[str | float, ...]) -> int:
+def _word_pair(found: CycleParts, word: str, following: tuple[str | float, ...]) -> int:
     """Take RTRCTO,AUTO, RTRCTO,MANUAL or DWELL,REV,n; return how many of the following values belong to it."""
     after = following[0] if following else ""
     if word == "RTRCTO" and after in ("AUTO", "MANUAL"):
@@ -93,10 +110,10 @@ def _word_pair(found: _Parts, word: str, following: tuple[str | float, ...]) -> 
     return 0
 
 
-def _couplet(state: ReaderState, statement: Statement, found: _Parts, word: str, given: tuple[float, ...]) -> None:
+def _couplet(state: ReaderState, statement: Statement, found: CycleParts, word: str, given: tuple[float, ...]) -> None:
     """Take a word with the numbers behind it, or without any."""
     if given:
-        if word not in _NUMBER_WORDS:
+        if word not in _NUMBER_WORDS | state.dialect.cycles.numbers:
             state.note_unknown(statement, f"CYCLE with {word} is not known", word)
         found.couplets.append((word, given))
         return

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from trunnion.cl.builder import FeedChange, SurfaceSpeed
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.state import FEED_UNITS, ReaderState
+from trunnion.cl.state import FEED_UNITS, FILE_UNIT_FEEDS, MM_PER_FOOT, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.model.toolpath import (
     BlockSkip,
@@ -15,7 +15,6 @@ from trunnion.model.toolpath import (
     CutterComp,
     Dwell,
     Insert,
-    LoadTool,
     Message,
     SelectTool,
     Sense,
@@ -25,10 +24,8 @@ from trunnion.model.toolpath import (
     Stop,
 )
 
-_MM_PER_FOOT = 304.8
-
 #: Words of surface speeds: mm/min in one unit.
-_SURFACE_SPEEDS = {"SFM": _MM_PER_FOOT, "SMM": 1000.0}
+_SURFACE_SPEEDS = {"SFM": MM_PER_FOOT, "SMM": 1000.0}
 #: The word of a feed that is one over the minutes of a move.
 _INVERSE = "INVERS"
 
@@ -47,6 +44,10 @@ def fedrat(state: ReaderState, statement: Statement) -> None:
     for word in statement.words():
         if word == _INVERSE:
             state.feed_factor, state.feed_per_rev, state.feed_inverse, state.bare_feeds = 1.0, False, True, False
+            continue
+        if word in FILE_UNIT_FEEDS:
+            state.feed_factor, state.feed_per_rev = 1.0, FILE_UNIT_FEEDS[word]
+            state.feed_inverse, state.bare_feeds = False, True
             continue
         if word not in FEED_UNITS:
             cure = "write the feed in MMPM, MMPR, IPM or IPR, or INVERS,f with f as one over the minutes of each move"
@@ -132,8 +133,10 @@ def load(state: ReaderState, statement: Statement) -> None:
     if rest := [value if isinstance(value, str) else f"{value:g}" for value in values[2:]]:
         words = [value for value in values[2:] if isinstance(value, str)]
         state.note_unknown(statement, f"{statement.major}/TOOL with {','.join(rest)} is not known", *words)
-    row, line = state.operation_row, state.line
-    state.add(SelectTool(row, line, number) if statement.major == "SELECT" else LoadTool(row, line, number, adjust))
+    if statement.major == "SELECT":
+        state.add(SelectTool(state.operation_row, state.line, number))
+    else:
+        state.load_tool(number, adjust)
 
 
 def loadtl(state: ReaderState, statement: Statement) -> None:
@@ -185,6 +188,14 @@ def stop(state: ReaderState, statement: Statement) -> None:
 def message(state: ReaderState, statement: Statement) -> None:
     """Write a text into the program, or show it to the operator (DISPLY)."""
     state.add(Message(state.operation_row, state.line, statement.text, statement.major in ("DISPLY", "DISPLAY")))
+
+
+def quoted_message(state: ReaderState, statement: Statement) -> None:
+    """Write a text into the program, without the quotation marks in which some systems put it."""
+    text = statement.text
+    if len(text) > 1 and text[0] == text[-1] == "'":
+        text = text[1:-1]
+    message(state, statement._replace(text=text))
 
 
 def insert(state: ReaderState, statement: Statement) -> None:

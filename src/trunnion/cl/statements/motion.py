@@ -1,13 +1,13 @@
 """Statements of motion: points, circles, and motion that cannot be read."""
 
-from trunnion.cl.builder import CircleStatement, FromStatement
+from trunnion.cl.builder import CircleStatement, FromStatement, NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole, numbers
 from trunnion.model.toolpath import GoHome
 
 #: No helix has more turns; a larger TIMES is a mistake in the file.
-_MAX_TURNS = 10000
+MAX_TURNS = 10000
 
 
 def rapid(state: ReaderState, statement: Statement) -> None:
@@ -19,22 +19,23 @@ def rapid(state: ReaderState, statement: Statement) -> None:
 
 def goto(state: ReaderState, statement: Statement) -> None:
     """Write a row. The scan reads plain GOTO lines by itself; this is for all others."""
-    _write_row(state, statement.numbers(3, 6))
+    write_row(state, statement.numbers(3, 6))
 
 
 def godlta(state: ReaderState, statement: Statement) -> None:
     """Write a row relative to the last point."""
     x, y, z = statement.numbers(3)
-    start = _current_tip(state)
+    start = current_tip(state)
     if start is None:
         raise StatementError("GODLTA without a point to go from", "write FROM/ or GOTO/ before it")
-    _refuse_in_circle(state, "GODLTA")
-    _write_row(state, (start[0] + x, start[1] + y, start[2] + z))
+    refuse_in_circle(state, "GODLTA")
+    write_row(state, (start[0] + x, start[1] + y, start[2] + z))
+    keep_axis(state)
 
 
 def gohome(state: ReaderState, statement: Statement) -> None:
     """Write a rapid row; without a point, go to the home of the machine."""
-    _refuse_in_circle(state, "GOHOME")
+    refuse_in_circle(state, "GOHOME")
     if not statement.values:
         state.add(GoHome(state.operation_row, state.line))
         return
@@ -42,7 +43,7 @@ def gohome(state: ReaderState, statement: Statement) -> None:
         state.note_unknown(statement, f"GOHOME/{statement.listed()} is not known", *statement.words())
         return
     state.builder.rapids.append(state.operation_row)
-    _write_row(state, statement.numbers(3, 6))
+    write_row(state, statement.numbers(3, 6))
 
 
 def from_(state: ReaderState, statement: Statement) -> None:
@@ -56,7 +57,6 @@ def circle(state: ReaderState, statement: Statement) -> None:
     """Make the next row an arc."""
     if not state.in_operation:
         raise StatementError("CIRCLE outside any operation", "write TOOL PATH/name,TOOL,tool before it")
-    _refuse_in_circle(state, "another CIRCLE")
     values = statement.values
     turns = 1.0
     if "TIMES" in values:
@@ -66,9 +66,28 @@ def circle(state: ReaderState, statement: Statement) -> None:
     given = numbers("CIRCLE", values, 7, 8, 11, 12)
     if len(given) in (8, 12):
         turns = given[-1]
-    if not is_whole(turns, 1) or turns > _MAX_TURNS:
+    if not is_whole(turns, 1) or turns > MAX_TURNS:
         raise StatementError(f"CIRCLE has {turns:g} turns", "write TIMES,n with n = 1, 2, 3 ...")
-    state.builder.circles.append(CircleStatement(state.operation_row, state.line, given[:7], int(turns)))
+    begin_circle(state, given[:7], int(turns))
+
+
+def plain_circle(state: ReaderState, statement: Statement) -> None:
+    """Make the next row an arc: centre, normal and radius."""
+    begin_circle(state, statement.numbers(7), 1)
+
+
+def begin_circle(state: ReaderState, numbers: tuple[float, ...], turns: int) -> None:
+    """Make the next row an arc, or this one if the statement is a motion.
+
+    numbers  xc, yc, zc, i, j, k, r; r is NaN if it is the distance of the start point
+    turns    turns that the arc begins
+    """
+    refuse_in_circle(state, "another CIRCLE")
+    if state.operation_row == 0 and state.builder.continues:
+        start = current_tip(state)
+        if start is not None and not state.builder.starts:
+            state.builder.starts.append(FromStatement(0, state.line, start, None))
+    state.builder.circles.append(CircleStatement(state.operation_row, state.line, numbers, turns))
 
 
 def unsupported(state: ReaderState, statement: Statement) -> None:
@@ -82,7 +101,7 @@ def unsupported(state: ReaderState, statement: Statement) -> None:
     )
 
 
-def _write_row(state: ReaderState, values: tuple[float, ...]) -> None:
+def write_row(state: ReaderState, values: tuple[float, ...]) -> None:
     """Write the row that the scan has reserved; the scan has set its axis to NaN, that is "not given"."""
     if not state.has_row:
         raise StatementError("a motion without coordinates", "write GOTO/x,y,z or GOTO/x,y,z,i,j,k")
@@ -91,18 +110,24 @@ def _write_row(state: ReaderState, values: tuple[float, ...]) -> None:
         state.columns.axis[state.row] = values[3:]
 
 
-def _current_tip(state: ReaderState) -> tuple[float, float, float] | None:
-    """The last point of the operation; None before the first."""
+def keep_axis(state: ReaderState) -> None:
+    """Give the row of a motion that cannot give a tool axis that of the row before it, and never (0, 0, 1)."""
+    if state.no_axis is NoAxis.Z and (state.operation_row or state.builder.continues):
+        state.columns.axis[state.row] = state.columns.axis[max(state.row - 1, 0)]
+
+
+def current_tip(state: ReaderState) -> tuple[float, float, float] | None:
+    """The last point, of the operation before if this one continues it; None before the first."""
     starts = state.builder.starts
     if starts and starts[-1].row == state.operation_row:
         return starts[-1].tip
-    if state.operation_row == 0:
+    if state.row == 0 or (state.operation_row == 0 and not state.builder.continues):
         return None
     x, y, z = state.columns.tip[state.row - 1].tolist()
     return x, y, z
 
 
-def _refuse_in_circle(state: ReaderState, what: str) -> None:
+def refuse_in_circle(state: ReaderState, what: str) -> None:
     """Refuse ``what`` in place of the end point of an arc."""
     circles = state.builder.circles
     if circles and circles[-1].row == state.operation_row:

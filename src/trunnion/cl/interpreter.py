@@ -1,16 +1,17 @@
-"""The interpreter of an NX CLSF: statements one after the other become operations, and the file's length unit.
+"""The interpreter of a CL file: statements one after the other become operations, and the file's length unit.
 
-The meaning of each statement is in ``trunnion.cl.statements``.
+The meaning of each statement is in ``trunnion.cl.statements``; which words have it, in ``trunnion.cl.dialects``.
 """
 
+import re
 from dataclasses import replace
 
 from trunnion.cl.builder import MoveColumns, OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics, StatementError
-from trunnion.cl.scan import MAKES_ROW
+from trunnion.cl.dialect import Dialect, Handler
+from trunnion.cl.scan import COMMENT, MAKES_ROW
 from trunnion.cl.state import MM_PER_INCH, ReaderState
 from trunnion.cl.statement import Statement, parse
-from trunnion.cl.statements import HANDLERS, Handler
 from trunnion.cl.statements.operations import LENGTH_UNITS
 
 #: Statements no longer than this are likely to come again, and their parsed form is kept; at most so many.
@@ -21,14 +22,20 @@ _CACHE_SIZE = 4096
 _MAX_UNKNOWN_STATEMENTS = 1000
 
 _NOT_CL = "not a CL file: no statement in it is known"
-_GIVE_CL = "give an NX CLSF (*.cls)"
+_GIVE_CL = "give a CL file: an NX CLSF, APTSOURCE, NCL or other APT CL data"
+
+#: What stands for a word that is none.
+_NUMBER = re.compile(r"[-+.]?[0-9]")
 
 
-class ClsfInterpreter:
+class ClInterpreter:
     """Interprets the statements of one file."""
 
-    def __init__(self, columns: MoveColumns, diagnostics: Diagnostics, encoding: str, strict: bool) -> None:
-        self._state = ReaderState(columns, diagnostics, strict)
+    def __init__(
+        self, columns: MoveColumns, diagnostics: Diagnostics, dialect: Dialect, encoding: str, strict: bool
+    ) -> None:
+        self._state = ReaderState(columns, diagnostics, dialect, strict)
+        self._dialect = dialect
         self._diagnostics = diagnostics
         self._encoding = encoding
         self._known_statements = 0
@@ -45,6 +52,11 @@ class ClsfInterpreter:
         """Name of the part."""
         return self._state.part
 
+    @property
+    def system(self) -> tuple[float, ...]:
+        """The coordinate system of the points in that of the model as the file has it; empty if it has none."""
+        return self._state.system
+
     def interpret(self, raw: bytes, line: int, row: int, mark: int) -> None:
         """Interpret one statement.
 
@@ -57,6 +69,10 @@ class ClsfInterpreter:
         self._state.row = row
         self._state.has_row = mark & MAKES_ROW != 0
         try:
+            if mark & COMMENT:
+                if self._dialect.comment is not None:
+                    self._dialect.comment(self._state, raw[2:].decode(self._encoding, "replace").rstrip())
+                return
             handler, statement = self._parse_cache.get(raw) or self._look_up(raw)
             if handler is None:
                 self._unknown_statement(statement)
@@ -75,7 +91,10 @@ class ClsfInterpreter:
         """
         state = self._state
         state.row = row
-        if state.in_operation:
+        if not self._dialect.in_sections:
+            if row > state.builder.first:
+                state.close_operation()
+        elif state.in_operation:
             builder = state.builder
             what = f"operation {builder.name} has no END-OF-PATH before the end of the file"
             if not complete:
@@ -124,7 +143,7 @@ class ClsfInterpreter:
 
     def _look_up(self, raw: bytes) -> tuple[Handler | None, Statement]:
         statement = parse(raw, self._encoding)
-        entry = HANDLERS.get(statement.major), statement
+        entry = self._dialect.handlers.get(statement.major), statement
         if len(raw) <= _CACHED_STATEMENT_BYTES and len(self._parse_cache) < _CACHE_SIZE:
             self._parse_cache[raw] = entry
         return entry
@@ -135,4 +154,19 @@ class ClsfInterpreter:
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
             raise self._diagnostics.fatal(0, _NOT_CL, _GIVE_CL)
+        if not self._dialect.in_sections:
+            _refuse_no_word(statement)
         self._state.note_unknown(statement, f"{statement.major or 'a statement without a word'} is not known")
+
+
+def _refuse_no_word(statement: Statement) -> None:
+    """Refuse a statement without a word: it may be a motion."""
+    name = statement.major
+    if "=" in name:
+        what = f"{name.partition('=')[0]} is defined here: this is an APT part program and not CL data"
+        raise StatementError(what, "run it through the APT system, and give its CL data")
+    if name.isdigit() and "/" in statement.source:
+        what = f"the word is the number {name}, and numbers of words differ from system to system"
+        raise StatementError(what, "output the CL data as text with words")
+    if _NUMBER.match(name):
+        raise StatementError("numbers without a word", "write GOTO/ before each point, and $ where a line goes on")

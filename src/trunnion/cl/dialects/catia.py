@@ -1,0 +1,69 @@
+"""CATIA V5 and 3DEXPERIENCE APTSOURCE."""
+
+import re
+from typing import Final
+
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.dialect import CycleWords, Dialect, marks
+from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement
+from trunnion.cl.statements import events, motion, operations
+
+_NAME: Final = re.compile(r"\s*OPERATION NAME\s*:\s*(.*)", re.IGNORECASE)
+_MATRIX: Final = re.compile(r"\*CATIA0\s*", re.IGNORECASE)
+_TIP: Final = "output tips and tool axes, with the compensation of the radius off or in the plane"
+
+
+def _comment(state: ReaderState, text: str) -> None:
+    """Lines of comment that name an operation, or give the machining axis system."""
+    if name := _NAME.fullmatch(text):
+        state.name_operation(name[1].strip())
+    elif _MATRIX.fullmatch(text):
+        state.matrix = []
+    elif state.matrix is not None:
+        state.matrix.append(text)
+        if len(state.matrix) == 4:  # an identifier, and three lines of four numbers
+            rows = [row.split() for row in state.matrix[1:]]
+            state.matrix = None
+            try:
+                numbers = tuple(float(number) for row in rows for number in row)
+            except ValueError:
+                numbers = ()
+            if len(numbers) != 12:
+                what = "$$*CATIA0 is not followed by an identifier and three lines of four numbers"
+                raise StatementError(what, "output the file again")
+            state.set_system(numbers)
+
+
+def _goto(state: ReaderState, statement: Statement) -> None:
+    """A point: tip, and tool axis. More numbers are a vector of compensation, or a contact point with its normal."""
+    if len(statement.values) in (9, 12):
+        what = f"GOTO has {len(statement.values)} numbers: a compensation vector, or a contact point with its normal"
+        raise StatementError(what, _TIP)
+    motion.goto(state, statement)
+
+
+def _cutcom(state: ReaderState, statement: Statement) -> None:
+    """Radius compensation; in space, the numbers of the points that follow are not tip and axis."""
+    if not {"NORMDS", "NORMPS", "ENDPT"}.isdisjoint(statement.words()):
+        raise StatementError(f"CUTCOM/{statement.listed()}: radius compensation in space cannot be read", _TIP)
+    events.cutcom(state, statement)
+
+
+CATIA: Final = Dialect(
+    name="catia",
+    title="CATIA APTSOURCE",
+    marks=marks(
+        rb"\$\$[ \t]*CATIA APT VERSION\b", rb"\$\$\*CATIA\d", rb"\$\$[ \t]*OPERATION NAME[ \t]*:",
+        rb"\$\$[ \t]*TOOLCHANGE(?:BEGINNING|END)\b",
+    ),
+    handlers={**APT_HANDLERS, "GOTO": _goto, "CUTCOM": _cutcom, "TOOLNO": operations.ignore},
+    cycles=CycleWords(
+        modes=CYCLES.modes,
+        words=CYCLES.words,
+        positions=("FEDTO", "RAPTO"),
+        refused=CYCLES.refused,
+    ),
+    comment=_comment,
+)  # fmt: skip

@@ -1,0 +1,104 @@
+"""Creo and Pro/ENGINEER NCL: APT with commands of its own in ``$$->`` comments."""
+
+from typing import Final
+
+from trunnion.cl.builder import NoAxis
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.dialect import CycleParts, CycleWords, Dialect, marks
+from trunnion.cl.dialects.apt import APT_HANDLERS
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement, parse
+from trunnion.cl.statements import apt_tools, events, operations
+
+
+def _csys(state: ReaderState, statement: Statement) -> None:
+    """The coordinate system of the points in that of the model: it may not change."""
+    state.set_system(statement.numbers(12))
+
+
+def _featno(state: ReaderState, statement: Statement) -> None:
+    """The number of the sequence names the operation."""
+    state.name_operation(f"FEATNO {statement.listed()}")
+
+
+def _mfgno(state: ReaderState, statement: Statement) -> None:
+    """The number of the manufacturing model names the part, if PARTNO does not."""
+    state.part = state.part or statement.listed()
+
+
+def _geometry_type(state: ReaderState, statement: Statement) -> None:
+    """Say so where points are those of the contour, and not of the tool."""
+    if statement.values != ("OUTPUT_ON_CENTER",):
+        what = f"CUTCOM_GEOMETRY_TYPE is {statement.listed()}: points are not those of the tool's centre"
+        state.diagnostics.remark(state.line, what, "the control must have the radius of the tool, and CUTCOM be active")
+
+
+def _remark(state: ReaderState, statement: Statement) -> None:
+    """A comment, in which an alias may put what otherwise stands behind ``$$->``."""
+    if not statement.text.startswith("->"):
+        return
+    found = parse(statement.text.encode(), "utf-8")
+    handler = NCL.handlers.get(found.major)
+    if handler is not None:
+        handler(state, found)
+
+
+def _fedrat(state: ReaderState, statement: Statement) -> None:
+    """INVERS,AUTO and INVERS,OFF say how a post-processor should write feeds, and change none of them."""
+    if statement.values not in (("INVERS", "AUTO"), ("INVERS", "OFF")):
+        events.fedrat(state, statement)
+
+
+def _settle_cycle(found: CycleParts) -> None:
+    """CLEAR is where feeding begins, RAPTO how far rapid goes on from there, RETURN,0 the retract plane."""
+    clear, rapto, back = found.take("CLEAR"), found.take("RAPTO"), found.take("RETURN")
+    if clear is None:
+        raise StatementError("CYCLE without CLEAR", "write CLEAR,distance above the point")
+    height = clear[0] - (rapto[0] if rapto else 0.0)
+    if not height >= 0.0:
+        raise StatementError("CYCLE with a RAPTO that passes the point", "write a RAPTO no longer than CLEAR")
+    found.couplets.append(("RAPTO", (height,)))
+    if back is None:
+        found.couplets.append(("RTRCTO", clear))
+    elif back[0] == 0.0:
+        found.words.append(("RTRCTO", "AUTO"))
+    else:
+        found.couplets.append(("RTRCTO", back))
+
+
+_UNCONFIRMED: Final = "no real file of this dialect confirms its meaning"
+
+NCL: Final = Dialect(
+    name="ncl",
+    title="Creo NCL",
+    marks=marks(rb"\$\$\*?[ \t]*Pro/CLfile\b", rb"\$\$->", rb"REMARK[ \t]*(?:->|\*[ \t]*Pro/CLfile\b)"),
+    handlers={
+        **APT_HANDLERS,
+        "->CSYS": _csys,
+        "->CUTTER": apt_tools.cutter,
+        "->FEATNO": _featno,
+        "->MFGNO": _mfgno,
+        "->CUTCOM_GEOMETRY_TYPE": _geometry_type,
+        "->END": operations.ignore,
+        "MULTAX": operations.ignore,
+        "PPWORD": operations.ignore,
+        "REMARK": _remark,
+        "FEDRAT": _fedrat,
+    },
+    cycles=CycleWords(
+        modes={
+            "DRILL": ("DRILL",),
+            "DEEP": ("DRILL", "DEEP"),
+            "BRKCHP": ("DRILL", "BRKCHP"),
+            "FACE": ("FACE",),
+            "TAP": ("TAP",),
+            "REAM": ("REAM",),
+        },
+        words={"DEPTH": "FEDTO"},
+        numbers=frozenset({"RETURN"}),
+        refused=dict.fromkeys(("THRU", "BORE", "CSINK", "TIMES", "BACK", "TPI"), _UNCONFIRMED),
+        settle=_settle_cycle,
+    ),
+    # The tool axis is written only where it is not parallel to Z.
+    no_axis=NoAxis.Z,
+)

@@ -1,0 +1,52 @@
+"""Which dialect a CL file is written in, told by its lines and never by its name."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.cl.dialect import Dialect
+
+#: Bytes of a line that marks are looked for in: the same line comes often.
+_COMPARED: Final = 48
+
+#: Text behind these words is anybody's, and no mark; points look alike in most dialects, and there are many.
+_NO_MARKS: Final = (b"PPRINT", b"INSERT", b"DISPLY", b"DISPLAY", b"TPRINT", b"GOTO")
+
+
+@dataclass(frozen=True, slots=True)
+class Recognition:
+    """The dialect of a file, and why it is taken for that."""
+
+    dialect: Dialect
+    why: str
+
+
+def recognize(head: bytes, dialects: Sequence[Dialect], general: Dialect, default: Dialect) -> Recognition:
+    """The dialect with most different marks in the lines of ``head``, the first one among equals.
+
+    Without any mark it is the ``general`` one, if that has a mark, else the ``default``.
+    """
+    lines = head.splitlines()
+    seen: dict[bytes, int] = {}
+    for number, line in enumerate(lines, 1):
+        if not line.lstrip()[:7].upper().startswith(_NO_MARKS):
+            seen.setdefault(line[:_COMPARED], number)
+    best, why, most = default, "no line shows which CAM system wrote it", 0
+    for dialect in dialects:
+        found = _marks(dialect, seen)
+        if len(found) > most:
+            best, why, most = dialect, min(found)[1], len(found)
+    if not most and (found := _marks(general, seen)):
+        best, why = general, min(found)[1]
+    return Recognition(best, why)
+
+
+def _marks(dialect: Dialect, lines: dict[bytes, int]) -> list[tuple[int, str]]:
+    """The first line with each of its marks, and what it says."""
+    found = []
+    for mark in dialect.marks:
+        for line, number in lines.items():
+            if matched := mark.match(line):
+                found.append((number, f"{matched[0].strip().decode('ascii', 'replace')} in line {number}"))
+                break
+    return found

@@ -1,0 +1,104 @@
+"""SolidWorks CAM and CAMWorks APT."""
+
+from typing import Final
+
+from trunnion.cl.builder import NoAxis
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.dialect import CycleParts, CycleWords, Dialect, marks
+from trunnion.cl.dialects.apt import APT_HANDLERS
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement
+from trunnion.cl.statements import apt_tools, events, motion, operations
+from trunnion.cl.statements.cycles import cycle
+
+_Z: Final = (0.0, 0.0, 1.0)
+
+
+def _insert(state: ReaderState, statement: Statement) -> None:
+    """A note: it begins an operation, and names the tool if CUTTER follows. It never goes into the program as it is."""
+    state.split_operation()
+    state.note = (state.line, statement.text.strip())
+    events.message(state, statement._replace(major="PPRINT", text=statement.text.strip()))
+
+
+def _cutter(state: ReaderState, statement: Statement) -> None:
+    """The tool, under the name of the note before it."""
+    apt_tools.cutter(state, statement)
+    if state.note and state.note[0] + 1 == state.line:
+        apt_tools.name_tool(state, state.note[1])
+
+
+def _trntyp(state: ReaderState, statement: Statement) -> None:
+    """Points are those of the world's coordinate system; anything else cannot be read."""
+    if statement.values != ("WORLD", 0.0, 0.0, 0.0):
+        what = f"TRNTYP/{statement.listed()}: the coordinate system of the points is not known"
+        raise StatementError(what, "output the points in world coordinates (TRNTYP/WORLD,0,0,0)")
+    state.split_operation()
+
+
+def _csys(state: ReaderState, statement: Statement) -> None:
+    """The coordinate system of the operation: Z, its third column, is the tool axis; the points stay in the world's."""
+    numbers = statement.numbers(12)
+    state.split_operation()
+    z = (numbers[2], numbers[6], numbers[10])
+    # A point without an axis is written only where Z is the world's.
+    state.set_axis(None, NoAxis.Z if z == _Z else NoAxis.NEVER)
+
+
+def _spindl(state: ReaderState, statement: Statement) -> None:
+    """The spindle speed, which stands at the beginning of each operation."""
+    state.split_operation()
+    events.spindl(state, statement)
+
+
+def _circle(state: ReaderState, statement: Statement) -> None:
+    """An arc by centre and normal; its radius is the distance of its start."""
+    motion.begin_circle(state, (*statement.numbers(6), float("nan")), 1)
+
+
+def _cycle(state: ReaderState, statement: Statement) -> None:
+    """CYCLE/INIT and CYCLE/CLEAR announce a cycle, and say nothing about it."""
+    if statement.values not in (("INIT",), ("CLEAR",)):
+        cycle(state, statement)
+
+
+def _flute_length(state: ReaderState, statement: Statement) -> None:
+    apt_tools.set_flute_length(state, statement.numbers(1)[0])
+
+
+def _settle_cycle(found: CycleParts) -> None:
+    """The first peck, and then pecks of one length: as first, decrease and minimum."""
+    first, others = found.take("1STPECK"), found.take("SUBPECK")
+    if first is not None and others is not None:
+        if others[0] > first[0]:
+            raise StatementError("CYCLE with a SUBPECK longer than 1STPECK", "write a first peck that is the longest")
+        found.couplets.append(("STEP", (first[0], first[0] - others[0], others[0])))
+    elif first is not None or others is not None:
+        raise StatementError("CYCLE has one of 1STPECK and SUBPECK", "write both")
+
+
+SOLIDWORKS: Final = Dialect(
+    name="solidworks",
+    title="SolidWorks CAM APT",
+    marks=marks(rb"CSI_SET_", rb"TRNTYP[ \t]*/", rb"CYCLE[ \t]*/[ \t]*INIT\b", rb"SETUP[ \t]*/[ \t]*(?:START|END)\b"),
+    handlers={
+        **APT_HANDLERS,
+        "INSERT": _insert,
+        "CUTTER": _cutter,
+        "TRNTYP": _trntyp,
+        "CSYS": _csys,
+        "SPINDL": _spindl,
+        "CIRCLE": _circle,
+        "CYCLE": _cycle,
+        "CSI_SET_FLUTE_LENGTH": _flute_length,
+        "CSI_SET_EXTENSION_LENGTH": operations.ignore,
+        "SETUP": operations.ignore,
+    },
+    cycles=CycleWords(
+        modes={"DRILL": ("DRILL",), "DEEP": ("DRILL", "DEEP"), "DEEP2": ("DRILL", "DEEP")},
+        words={"INCR": "STEP"},
+        numbers=frozenset({"1STPECK", "SUBPECK"}),
+        settle=_settle_cycle,
+    ),
+    no_axis=NoAxis.Z,
+)

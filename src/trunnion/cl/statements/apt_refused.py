@@ -1,0 +1,52 @@
+"""Statements that are refused by their names: motion that is not points, and statements of APT part programs."""
+
+from typing import Final
+
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement
+
+#: Statements that the APT processor executes, and that CL data never have.
+PART_PROGRAM_WORDS: Final = (
+    "MACRO", "TERMAC", "CALL", "LOOPST", "LOOPND", "JUMPTO", "RESERV", "IF", "DO", "ZSURF", "GO", "GOLFT",
+    "GORGT", "GOUP", "GODOWN", "GOBACK", "TLLFT", "TLRGT", "TLON", "TLONPS", "TLOFPS", "THICK", "INDIRP", "CUT",
+    "DNTCUT", "POCKET", "SCURV", "POINT", "LINE", "PLANE", "VECTOR",
+)  # fmt: skip
+
+_ROTARY: Final = (
+    "turns a rotary axis itself, and does not say in which coordinates the points behind it are",
+    "output the points with tool axes (i, j, k) in the coordinates of the workpiece",
+)
+_SYSTEM: Final = (
+    "repeats, shifts or turns motion",
+    "output all motion itself, in one coordinate system",
+)
+_SUBPROGRAM: Final = ("belongs to a subprogram", "output the motion itself, without subprograms")
+
+#: Statements that move the machine, or change what the points behind them mean: why, and how to do without.
+REFUSED_WORDS: Final = {
+    "ROTABL": _ROTARY,
+    "ROTATE": _ROTARY,
+    "ROTHED": _ROTARY,
+    "POSITN": ("moves the tool to a point that it does not give", "write GOTO/ with the point"),
+    "COPY": _SYSTEM,
+    "INDEX": _SYSTEM,
+    "TRACUT": _SYSTEM,
+    "MIRROR": _SYSTEM,
+    "CALSUB": _SUBPROGRAM,
+    "DEFSUB": _SUBPROGRAM,
+    "ENDSUB": _SUBPROGRAM,
+    "SYN": ("gives words other meanings", "leave it out of the table of the CAM system"),
+}
+
+
+def part_program(state: ReaderState, statement: Statement) -> None:
+    """Refuse a statement of an APT part program."""
+    what = f"{statement.major} is a statement of an APT part program, and not of CL data"
+    raise StatementError(what, "run the part program through the APT system, and give its CL data")
+
+
+def refuse(state: ReaderState, statement: Statement) -> None:
+    """Refuse motion that cannot be read."""
+    why, cure = REFUSED_WORDS[statement.major]
+    raise StatementError(f"{statement.major} {why}", cure)

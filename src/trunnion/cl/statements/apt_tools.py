@@ -1,0 +1,119 @@
+"""Tools of APT dialects: CUTTER with its seven parameters, LOADTL in its forms, names."""
+
+from dataclasses import replace
+from typing import Final
+
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement, whole_number
+from trunnion.cl.statements import events
+from trunnion.model.toolpath import SelectTool, Tool
+
+#: A tip flatter than this, degrees from the horizontal, is that of a mill.
+_FLATTEST_DRILL: Final = 1.0
+
+#: How far the corner's centre of a drill may be off its edge, as a part of its diameter: numbers are rounded.
+_AT_EDGE: Final = 1e-3
+
+#: Words of LOADTL with a number that is the register of the tool's length.
+_REGISTERS: Final = frozenset({"OSETNO", "OFFSET", "ADJUST"})
+
+
+def cutter(state: ReaderState, statement: Statement) -> None:
+    """Set the form of the tool: CUTTER/d[,r[,e,f,a,b,h]].
+
+    d diameter, r corner radius, e and f the centre of the corner's circle from the axis and above the tip, a the angle
+    of the tip from the horizontal, b that of the side from the axis, h the height.
+    """
+    values = statement.values[:-1] if statement.values[-1:] == ("",) else statement.values
+    given = statement._replace(values=values).numbers(1, 2, 7)
+    if any(number < 0 for number in given[:2]):
+        raise StatementError("CUTTER has a negative size", "write the diameter of the tool")
+    d, r, e, _, a, b, h = (*given, *(0.0,) * (7 - len(given)))
+    is_drill = r == 0.0 and a > _FLATTEST_DRILL and abs(e - 0.5 * d) <= _AT_EDGE * d
+    tool = Tool(
+        kind="DRILL" if is_drill else "MILL",
+        diameter=d,
+        corner_radius=r,
+        length=h,
+        taper_angle=0.0 if is_drill else b,
+        tip_angle=180.0 - 2.0 * a if is_drill else a,
+    )
+    now = state.builder.tool
+    if replace(now, name="", flute_length=0.0) == tool:
+        return
+    state.split_operation()
+    kept = state.cutter_row == state.row
+    state.builder.tool = replace(tool, name=now.name if kept else "")
+    state.cutter_row = state.row
+
+
+def name_tool(state: ReaderState, name: str) -> None:
+    """Set the name of the tool."""
+    if name == state.builder.tool.name:
+        return
+    state.split_operation()
+    state.builder.tool = replace(state.builder.tool, name=name)
+    state.cutter_row = state.row
+
+
+def set_flute_length(state: ReaderState, length: float) -> None:
+    """Set the length of the flutes, where a tool has just been described."""
+    if state.cutter_row == state.row:
+        state.builder.tool = replace(state.builder.tool, flute_length=length)
+
+
+def tprint(state: ReaderState, statement: Statement) -> None:
+    """Name the tool; names of its assembly and its holder may follow."""
+    name_tool(state, statement.text.partition(",")[0].strip())
+
+
+def loadtl(state: ReaderState, statement: Statement) -> None:
+    """Load a tool: LOADTL/n[,register], and couplets of a word and a number."""
+    values = list(statement.values)
+    number = whole_number("LOADTL", tuple(values[:1]))
+    adjust, unknown, at = 0, [], 1
+    if len(values) > 1 and not isinstance(values[1], str):
+        # LOADTL/n,register, or LOADTL/n,0,length,register.
+        plain = [value for value in values[1:] if not isinstance(value, str)]
+        if len(plain) != len(values) - 1 or len(plain) not in (1, 2, 3) or (len(plain) == 3 and plain[0] != 0):
+            raise StatementError(f"LOADTL/{statement.listed()} is not known", "write LOADTL/number,ADJUST,register")
+        if len(plain) == 2 and plain[0] != plain[1]:
+            raise StatementError(f"LOADTL/{statement.listed()} is not known", "write LOADTL/number,ADJUST,register")
+        adjust, at = whole_number("LOADTL", tuple(plain[-1:])), len(values)
+    while at < len(values):
+        word = values[at]
+        if word in _REGISTERS:
+            adjust = whole_number(f"LOADTL {word}", tuple(values[at + 1 : at + 2]))
+            at += 2
+        elif word == "LENGTH" and at + 1 < len(values) and not isinstance(values[at + 1], str):
+            at += 2
+        else:
+            unknown.append(str(word) if isinstance(word, str) else f"{word:g}")
+            at += 1
+    _load(state, number, adjust)
+    if unknown:
+        state.note_unknown(statement, f"LOADTL with {','.join(unknown)} is not known", *unknown)
+
+
+def load(state: ReaderState, statement: Statement) -> None:
+    """Load a tool by LOAD/TOOL,n; LOAD/n is the same."""
+    rest = statement.values[1:] if statement.values[:1] == ("TOOL",) else statement.values
+    loadtl(state, statement._replace(values=rest))
+
+
+def select(state: ReaderState, statement: Statement) -> None:
+    """Preselect a tool."""
+    if statement.values[:1] == ("TOOL",):
+        events.load(state, statement._replace(major="SELECT"))
+    else:
+        number = whole_number(statement.major, statement.values[:1])
+        state.add(SelectTool(state.operation_row, state.line, number))
+
+
+def _load(state: ReaderState, number: int, adjust: int) -> None:
+    """Load a tool; without a description of its own, nothing is known of it."""
+    before = state.tool
+    state.load_tool(number, adjust)
+    if before is not None and before.number != number and state.cutter_row != state.row:
+        state.builder.tool = Tool()

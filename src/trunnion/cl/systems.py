@@ -1,0 +1,27 @@
+"""Whether the points of several CL files are in one coordinate system."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from trunnion.errors import Problem
+from trunnion.model.toolpath import Toolpath
+
+#: Numbers of a coordinate system are printed with five decimals or more.
+_SAME: Final = 2e-5
+
+_IDENTITY: Final = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+
+
+def other_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
+    """The first toolpath whose coordinate system differs from that of the first one, as a problem.
+
+    Whether rows or columns of such a system are its axes is not settled, so its points cannot be turned into another.
+    """
+    for toolpath in toolpaths[1:]:
+        pair = zip(toolpath.system or _IDENTITY, toolpaths[0].system or _IDENTITY, strict=True)
+        if any(abs(a - b) > _SAME for a, b in pair):
+            what = f"its points are in another coordinate system than those of {toolpaths[0].file}"
+            return Problem(
+                toolpath.file, 0, what, "output all files in one coordinate system, or post them one at a time"
+            )
+    return None

@@ -1,0 +1,94 @@
+"""Tool axes of an operation: those of its points, and of statements about points that give none.
+
+In:     the columns with a vector or NaN in each row, and what the statements said.
+Out:    a unit vector in each row, and the FROM events with theirs.
+"""
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.cl.builder import AxisStatement, FromStatement, MoveColumns, NoAxis, OperationBuilder
+from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
+from trunnion.cl.scan import fill_modal_axes
+from trunnion.model.toolpath import From
+
+#: A tool axis no farther off (0, 0, 1) than this is taken for it.
+_UPRIGHT = 1e-6
+
+_Z = np.array([0.0, 0.0, 1.0])
+_GIVE_AXIS = "write the tool axis in the GOTO, or TLAXIS/ before it"
+
+
+def fill_tool_axes(
+    columns: MoveColumns, builder: OperationBuilder, unit: float, modal_axis: Floats, diagnostics: Diagnostics
+) -> list[From]:
+    """Write the tool axis into each row; return the FROM events with theirs.
+
+    unit        length unit of the file, mm
+    modal_axis  (3,) float64, the tool axis of the row before, if the operation continues; on return that of its end
+    """
+    if not builder.continues:
+        modal_axis[:] = _Z
+    events = []
+    no_axis = NoAxis.MODAL
+    at = builder.first
+    statements: list[FromStatement | AxisStatement] = [*builder.starts, *builder.axes]
+    statements.sort(key=lambda statement: (statement.row, statement.line))
+    for statement in statements:
+        stop = min(builder.first + statement.row, builder.stop)
+        _fill(columns, at, stop, no_axis, modal_axis, diagnostics)
+        at = stop
+        if statement.axis:
+            _set_axis(statement.axis, statement.line, modal_axis, diagnostics)
+        if isinstance(statement, AxisStatement):
+            no_axis = statement.no_axis
+        else:
+            x, y, z = statement.tip
+            i, j, k = modal_axis.tolist()
+            events.append(From(statement.row, statement.line, (x * unit, y * unit, z * unit), (i, j, k)))
+    _fill(columns, at, builder.stop, no_axis, modal_axis, diagnostics)
+    for row, line, word in builder.upright:
+        if row < builder.stop and not _is_upright(columns.axis[row]):
+            diagnostics.error(line, f"{word} with a tilted tool axis cannot be read", "write GOTO/ with the point")
+    return events
+
+
+def _fill(
+    columns: MoveColumns, begin: int, stop: int, no_axis: NoAxis, modal_axis: Floats, diagnostics: Diagnostics
+) -> None:
+    """Fill rows ``begin:stop``, in which points without a tool axis have that of ``no_axis``."""
+    axis = columns.axis
+    bare = np.flatnonzero(np.isnan(axis[begin:stop, 0])) + begin if no_axis is not NoAxis.MODAL else None
+    if bare is not None and no_axis is NoAxis.Z:
+        axis[bare] = _Z
+    bad_rows = np.empty(MAX_LISTED + 1, np.int64)
+    bad_count = fill_modal_axes(axis, begin, stop, modal_axis, bad_rows)
+    for row in bad_rows[: min(bad_count, len(bad_rows))].tolist():
+        _report_bad_axis(axis[row], int(columns.line[row]), diagnostics)
+    if bare is None or no_axis is NoAxis.Z:
+        return
+    for row in bare[: MAX_LISTED + 1].tolist():
+        if no_axis is NoAxis.NEVER:
+            what = "a point without a tool axis, in a coordinate system whose Z is tilted"
+            diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS)
+        elif not _is_upright(axis[row]):
+            what = "a point without a tool axis after MULTAX/OFF, and the point before has a tilted one"
+            diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS)
+            return
+
+
+def _is_upright(axis: Floats) -> bool:
+    return bool(np.abs(axis - _Z).max() <= _UPRIGHT)
+
+
+def _set_axis(given: tuple[float, float, float], line: int, modal_axis: Floats, diagnostics: Diagnostics) -> None:
+    """Make ``modal_axis`` (3,) the tool axis that a statement gives."""
+    vector = np.array([given])
+    if fill_modal_axes(vector, 0, 1, modal_axis, np.empty(1, np.int64)):
+        _report_bad_axis(vector[0], line, diagnostics)
+
+
+def _report_bad_axis(vector: Floats, line: int, diagnostics: Diagnostics) -> None:
+    length = float(np.sqrt(np.sum(vector * vector)))
+    what = "the tool-axis vector is zero" if length == 0 else f"the tool-axis vector has the length {length:.6g}, not 1"
+    diagnostics.error(line, what, "write i, j, k as a unit vector from the tip to the holder")

@@ -1,0 +1,163 @@
+"""One path, written in every dialect, becomes the same toolpath."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tests.support.cl_dialects import WRITERS, Step, Vector, Z, write_in
+from trunnion.cl import read_cl
+from trunnion.model.toolpath import CycleOn, Event, Kind, Message, SpindleOn, Toolpath
+from trunnion.planning.holes.cycles import cycle_from_event
+
+lengths = st.integers(-200_000, 200_000).map(lambda number: number / 1000)
+points = st.tuples(lengths, lengths, lengths)
+tilts = st.tuples(st.integers(0, 100), st.integers(0, 359))
+
+
+@st.composite
+def axes(draw: st.DrawFn) -> Vector:
+    """A tool axis as it is printed: often (0, 0, 1)."""
+    if draw(st.booleans()):
+        return Z
+    tilt, turn = (math.radians(angle) for angle in draw(tilts))
+    vector = (math.sin(tilt) * math.cos(turn), math.sin(tilt) * math.sin(turn), math.cos(tilt))
+    x, y, z = (round(part, 9) + 0.0 for part in vector)
+    return (x, y, z) if (x, y) != (0.0, 0.0) else Z
+
+
+@st.composite
+def arcs(draw: st.DrawFn, axis: Vector) -> list[Step]:
+    """A line to the start of an arc, and the arc, about an axis of coordinates in either sense."""
+    k = draw(st.sampled_from([0, 1, 2]))
+    normal = [0.0, 0.0, 0.0]
+    normal[k] = draw(st.sampled_from([1.0, -1.0]))
+    centre, radius = draw(points), draw(st.integers(1, 50))
+    begin = draw(st.integers(0, 23)) * 15
+    end = begin + normal[k] * draw(st.integers(1, 11)) * 15  # less than half a turn: "ON" is the first meeting
+    first, second = (k + 1) % 3, (k + 2) % 3
+    ends = []
+    for angle in (begin, end):
+        point = list(centre)
+        point[first] += radius * math.cos(math.radians(angle))
+        point[second] += radius * math.sin(math.radians(angle))
+        ends.append(tuple(round(value, 6) for value in point))
+    start: Any = ends[0]
+    return [
+        Step("GOTO", point=start, axis=axis),
+        Step("ARC", point=ends[1], axis=axis, centre=centre, normal=tuple(normal), start=start),  # type: ignore[arg-type]
+    ]
+
+
+@st.composite
+def paths(draw: st.DrawFn) -> list[Step]:
+    """Tools with rapids, feeds, lines, arcs, holes and switches."""
+    steps = []
+    for number in range(1, draw(st.integers(1, 3)) + 1):
+        corner = draw(st.sampled_from([0.0, 0.5, 3.0]))
+        steps.append(Step("TOOL", (float(number), 6.0, corner)))
+        steps.append(Step("SPINDLE", (draw(st.integers(100, 9000)),), draw(st.sampled_from(["CLW", "CCLW"]))))
+        steps.append(Step("RAPID", point=draw(points), axis=draw(axes())))
+        steps.append(Step("FEED", (float(draw(st.integers(10, 5000))),)))
+        for _ in range(draw(st.integers(1, 4))):
+            axis = draw(axes())
+            match draw(st.sampled_from(["GOTO", "ARC", "CYCLE", "RAPID", "FEED", "COOLANT", "DWELL", "CUTCOM"])):
+                case "GOTO":
+                    steps += [
+                        Step("GOTO", point=point, axis=draw(axes())) for point in draw(st.lists(points, max_size=4))
+                    ]
+                case "ARC":
+                    steps += draw(arcs(axis))
+                case "CYCLE":
+                    kind = draw(st.sampled_from(["DRILL", "DEEP", "BRKCHP", "TAP", "FACE", "REAM"]))
+                    numbers = (float(draw(st.integers(4, 40))), 2.0, 120.0, 1.5)
+                    holes = tuple(draw(st.lists(points, min_size=1, max_size=3)))
+                    steps.append(Step("CYCLE", numbers, kind, axis=axis, holes=holes))
+                case "RAPID":
+                    steps.append(Step("RAPID", point=draw(points), axis=axis))
+                case "FEED":
+                    steps.append(Step("FEED", (float(draw(st.integers(10, 5000))),)))
+                case "COOLANT":
+                    steps.append(Step("COOLANT", text=draw(st.sampled_from(["ON", "FLOOD", "MIST", "OFF"]))))
+                case "DWELL":
+                    steps.append(Step("DWELL", (0.5,)))
+                case "CUTCOM":
+                    steps.append(Step("CUTCOM", text=draw(st.sampled_from(["LEFT", "RIGHT", "OFF"]))))
+        steps.append(Step("RAPID", point=draw(points), axis=draw(axes())))
+    return steps
+
+
+def told(event: Event, row: int) -> object:
+    """What an event says, in words that do not depend on the dialect."""
+    if isinstance(event, CycleOn):
+        return (row, cycle_from_event(event))
+    values = {name: getattr(event, name) for name in event.__dataclass_fields__ if name not in ("row", "line")}
+    return (row, type(event).__name__, tuple(values.items()))
+
+
+def content(toolpath: Toolpath) -> dict[str, Any]:
+    """All that a toolpath says of the motion, from its first row to its last."""
+    operations = [operation for operation in toolpath.operations if len(operation.moves)]
+    begins = np.cumsum([0, *(len(operation.moves) for operation in operations)]).tolist()
+    pairs = list(zip(operations, begins, strict=False))
+    events = [
+        told(event, begin + event.row)
+        for operation, begin in pairs
+        for event in operation.events
+        if not isinstance(event, Message)
+    ]
+    kind = np.concatenate([operation.moves.kind for operation in operations])
+    feed = np.concatenate([operation.moves.feed for operation in operations])
+    return {
+        "tip": np.concatenate([operation.moves.tip for operation in operations]),
+        "axis": np.concatenate([operation.moves.axis for operation in operations]),
+        "kind": kind,
+        "feed": np.where(kind == Kind.RAPID, 0.0, feed),  # of a rapid it is only what was modal
+        "arc rows": np.concatenate([operation.arcs.row + begin for operation, begin in pairs]),
+        "arcs": np.concatenate(
+            [np.column_stack((o.arcs.centre, o.arcs.normal, o.arcs.radius)) for o in operations]
+        ),
+        "turns": np.concatenate([operation.arcs.full_turns for operation in operations]),
+        "tools": [
+            (begin, operation.tool.diameter, operation.tool.corner_radius)
+            for operation, begin in pairs
+        ],
+        "events": events,
+    }  # fmt: skip
+
+
+def changes(tools: list[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
+    """Tools without those that are the one before again."""
+    return [tool for k, tool in enumerate(tools) if k == 0 or tools[k - 1][1:] != tool[1:]]
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(steps=paths(), inch=st.booleans())
+def test_a_path_is_the_same_in_every_dialect(tmp_path: Path, steps: list[Step], inch: bool) -> None:
+    found = {}
+    for dialect in WRITERS:
+        text = write_in(dialect, steps, inch)
+        if text is None:
+            continue
+        path = tmp_path / f"{dialect}.txt"
+        path.write_text(text, encoding="utf-8")
+        toolpath = read_cl(path, strict=True)
+        assert toolpath.dialect == dialect
+        found[dialect] = content(toolpath)
+    expected = found.pop("clsf")
+    assert len(found) >= 3
+    for dialect, other in found.items():
+        for name in ("tip", "axis", "feed", "arcs"):
+            np.testing.assert_allclose(other[name], expected[name], atol=3e-5, rtol=0, err_msg=f"{dialect} {name}")
+        for name in ("kind", "arc rows", "turns"):
+            np.testing.assert_array_equal(other[name], expected[name], err_msg=f"{dialect} {name}")
+        assert other["events"] == expected["events"], dialect
+        assert changes(other["tools"]) == changes(expected["tools"]), dialect
+
+
+def test_the_writers_say_what_they_are_asked() -> None:
+    """A test of the test: a spindle that turns the other way is seen."""
+    assert told(SpindleOn(0, 1, 5.0), 0) != told(SpindleOn(0, 1, 6.0), 0)

@@ -1,0 +1,88 @@
+"""CL files of every dialect from anybody: read with all their points, or refused with a message."""
+
+import random
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.support.cl_dialects import WRITERS, Step
+from tests.support.fuzz import oracle
+from tests.support.fuzz.mangle import mangle
+
+PATH = [
+    Step("TOOL", (5.0, 10.0, 1.0)),
+    Step("SPINDLE", (900.0,), "CLW"),
+    Step("RAPID", point=(1.0, 2.0, 50.0)),
+    Step("FEED", (300.0,)),
+    Step("GOTO", point=(10.0, 0.0, 5.0), axis=(0.6, 0.0, 0.8)),
+    Step("ARC", point=(0.0, 10.0, 5.0), axis=(0.6, 0.0, 0.8), centre=(0.0, 0.0, 5.0), start=(10.0, 0.0, 5.0)),
+    Step("CYCLE", (5.0, 2.0, 90.0, 1.0), "DRILL", holes=((1.0, 2.0, 3.0), (4.0, 5.0, 3.0))),
+    Step("TOOL", (6.0, 8.0, 0.0)),
+    Step("RAPID", point=(1.0, 2.0, 50.0)),
+]
+SEEDS = {name: writer(False).write(PATH).encode() for name, writer in WRITERS.items()}
+
+#: Lines that belong to some dialect, with sense and without.
+LINES = (
+    "GOTO/1,2,3", "GOTO / 1.0, 2.0, 3.0,  $\n0.6, 0.0, 0.8", "GOTO/1,2,3,0,0,1,0,1,0", "GOTO/", "1,2,3",
+    "GODLTA/1,0,0", "RAPID", "CIRCLE/0,0,0,0,0,1", "CIRCLE/0,0,0,0,0,1,5", "MOVARC/0,0,0,0,0,1,5,ANGLE,90",
+    "INDIRV/0,1,0", "TLON,GOFWD/(CIRCLE/0,2,3,$\n1),ON,(LINE/0,2,3,0,3,3)", "TLON,GOFWD/(CYLNDR/0,0,0,0,0,1,5),ON",
+    "GOFWD/", "RETRCT", "CLRSRF/50", "TLAXIS/0,1,0", "MULTAX/OFF", "MULTAX", "LOADTL/5,1", "LOAD/TOOL,7",
+    "CUTTER/10,1,4,1,0,0,50", "CUTTER/", "CYCLE/DRILL,3,5", "CYCLE/DEEP2,FEDTO,5,1STPECK,2,SUBPECK,1,RAPTO,1",
+    "CYCLE / DRILL, DEPTH, 3, CLEAR, 1, RAPTO, 9", "CYCLE/OFF", "CYCLE/INIT",
+    "$$-> CSYS / 1,0,0,5,  $\n0,1,0,0,  $\n0,0,1,0", "$$-> CUTTER / 3", "$$-> FEATNO / 7", "$$*CATIA0", "$$ A",
+    "$$ 1.0 0.0 0.0 x", "$$ OPERATION NAME : B", "CSYS/0,0,1,0,0,1,0,0,-1,0,0,0", "TRNTYP/WORLD,0,0,0", "INSERT/NOTE",
+    "REMARK -> CUTTER / $", "FROM/1,2,3", "GOHOME", "GOHOME/1,2,3", "FEDRAT/5,PERMIN", "FEDRAT/INVERS,AUTO",
+    "M1=MACRO/A", "1009/5", "ROTABL/5", "TRANS/0,0,0", "UNITS/MM", "TOOL PATH/A,TOOL,B", "END-OF-PATH", "SHOPWD/1",
+    "FINI", "PARTNO/1", "TPRINT/T1", "LOADTL/6,0,80.0,3", "CLEARP/XYPLAN,9", "PPWORD/A,1", "SPINDL/OFF", "$$->", "$$",
+    "$",
+)  # fmt: skip
+
+_ROW = re.compile(r"(GOTO|GODLTA|(TLON,)?GOFWD|RETRCT|GOHOME/[-+.\d])", re.IGNORECASE)
+
+
+def points_in(text: str) -> int:
+    """Statements that move the tool."""
+    joined = re.sub(r"\$[ \t]*(?:\$\$[^\n]*)?\n", "", text)
+    lines = (re.sub(r"\s", "", line.partition("$$")[0]) for line in joined.split("\n"))
+    return sum(_ROW.match(line) is not None for line in lines)
+
+
+def judge(data: bytes, folder: Path, *, count: bool) -> bool:
+    """Whether a file is read; if it is, with all its points."""
+    toolpath = oracle.judge_cl(data, folder)
+    if toolpath is None:
+        return False
+    if count and toolpath.dialect != "clsf":
+        assert sum(len(operation.moves) for operation in toolpath.operations) == points_in(data.decode())
+    return True
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder for CL files."""
+    return tmp_path_factory.mktemp("cl")
+
+
+@pytest.mark.parametrize("dialect", WRITERS)
+def test_the_seeds_are_read(folder: Path, dialect: str) -> None:
+    assert judge(SEEDS[dialect], folder, count=True)
+
+
+@settings(max_examples=120, deadline=None)
+@given(head=st.sampled_from(sorted(SEEDS)), lines=st.lists(st.sampled_from(LINES), max_size=12), cut=st.integers(0, 30))
+def test_statements_of_all_dialects_among_each_other_are_read_or_refused(
+    folder: Path, head: str, lines: list[str], cut: int
+) -> None:
+    begun = SEEDS[head].decode().splitlines()[:cut]
+    judge("\n".join([*begun, *lines, "FINI", ""]).encode(), folder, count=True)
+
+
+@pytest.mark.parametrize("dialect", WRITERS)
+def test_mangled_files_are_read_or_refused(folder: Path, dialect: str) -> None:
+    rng = random.Random(dialect)
+    for _ in range(40):
+        judge(mangle(SEEDS[dialect], list(SEEDS.values()), rng), folder, count=False)
