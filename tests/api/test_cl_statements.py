@@ -70,6 +70,32 @@ def test_the_definition_says_what_becomes_of_a_statement(tmp_path: Path) -> None
     assert trunnion.verify(file, machine=machine, cl=cl).passed
 
 
+def words(folder: Path, *entries: str) -> Path:
+    file = folder / "own.toml"
+    file.write_text("\n".join(['extends = "yl569"', "[cl.words]", *entries, ""]))
+    return file
+
+
+def test_the_definition_says_which_statement_a_word_is(tmp_path: Path) -> None:
+    machine = words(tmp_path, '"SHOPCL/1" = "COOLNT/FLOOD"', '"SHOPCL/0" = ""', '"SHOPTX" = "PPRINT/SHOP TEXT"')
+    result = trunnion.post(part(tmp_path, "SHOPCL/0", "SHOPTX/5", "SHOPCL/1"), machine=machine)
+    assert result.passed
+    assert result.text is not None
+    assert ";SHOP TEXT" in result.text
+    assert "M8" in result.text.replace("\n", " ").split()
+    with pytest.raises(trunnion.InputError, match="SHOPCL is not known"):
+        trunnion.post(part(tmp_path, "SHOPCL/2"), machine=machine)
+
+
+@pytest.mark.parametrize(
+    "statement",
+    ["GOTO/1,2,3", "RAPID", "FEDRAT/5", "CYCLE/OFF", "NOWORD/1", "CIRCLE/1", "ROTABL/1", "MSYS/1", "SPINDL/SFM,9"],
+)
+def test_a_word_can_only_be_an_event(tmp_path: Path, statement: str) -> None:
+    with pytest.raises(trunnion.InputError, match=r"\[cl.words\] SHOP"):
+        trunnion.post(part(tmp_path), machine=words(tmp_path, f'"SHOP" = "{statement}"'))
+
+
 def test_words_that_no_entry_names_stay_errors(tmp_path: Path) -> None:
     machine = definition(tmp_path, '"COOLNT/HIGH" = ""', '"CLAMP/ON" = ""')
     with pytest.raises(trunnion.InputError) as caught:

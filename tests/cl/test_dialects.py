@@ -230,6 +230,19 @@ def test_movarc_counts_turns(apt: Callable[..., Operation]) -> None:
     assert operation.arcs.full_turns.tolist() == [1]
 
 
+HALF = ["GOTO / 5,0,0", "CIRCLE / 0,0,0,0,0,1,5", "GOTO / 3,4,0"]
+
+
+def test_points_that_may_belong_to_an_arc_of_creo_are_refused(apt: Callable[..., Operation], fails: Fail) -> None:
+    text = "\n".join([*HEADS["ncl"], *HALF, "GOTO / -5,0,0", "FINI"])
+    (problem,) = fails(text)
+    assert (problem.line, problem.what[:32]) == (6, "a point of the same circle follo")
+    assert "ARC_ONLY" in problem.cure
+    for lines in (["GOTO / 3,-4,9"], ["RAPID", "GOTO / -5,0,0"], ["GOTO / -5,0,0", *HALF[1:], "GOTO / 9,9,0"]):
+        assert len(apt("ncl", *HALF, *lines).arcs.row) == len(lines) // 3 + 1
+    assert len(apt("ncl", *HALF, "GOTO / 2.9,4.0731,0").arcs.row) == 1  # as near as a line would be
+
+
 # -- cycles -------------------------------------------------------------------------------------------------------
 
 
@@ -318,6 +331,26 @@ def test_a_tool_that_is_loaded_is_not_loaded_again(read: Read) -> None:
     loads = [[e for e in operation.events if isinstance(e, LoadTool)] for operation in toolpath.operations]
     assert [[(load.row, load.number, load.adjust) for load in each] for each in loads] == [[(0, 5, 1)], [(0, 6, 0)]]
     assert [operation.tool.diameter for operation in toolpath.operations] == [10, 0]
+
+
+def test_a_tool_of_the_same_form_keeps_it(read: Read) -> None:
+    lines = ["GOTO/1,0,0", "CUTTER/10,1", "LOADTL/6", "GOTO/2,0,0", "LOADTL/7", "CUTTER/10,1", "GOTO/3,0,0"]
+    toolpath = read("\n".join([*HEADS["apt"], *lines, "FINI"]))
+    assert [operation.tool.diameter for operation in toolpath.operations] == [10, 10, 10]
+
+
+def test_another_tool_has_not_the_name_of_the_one_before(read: Read) -> None:
+    lines = [
+        "GOTO/1,0,0",
+        "CUTTER/10,1,4,1,0,0,50",
+        "LOADTL/6",
+        "GOTO/2,0,0",
+        "TPRINT/SECOND",
+        "LOADTL/7",
+        "GOTO/3,0,0",
+    ]
+    toolpath = read("\n".join([*HEADS["catia"], *lines, "FINI"]))
+    assert [operation.tool.name for operation in toolpath.operations] == ["T5 End Mill", "", "SECOND"]
 
 
 @pytest.mark.parametrize(

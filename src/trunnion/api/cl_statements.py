@@ -1,38 +1,43 @@
 """CL statements that the reader does not know: a definition says what becomes of each, or the file is refused.
 
-In:     toolpaths, and the table ``[control.statements]`` of a definition.
-Out:    toolpaths with the lines of the definition in place of these statements.
+In:     toolpaths, and the tables ``[cl.words]`` and ``[control.statements]`` of a definition.
+Out:    toolpaths with the events or the lines of the definition in place of these statements.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
-from trunnion.cl import statement_words, unknown_statement_problems
+from trunnion.cl import StatementError, events_of, statement_words, unknown_statement_problems
 from trunnion.errors import InputError, Problem
+from trunnion.machines import Machine
 from trunnion.model.toolpath import Event, Insert, Operation, Toolpath, UnknownStatement
 
-#: Statements by their parts: the major word, what is behind it, and the line of the program.
-_Entries = Sequence[tuple[str, frozenset[str], str]]
+#: Statements by their parts: the major word, what is behind it, and the events in their place.
+_Entries = Sequence[tuple[str, frozenset[str], tuple[Event, ...]]]
 
 #: More statements than this are counted, not listed.
 _MOST_LISTED: Final = 100
 
 _CURE: Final = (
     "remove it, or write under [control.statements] of the machine's definition what becomes of it: a line of the"
-    ' program, or "" for nothing'
+    ' program, or "" for nothing; or under [cl.words] which known statement it is'
 )
 
 
-def replace_unknown_statements(toolpaths: Iterable[Toolpath], statements: Mapping[str, str]) -> list[Toolpath]:
+def replace_unknown_statements(
+    toolpaths: Iterable[Toolpath], statements: Mapping[str, str], machine: Machine
+) -> list[Toolpath]:
     """Replace the statements that the reader does not know by what a definition makes of them.
 
     Raises
     ------
     InputError
-        With every statement of which the definition says nothing.
+        With every statement of which the definition says nothing, or if what it says is no event.
     """
-    entries = [(*statement_words(statement), line) for statement, line in statements.items()]
+    lines = {statement: (Insert(0, 0, line),) if line else () for statement, line in statements.items()}
+    found_words = {word: _events(machine, word, text) for word, text in machine.cl_words.items()}
+    entries = [(*statement_words(name), events) for name, events in (*found_words.items(), *lines.items())]
     entries.sort(key=lambda entry: -len(entry[1]))  # the one that says most comes first
     found = [(toolpath, _replaced(toolpath, entries)) for toolpath in toolpaths]
     problems = [problem for _, new in found for problem in unknown_statement_problems(new, _CURE)]
@@ -62,7 +67,16 @@ def _replaced_event(event: Event, entries: _Entries) -> list[Event]:
     if not isinstance(event, UnknownStatement):
         return [event]
     major, words = statement_words(event.text)
-    for entry_major, entry_words, line in entries:
+    for entry_major, entry_words, events in entries:
         if entry_major == major and entry_words <= words and entry_words.issuperset(event.words):
-            return [Insert(event.row, event.line, line)] if line else []
+            return [replace(new, row=event.row, line=event.line) for new in events]
     return [event]
+
+
+def _events(machine: Machine, word: str, text: str) -> tuple[Event, ...]:
+    """What an entry of ``[cl.words]`` is."""
+    try:
+        return events_of(text)
+    except StatementError as error:
+        file = machine.files[-1] if machine.files else machine.key
+        raise InputError(Problem(file, 0, f"[cl.words] {word}: {error.what}", error.cure)) from None

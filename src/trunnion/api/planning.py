@@ -90,7 +90,7 @@ def load_toolpaths(
     toolpaths = as_toolpaths(cl, job.settings.get("cl_units"), strict, observer, job.settings.get("dialect"))
     if job.control.units == INCH:
         _check_units_of(toolpaths)
-    toolpaths = replace_unknown_statements(toolpaths, job.control.statements)
+    toolpaths = replace_unknown_statements(toolpaths, job.control.statements, job.machine)
     if not toolpaths:
         raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
     if job.has_normals:

@@ -27,7 +27,7 @@ MachineLike: TypeAlias = str | os.PathLike[str] | Machine
 ToolpathLike: TypeAlias = FilePath | Toolpath
 
 #: Fields of a ``Machine`` that do not say how it moves: its names, its setup, and its control, which is a table.
-_NO_CONTENT: Final = {"key", "name", "description", "files", "workpiece_zero", "tool_length", "control"}
+_NO_CONTENT: Final = {"key", "name", "description", "files", "workpiece_zero", "tool_length", "control", "cl_words"}
 
 
 def read_cl(

@@ -124,7 +124,7 @@ def verify(
     control = written_control(loaded)
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
-    toolpaths = replace_unknown_statements(toolpaths, control.statements if control else {})
+    toolpaths = replace_unknown_statements(toolpaths, control.statements if control else {}, loaded)
     run = as_run(nc, loaded, subprograms)
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals

@@ -1,12 +1,23 @@
 """Readers of cutter-location files: a file of any dialect becomes a ``trunnion.model.toolpath.Toolpath``."""
 
+from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialects import DIALECTS
 from trunnion.cl.read import read_cl
 from trunnion.cl.scan import fill_modal_axes, scan
 from trunnion.cl.systems import other_system
 from trunnion.cl.unknown import statement_words, unknown_statement_problems
+from trunnion.cl.word_events import events_of
 
 #: Kernels that every file needs.
 KERNELS = (scan, fill_modal_axes)
 
-__all__ = ["DIALECTS", "KERNELS", "other_system", "read_cl", "statement_words", "unknown_statement_problems"]
+__all__ = [
+    "DIALECTS",
+    "KERNELS",
+    "StatementError",
+    "events_of",
+    "other_system",
+    "read_cl",
+    "statement_words",
+    "unknown_statement_problems",
+]

@@ -103,6 +103,42 @@ def _check(
         )
 
 
+def report_open_ends(
+    arcs: Arcs, circles: Sequence[CircleStatement], tip: Floats, kind: Codes, diagnostics: Diagnostics
+) -> None:
+    """Report an operation in which each arc is followed by a line to another point of its circle, ahead of it.
+
+    Some systems write several points of an arc, and others only its end. One arc whose next line leaves the circle
+    tells that each point is an end.
+    """
+    may_go_on = {circle.row: circle.line for circle in circles if circle.may_go_on}
+    lines = []
+    for k, row in enumerate(arcs.row.tolist()):
+        if row == 0 or row not in may_go_on:
+            continue
+        if row + 1 >= len(tip) or kind[row + 1] != Kind.LINEAR or not _goes_on(arcs, k, tip[row - 1 : row + 2]):
+            return
+        lines.append(may_go_on[row])
+    if lines:
+        what = "a point of the same circle follows each arc: whether the arc goes on to it, or a line, is not told"
+        diagnostics.error(lines[0], what, "output one point for each arc (ARC_ONLY), or lines in place of arcs")
+
+
+def _goes_on(arcs: Arcs, k: int, points: Floats) -> bool:
+    """Whether the last of three points, (3, 3), lies on the arc through the others as it would go on."""
+    radius = float(arcs.radius[k])
+    offset = points - arcs.centre[k]
+    height = offset @ arcs.normal[k]
+    radial = offset - height[:, None] * arcs.normal[k]
+    off = abs(float(np.linalg.norm(radial[2])) - radius)
+    if max(off, abs(float(height[2] - height[1]))) > RADIUS_TOLERANCE:
+        return False
+    cross, dot = np.cross(radial[:2], radial[1:]) @ arcs.normal[k], np.sum(radial[:2] * radial[1:], axis=1)
+    first, more = np.mod(np.arctan2(cross, dot), 2.0 * np.pi).tolist()
+    sagitta = radius * (1.0 - np.cos(0.5 * more))
+    return bool(sagitta > RADIUS_TOLERANCE and first + more <= 2.0 * np.pi + 1e-6)
+
+
 def distance_from_line(offset: Floats, normal: Floats) -> Floats:
     """(m,) float64: distance from the line through the origin along ``normal``, for (m, 3) offsets."""
     along = np.sum(offset * normal, axis=1)

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Lines
-from trunnion.cl.arcs import arc_lengths, arcs_of, complete_circles
+from trunnion.cl.arcs import arc_lengths, arcs_of, complete_circles, report_open_ends
 from trunnion.cl.builder import FeedChange, MoveColumns, OperationBuilder, SurfaceSpeed
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
@@ -58,6 +58,7 @@ def assemble_operation(
     circles = complete_circles(builder.circles, kind, diagnostics)
     kind[[circle.row for circle in circles]] = Kind.ARC
     arcs = arcs_of(circles, starts, tip, unit, diagnostics)
+    report_open_ends(arcs, circles, tip, kind, diagnostics)
     _inverse_to_per_minute(builder, feed, tip, arcs, columns.line[rows], kind, starts, diagnostics)
     tool = _tool_in_mm(builder.tool, unit)
     events = [*(_event_in_mm(event, unit, tool, diagnostics) for event in builder.events), *starts]

@@ -79,13 +79,15 @@ class FeedChange(NamedTuple):
 class CircleStatement(NamedTuple):
     """An arc: xc, yc, zc, i, j, k, r in units of the file, and the number of turns that it begins (TIMES).
 
-    A radius that is NaN is the distance of the start point.
+    A radius that is NaN is the distance of the start point. ``may_go_on``: points behind the next one may belong to the
+    arc as well.
     """
 
     row: int
     line: int
     numbers: tuple[float, ...]
     turns: int
+    may_go_on: bool = False
 
 
 class FromStatement(NamedTuple):

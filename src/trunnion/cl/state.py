@@ -50,7 +50,8 @@ class ReaderState:
     spindle, cycle   last ones of the operation, which SPINDL/ON and CYCLE/ON repeat
     spline_reported  the file has splines, and an error says so
     tool             the last LoadTool of the file
-    cutter_row       row before which a statement last told the form or the name of a tool, -1 if none has
+    cutter_row       row before which a statement last told the form of a tool, -1 if none has
+    name_row         the same of its name
     no_axis          the tool axis of a point that gives none
     direction        the direction of INDIRV, for the arc that follows
     clearance        height of the clearance plane
@@ -82,6 +83,7 @@ class ReaderState:
     spline_reported: bool = False
     tool: LoadTool | None = None
     cutter_row: int = -1
+    name_row: int = -1
     no_axis: NoAxis = NoAxis.MODAL
     direction: tuple[float, ...] | None = None
     clearance: float | None = None

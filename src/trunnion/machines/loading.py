@@ -72,6 +72,8 @@ def read_machine(table: Table, key: str) -> Machine:
     spindle = table.table("spindle")
     workpiece = table.table("workpiece")
     control = table.table("control")
+    cl = table.table("cl")
+    words = cl.table("words")
     axis_tables = table.tables("axis", required=True)
     spindle_direction = _direction(spindle, "direction", (0.0, 0.0, 1.0))
     spindle_point = _vector(spindle.vector("gauge_point_mm", 3, (0.0, 0.0, 0.0)))
@@ -82,7 +84,8 @@ def read_machine(table: Table, key: str) -> Machine:
     axes = tuple(_axis(entry) for entry in axis_tables)
     if "axis" in table and axis_tables:
         check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
-    for part in (spindle, workpiece, table):
+    cl_words = {word: words.text(word) for word in list(words.keys())}
+    for part in (spindle, workpiece, words, cl, table):
         part.report_unread_keys()
     table.raise_problems()
     return Machine(
@@ -97,6 +100,7 @@ def read_machine(table: Table, key: str) -> Machine:
         facts=facts,
         control=control.unread_copy(),
         files=tuple(table.files()),
+        cl_words=cl_words,
     )
 
 

@@ -5,6 +5,7 @@ Units: mm and degrees; rapids in mm/min and deg/min, accelerations in mm/s^2 and
 Limits, home and all axis values are those that the control displays and the program contains.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -145,6 +146,7 @@ class Machine:
     tool_length         of the tool in the spindle, gauge point to tip, mm; None if it is not known, and counts as 0
     control             the ``[control]`` table of the definition, unread
     files               definition files that the machine comes from
+    cl_words            words of the shop's own in its CL files, and the statements of CL files that they are
     """
 
     key: str
@@ -159,6 +161,7 @@ class Machine:
     facts: MachineFacts = MachineFacts()
     control: Table = field(default_factory=_no_control)
     files: tuple[str, ...] = ()
+    cl_words: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from trunnion.cl.dialect import CycleParts, CycleWords, Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, parse
-from trunnion.cl.statements import apt_tools, events, operations
+from trunnion.cl.statements import apt_tools, events, motion, operations
 
 
 def _csys(state: ReaderState, statement: Statement) -> None:
@@ -80,6 +80,7 @@ NCL: Final = Dialect(
         "->MFGNO": _mfgno,
         "->CUTCOM_GEOMETRY_TYPE": _geometry_type,
         "->END": operations.ignore,
+        "CIRCLE": motion.circle_with_points,
         "MULTAX": operations.ignore,
         "PPWORD": operations.ignore,
         "REMARK": _remark,

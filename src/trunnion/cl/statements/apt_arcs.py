@@ -152,7 +152,6 @@ def _check_intersection(start: _Vector, end: _Vector, normal: _Vector, count: st
     if min(angle, abs(angle - math.pi), 2.0 * math.pi - angle) < _ON_LINE:
         return
     if (angle > math.pi) != (count == "2"):
-        what = (
-            f"GOFWD turns by {math.degrees(angle):.1f} degrees, and its {count or 1}. meeting with the line is another"
-        )
+        turned, which = f"{math.degrees(angle):.1f} degrees", "second" if count == "2" else "first"
+        what = f"GOFWD turns by {turned}, where its circle does not meet the line for the {which} time"
         raise StatementError(what, _CURE)

@@ -40,21 +40,18 @@ def cutter(state: ReaderState, statement: Statement) -> None:
         tip_angle=180.0 - 2.0 * a if is_drill else a,
     )
     now = state.builder.tool
-    if replace(now, name="", flute_length=0.0) == tool:
-        return
-    state.split_operation()
-    kept = state.cutter_row == state.row
-    state.builder.tool = replace(tool, name=now.name if kept else "")
+    if replace(now, name="", flute_length=0.0) != tool:
+        state.split_operation()
+        state.builder.tool = replace(tool, name=now.name if state.name_row == state.row else "")
     state.cutter_row = state.row
 
 
 def name_tool(state: ReaderState, name: str) -> None:
     """Set the name of the tool."""
-    if name == state.builder.tool.name:
-        return
-    state.split_operation()
-    state.builder.tool = replace(state.builder.tool, name=name)
-    state.cutter_row = state.row
+    if name != state.builder.tool.name:
+        state.split_operation()
+        state.builder.tool = replace(state.builder.tool, name=name)
+    state.name_row = state.row
 
 
 def set_flute_length(state: ReaderState, length: float) -> None:
@@ -115,5 +112,9 @@ def _load(state: ReaderState, number: int, adjust: int) -> None:
     """Load a tool; without a description of its own, nothing is known of it."""
     before = state.tool
     state.load_tool(number, adjust)
-    if before is not None and before.number != number and state.cutter_row != state.row:
-        state.builder.tool = Tool()
+    if before is None or before.number == number:
+        return
+    if state.cutter_row != state.row:
+        state.builder.tool = Tool(name=state.builder.tool.name)
+    if state.name_row != state.row:
+        state.builder.tool = replace(state.builder.tool, name="")

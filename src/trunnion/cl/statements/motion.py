@@ -76,7 +76,12 @@ def plain_circle(state: ReaderState, statement: Statement) -> None:
     begin_circle(state, statement.numbers(7), 1)
 
 
-def begin_circle(state: ReaderState, numbers: tuple[float, ...], turns: int) -> None:
+def circle_with_points(state: ReaderState, statement: Statement) -> None:
+    """Make the next row an arc, of which more points may follow."""
+    begin_circle(state, statement.numbers(7), 1, may_go_on=True)
+
+
+def begin_circle(state: ReaderState, numbers: tuple[float, ...], turns: int, *, may_go_on: bool = False) -> None:
     """Make the next row an arc, or this one if the statement is a motion.
 
     numbers  xc, yc, zc, i, j, k, r; r is NaN if it is the distance of the start point
@@ -87,7 +92,7 @@ def begin_circle(state: ReaderState, numbers: tuple[float, ...], turns: int) -> 
         start = current_tip(state)
         if start is not None and not state.builder.starts:
             state.builder.starts.append(FromStatement(0, state.line, start, None))
-    state.builder.circles.append(CircleStatement(state.operation_row, state.line, numbers, turns))
+    state.builder.circles.append(CircleStatement(state.operation_row, state.line, numbers, turns, may_go_on))
 
 
 def unsupported(state: ReaderState, statement: Statement) -> None:
