@@ -350,7 +350,7 @@ def test_another_tool_has_not_the_name_of_the_one_before(read: Read) -> None:
         "GOTO/3,0,0",
     ]
     toolpath = read("\n".join([*HEADS["catia"], *lines, "FINI"]))
-    assert [operation.tool.name for operation in toolpath.operations] == ["T5 End Mill", "", "SECOND"]
+    assert [operation.tool.name for operation in toolpath.operations] == ["T5 End Mill", "", "THIRD"]
 
 
 @pytest.mark.parametrize(
