@@ -134,7 +134,8 @@ def read_in_chunks(
     )
     diagnostics.raise_errors()
     toolpath = Toolpath(
-        str(path), operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units), dialect=recognized.dialect.name,
+        str(path), operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units),
+        dialect=recognized.dialect.name,
         recognized=f"{recognized.dialect.title}: {recognized.why}",
         system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
     )  # fmt: skip

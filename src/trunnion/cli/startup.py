@@ -19,7 +19,9 @@ def run(arguments: argparse.Namespace) -> int:
         compile_ahead(kernels.POSTING)
     with ThreadPoolExecutor(1) as executor:
         given = dict(arguments.settings)
-        coming = read_toolpaths(arguments.files, given.get("cl_units"), arguments.strict, executor, given.get("dialect"))
+        coming = read_toolpaths(
+            arguments.files, given.get("cl_units"), arguments.strict, executor, given.get("dialect")
+        )
         from trunnion.cli.post import post
 
         return post(arguments, coming)
