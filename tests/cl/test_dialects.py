@@ -345,7 +345,7 @@ def test_another_tool_has_not_the_name_of_the_one_before(read: Read) -> None:
         "CUTTER/10,1,4,1,0,0,50",
         "LOADTL/6",
         "GOTO/2,0,0",
-        "TPRINT/SECOND",
+        "TPRINT/THIRD",
         "LOADTL/7",
         "GOTO/3,0,0",
     ]

@@ -72,7 +72,8 @@ def _settle_cycle(found: CycleParts) -> None:
     if first is not None and others is not None:
         if others[0] > first[0]:
             raise StatementError("CYCLE with a SUBPECK longer than 1STPECK", "write a first peck that is the longest")
-        found.couplets.append(("STEP", (first[0], first[0] - others[0], others[0])))
+        alike = first == others
+        found.couplets.append(("STEP", first if alike else (first[0], first[0] - others[0], others[0])))
     elif first is not None or others is not None:
         raise StatementError("CYCLE has one of 1STPECK and SUBPECK", "write both")
 
