@@ -44,11 +44,25 @@ LINES = (
 _ROW = re.compile(r"(GOTO|GODLTA|(TLON,)?GOFWD|RETRCT|GOHOME/[-+.\d])", re.IGNORECASE)
 
 
+_TEXT = re.compile(r"PPRINT|INSERT|PARTNO|TPRINT|REMARK|TOOLPATH|DISPL|(OP)?STOP", re.IGNORECASE)
+
+
 def points_in(text: str) -> int:
-    """Statements that move the tool."""
-    joined = re.sub(r"\$[ \t]*(?:\$\$[^\n]*)?\n", "", text)
-    lines = (re.sub(r"\s", "", line.partition("$$")[0]) for line in joined.split("\n"))
-    return sum(_ROW.match(line) is not None for line in lines)
+    """Statements that move the tool, counted line after line."""
+    count, statement, goes_on = 0, "", False
+    for line in text.split("\n"):
+        plain = line.strip()
+        is_comment = plain.startswith("$$") and not plain.startswith("$$->")
+        if not goes_on and (is_comment or _TEXT.match(re.sub(r"[\s$]", "", plain))):
+            continue
+        plain = plain.removeprefix("$$") if not goes_on else plain
+        plain = plain.partition("$$")[0].strip()
+        goes_on = plain.endswith("$")
+        statement += plain.removesuffix("$")
+        if not goes_on:
+            count += _ROW.match(re.sub(r"\s", "", statement)) is not None
+            statement = ""
+    return count
 
 
 def judge(data: bytes, folder: Path, *, count: bool) -> bool:
