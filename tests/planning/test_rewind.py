@@ -177,11 +177,11 @@ def test_a_program_with_a_rewind_is_proven(tmp_path: Path, capfd: pytest.Capture
     ("setting", "message"),
     [
         ("rewind=perhaps", "write rewind=insert or rewind=none"),
-        ("clearance=far", "such as clearance=50"),
-        ("clearance=nan", "such as clearance=50"),
-        ("clearance=-5", "such as clearance=50"),
-        ("clearance=cone:5", "such as clearance=50"),
-        ("clearance=sphere:-5", "plane:Z, sphere:R"),
+        ("clearance=far", "write clearance=MM or plane:Z or sphere:R"),
+        ("clearance=nan", "write clearance=MM or plane:Z or sphere:R"),
+        ("clearance=-5", "write clearance=MM or plane:Z or sphere:R"),
+        ("clearance=cone:5", "write clearance=MM or plane:Z or sphere:R"),
+        ("clearance=sphere:-5", "write clearance=MM or plane:Z or sphere:R"),
     ],
 )
 def test_meaningless_settings_are_refused(
