@@ -1,6 +1,7 @@
 """One CL statement taken apart: ``MAJOR/minor,minor`` into words and numbers, or into its text."""
 
 import re
+from collections.abc import Iterable
 from math import isfinite
 from typing import NamedTuple
 
@@ -53,6 +54,21 @@ class Statement(NamedTuple):
     def words(self) -> list[str]:
         """Return the words among the values."""
         return [value for value in self.values if isinstance(value, str)]
+
+    def refuse_contradictions(self, *choices: Iterable[str]) -> None:
+        """Refuse two different words of one of the ``choices``: nobody knows which of them is meant.
+
+        Raises
+        ------
+        StatementError
+            If there are two.
+        """
+        given = dict.fromkeys(self.words())
+        for choice in map(frozenset, choices):
+            both = [word for word in given if word in choice]
+            if len(both) > 1:
+                what = f"{self.major} has {both[0]} and {both[1]}, which contradict each other"
+                raise StatementError(what, "write the one that is meant")
 
 
 def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[float, ...]:

@@ -70,7 +70,15 @@ def _parse(state: ReaderState, statement: Statement) -> CycleParts:
         raise StatementError("CYCLE has a number too many, or a feed without a unit", "name each number of the cycle")
     if dialect.settle is not None:
         dialect.settle(found)
+    _refuse_repetitions(found)
     return found
+
+
+def _refuse_repetitions(found: CycleParts) -> None:
+    """Refuse a number that is given twice: nobody knows which of them is meant."""
+    names = ["a feed" if word in ("MMPM", "MMPR") else word for word, _ in found.couplets]
+    if twice := next((name for n, name in enumerate(names) if name in names[:n]), ""):
+        raise StatementError(f"CYCLE has {twice} twice", "write the one that is meant")
 
 
 def _positions(state: ReaderState, found: CycleParts, word: str, given: tuple[float, ...]) -> None:

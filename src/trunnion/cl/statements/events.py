@@ -28,6 +28,7 @@ from trunnion.model.toolpath import (
 _SURFACE_SPEEDS = {"SFM": MM_PER_FOOT, "SMM": 1000.0}
 #: The word of a feed that is one over the minutes of a move.
 _INVERSE = "INVERS"
+_FEED_WORDS = frozenset({_INVERSE, *FILE_UNIT_FEEDS, *FEED_UNITS})
 
 _GEAR_RANGES = frozenset({"LOW", "MEDIUM", "HIGH", "RANGE"})
 _SPINDLE_WORDS = frozenset({"RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "DIAMTR"}) | _GEAR_RANGES
@@ -41,6 +42,7 @@ _FULFILLED_MODES = frozenset({("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULT
 
 def fedrat(state: ReaderState, statement: Statement) -> None:
     """Set the modal feed and its unit."""
+    statement.refuse_contradictions(_FEED_WORDS)
     for word in statement.words():
         if word == _INVERSE:
             state.feed_factor, state.feed_per_rev, state.feed_inverse, state.bare_feeds = 1.0, False, True, False
@@ -67,6 +69,7 @@ def fedrat(state: ReaderState, statement: Statement) -> None:
 
 def spindl(state: ReaderState, statement: Statement) -> None:
     """Turn the spindle on or off."""
+    statement.refuse_contradictions(("OFF", "ON"), ("OFF", "CLW", "CCLW"), ("OFF", "RPM", *_SURFACE_SPEEDS))
     words = set(statement.words())
     if "OFF" in words:
         state.add(SpindleOff(state.operation_row, state.line))
@@ -104,6 +107,9 @@ def _speed_and_diameter(statement: Statement) -> tuple[float | None, float | Non
             (value,) = numbers("SPINDL", (value,))
             if last == "DIAMTR":
                 diameter = value
+            elif last != "RANGE" and speed is not None:
+                what = f"SPINDL has two speeds, {speed:g} and {value:g}"
+                raise StatementError(what, "write the one that is meant")
             elif last != "RANGE":
                 speed = value
         last = value
