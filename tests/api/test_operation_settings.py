@@ -95,6 +95,7 @@ def test_the_proof_wants_each_operation_in_its_own_work_offset(cl: Path, tmp_pat
         ({"work_offset": "TOP:G55"}, "work_offset is set for operation TOP"),
         ({"mode": "TOP:tcp"}, "mode is set for operation TOP"),
         ({"work_offset": "G54,G55,SIDES:G56"}, "work_offset has two values for all operations"),
+        ({"work_offset": "SIDES:G55,SIDES:G56"}, "work_offset has two values for operation SIDES"),
         ({"title": "SIDES:FINISH"}, "title is 'SIDES:FINISH', and it cannot differ by operation"),
         ({"orientation": "SIDES:vector"}, "orientation is 'SIDES:vector'"),
         ({"restart": "SIDES:on"}, "restart is 'SIDES:on'"),

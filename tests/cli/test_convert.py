@@ -191,7 +191,7 @@ def test_unknown_words_are_refused_with_their_block(tmp_path: Path, capfd: Captu
     assert "a.mpf:50: error:" in err
     assert "WOBBLE" in err
     assert "--force" in err
-    assert main(["convert", *arguments, "--force", "--output", str(tmp_path / "forced.cls")]) == 0
+    assert main(["convert", *arguments, "--force", "--output", str(tmp_path / "forced.cls")]) == 1
     assert "a.mpf:50: error:" in capfd.readouterr().err
 
 
@@ -200,7 +200,7 @@ def test_a_program_that_leaves_the_travel_of_the_other_machine_is_refused(tmp_pa
     err = failed(tmp_path, capfd, *arguments, code=1)
     assert f"{HUB}:46: error: axis Z would go to" in err
     target = tmp_path / "a.mpf"
-    assert main(["convert", *arguments, "--force", "--output", str(target)]) == 0
+    assert main(["convert", *arguments, "--force", "--output", str(target)]) == 1
     assert ";MUST NOT RUN AS IT IS" in target.read_text(encoding="utf-8")
 
 

@@ -119,7 +119,7 @@ def test_a_limit_exceeded_in_line_50000_is_refused_with_its_place_and_no_file(
 
 def test_force_writes_it_and_its_head_says_so(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     outcome = post_text(tmp_path, capfd, long_file(50_000), "--force")
-    assert outcome.code == 0
+    assert outcome.code == 1
     head = outcome.target.read_text(encoding="utf-8").splitlines()[0]
     assert (
         head
@@ -143,7 +143,7 @@ def test_the_head_says_so_where_the_control_reads_it(tmp_path: Path, machine: st
         "TOOL PATH/FAR,TOOL,T1\nTLDATA/MILL,10.,0.,75.,0.,0.\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\nRAPID\n"
         f"GOTO/0.0,0.0,10.0,0.,0.,1.\nFEDRAT/MMPM,500\n{far}END-OF-PATH\n"
     )
-    assert main(["post", str(source), "--machine", machine, "--output", str(target), "--force"]) == 0
+    assert main(["post", str(source), "--machine", machine, "--output", str(target), "--force"]) == 1
     lines = target.read_text(encoding="utf-8").splitlines()
     assert len(lines) > len(first)
     for line, word in zip(lines, first, strict=False):

@@ -222,7 +222,7 @@ def test_a_program_that_lacks_a_block_is_refused_with_its_place(
     )
     assert post(CL, "--machine", "yl569", "--output", "-") == 1
     assert capfd.readouterr().out == ""
-    assert post(CL, "--machine", "yl569", "--output", target, "--force") == 0
+    assert post(CL, "--machine", "yl569", "--output", target, "--force") == 1
     assert "order" not in target.read_text(encoding="utf-8")
     assert target.read_text(encoding="utf-8").startswith(
         "N10 ;MUST NOT RUN AS IT IS, written by --force: every CL point has its block, every block its point: N610"
@@ -312,7 +312,7 @@ def test_post_refuses_a_program_that_does_something_else_and_writes_nothing(
 
 def test_force_writes_it_and_its_head_names_the_checks(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     machine, target = machine_without_tcp(tmp_path), tmp_path / "p.mpf"
-    assert main(["post", str(CL), "--machine", str(machine), "--output", str(target), "--force"]) == 0
+    assert main(["post", str(CL), "--machine", str(machine), "--output", str(target), "--force"]) == 1
     lines = target.read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("N10 ;MUST NOT RUN AS IT IS, written by --force: tool tip against the CL points: ")
     assert sum(line.endswith(" M30") for line in lines) == 1

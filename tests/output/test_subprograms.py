@@ -410,7 +410,7 @@ def test_a_program_that_must_not_run_is_not_written_and_forced_says_so_in_every_
     common = ["post", *files, "--machine", str(machine), "--output", str(target / "part.mpf")]
     assert main([*common, "--set", "programs=operations"]) == 1
     assert list(target.iterdir()) == []
-    assert main([*common, "--set", "programs=operations", "--force"]) == 0
+    assert main([*common, "--set", "programs=operations", "--force"]) == 1
     made = sorted(target.iterdir())
     assert [path.name for path in made] == ["BLADE_FINISH.spf", "MULTI_BLADE_ROUGH.spf", "part.mpf"]
     assert all("MUST NOT RUN AS IT IS" in path.read_text(encoding="utf-8") for path in made)

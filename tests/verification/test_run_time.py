@@ -146,7 +146,7 @@ def test_a_template_prints_times_and_others_cost_nothing(tmp_path: Path, capfd: 
         encoding="utf-8",
     )
     source, target = YL569 / "3_blade_finish.cls", tmp_path / "timed.mpf"
-    assert main(["post", str(source), "--machine", str(machine), "--output", str(target), "--force"]) == 0
+    assert main(["post", str(source), "--machine", str(machine), "--output", str(target), "--force"]) == 1
     text = target.read_text(encoding="utf-8")
     assert " s of " in text or " min of " in text
     capfd.readouterr()

@@ -56,6 +56,12 @@ class ConvertResult:
         return f"ConvertResult({result})"
 
     @property
+    def passed(self) -> bool:
+        """Whether all was understood and, with another machine, the program is proven and may run there."""
+        understood = all(problem.severity is not Severity.ERROR for problem in self.problems)
+        return understood and (self.posted is None or self.posted.passed)
+
+    @property
     def text(self) -> str | None:
         """The CL file or the program; None where it went to a stream."""
         return written_text(self.output, self._memory)

@@ -146,7 +146,10 @@ def split_by_operation(
             continue
         for entry in text.split(","):
             name, _, value = entry.rpartition(":")
-            if name:
+            if name and key in own.get(name, ()):
+                what = f"{key} has two values for operation {name}: {text!r}"
+                problems.append(argument_problem("settings", what, f"write {key}={name}:VALUE once"))
+            elif name:
                 own.setdefault(name, {})[key] = value
             elif key in program:
                 cure = f"write {key}=VALUE,OPERATION:VALUE: a text can have no comma beside a colon"

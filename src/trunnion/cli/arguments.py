@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Callable, Sequence
 from importlib import import_module
+from typing import Any, cast
 
 from trunnion import __version__
 
@@ -12,6 +13,26 @@ def _key_value(text: str) -> tuple[str, str]:
     if not equals or not key:
         raise argparse.ArgumentTypeError(f"{text!r} is not a setting; write KEY=VALUE")
     return key, value
+
+
+class _Setting(argparse.Action):
+    """Collects the settings; one that is given twice is refused, for the first would be lost."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[Any] | None,
+        option_string: str | None = None,
+    ) -> None:
+        settings: list[tuple[str, str]] = list(getattr(namespace, self.dest))
+        (key, value), before = cast("tuple[str, str]", values), dict(settings)
+        if key in before:
+            once = f"{key}={before[key]},OPERATION:VALUE where a setting differs by operation"
+            raise argparse.ArgumentError(
+                self, f"{key} is set twice, to {before[key]!r} and {value!r}; write one, or {once}"
+            )
+        setattr(namespace, self.dest, [*settings, (key, value)])
 
 
 #: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
@@ -81,7 +102,7 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
         "--output", metavar="FILE|-|FOLDER", help="program, stdout, or a folder: one program per CL file"
     )
     parser.add_argument(
-        "--set", action="append", type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
+        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
         help="what templates print (title, part, date, method, …), or how to read, place and plan; may be repeated",
     )  # fmt: skip
     _add_subprograms(parser, "a template")
@@ -155,7 +176,7 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool there, gauge point to tip")
     parser.add_argument("--output", metavar="FILE|-|FOLDER", help="result; without it a file of that name here")
     parser.add_argument(
-        "--set", action="append", type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
+        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
         help="what templates print, in place of what the program says, and zero; may be repeated",
     )  # fmt: skip
     parser.add_argument(

@@ -14,7 +14,7 @@ from trunnion.wording import counted
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Convert one program."""
+    """Convert one program; 1 if what came of it is forced."""
     machine = load_machine(arguments.machine)
     to_machine = load_machine(arguments.to_machine) if arguments.to_machine else None
     extension = ".cls" if to_machine is None else load_control(to_machine.control).extension
@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
         print(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}", file=sys.stderr)
-    return 0
+    return 0 if converted.passed else 1
 
 
 def _post_hint(target: str, machine: str, settings: Mapping[str, str]) -> str:

@@ -20,7 +20,7 @@ from trunnion.wording import counted
 
 
 def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
-    """Post every CL file; their toolpaths come one after the other."""
+    """Post every CL file, whose toolpaths come one after the other; 1 if one of the programs is forced."""
     machine = load_machine(arguments.machine)
     targets = _files_by_target(arguments, machine)
     if arguments.report is not None and len(targets) > 1:
@@ -30,6 +30,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     report = [] if arguments.report is None else [arguments.report]
     check_outputs([*(target for target in targets if target != "-"), *report], read)
     written: list[Path] = []
+    passed = True
     for target, files in targets.items():
         result = post_beside(
             islice(toolpaths, len(files)),
@@ -46,8 +47,9 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
             observer=Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
         )
         written += [*result.subprograms, *([] if result.output is None else [result.output])]
+        passed = passed and result.passed
         _print_summary(target, result, arguments.explain)
-    return 0
+    return 0 if passed else 1
 
 
 def _print_summary(target: str, result: PostResult, explain: bool) -> None:

@@ -154,6 +154,6 @@ def test_a_program_that_nobody_can_read_back_is_written_by_force_only_and_says_s
     assert (code, lines) == (1, [])
     assert "xyzac_trt: error: programs for LinuxCNC cannot be read back yet: nothing proves this one" in err
     code, lines, err = post.all(HEAD + FOOT, "--force")
-    assert code == 0
+    assert code == 1
     assert lines[0].startswith("; MUST NOT RUN AS IT IS, written by --force: programs for LinuxCNC cannot be read back")
     assert "nothing has been checked" in err
