@@ -29,6 +29,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     read = [*arguments.files, *definition_files(arguments.machine, machine)]
     report = [] if arguments.report is None else [arguments.report]
     check_outputs([*(target for target in targets if target != "-"), *report], read)
+    toolpaths = _with_dialects(toolpaths, arguments.explain)
     written: list[Path] = []
     passed = True
     for target, files in targets.items():
@@ -48,17 +49,22 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
         )
         written += [*result.subprograms, *([] if result.output is None else [result.output])]
         passed = passed and result.passed
-        _print_summary(target, result, arguments.explain)
+        _print_summary(target, result)
     return 0 if passed else 1
 
 
-def _print_summary(target: str, result: PostResult, explain: bool) -> None:
-    """Name the files of a program, and the dialects of CL files where they are not NX's."""
-    if result.output is None:
-        return
-    for toolpath in result.toolpaths:
+def _with_dialects(toolpaths: Iterator[Toolpath], explain: bool) -> Iterator[Toolpath]:
+    """The toolpaths; says what each is written in as it comes, where that is not NX's CLSF."""
+    for toolpath in toolpaths:
         if toolpath.dialect != "clsf" or explain:
             print(f"{toolpath.file}: read as {toolpath.recognized}", file=sys.stderr)
+        yield toolpath
+
+
+def _print_summary(target: str, result: PostResult) -> None:
+    """Name the files of a program."""
+    if result.output is None:
+        return
     rows = sum(len(motion.operation.moves) for motion in result.motions)
     operations = sum(motion.starts_operation for motion in result.motions)
     print(f"{target}: {counted(rows, 'point')}, {counted(operations, 'operation')}", file=sys.stderr)
