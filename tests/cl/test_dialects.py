@@ -479,6 +479,15 @@ def test_an_unknown_statement_is_kept_with_its_line(apt: Callable[..., Operation
     assert (found.text, found.line, found.row) == ("SHOPWD/4", 6, 1)
 
 
+def test_other_commands_of_creo_are_comments(read: Read, fails: Fail, refused: Callable[..., str]) -> None:
+    text = "\n".join([*HEADS["ncl"], "$$-> SETSTART / 1", "GOTO / 1,2,3", "$$-> SETSTART / 2", "FINI"])
+    toolpath = read(text)
+    assert [(problem.line, "(2 times" in problem.what) for problem in toolpath.remarks] == [(5, True)]
+    assert not any(isinstance(event, UnknownStatement) for event in toolpath.operations[0].events)
+    assert len(fails(text, strict=True)) == 2
+    assert "TRACUT repeats" in refused("ncl", "$$-> TRACUT / 1")
+
+
 def test_an_alias_of_creo_may_put_commands_into_remarks(apt: Callable[..., Operation]) -> None:
     operation = apt("ncl", "REMARK -> FEATNO / 9", "REMARK -> CUTTER / 6.5", "REMARK any $ text", "GOTO / 1,2,3")
     assert (operation.name, operation.tool.diameter) == ("FEATNO 9", 6.5)

@@ -154,6 +154,10 @@ class ClInterpreter:
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
             raise self._diagnostics.fatal(0, _NOT_CL, _GIVE_CL)
+        if statement.major.startswith("->") and not self._state.strict:
+            what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"
+            self._diagnostics.remark(self._state.line, what, "nothing becomes of it: check that nothing should")
+            return
         if not self._dialect.in_sections:
             _refuse_no_word(statement)
         self._state.note_unknown(statement, f"{statement.major or 'a statement without a word'} is not known")

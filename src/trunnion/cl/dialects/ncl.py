@@ -8,7 +8,7 @@ from trunnion.cl.dialect import CycleParts, CycleWords, Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, parse
-from trunnion.cl.statements import apt_tools, events, motion, operations
+from trunnion.cl.statements import apt_refused, apt_tools, events, motion, operations
 
 
 def _csys(state: ReaderState, statement: Statement) -> None:
@@ -74,6 +74,7 @@ NCL: Final = Dialect(
     marks=marks(rb"\$\$\*?[ \t]*Pro/CLfile\b", rb"\$\$->", rb"REMARK[ \t]*(?:->|\*[ \t]*Pro/CLfile\b)"),
     handlers={
         **APT_HANDLERS,
+        **{f"->{word}": apt_refused.refuse for word in apt_refused.REFUSED_WORDS},
         "->CSYS": _csys,
         "->CUTTER": apt_tools.cutter,
         "->FEATNO": _featno,

@@ -48,5 +48,6 @@ def part_program(state: ReaderState, statement: Statement) -> None:
 
 def refuse(state: ReaderState, statement: Statement) -> None:
     """Refuse motion that cannot be read."""
-    why, cure = REFUSED_WORDS[statement.major]
-    raise StatementError(f"{statement.major} {why}", cure)
+    word = statement.major.removeprefix("->")
+    why, cure = REFUSED_WORDS[word]
+    raise StatementError(f"{word} {why}", cure)
