@@ -67,7 +67,7 @@ def test_the_option_overrules_the_content(tmp_path: Path, capsys: pytest.Capture
     program = tmp_path / "a.mpf"
     assert main(["post", str(file), "--machine", "yl569", "--output", str(program), "--set", "dialect=ncl"]) == 0
     assert main(["verify", str(program), "--machine", "yl569", "--cl", str(file), "--dialect", "ncl"]) == 0
-    assert main(["verify", str(program), "--machine", "yl569", "--cl", str(file), "--dialect", "apt"]) == 2
+    assert main(["verify", str(program), "--machine", "yl569", "--cl", str(file), "--dialect", "clsf"]) == 2
 
 
 def test_files_in_different_systems_are_no_job(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -29,7 +29,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     read = [*arguments.files, *definition_files(arguments.machine, machine)]
     report = [] if arguments.report is None else [arguments.report]
     check_outputs([*(target for target in targets if target != "-"), *report], read)
-    toolpaths = _with_dialects(toolpaths, arguments.explain)
+    toolpaths = _with_dialects(toolpaths)
     written: list[Path] = []
     passed = True
     for target, files in targets.items():
@@ -53,10 +53,10 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     return 0 if passed else 1
 
 
-def _with_dialects(toolpaths: Iterator[Toolpath], explain: bool) -> Iterator[Toolpath]:
+def _with_dialects(toolpaths: Iterator[Toolpath]) -> Iterator[Toolpath]:
     """The toolpaths; says what each is written in as it comes, where that is not NX's CLSF."""
     for toolpath in toolpaths:
-        if toolpath.dialect != "clsf" or explain:
+        if toolpath.dialect != "clsf":
             print(f"{toolpath.file}: read as {toolpath.recognized}", file=sys.stderr)
         yield toolpath
 
