@@ -70,6 +70,23 @@ def test_the_option_overrules_the_content(tmp_path: Path, capsys: pytest.Capture
     assert main(["verify", str(program), "--machine", "yl569", "--cl", str(file), "--dialect", "clsf"]) == 2
 
 
+def test_the_dialect_is_given_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [
+        "post",
+        str(file_in(tmp_path, "ncl")),
+        "--machine",
+        "yl569",
+        "--dialect",
+        "ncl",
+        "--set",
+        "dialect=apt",
+    ]
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    assert "are the same" in capsys.readouterr().err
+
+
 def test_files_in_different_systems_are_no_job(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = file_in(tmp_path, "ncl").read_text(encoding="utf-8")
     files = []

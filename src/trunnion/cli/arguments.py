@@ -91,6 +91,8 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
     arguments = parser.parse_args(list(argv))
     if getattr(arguments, "dialect", None) and "settings" in arguments:
+        if "dialect" in dict(arguments.settings):
+            parser.error("--dialect and --set dialect=… are the same: give one of them")
         arguments.settings = [*arguments.settings, ("dialect", arguments.dialect)]
     return arguments
 
