@@ -234,8 +234,8 @@ def test_work_offsets_are_proven_and_called_as_the_control_does(machine: str, tm
         assert f"works in {name}, not in {other_name}" in check.summary
 
 
-def test_a_setting_that_is_given_twice_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_setting_with_two_values_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["post", "part.cls", "--machine", "yl569", "--set", "work_offset=G57", "--set", "work_offset=SIDES:G55"])
     assert ended.value.code == 2
-    assert "work_offset is set twice, to 'G57' and 'SIDES:G55'; write one" in capsys.readouterr().err
+    assert "work_offset has two values, 'G57' and 'SIDES:G55'; write one" in capsys.readouterr().err

@@ -16,7 +16,7 @@ def _key_value(text: str) -> tuple[str, str]:
 
 
 class _Setting(argparse.Action):
-    """Collects the settings; one that is given twice is refused, for the first would be lost."""
+    """Collects the settings; one that is given two values is refused, for the first would be lost."""
 
     def __call__(
         self,
@@ -27,10 +27,10 @@ class _Setting(argparse.Action):
     ) -> None:
         settings: list[tuple[str, str]] = list(getattr(namespace, self.dest))
         (key, value), before = cast("tuple[str, str]", values), dict(settings)
-        if key in before:
+        if before.get(key, value) != value:
             once = f"{key}={before[key]},OPERATION:VALUE where a setting differs by operation"
             raise argparse.ArgumentError(
-                self, f"{key} is set twice, to {before[key]!r} and {value!r}; write one, or {once}"
+                self, f"{key} has two values, {before[key]!r} and {value!r}; write one, or {once}"
             )
         setattr(namespace, self.dest, [*settings, (key, value)])
 
