@@ -9,7 +9,7 @@ from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
 from tests.support.jobs import post_job
-from tests.support.operations import moves_of, operation_of
+from tests.support.operations import moves_of, operation_of, rapids_at
 from trunnion.api.expectation import expectation
 from trunnion.api.job import parse_plan_options
 from trunnion.api.planning import plan_program
@@ -23,8 +23,7 @@ from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
 
-#: Paths here begin with a cut; a Haas wants X, Y and Z stated at rapid in a new plane, and its proof refuses them.
-MACHINES = {name: load_machine(name) for name in shipped_machines() if name != "haas_umc750"}
+MACHINES = {name: load_machine(name) for name in shipped_machines()}
 CONTROLS = {name: load_control(machine.control.unread_copy()) for name, machine in MACHINES.items()}
 TIPS = np.array([[0.0, 0.0, 50.0], [10.0, 0.0, 5.0], [20.0, 3.0, 5.0], [60.0, -40.0, 2.0]])
 
@@ -41,7 +40,7 @@ def leaning(tilt: float, azimuth: float) -> Floats:
 
 
 def toolpath_of(axis: Floats) -> Toolpath:
-    operation = operation_of(moves_of(TIPS, np.tile(axis, (len(TIPS), 1))))
+    operation = operation_of(rapids_at(moves_of(TIPS, np.tile(axis, (len(TIPS), 1))), [0]))  # a Haas wants a rapid
     events = (LoadTool(0, 1, 1), SpindleOn(0, 2, 1000.0))
     return Toolpath("part.cls", (replace(operation, events=events, intol=0.01, outtol=0.01),))
 

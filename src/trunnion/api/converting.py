@@ -146,7 +146,7 @@ def convert(
         converted = converter.read(run, control, None if to_cl else job.machine)
         if subprograms and not (divided or to_cl):
             converter.warn_of_one_program(1 + len(subprograms))
-        carried = converter.carry(converted.settings, control, job)
+        carried = converter.carry(converted.settings, control, job, source)
         if to_cl:
             if run.state.inches.values[-1] and control.settings.get("units") != INCH:
                 carried["units"] = INCH
@@ -220,17 +220,17 @@ class _ProgramConverter:
         cure = "setting programs=operations writes several"
         self.report([Problem(self._file, 0, f"{files} files become one program", cure, Severity.WARNING)])
 
-    def carry(self, stated: Mapping[str, str], control: Control, job: PostJob) -> dict[str, str]:
+    def carry(self, stated: Mapping[str, str], control: Control, job: PostJob, source: Machine) -> dict[str, str]:
         """The settings of the new program: those that the old one states, as far as they mean the same, and the job's.
 
         Warns of each that is not carried over.
         """
         target = job.control
         carried = conversion.transfer_settings(stated, control, target)
-        lost = sorted(stated.keys() - carried.keys())
-        if "work_offset" in lost and ":" in stated["work_offset"] and "work_offset" not in job.settings:
-            what = f"operations have different work offsets ({stated['work_offset']}), which {target.name} cannot take"
-            self._refuse([Problem(self._file, 0, what, "setting work_offset=… says them as the other control does")])
+        if "work_offset" in job.settings:
+            carried.pop("work_offset", None)
+        carried |= self._carried_offset(stated, control, job, source)
+        lost = sorted(stated.keys() - carried.keys() - {"work_offset"})
         for key in lost:
             what = f"{key} is {stated[key]!r}, which is not carried over"
             known = key in target.settings
@@ -244,3 +244,24 @@ class _ProgramConverter:
         if "tool" in job.printed and "tool_call" not in job.printed:
             carried.pop("tool_call", None)
         return carried
+
+    def _carried_offset(
+        self, stated: Mapping[str, str], control: Control, job: PostJob, source: Machine
+    ) -> dict[str, str]:
+        """The work offset as the other control says it, unless that is its default; one that it lacks is refused."""
+        target = job.control
+        if control.name == target.name or "work_offset" in job.settings or "work_offset" not in control.settings:
+            return {}
+        default = target.settings.get("work_offset", "")
+        text = stated.get("work_offset", control.settings["work_offset"])
+        found, words = None, ""
+        if "work_offset" in target.settings and readers.can_read(job.machine):
+            own, others = readers.reader_of(source).work_offsets, readers.reader_of(job.machine).work_offsets
+            found = conversion.carry_work_offset(text, own, others, control.family is target.family)
+            words = f": it has {others.form}"
+        if found is not None:
+            return {} if found == default and "work_offset" not in stated else {"work_offset": found}
+        if "work_offset" in stated:
+            what = f"the work offset is {text}, which {target.name} does not have{words}"
+            self._refuse([Problem(self._file, 0, what, "setting work_offset=… says it as the other control does")])
+        return {}

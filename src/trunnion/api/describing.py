@@ -206,7 +206,7 @@ def _describe(key: str, control: Control) -> ControlDescription:
         abilities=tuple(_abilities(control)),
         words=words,
         texts=tuple(TemplateDescription(name, control.templates[name].lines) for name in names),
-        settings=tuple(_control_setting(control, name) for name in control.settings),
+        settings=tuple(_control_setting(control, name) for name in control.settings if control.has_effect(name)),
         run_settings=run_settings(),
     )
 

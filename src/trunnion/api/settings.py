@@ -16,6 +16,7 @@ from trunnion import readers
 from trunnion.api.run_settings import RUN_SETTINGS
 from trunnion.controls import Control
 from trunnion.controls.setting_rules import is_one_line
+from trunnion.controls.vocabulary import TCP_SETTINGS
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.machines import Machine
@@ -113,12 +114,24 @@ def control_setting_faults(settings: Mapping[str, str], control: Control, machin
     """The settings of a control that cannot be as they are, each with its cure."""
     judged = {key: control.setting_cure(key, value) for key, value in settings.items() if key in control.settings}
     faults = [(key, cure) for key, cure in judged.items() if cure]
+    faults += [(key, _no_effect(key, control)) for key in judged if _is_idle(key, settings[key], control)]
     if "work_offset" in judged and readers.can_read(machine):
         offsets = readers.reader_of(machine).work_offsets
         faults += [] if offsets.value_of(settings["work_offset"]) else [("work_offset", f"write {offsets.form}")]
     effective = {**control.settings, **{key: value for key, value in settings.items() if value}}
     found = dict(faults)
     return faults + [(key, cure) for key, cure in control.family.validate_settings(effective) if key not in found]
+
+
+def _is_idle(key: str, text: str, control: Control) -> bool:
+    """Whether a setting asks for something that would not be in the program."""
+    return bool(text) and text != control.settings[key] and not control.has_effect(key)
+
+
+def _no_effect(key: str, control: Control) -> str:
+    fields = " or ".join(f"{{{name}}}" for name in control.family.SETTING_FIELDS.get(key, (key,)))
+    where = "it has no TCP" if key in TCP_SETTINGS else f"no template of its definition has {fields}"
+    return f"leave it out: it has no effect on {control.name}, for {where}"
 
 
 def _unknown_setting(key: str, control: Control) -> Problem:

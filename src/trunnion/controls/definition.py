@@ -20,9 +20,11 @@ from trunnion.controls.vocabulary import (
     LENGTH_UNITS,
     MM,
     ORIENT_BY_VECTOR_WORD,
+    PRINTED_SETTINGS,
     PROGRAM_CHOICES,
     PROGRAM_SETTINGS,
     PROGRAM_TEMPLATES,
+    TCP_SETTINGS,
     THREE_AXIS,
     TOOL_VECTOR_WORDS,
     UNKNOWN_FEED,
@@ -140,6 +142,7 @@ class Control:
     level_approach        after a retract the tool goes to X and Y first, then to Z, not only in tilted planes
     plane_from_pose       a tilted plane is taken from the rotary position, without angles: its origin is the work
                           offset's, its axes are those of the tool
+    rapid_into_planes     the first motion in a new tilted plane must be a rapid, which states X, Y and Z there
     holes_from            one of ``HOLE_APPROACH_HEIGHTS``
     subprograms           how subprograms are named; None: a program cannot call any
     templates             by name
@@ -179,6 +182,7 @@ class Control:
     axis_tolerance: AxisTolerance
     level_approach: bool
     plane_from_pose: bool
+    rapid_into_planes: bool
     holes_from: str
     subprograms: SubprogramNaming | None
     templates: Mapping[str, Template] = field(repr=False)
@@ -239,6 +243,16 @@ class Control:
         """Name and format of each number in the templates."""
         fields = {field for template in self.templates.values() for field in template.fields()}
         return {(name, number_format) for name, number_format in fields if number_format in self.formats}
+
+    def has_effect(self, setting: str) -> bool:
+        """Whether a setting changes programs: a template prints it, or the writer or the planner reads it."""
+        printed = {name for template in self.templates.values() for name, _ in template.fields()}
+        if setting in TCP_SETTINGS and not self.template_suffix(MachiningMode.TCP, {}):
+            return False
+        fields = self.family.SETTING_FIELDS.get(setting, ())
+        if fields or setting in PRINTED_SETTINGS:
+            return bool(printed & {setting, *fields})
+        return True
 
     def template_suffix(self, mode: MachiningMode, settings: Mapping[str, str]) -> str:
         """Return the suffix of the templates for a machining mode; empty if the control cannot work in that mode."""

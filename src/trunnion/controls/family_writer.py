@@ -62,6 +62,8 @@ class FamilyWriter(Protocol):
     PLANE_COMMANDS    its commands for tilted planes, the default first; template names end with them
     SETTING_CHOICES   settings of its definitions with a fixed set of values, the default first
     SETTING_MEANINGS  what each of these settings changes, in sentences
+    SETTING_FIELDS    settings that act through values of its templates alone -> those values; where no template of a
+                      definition prints one of them, the setting has no effect
     TEMPLATE_FIELDS   values that its templates may print besides the common ones: the keys of ``template_values``
     """
 
@@ -70,6 +72,7 @@ class FamilyWriter(Protocol):
     PLANE_COMMANDS: tuple[str, ...]
     SETTING_CHOICES: Mapping[str, tuple[str, ...]]
     SETTING_MEANINGS: Mapping[str, str]
+    SETTING_FIELDS: Mapping[str, tuple[str, ...]]
     TEMPLATE_FIELDS: frozenset[str]
 
     def comment(self, text: str) -> list[str]:

@@ -95,6 +95,7 @@ def load_control(own: Table) -> Control:
         axis_tolerance=_read_axis_tolerance(table.table("between_points")),
         level_approach=table.flag("level_approach", False),
         plane_from_pose=plane_from_pose,
+        rapid_into_planes=table.flag("rapid_into_planes", False),
         holes_from=table.text("holes_from", "above", one_of=HOLE_APPROACH_HEIGHTS),
         subprograms=_read_subprogram_naming(table.table("subprograms")) if "subprograms" in table else None,
         templates=_read_templates(

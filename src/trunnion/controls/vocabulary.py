@@ -123,6 +123,12 @@ PROGRAM_SETTINGS: Final = frozenset(
     }
 )  # fmt: skip
 
+#: Settings that only templates bring into a program, by their own names.
+PRINTED_SETTINGS: Final = frozenset({"title", "part", "date", "work_offset", "smoothing"})
+
+#: Settings of the machining mode with TCP.
+TCP_SETTINGS: Final = frozenset({"orientation", "tcp_on", "tcp_on_vector", "tcp_off"})
+
 #: The value of ``feed_without_tcp`` for a control of which it is not known what F means while rotary axes turn without
 #: TCP. Operations without TCP are then refused.
 UNKNOWN_FEED: Final = "unknown"

@@ -4,15 +4,13 @@ from collections.abc import Iterable, Mapping
 
 from trunnion.controls.definition import Control
 from trunnion.conversion.unsupported import Warnings
+from trunnion.conversion.work_offsets import COMMON_OFFSETS
 from trunnion.model.machining_method import machining_method
 
 #: Settings that mean the same on every control; the others are words and habits of a family.
 _COMMON_SETTINGS = frozenset(
     {"title", "part", "date", "program", "tool", "tool_call", "tolerance", "fallback_tolerance"}
 )
-
-#: Work offsets that have the same names on all controls where they are G words.
-_COMMON_OFFSETS = frozenset({"G54", "G55", "G56", "G57"})
 
 #: Tolerances are printed with five decimals.
 _SAME_TOLERANCE = 5e-6
@@ -61,7 +59,7 @@ def transfer_settings(settings: Mapping[str, str], control: Control, target: Con
         return known
     offsets = {control.settings.get("work_offset"), target.settings.get("work_offset")}
     offsets |= {entry.rpartition(":")[2] for entry in settings.get("work_offset", "").split(",") if entry}
-    same = _COMMON_SETTINGS | ({"work_offset"} if offsets <= _COMMON_OFFSETS else frozenset())
+    same = _COMMON_SETTINGS | ({"work_offset"} if offsets <= COMMON_OFFSETS else frozenset())
     if target.settings.get("program", "").isdigit() and not settings.get("program", "").isdigit():
         same -= {"program"}  # a name, where programs have numbers
     return {name: value for name, value in known.items() if name in same}

@@ -16,8 +16,8 @@ from trunnion.machines import Machine
 #: A setting that is one or more words of a program, such as G54 or G55 O1: its place takes words of the same letters.
 _WORD_SETTING = re.compile(r"[A-Z]+\d+(?: [A-Z]+\d+)*")
 
-#: Work offsets called by a G word of their own.
-_OFFSET_WORD = r"G5(?:[4-9](?:\.\d)?|\d\d)"
+#: Work offsets called by a G word of their own, or by one with a number.
+_OFFSET_WORD = r"(?:G5(?:[4-9](?:\.\d)?|\d\d)|G\d{3}(?= ?P))(?: ?P\d+)?"
 
 #: Put in for number settings, and found again in what the family makes of them.
 _ANY_NUMBER = "98765.25"
@@ -41,6 +41,8 @@ class TemplatePatterns:
         primary, secondary = axes[machine.primary].name, axes[machine.secondary].name
         self._known = {"primary": primary, "secondary": secondary, "machine": machine.name}
         self._family_values = family_value_expressions(control)
+        rules = {name: rule.one_of for name, rule in control.setting_rules.items() if rule.one_of}
+        self._choices = {name: "|".join(map(re.escape, words)) for name, words in rules.items()}
 
     def of(self, *names: str) -> list[LinePattern]:
         """The lines of all templates whose names begin with one of ``names``, in the order of ``names``."""
@@ -56,7 +58,7 @@ class TemplatePatterns:
         return [templates[key] for name in names for key in templates if key.startswith(name)]
 
     def _lines(self, template: Template) -> list[LinePattern]:
-        return line_patterns([template], self._known, self._control.settings, self._family_values)
+        return line_patterns([template], self._known, self._control.settings, self._family_values, self._choices)
 
 
 def family_value_expressions(control: Control) -> dict[str, str]:
@@ -85,18 +87,28 @@ def line_patterns(
     known: Mapping[str, str],
     settings: Mapping[str, str],
     family_values: Mapping[str, str],
+    choices: Mapping[str, str] | None = None,
 ) -> list[LinePattern]:
     """The lines of templates as patterns.
 
     known          values that are the same in every program of the machine
     settings       the defaults of the control: their form is the form of the values
     family_values  of ``family_value_expressions``
+    choices        settings with a few values: name -> regular expression of them; a line that is nothing but such a
+                   setting has one of these
     """
-    return [_line_pattern(line, known, settings, family_values) for template in templates for line in template.lines]
+    shapes = choices or {}
+    return [
+        _line_pattern(line, known, settings, family_values, shapes) for template in templates for line in template.lines
+    ]
 
 
 def _line_pattern(
-    line: str, known: Mapping[str, str], settings: Mapping[str, str], family_values: Mapping[str, str]
+    line: str,
+    known: Mapping[str, str],
+    settings: Mapping[str, str],
+    family_values: Mapping[str, str],
+    choices: Mapping[str, str],
 ) -> LinePattern:
     for name, value in known.items():
         line = line.replace(f"{{{name}}}", value)
@@ -108,6 +120,7 @@ def _line_pattern(
         name, form = match[1], match[2]
         default = settings.get(name, "")
         shape = re.sub(r"\d+", r"\\d+", default) if _WORD_SETTING.fullmatch(default) else ".*?"
+        shape = choices.get(name, shape) if match[0] == line.strip() else shape
         shape = _OFFSET_WORD if re.fullmatch(r"G5\d", default) else shape
         value = r"[-+.\d]+" if form else family_values.get(name, shape)
         parts.append(f"(?P={name})" if name in seen else f"(?P<{name}>{value})")

@@ -3,7 +3,7 @@
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.errors import Problem, Severity
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import LoadTool, Operation
+from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation
 from trunnion.output.program import Program
 
 
@@ -61,6 +61,18 @@ def _prints_tolerance(program: Program, motion: Motion) -> bool:
     templates = [program.control.templates[name] for name in names if name in program.control.templates]
     fields = {name for template in templates for name, _ in template.fields()}
     return "tolerance" in fields and "three_axis_tolerance" not in fields
+
+
+def plane_entry_problems(program: Program, motion: Motion) -> list[Problem]:
+    """Refuse a cut as the first motion in a tilted plane, where the control wants a rapid; a hole begins with one."""
+    moves, events = motion.operation.moves, motion.operation.events
+    if motion.plane is None or not program.control.rapid_into_planes or moves.kind[0] == Kind.RAPID:
+        return []
+    if any(isinstance(event, CycleOn) and event.row == 0 for event in events):
+        return []
+    what = f"a cut is the first motion in a tilted plane, and {program.control.name} wants X, Y and Z at rapid there"
+    cure = "put RAPID before the first GOTO with this tool axis, clear of the part"
+    return [Problem(program.file, int(moves.line[0]), what, cure)]
 
 
 def next_axis_problems(program: Program, motion: Motion) -> list[Problem]:

@@ -11,6 +11,7 @@ from trunnion.output.validation.machine import machine_problems
 from trunnion.output.validation.operations import (
     machining_mode_problems,
     next_axis_problems,
+    plane_entry_problems,
     spindle_problems,
     tolerance_problems,
     tool_problems,
@@ -53,7 +54,7 @@ def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
     problems = []
     if motion.mode is MachiningMode.TCP and program.control.vectors_exclude_angles:
         problems += tool_vector_problems(program, motion)
-    problems += normal_problems(program, motion)
+    problems += [*plane_entry_problems(program, motion), *normal_problems(program, motion)]
     if motion.mode is MachiningMode.WITHOUT_TCP and program.template_suffix(motion):
         problems += problems_without_tcp(program, motion)
     return [*problems, *missing_feed_problems(program, motion), *rounded_feed_problems(program, motion)]

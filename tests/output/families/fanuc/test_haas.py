@@ -82,6 +82,48 @@ def test_what_only_a_fanuc_has_is_refused(setting: str) -> None:
         trunnion.post(GOLDEN / "yl569" / "3_blade_finish.cls", machine=MACHINE, settings={key: value})
 
 
+@pytest.mark.parametrize(
+    ("setting", "said"),
+    [
+        ("contour=G05.1", r"it has no effect on Haas NGC, for no template of its definition has \{contour_on\}"),
+        ("contour=G05", "it has no effect on Haas NGC"),
+        ("work_offset=G154 P100", "write G54 to G59, or G154 P1 to P99"),
+        ("work_offset=G154 P0", "write G54 to G59, or G154 P1 to P99"),
+    ],
+)
+def test_settings_that_would_do_nothing_or_are_not_there_are_refused(setting: str, said: str) -> None:
+    key, _, value = setting.partition("=")
+    with pytest.raises(InputError, match=said):
+        trunnion.post(GOLDEN / "yl569" / "3_blade_finish.cls", machine=MACHINE, settings={key: value})
+
+
+def test_a_setting_without_effect_is_not_offered() -> None:
+    assert "contour" not in {setting.name for setting in trunnion.describe_control("haas_ngc").settings}
+
+
+def test_the_work_offset_is_selected_before_the_rotary_axes_turn_in_it() -> None:
+    for name in ("flange", "blade"):
+        blocks = (GOLDEN / "haas" / f"{name}.expected.nc").read_text().splitlines()
+        changes = [k for k, block in enumerate(blocks) if " M6" in block]
+        assert changes
+        for k in changes:
+            assert re.search(r" G54$| G154 P3$", blocks[k + 1])
+            assert re.search(r" G0 B.* C", blocks[k + 2])
+
+
+def test_a_cut_as_the_first_motion_in_a_plane_is_refused_with_its_line(tmp_path: Path) -> None:
+    head = CLEAR[: CLEAR.index("RAPID\n")]
+    cuts = "FEDRAT/MMPM,500.0\nGOTO/0,0,50,0.5,0,0.8660254037844386\nGOTO/10,0,5\nGOTO/20,3,5\nEND-OF-PATH\n"
+    cl = tmp_path / "part.cls"
+    cl.write_text(head + cuts)
+    with pytest.raises(trunnion.TrunnionError, match="a cut is the first motion in a tilted plane") as caught:
+        trunnion.post(cl, machine=MACHINE)
+    assert f"part.cls:{head.count(chr(10)) + 2}" in str(caught.value)
+    assert "put RAPID before the first GOTO" in str(caught.value)
+    cl.write_text(head + cuts.replace("GOTO/0,0,50", "RAPID\nGOTO/0,0,50", 1))
+    assert trunnion.post(cl, machine=MACHINE).passed
+
+
 def test_subprograms_have_five_digits(tmp_path: Path) -> None:
     cl, target = GOLDEN / "yl569" / "3_blade_finish.cls", tmp_path / "blade.nc"
     posted = trunnion.post(cl, machine=MACHINE, output=target, settings={"programs": "operations"})
@@ -127,3 +169,39 @@ def test_the_spindle_turns_again_after_a_thread_before_the_next_cut(tmp_path: Pa
         assert blocks.count("G80\nS4000 M3\n") == restarts
         fanuc = trunnion.post(tmp_path / "part.cls", machine="matsuura_mx330").text or ""
         assert len(re.findall(r"S4000 M3", fanuc)) == 1
+
+
+@pytest.mark.parametrize(("one", "two"), [("G54.1 P3", "G154 P3"), ("G54.1 P99", "G154 P99"), ("G59", "G59")])
+def test_extended_work_offsets_go_from_a_fanuc_to_this_control_and_back(one: str, two: str, tmp_path: Path) -> None:
+    cl, folder = GOLDEN / "yl569" / "3_blade_finish.cls", tmp_path
+    fanuc = trunnion.post(cl, machine="matsuura_mx330", settings={"work_offset": one}, output=folder / "fanuc.nc")
+    assert fanuc.passed
+    there = trunnion.convert(folder / "fanuc.nc", machine="matsuura_mx330", to_machine=MACHINE, output=folder / "h.nc")
+    assert there.settings["work_offset"] == two
+    assert f" {two}\n" in (folder / "h.nc").read_text()
+    back = trunnion.convert(folder / "h.nc", machine=MACHINE, to_machine="matsuura_mx330")
+    assert back.settings["work_offset"] == one
+    assert f" {one}\n" in (back.text or "")
+
+
+@pytest.mark.parametrize(
+    ("source", "offset", "target"),
+    [
+        ("matsuura_mx330", "G54.1 P100", MACHINE),
+        ("matsuura_mx330", "G54.1 P3", "yl569"),
+        (MACHINE, "G154 P3", "xyzac_trt"),
+        (MACHINE, "G154 P3", "dmu65"),
+        ("yl569", "G505", "matsuura_mx330"),
+        ("yl569", "G55", "dmu65"),
+        ("dmu65", "3", "yl569"),
+    ],
+)
+def test_a_work_offset_that_the_other_control_lacks_is_refused(
+    source: str, offset: str, target: str, tmp_path: Path
+) -> None:
+    cl, program = GOLDEN / "yl569" / "3_blade_finish.cls", tmp_path / "one"
+    assert trunnion.post(cl, machine=source, settings={"work_offset": offset}, output=program).passed
+    with pytest.raises(trunnion.RefusedError, match=f"the work offset is {re.escape(offset)}, which"):
+        trunnion.convert(program, machine=source, to_machine=target)
+    own = {"dmu65": "2"}.get(target, "G55")
+    assert trunnion.convert(program, machine=source, to_machine=target, settings={"work_offset": own}).settings

@@ -42,6 +42,7 @@ SETTING_MEANINGS: Mapping[str, str] = {
     "(G43.5) for whole operations.",
 }
 _PLANE_FIELDS: Final = ("plane_first", "plane_second", "plane_third")
+SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {"contour": ("contour_on", "contour_off"), "call": ("call_word",)}
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {*_PLANE_FIELDS, "contour_on", "contour_off", "call_word", "call_arguments"}
 )

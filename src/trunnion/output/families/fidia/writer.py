@@ -28,6 +28,7 @@ CODES: tuple[str, ...] = tuple(code for code in iso.CODES if not code.startswith
 PLANE_COMMANDS: tuple[str, ...] = ("g154",)
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 SETTING_MEANINGS: Mapping[str, str] = {}
+SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {}
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.

@@ -66,6 +66,13 @@ SETTING_MEANINGS: Mapping[str, str] = {
 _SPATIAL_FIELDS: Final = ("spatial_c", "spatial_b", "spatial_a")
 _PLANE_VECTOR_FIELDS: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
 
+SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
+    "tcpm": ("tcp_on", "tcp_off"),
+    "retract": ("retract_along",),
+    "retract_distance": ("retract_along",),
+    "plane_move": ("positioning",),
+    "blank": ("blank_low", "blank_high"),
+}
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
         "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "blank_low",

@@ -45,6 +45,7 @@ SETTING_MEANINGS: Mapping[str, str] = {
     "along the tool, which cycles_along_tool = true under [control.reading] declares.",
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
+SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {"swivel_mode": ("plane_mode",)}
 TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, "interpolation"})
 
 #: _ST of CYCLE800 with 0 as its ones digit: a new plane, not one that is added.

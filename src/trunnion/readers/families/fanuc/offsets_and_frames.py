@@ -1,5 +1,7 @@
 """Blocks of a Fanuc whose axis words are no target: work offsets, shifts, rotations, planes, home and dwells."""
 
+from typing import Final
+
 import numpy as np
 
 from trunnion.arrays import Floats
@@ -13,6 +15,9 @@ from trunnion.readers.families.fanuc.work_offsets import extended_offset, offset
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
 
+#: The word of extended work offsets of the family, where G54 P means the same.
+_FAMILY_WORD: Final = "G54.1"
+
 
 class OffsetInterpreter(CallInterpreter):
     """Executes G codes that take the axis words of their block."""
@@ -20,16 +25,18 @@ class OffsetInterpreter(CallInterpreter):
     def _work_offset(self, code: int, block: Block) -> None:
         control = self.control
         system = words.OFFSETS.index(code) + 1 if code in words.OFFSETS else 1
-        more = block.take("P") if code in (540, words.MORE_OFFSETS) else None
+        word, highest = control.settings.extended_word, control.settings.extended_offsets
+        takes_number = {words.MORE_OFFSETS, words.OFFSETS[0]} if word == _FAMILY_WORD else {words.MORE_OFFSETS}
+        more = block.take("P") if code in takes_number else None
         if code == words.MORE_OFFSETS and more is None:
-            raise BlockError("G54.1 needs P")
+            raise BlockError(f"{word} needs P")
         if more is not None:
-            if more != int(more) or not extended_offset(int(more)):
-                raise BlockError("P of G54.1 is not from 1 to 300")
+            if more != int(more) or not extended_offset(int(more), highest):
+                raise BlockError(f"P of {word} is not from 1 to {highest}")
             system = 6 + int(more)
         control.system = system
         offset = 53 + system if system <= 6 else extended_offset(system - 6)
-        control.set_offset(offset, offset_name(offset))
+        control.set_offset(offset, offset_name(offset, word))
         control.update_frame()
 
     def _execute_with_axis_words(self, code: int, block: Block) -> None:
@@ -102,7 +109,12 @@ class OffsetInterpreter(CallInterpreter):
             for letter in "RXYZQDH":
                 block.take(letter)
             return
-        if kind not in (2.0, 20.0) or number is None or number != int(number) or not 0 <= number <= 300:
+        if (
+            kind not in (2.0, 20.0)
+            or number is None
+            or number != int(number)
+            or not 0 <= number <= control.settings.extended_offsets
+        ):
             for letter in "RXYZ":
                 block.take(letter)
             raise BlockError("G10 with this L and P is not simulated")

@@ -4,14 +4,17 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.machines import Machine
-from trunnion.readers.families.fanuc.words import MEANINGS
+from trunnion.readers.families.fanuc.words import MEANINGS, MORE_OFFSETS
 from trunnion.readers.program.settings import reading_of, unit_of
-from trunnion.readers.rs274.block import Block, Number
+from trunnion.readers.rs274.block import Block, Number, g_code_text
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
 
 #: Letters whose whole numbers count in least increments: lengths, and angles.
 LENGTHS: Final = "XYZUVWIJKRQ"
 ANGLES: Final = "ABC"
+
+#: P of G54.1 on a control with all of them.
+HIGHEST_EXTENDED: Final = 300
 
 #: The least increment of inches as a ratio of that of millimetres; feeds by feed mode and inches; seconds of a dwell.
 _INCH_PART: Final = 0.1
@@ -32,6 +35,7 @@ class Settings:
     repeat_letter      the letter of how often a cycle drills: K, or L where I, J and K describe pecks
     program_digits     digits of program numbers in M98 P; more say how often
     threads_stop_spindle  the spindle stands still after threads, until M3 or M4
+    extended_offsets  the highest P of G54.1, or of the word that the control has in its place
     whole_feeds_count  whole numbers of F count in least increments, whatever the feed mode
     """
 
@@ -45,12 +49,19 @@ class Settings:
     program_digits: int = 4
     threads_stop_spindle: bool = False
     whole_feeds_count: bool = False
+    extended_offsets: int = HIGHEST_EXTENDED
 
     def length(self, inches: bool) -> float:
         """Return the unit of whole numbers that are lengths, in mm or inches."""
         if self.calculator:
             return 1.0
         return self.increment * _INCH_PART if inches else self.increment
+
+    @property
+    def extended_word(self) -> str:
+        """The word that selects an extended work offset: G54.1, or what the control has in its place."""
+        meanings = self.words.g.items()
+        return g_code_text(next((code for code, meaning in meanings if meaning == MORE_OFFSETS), MORE_OFFSETS))
 
     @property
     def angle(self) -> float:
@@ -109,6 +120,7 @@ def settings_of(machine: Machine) -> Settings:
         program_digits=table.integer("program_digits", 4, at_least=4, at_most=8),
         threads_stop_spindle=table.flag("threads_stop_spindle", False),
         whole_feeds_count=table.text("whole_feeds", "feeds", one_of=("feeds", "increments")) == "increments",
+        extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
     )
     table.report_unread_keys()
     table.raise_problems()
