@@ -52,9 +52,9 @@ class Site:
 
 
 def roomy(machine: Machine) -> Machine:
-    """The machine with long slides."""
+    """The machine with long slides and a fast spindle."""
     axes = tuple(axis if axis.is_rotary else replace(axis, low=-5e3, high=5e3) for axis in machine.axes)
-    return replace(machine, axes=axes)
+    return replace(machine, axes=axes, spindle_max_rpm=None)
 
 
 @st.composite
