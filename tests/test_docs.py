@@ -2,13 +2,50 @@
 
 import doctest
 import os
+import re
+import shutil
 from pathlib import Path
 
 import pytest
 
-from tests.support.locations import TESTS
+import trunnion
+from tests.support.locations import GOLDEN, TESTS, YL569
 
 ROOT = TESTS.parent
+
+#: Pages with blocks of Python that are run as they stand; the tour is a doctest.
+PAGES_WITH_CODE = sorted(
+    page.relative_to(ROOT).as_posix()
+    for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    if "```python" in page.read_text(encoding="utf-8") and page.name != "tour.md"
+)
+
+
+@pytest.fixture(scope="module")
+def folder_of_examples(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the files that the pages name: those of the checkout, and ``part`` as CL file and as programs."""
+    folder = tmp_path_factory.mktemp("examples")
+    shutil.copytree(YL569, folder / "tests" / "golden" / "yl569")
+    shutil.copy(YL569 / "3_blade_finish.cls", folder / "part.cls")
+    shutil.copy(GOLDEN / "linuxcnc" / "blade.expected.ngc", folder / "part.ngc")
+    for machine, program in (("yl569", "part.mpf"), ("dmu65", "part.h")):
+        trunnion.post(folder / "part.cls", machine=machine, output=folder / program)
+    return folder
+
+
+@pytest.mark.parametrize("page", PAGES_WITH_CODE)
+def test_the_python_of_a_page_runs(
+    page: str, folder_of_examples: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder_of_examples)
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for block in re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        assert "from trunnion" not in block, "the page shows what the library does not offer"
+        exec(compile(block, page, "exec"), {"__name__": "page"})
+    shown = re.findall(r"^[a-z]+ +(?:ok  |FAIL)  .+$", text, re.MULTILINE)
+    printed = capsys.readouterr().out.splitlines()
+    assert set(shown) <= set(printed)
+    assert shown or page != "README.md"
 
 
 @pytest.mark.parametrize("page", ["docs/tour.md"])

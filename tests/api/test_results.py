@@ -29,6 +29,14 @@ def test_results_are_one_line_in_a_notebook() -> None:
         assert len(repr(shown)) < 400
 
 
+def test_a_check_prints_as_the_line_of_the_command_and_the_lines_stand_under_each_other() -> None:
+    checks = trunnion.verify(PROGRAM, machine="yl569", cl=CL).checks
+    assert str(checks[0]) == f"{checks[0].key}         ok    {checks[0].summary}"
+    assert {str(check)[:14].rstrip() for check in checks} == {check.key for check in checks}
+    assert {str(check)[14:20] for check in checks} == {"ok    "}
+    assert "passed=True" in repr(checks[0])
+
+
 def test_a_failed_verification_names_its_checks(tmp_path: Path) -> None:
     wrong = tmp_path / "p.mpf"
     wrong.write_bytes(PROGRAM.read_bytes().replace(b"G54", b"G55"))

@@ -1,12 +1,16 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Lines
 from trunnion.machines import Machine
 from trunnion.model.run import Run
+
+#: Columns that the key of a check takes in a line: those of the longest key.
+_KEY_WIDTH: Final = len("compensation")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +58,10 @@ class Check:
     limit: float | None = None
     unit: str = ""
     places: tuple[Place, ...] = ()
+
+    def __str__(self) -> str:
+        """Return the line that the command prints: key, ``ok`` or ``FAIL``, summary."""
+        return f"{self.key:<{_KEY_WIDTH}}  {'ok  ' if self.passed else 'FAIL'}  {self.summary}"
 
 
 @dataclass(frozen=True, slots=True)
