@@ -1,6 +1,7 @@
 """The reference of definitions and the loader say the same."""
 
 import re
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ from tests.support.locations import DOCS
 from trunnion.cli import main
 from trunnion.controls import load_control, loading
 from trunnion.controls.vocabulary import COMMON_TEMPLATE_FIELDS
-from trunnion.definitions import Table, load_table
+from trunnion.definitions import Table, load_table, resolve_extends
 from trunnion.families import FAMILIES, load_writer
 from trunnion.machines import Machine, load_machine
 from trunnion.machines.loading import machine_library, read_machine
@@ -29,11 +30,15 @@ NAMES = {
 def control_keys(monkeypatch: pytest.MonkeyPatch) -> set[str]:
     """Every key of a control that the loader reads for any shipped one."""
     read: list[Table] = []
-    resolve = loading.resolve_extends
-    monkeypatch.setattr(loading, "resolve_extends", lambda *given: read.append(resolve(*given)) or read[-1])
+
+    def resolve_and_keep(own: Table, library: Traversable) -> Table:
+        read.append(resolve_extends(own, library))
+        return read[-1]
+
+    monkeypatch.setattr("trunnion.controls.loading.resolve_extends", resolve_and_keep)
     for name in loading.shipped_controls():
         load_control(load_table(name, loading.control_library()))
-    keys = set().union(*(table.all_read_keys() for table in read))
+    keys: set[str] = set().union(*(table.all_read_keys() for table in read))
     return {key for key in keys if "." not in key or key.split(".")[0] not in NAMES}
 
 
