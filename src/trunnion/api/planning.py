@@ -17,6 +17,7 @@ from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
+from trunnion.output.validation.tools import tool_conflicts
 from trunnion.planning.retracts.tool_retract import with_tool_retract
 
 
@@ -141,8 +142,13 @@ def plan_program(
     RefusedError
         When the program must not run and ``force`` is off.
     """
-    names = [operation.name for toolpath in toolpaths for operation in toolpath.operations if len(operation.moves)]
-    check_operation_names(job.own_settings, job.settings, names)
+    cut = [
+        (toolpath.file, operation.name)
+        for toolpath in toolpaths
+        for operation in toolpath.operations
+        if len(operation.moves)
+    ]
+    check_operation_names(job.own_settings, job.settings, [name for _, name in cut])
     planned = _planned(toolpaths, job)
     observer.planned(planned)
     file = toolpaths[0].file
@@ -153,7 +159,8 @@ def plan_program(
     if errors:
         raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
     unproven = _missing_reader(job)
-    found = [*merge_repeated(planned.problems), *insert_problems(program)]
+    conflicts = tool_conflicts(program, [file for file, _ in cut])
+    found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program)]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, "no program is written", "force=True writes it")

@@ -84,7 +84,7 @@ class _ProgramWriter:
         self._notices = [line for text in program.notices for line in program.control.family.comment(text)]
         self._loaded_tool = LoadedTool()
         self._called_tool = ""  # in the present file
-        self._tool_calls = self._calls_of_operations()
+        self._tool_calls = self._template_values.tool_calls()
         self._operation = 0
         self._calls_each = program.effective_setting("restart") == "on"
         self._previous_motion: Motion | None = None
@@ -164,18 +164,6 @@ class _ProgramWriter:
         self._blocks.writer.switch_file(self._files.main_sink)
 
     # Tools
-
-    def _calls_of_operations(self) -> list[tuple[str, Operation]]:
-        """The tool of each operation as the program calls it."""
-        calls: list[tuple[str, Operation]] = []
-        loaded = LoadedTool()
-        for motion in self._program.motions:
-            if motion.starts_operation:
-                loaded = LoadedTool(
-                    self._template_values.tool_call(motion.operation, loaded), motion.operation.tool.name
-                )
-                calls.append((loaded.call, motion.operation))
-        return calls
 
     def _tool_list(self) -> list[str]:
         """Comment lines with the tools in the order of their calls, if they are asked for."""

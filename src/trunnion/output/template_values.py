@@ -225,6 +225,16 @@ class TemplateValues:
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(Problem(self._program.file, operation.line, what, "write setting tool=NUMBER"))
 
+    def tool_calls(self) -> list[tuple[str, Operation]]:
+        """The tool of each operation as the program calls it, in the order of the program; errors as ``tool_call``."""
+        calls: list[tuple[str, Operation]] = []
+        loaded = LoadedTool()
+        for motion in self._program.motions:
+            if motion.starts_operation:
+                loaded = LoadedTool(self.tool_call(motion.operation, loaded), motion.operation.tool.name)
+                calls.append((loaded.call, motion.operation))
+        return calls
+
     def _tool_setting(self, text: str) -> str:
         """The tool of the run's setting: a number as it is written, a name as the control takes names."""
         return text if tool_number(text) is not None else self._family.tool_call(0, text.strip('"'), by_name=True)

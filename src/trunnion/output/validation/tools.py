@@ -1,0 +1,81 @@
+"""Operations that call one tool although their CL data describe several."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+
+from trunnion.errors import Problem, Severity
+from trunnion.model.toolpath import Operation, Tool
+from trunnion.output.program import Program
+from trunnion.output.template_values import TemplateValues
+
+#: Sizes of a tool that are compared, mm and degrees, with what two files may differ by when they write the same size:
+#: one in inches rounds to the fourth decimal.
+_SIZES: Final[Mapping[str, float]] = {
+    "diameter": 0.002,
+    "corner_radius": 0.002,
+    "length": 0.002,
+    "taper_angle": 0.01,
+    "tip_angle": 0.01,
+}
+
+#: Sizes of which 0 says that the file does not know them.
+_UNKNOWN_AT_ZERO: Final = frozenset({"diameter", "length"})
+
+_CURE: Final = "number the tools apart in the CAM, or write setting tool=OPERATION:NUMBER for one of them"
+
+
+def tool_conflicts(program: Program, files: Sequence[str]) -> list[Problem]:
+    """Return errors where operations call one tool and state different ones; warnings where only the names differ.
+
+    The operator puts one cutter under a number or a name: the program would run with it in both operations.
+
+    Parameters
+    ----------
+    program
+        Tools of it can be called: it has passed ``check_program``.
+    files
+        The CL file of each operation, for messages.
+
+    Raises
+    ------
+    InputError
+        If an operation has nothing to call its tool by.
+    """
+    problems: list[Problem] = []
+    known: dict[str, list[Operation]] = {}
+    for (call, operation), file in zip(TemplateValues(program).tool_calls(), files, strict=True):
+        before = known.setdefault(call, [])
+        if operation.tool in (other.tool for other in before):
+            continue
+        problems += _conflict(call, before, operation, file)
+        before.append(operation)
+    return problems
+
+
+def _conflict(call: str, before: Sequence[Operation], operation: Operation, file: str) -> Iterator[Problem]:
+    """What an operation states of a tool otherwise than those before it that call it."""
+    for other in before:
+        differing = list(_differences(other.tool, operation.tool))
+        if differing:
+            what = f"operations {other.name} and {operation.name} both call tool {call}, and their CL data differ"
+            yield Problem(file, operation.line, f"{what}: {', '.join(differing)}", _CURE)
+            return
+    name = operation.tool.name
+    named = next((other for other in before if other.tool.name and other.tool.name != name), None)
+    if name and named is not None and all(other.tool.name != name for other in before):
+        what = f"tool {call} is {named.tool.name} in operation {named.name}, and {name} in {operation.name}"
+        yield Problem(file, operation.line, what, _CURE, Severity.WARNING)
+
+
+def _differences(one: Tool, two: Tool) -> Iterator[str]:
+    """What both tools state and where they differ, in words."""
+    if "UNKNOWN" in (one.kind, two.kind):
+        return
+    if one.kind != two.kind:
+        yield f"form {one.kind} and {two.kind}"
+    for size, tolerance in _SIZES.items():
+        a, b = float(getattr(one, size)), float(getattr(two, size))
+        is_stated = size not in _UNKNOWN_AT_ZERO or (a != 0.0 and b != 0.0)
+        # Angles of different forms are different angles.
+        if is_stated and abs(a - b) > tolerance and (one.kind == two.kind or not size.endswith("angle")):
+            yield f"{size.replace('_', ' ')} {a:g} and {b:g}"
