@@ -11,6 +11,7 @@ from trunnion.machines import Machine
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import Context, check_from_places
+from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.results import Check, Place
 
 _TITLE: Final = "retracts to the machine's home"
@@ -30,7 +31,8 @@ class _HomeMotions:
     rows            (k,) int64
     joints, before  (k, 5) positions at their ends and starts
     named           (k, 5) bool  the axes that their blocks name
-    at_home         (k, 5) bool  the axes that are at home at their ends, endless ones whatever their turn
+    at_home         (k, 5) bool  the axes that machine coordinates have put at home at their ends, endless ones whatever
+                                 their turn
     """
 
     rows: Ints
@@ -50,7 +52,8 @@ class _HomeMotions:
                 off[:, k] -= 360.0 * np.rint(off[:, k] / 360.0)
         words = np.array(_axis_words(run.machine))
         named = (run.programmed[rows][:, None] & words) != 0
-        return _HomeMotions(rows, joints, before, named, np.abs(off) <= home_tolerance(run, rows))
+        at_home = (np.abs(off) <= home_tolerance(run, rows)) & MachinePositions(run).at(rows)
+        return _HomeMotions(rows, joints, before, named, at_home)
 
 
 def home_tolerance(run: Run, rows: Ints) -> Floats:

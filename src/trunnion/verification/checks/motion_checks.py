@@ -8,6 +8,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.expected.arcs import arc_of
+from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.rewind_retracts import RewindRetract, find_rewind_retracts
@@ -30,9 +31,13 @@ def check_order(context: ComparedContext) -> Check:
     retracts = find_rewind_retracts(run, matching.extra, tolerance)
     lawful = {row for retract in retracts for row in range(retract.first, retract.end)}
     lawful |= hole_approach_rows(run, matching.extra, match_holes(run, expected), tolerance)
-    lawful |= {row for row in matching.extra if _retracts_before_home(run, row, tolerance)}
+    machine_positions = MachinePositions(run)
+    measurable = [row for row in matching.extra if not machine_positions.crossed(np.array([row]))[0]]
+    lawful |= {row for row in measurable if _retracts_before_home(run, row, tolerance)}
     unexplained = [row for row in matching.extra if row not in lawful]
-    stands_still = [_stands_still(run, row) for row in unexplained]
+    # From machine to workpiece coordinates the distance is not known: no such motion stands still.
+    known = set(measurable)
+    stands_still = [row in known and _stands_still(run, row) for row in unexplained]
     still = [row for row, stands in zip(unexplained, stands_still, strict=True) if stands]
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
     places = [context.place_of_missing(cl, "no block goes to this CL point") for cl in matching.missing[:MAX_PLACES]]

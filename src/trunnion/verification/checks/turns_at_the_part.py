@@ -16,6 +16,7 @@ from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_cle
 from trunnion.model.run import Run
 from trunnion.verification.checks.home_checks import home_tolerance
 from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, rotary_positioning_flags
 from trunnion.verification.kinematics.worked_part import worked_part
 from trunnion.verification.results import Place
@@ -70,6 +71,7 @@ class _Judge:
         self._along, self._outward = _spindle_slide(self._machine)
         frame = self._run.state.machine_frame.rows_with(True)
         self._frame = frame[~np.isin(frame, self._retracts)]
+        self._machine_positions = MachinePositions(self._run)
         self._safe_height = self._height_of_retract()
         self._homes = self._rows_home()
         self._part: SweptPart | None = None
@@ -110,7 +112,7 @@ class _Judge:
 
     def _rows_home(self) -> set[int]:
         """Return the rows in machine coordinates that lead to that height or above."""
-        rows = self._run.state.machine_frame.rows_with(True)
+        rows = self._with_known_height(self._run.state.machine_frame.rows_with(True))
         if self._safe_height is None or not len(rows):
             return set()
         return set(
@@ -119,12 +121,17 @@ class _Judge:
 
     def _height_of_retract(self) -> float | None:
         """The height of home, along the spindle; the highest machine position of a program that never goes there."""
-        if not len(self._frame):
+        rows = self._with_known_height(self._frame)
+        if not len(rows):
             return None
-        heights = self._height(self._frame)
+        heights = self._height(rows)
         home = self._outward * float(self._machine.home[self._along])
-        goes_home = bool((np.abs(heights - home) <= home_tolerance(self._run, self._frame)[:, self._along]).any())
+        goes_home = bool((np.abs(heights - home) <= home_tolerance(self._run, rows)[:, self._along]).any())
         return home if goes_home else float(heights.max())
+
+    def _with_known_height(self, rows: Ints) -> Ints:
+        """Those of rows whose slide along the spindle stands where machine coordinates have put it, (k,)."""
+        return np.asarray(rows[self._machine_positions.at(rows)[:, self._along]])
 
     def _height(self, rows: Ints) -> Floats:
         """How far out the slide along the spindle is at the end of rows, (k,) mm."""

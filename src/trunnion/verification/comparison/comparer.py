@@ -91,7 +91,7 @@ class Comparer:
         tip = np.abs(one.run.tip[a] - two.run.tip[b]).max(axis=1, initial=0.0)
         axis = np.sqrt(((one.run.axis[a] - two.run.axis[b]) ** 2).sum(axis=1))
         same = (tip <= self._tolerances.tip) & (axis <= self._tolerances.axis) & (one.run.kind[a] == two.run.kind[b])
-        same &= self._same_state(a, b)
+        same &= self._same_state(a, b) & (one.in_machine(a) == two.in_machine(b))
         arcs = np.flatnonzero(same & (one.run.kind[a] == Kind.ARC))
         for k in arcs.tolist():
             same[k] = self._same_circle(i + k, j + k)
@@ -174,6 +174,8 @@ class Comparer:
         x, y = one.run, two.run
         if x.kind[a] != y.kind[b]:
             return f"{_KINDS[Kind(int(x.kind[a]))]} against {_KINDS[Kind(int(y.kind[b]))]}"
+        if one.in_machine(np.array([a]))[0] != two.in_machine(np.array([b]))[0]:
+            return "machine coordinates against coordinates of the workpiece, whose zero is not known"
         feeds = float(one.feeds(np.array([a]))[0]), float(two.feeds(np.array([b]))[0])
         if abs(feeds[0] - feeds[1]) > max(_FEED, 1e-4 * feeds[0]):
             return f"feed {feeds[0]:g} against {feeds[1]:g} mm/min"

@@ -7,6 +7,7 @@ from trunnion.machines import forward
 from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.matching.rows_to_match import workpiece_rows
 from trunnion.verification.row_ranges import CHUNK
 
@@ -29,7 +30,11 @@ class MovingRows:
         numbers = [tools.setdefault(_tool_name(name), len(tools)) for name in run.tools]
         self.tool = np.array(numbers, np.int64)[run.tool]
         self.start_tip, self.start_axis = (column[0] for column in forward(run.machine, run.start[None]))
-        self.rows = rows[self._moving(rows)]
+        moving = self._moving(rows)
+        self._machine_positions = MachinePositions(run) if with_machine_frame else None
+        if self._machine_positions is not None:
+            moving |= self._machine_positions.crossed(rows)
+        self.rows = rows[moving]
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -44,6 +49,15 @@ class MovingRows:
             moved |= np.abs(run.axis[part] - run.axis[before]).max(axis=1, initial=0.0) > 1e-12
             moving[start : start + CHUNK] = moved | (run.kind[part] == Kind.ARC)
         return moving
+
+    def in_machine(self, rows: Ints) -> Flags:
+        """Which rows move in machine coordinates that nothing relates to those of the workpiece, (k,) bool.
+
+        Numbers of these two kinds may be the same where the places are not.
+        """
+        if self._machine_positions is None or self._machine_positions.known:
+            return np.zeros(len(rows), np.bool_)
+        return np.asarray(self.run.state.machine_frame.at(rows))
 
     def start(self, k: int) -> tuple[Floats, Floats]:
         """Tip and tool axis before motion ``k``."""

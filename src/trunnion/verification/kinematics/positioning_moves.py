@@ -72,7 +72,7 @@ def approach_rows(run: Run) -> Ints:
     at = np.searchsorted(rows, sorted(starts))
     found = []
     for row in np.unique(rows[at[at < len(rows)]]).tolist():
-        if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any():
+        if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any() or run.state.machine_frame[row + 1]:
             continue
         if run.state.tcp[row] and int(run.programmed[row]) & int(ROTARY_WORDS):
             continue

@@ -1,0 +1,77 @@
+"""Which slides stand where the program has put them in coordinates of the machine.
+
+In:     a run.
+Out:    flags of rows.
+
+A position in coordinates of the workpiece is one of the machine only if the workpiece zero and the tool length are
+known. Otherwise the same number means another place: what a run says of the slides there is no more than a guess, so it
+proves no retract, and says of no motion that nothing moves.
+"""
+
+import numpy as np
+
+from trunnion.arrays import Codes, Flags, Ints
+from trunnion.model.run import ProgrammedWord, Run
+from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, ROTARY_WORDS
+
+#: Rows that are searched at first for the next motion in workpiece coordinates; later ever more.
+_FEW = 64
+
+_SLIDES = (ProgrammedWord.X, ProgrammedWord.Y, ProgrammedWord.Z)
+
+
+class MachinePositions:
+    """Knows for each slide in which rows it stands at a position that was programmed in machine coordinates.
+
+    known   positions in coordinates of the workpiece are positions of the machine too
+    """
+
+    def __init__(self, run: Run) -> None:
+        machine = run.machine
+        self._width = len(machine.axes)
+        self.known = machine.workpiece_zero is not None and machine.tool_length is not None
+        self._spans: dict[int, tuple[Ints, Ints]] = {}
+        if self.known:
+            return
+        frame = run.state.machine_frame.rows_with(True)
+        for word in _SLIDES:
+            named = frame[(run.programmed[frame] & int(word)) != 0]
+            begins = np.concatenate(([-1], named))  # the machine stands at home when the program begins
+            ends = [_next_in_workpiece(run, word, row + 1) for row in begins.tolist()]
+            self._spans[machine.column(str(word.name))] = begins, np.array(ends, np.int64)
+
+    def at(self, rows: Ints) -> Flags:
+        """Which axes stand where machine coordinates, or a known zero, have put them after rows, (k, 5) bool.
+
+        Row -1 is the start of the program. Rotary axes always do.
+        """
+        found = np.ones((len(rows), self._width), np.bool_)
+        for column, (begins, ends) in self._spans.items():
+            found[:, column] = rows < ends[np.searchsorted(begins, rows, "right") - 1]
+        return found
+
+    def crossed(self, rows: Ints) -> Flags:
+        """Which rows move a slide between the two kinds of coordinates: nobody knows how far, (k,) bool."""
+        return np.asarray((self.at(rows) != self.at(rows - 1)).any(axis=1))
+
+
+def _next_in_workpiece(run: Run, word: ProgrammedWord, first: int) -> int:
+    """The first row from ``first`` on that puts a slide where workpiece coordinates want it; n if there is none."""
+    size = _FEW
+    while first < len(run):
+        end = min(first + size, len(run))
+        moves = _slide_moves(run.programmed[first:end], word)
+        tip = run.state.xyz_is_tip.part(first, end)
+        moves |= tip & ((run.programmed[first:end] & int(POSITION_WORDS)) != 0)
+        moves |= run.state.tcp.part(first, end) & ((run.programmed[first:end] & int(ROTARY_WORDS)) != 0)
+        moves &= ~run.state.machine_frame.part(first, end)
+        if moves.any():
+            return first + int(np.argmax(moves))
+        first, size = end, 4 * size
+    return len(run)
+
+
+def _slide_moves(programmed: Codes, word: ProgrammedWord) -> Flags:
+    """Which words move a slide: its own, and those of a circle or a cycle, which name no axis."""
+    names_nothing = (programmed & int(POSITION_WORDS | ROTARY_WORDS)) == 0
+    return np.asarray(((programmed & int(word)) != 0) | names_nothing)
