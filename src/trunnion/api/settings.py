@@ -18,7 +18,7 @@ from trunnion.controls import Control
 from trunnion.controls.setting_rules import is_one_line
 from trunnion.controls.vocabulary import TCP_SETTINGS
 from trunnion.definitions.messages import did_you_mean
-from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.errors import ArgumentName, InputError, Problem, argument_problem
 from trunnion.machines import Machine
 
 #: A setting as text, as a number, as several numbers (``zero``), on or off, or None: it is not set.
@@ -252,8 +252,25 @@ def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
 
 
 def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> Machine:
-    """The machine with its workpiece zero and its tool length, mm, where they are given."""
-    return apply_setup(machine, as_texts({"zero": zero, "tool_length": tool_length}))
+    """The machine with its workpiece zero and its tool length, mm, where they are given.
+
+    Raises
+    ------
+    InputError
+        Of the argument, if it cannot be.
+    """
+    for name, value in (("zero", zero), ("tool_length", tool_length)):
+        try:
+            machine = apply_setup(machine, as_texts({name: value}))
+        except InputError as error:
+            raise InputError([_of_argument(problem, name) for problem in error.problems]) from None
+    return machine
+
+
+def _of_argument(problem: Problem, name: str) -> Problem:
+    """A problem with a setting as one with the argument of its name."""
+    what, cure = problem.what.removeprefix(f"{name} "), problem.cure.replace(f"write {name}=", "write ", 1)
+    return replace(problem, file=ArgumentName(name), what=what, cure=cure)
 
 
 def check_tolerance(argument: str, value: object, *, optional: bool = False) -> None:

@@ -49,6 +49,20 @@ def _tolerance(text: str) -> float:
     return value
 
 
+def _edge(text: str) -> int:
+    if not text.isascii() or not text.isdigit():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a cutting edge; write its D number, such as 1")
+    return int(text)
+
+
+def _not_expected(unknown: Sequence[str], command: str) -> str:
+    """What is wrong with arguments that a command does not take, and the cure."""
+    if unknown[0].startswith("-"):
+        return f"{unknown[0]} is no option of this command; trunnion {command} --help lists those that it has"
+    cure = "repeat an option before each of its values, and put a value with blanks in quotes"
+    return f"{unknown[0]!r} is one argument too many; {cure}"
+
+
 def _add_subprograms(
     parser: argparse.ArgumentParser, caller: str, option: str = "--with", to: str = "subprograms"
 ) -> None:
@@ -77,7 +91,7 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
         prog="trunnion", description="CL files to proven NC programs for five-axis machine tools."
     )
     parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     _add_post(commands.add_parser("post", help="write the NC program of one or more CL files"))
     _add_verify(
         commands.add_parser("verify", help="prove an NC program: read it, run it, compare it with its CL files")
@@ -89,7 +103,9 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
-    arguments = parser.parse_args(list(argv))
+    arguments, unknown = parser.parse_known_args(list(argv))
+    if unknown:
+        commands.choices[arguments.command].error(_not_expected(unknown, arguments.command))
     if getattr(arguments, "dialect", None) and "settings" in arguments:
         if "dialect" in dict(arguments.settings):
             parser.error("--dialect and --set dialect=… are the same: give one of them")
@@ -128,18 +144,26 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--tolerance", type=_tolerance, default=0.001, metavar="MM",
-        help="how far a coordinate may be off, and in degrees a rotary axis; 0.001",
+        help="how far a coordinate may be off, and in degrees a rotary axis; 0.001, and 0.0013 mm in a program in inches",
     )  # fmt: skip
     parser.add_argument(
-        "--span", type=_tolerance, metavar="DEG", help="how far the tool axis may be off between points"
+        "--span",
+        type=_tolerance,
+        metavar="DEG",
+        help="how far the tool axis may be off between points; by default the definition's tolerance",
     )
     parser.add_argument(
         "--span-tip", type=_tolerance, metavar="MM", help="how far the tip may be off between points without TCP"
     )
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, for programs without TCP")
     parser.add_argument("--tool", default="", metavar="T", help="tool that was called in place of the CL file's")
-    parser.add_argument("--offset", metavar="G", help="work offset of the program; G54 where there is a CL file")
-    parser.add_argument("--edge", type=int, metavar="D", help="cutting edge under which the tool works; with --cl 1")
+    parser.add_argument(
+        "--offset", metavar="G", help="work offset of the program; with --cl that of the control's definition"
+    )
+    parser.add_argument(
+        "--edge", type=_edge, metavar="D",
+        help="cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
+    )  # fmt: skip
     parser.add_argument("--units", choices=("mm", "inch"), help="length unit of CL files that do not state it")
     parser.add_argument("--dialect", choices=DIALECTS, help="what the CL files are written in")
     parser.add_argument(
@@ -199,6 +223,6 @@ def _add_controls(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_check(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="DEFINITION.toml", help="definition to validate")
+    parser.add_argument("file", metavar="NAME_OR_FILE", help="definition to validate: a TOML file, or a shipped one")
     parser.add_argument("--json", action="store_true", help="what it means as data in place of text")
     parser.set_defaults(run=_lazy_command("definitions", "check"))

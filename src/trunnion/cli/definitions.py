@@ -12,6 +12,7 @@ from trunnion.cli.machine_text import machine_data, machine_lines
 from trunnion.cli.results import as_json, print_result
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
+from trunnion.controls.loading import shipped_controls
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine, load_machine, shipped_machines
@@ -39,7 +40,7 @@ def check(arguments: argparse.Namespace) -> int:
 
     Every mistake comes at once.
     """
-    if is_control_file(Path(arguments.file)):
+    if arguments.file in shipped_controls() or is_control_file(Path(arguments.file)):
         _check_control_file(arguments.file)
         control = describe_control(arguments.file)
         good = f"{arguments.file}: good"

@@ -199,7 +199,7 @@ def _preferred(machine: Machine) -> str:
     ]
     if told:
         return f"the one with {' and '.join(told)}, where that needs no more rewinds"
-    return "neither: that of the side on which most cutting stretches would begin"
+    return "the one on the side where most cuts of the operation would begin: the definition prefers neither"
 
 
 def _pose_values(machine: Machine) -> Iterator[dict[str, float]]:

@@ -103,7 +103,8 @@ def _wrong_edges(context: ComparedContext) -> Iterator[Place]:
         )
         if bad is not None:
             row, cl = bad
-            yield context.place_with_cl(row, 0.0, f"works with D{used[row]}, not with D{edge}", cl)
+            has = f"with D{used[row]}" if used[row] >= 0 else "without a D word"
+            yield context.place_with_cl(row, 0.0, f"works {has}, not with D{edge}", cl)
     rows = context.run.state.machine_frame.rows_with(True)
     edges = used.at(rows)
     others = rows[(edges > 0) & ~np.isin(edges, known)]

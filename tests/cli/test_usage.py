@@ -1,0 +1,57 @@
+"""Arguments that cannot be understood: usage of the command, what is wrong, and the cure."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.locations import DOCS, YL569
+from trunnion.cli import main
+from trunnion.controls.loading import shipped_controls
+
+PROGRAM = str(YL569 / "2_hub_rough.expected.mpf")
+VERIFY = ["verify", PROGRAM, "--machine", "yl569"]
+
+
+def error_of(command: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    """What a command that ends with exit code 2 says."""
+    try:
+        code: object = main(command)
+    except SystemExit as stop:
+        code = stop.code
+    assert code == 2
+    return capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (["--cl", "a.cls", "b.cls"], "trunnion verify: error: 'b.cls' is one argument too many; repeat an option"),
+        (["--strict"], "trunnion verify: error: --strict is no option of this command; trunnion verify --help"),
+        (["--edge", "x"], "'x' is not a cutting edge; write its D number, such as 1"),
+    ],
+    ids=["two values", "option of another command", "edge"],
+)
+def test_a_usage_error_names_the_command_and_the_cure(
+    more: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    err = error_of([*VERIFY, *more], capsys)
+    assert err.startswith("usage: trunnion verify ")
+    assert said in err
+
+
+@pytest.mark.parametrize("command", [VERIFY, ["convert", PROGRAM, "--machine", "yl569", "--to-cl"]], ids=lambda c: c[0])
+def test_options_of_the_setup_are_named_as_they_are(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert error_of([*command, "--zero", "0,0"], capsys).startswith("--zero: error: is '0,0'; write X,Y,Z, such as ")
+    assert error_of([*command, "--tool-length", "abc"], capsys).startswith("--tool-length: error: is 'abc'; write MM")
+
+
+def test_check_takes_every_shipped_control(capsys: pytest.CaptureFixture[str]) -> None:
+    for name in shipped_controls():
+        assert main(["check", name]) == 0
+        assert capsys.readouterr().out.startswith(f"{name}: good")
+
+
+def test_no_page_names_the_zero_by_another_key() -> None:
+    for page in Path(DOCS).rglob("*.md"):
+        rest = page.read_text(encoding="utf-8").replace("`spindle_point_mm`, `workpiece_zero_mm` | vectors", "")
+        assert "workpiece_zero_mm" not in rest, page.name
