@@ -23,15 +23,15 @@ PROGRAM = YL569 / "2_hub_rough.expected.mpf"
 def test_a_workpiece_zero_is_three_finite_lengths(zero: object) -> None:
     with pytest.raises(trunnion.InputError, match="zero is"):
         trunnion.post(CL, machine="yl569", settings={"zero": zero})  # type: ignore[dict-item]
-    with pytest.raises(trunnion.InputError, match="zero is"):
+    with pytest.raises(trunnion.InputError, match="zero: error: is"):
         trunnion.verify(PROGRAM, machine="yl569", zero=zero)  # type: ignore[arg-type]
-    with pytest.raises(trunnion.InputError, match="zero is"):
+    with pytest.raises(trunnion.InputError, match="zero: error: is"):
         trunnion.convert(PROGRAM, machine="yl569", to_cl=True, zero=zero)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("length", [float("nan"), float("inf"), "nan", -1.0, 1e9])
 def test_a_tool_length_is_finite(length: object) -> None:
-    with pytest.raises(trunnion.InputError, match="tool_length is"):
+    with pytest.raises(trunnion.InputError, match="tool_length: error: is"):
         trunnion.verify(PROGRAM, machine="yl569", tool_length=length)  # type: ignore[arg-type]
 
 

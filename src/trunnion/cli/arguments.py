@@ -144,7 +144,7 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--tolerance", type=_tolerance, default=0.001, metavar="MM",
-        help="how far a coordinate may be off, and in degrees a rotary axis; 0.001, and 0.0013 mm in a program in inches",
+        help="how far a coordinate may be off, and in degrees a rotary axis; 0.001 (in inches 0.0013 mm)",
     )  # fmt: skip
     parser.add_argument(
         "--span",
