@@ -88,7 +88,7 @@ def test_what_the_cl_file_does_not_say_can_be_said(tmp_path: Path, capfd: pytest
         (["nothing.mpf"], "nothing.mpf"),
         ([str(PROGRAM), "--cl", "nothing.cls"], "nothing.cls"),
         ([str(PROGRAM), "--offset", "first"], "'first'"),
-        ([str(PROGRAM), "--zero", "1,2"], "zero is '1,2'"),
+        ([str(PROGRAM), "--zero", "1,2"], "--zero: error: is '1,2'"),
         ([str(PROGRAM), "--report", "page.pdf"], ".html"),
     ],
 )
