@@ -173,7 +173,7 @@ class ReaderState:
         """Note that a statement, or some ``words`` of it, are not known: one event a statement, which says why."""
         events = self.builder.events
         if self.strict:
-            self.diagnostics.error(self.line, what, "remove the statement, or read without strict")
+            self.diagnostics.error(self.line, what, "remove the statement, or read without strict=True")
         found = UnknownStatement(self.operation_row, self.line, statement.source, words, what)
         for k in range(len(events) - 1, -1, -1):
             before = events[k]

@@ -52,7 +52,7 @@ def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     fallback = program.effective_setting("fallback_tolerance", operation)
     what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
-    return [Problem(program.file, operation.line, what, "setting tolerance=…", Severity.WARNING)]
+    return [Problem(program.file, operation.line, what, "write setting fallback_tolerance=VALUE", Severity.WARNING)]
 
 
 def _prints_tolerance(program: Program, motion: Motion) -> bool:
