@@ -5,7 +5,7 @@ import re
 import pytest
 
 from tests.support.locations import DOCS
-from trunnion.readers.control.iso_m_codes import PROGRAM_ENDS
+from trunnion.readers.control.iso_m_codes import EVENTS, PROGRAM_ENDS
 from trunnion.readers.families.fanuc import cycles as fanuc_cycles
 from trunnion.readers.families.fanuc import text as fanuc_text
 from trunnion.readers.families.fanuc import variables
@@ -18,7 +18,7 @@ from trunnion.readers.families.linuxcnc import text as linuxcnc_text
 from trunnion.readers.families.linuxcnc import words as linuxcnc
 from trunnion.readers.rs274 import expressions
 from trunnion.readers.rs274.block import g_code_text
-from trunnion.readers.rs274.interpreter import EVENTS, FEED_MODES, MOTIONS, PLANES
+from trunnion.readers.rs274.interpreter import FEED_MODES, MOTIONS, PLANES
 
 PAGES = {name: (DOCS / f"reader-{name}.md").read_text(encoding="utf-8") for name in ("linuxcnc", "fanuc", "fidia")}
 NOT_SIMULATED = {

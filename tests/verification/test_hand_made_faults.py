@@ -67,6 +67,15 @@ FAULTS = [
     ("yl569", "CYCLE84(16.,11.,5.,-1.,", "CYCLE84(16.,11.,5.,1.,", "holes"),
     ("yl569", ",3,,1.5,0,500,500)", ",3,,-1.5,0,500,500)", "holes"),
     ("yl569", " TRAORI\n", "\n", "turns"),
+    ("yl569", "G1 Z10. F500.", "SPOS=90\nG1 Z10. F500.", "spindle"),
+    ("yl569", "G1 Z10. F500.", "G1 Z10. F500. M19", "spindle"),
+    ("yl569", "G1 Z10. F500.", "M70\nG1 Z10. F500.", "spindle"),
+    # A spindle that is oriented stands, and so does one that waits for a thread.
+    ("dmu65", " F500", " F500 M19", "spindle"),
+    ("matsuura_mx330", " F500.", " F500. M19", "spindle"),
+    ("matsuura_mx330", " F500.", " F500. M29", "words"),
+    ("hs664rt", " F500", " F500 M19", "spindle"),
+    ("xyzac_trt", " F500.", " F500. M19", "spindle"),
     # Klartext
     ("dmu65", "TOOL CALL 2 Z S4000", "TOOL CALL 2 Z S4000 DL-5", "tool"),
     ("dmu65", "TOOL CALL 2 Z S4000", "TOOL CALL 2 Z S4000 DR+0.5", "tool"),

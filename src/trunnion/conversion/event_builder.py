@@ -114,9 +114,9 @@ class EventBuilder:
 
     def _set_spindle(self, event: ProgramEvent, row: int, found: list[Event]) -> bool:
         """M3, M4 or M5; returns whether the event starts the spindle."""
-        if event.value == "oriented":
+        if event.value in ("oriented", "axis"):
             cure = "a toolpath has no angle of the spindle"
-            self._warn.refuse(event.line, "the spindle stops at an angle (SPOS, cycle 13)", cure, event.file)
+            self._warn.refuse(event.line, "the spindle stops at an angle (SPOS, M19, cycle 13)", cure, event.file)
         elif event.value == "off":
             if self._sense is not None:
                 found.append(SpindleOff(row, event.line))

@@ -12,10 +12,11 @@ EVENTS: Final = {
     7: ("coolant", "mist"),
     8: ("coolant", "flood"),
     9: ("coolant", "off"),
+    19: ("spindle", "oriented"),
 }
 
-#: Sense of rotation of the spindle: +1 clockwise, -1 counter-clockwise, 0 off.
-SPINDLE: Final = {3: 1, 4: -1, 5: 0}
+#: Codes that switch the spindle.
+SPINDLE: Final = frozenset(code for code, (kind, _) in EVENTS.items() if kind == "spindle")
 
 TOOL_CHANGE: Final = 6
 PROGRAM_ENDS: Final = frozenset({2, 30})

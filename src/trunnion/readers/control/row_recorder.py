@@ -46,6 +46,10 @@ from trunnion.readers.scan.rows import execute_blocks
 #: Larger positions (mm, degrees) are mistakes: no machine reaches so far.
 MAX_POSITION: Final = 1e7
 
+#: Values of the event "spindle", and the sense in which it turns then: 0, it stands. A spindle that is oriented or has
+#: become an axis stands until the program starts it again.
+SPINDLE_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1, "off": 0, "oriented": 0, "axis": 0}
+
 _ROTARY_WORDS: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
 
 #: Reports a diagnostic at the block that is being executed.
@@ -140,8 +144,10 @@ class RowRecorder:
         self._commanded[3] = feed
 
     def add_event(self, kind: str, value: EventValue = None) -> None:
-        """Record an event before the next row."""
+        """Record an event before the next row; what happens to the spindle is in the columns too."""
         modal = self.modal
+        if kind == "spindle":
+            modal.spindle.set(self.row, SPINDLE_SENSES[str(value)])
         self.events.append(RunEvent(self.line, self.row, kind, value, modal.file.current, bool(modal.tcp.current)))
 
     # Tools

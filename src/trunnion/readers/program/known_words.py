@@ -5,6 +5,7 @@ an M code acts wherever it stands in a block. Any other word begins a block, and
 """
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
@@ -28,7 +29,6 @@ _BEFORE_MOTION: Final = (
 #: Effects that are not events of their own: the word itself says what happens.
 _SILENT: Final = frozenset({"no effect", "comes back", "comes back home"})
 
-_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1, "off": 0}
 _M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
 _BLOCK_BEGIN: Final = re.compile(r"[ \t]*/?[0-9]?[ \t]*(?:N[0-9]+|[0-9]+(?=[ \t]))?[ \t]*/?[ \t]*")
 _TOOL: Final = re.compile(r"(?<![A-Z0-9])T=?[ \t]*([0-9]{1,9})")
@@ -77,6 +77,12 @@ def _known_word(table: Table, key: str) -> KnownWord:
     if not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
         table.add_problem(key, "is no word of a program", 'write such as M60, "CYCL DEF 392" or "G65 P9810"')
     return KnownWord(" ".join(key.upper().split()), effects, means.strip())
+
+
+def begins_with(words: Iterable[KnownWord], text: str) -> bool:
+    """Whether a block begins with a declared word, which then has the whole block."""
+    patterns = [_pattern(word.word) for word in words if word.code is None]
+    return any(re.match(rf"[ \t]*{pattern}(?![A-Z0-9_])", text, re.IGNORECASE) for pattern in patterns)
 
 
 class KnownWords:
@@ -152,7 +158,6 @@ class KnownWords:
             case "comes back home":
                 control.go_home()
             case _ if kind == "spindle":
-                control.modal.spindle.set(control.row, _SENSES[value])
                 control.add_event("spindle", value)
             case _ if kind == "coolant":
                 control.add_event("coolant", value)

@@ -35,9 +35,6 @@ FEED_MODES: Final = {930: 93, 940: 94, 950: 95}
 RADIUS_COMPENSATION: Final = {400: 0, 410: 1, 411: 1, 412: 1, 420: -1, 421: -1, 422: -1}
 CANCEL: Final = 800
 
-#: M codes that make an event: kind and value.
-EVENTS: Final = {**iso_m_codes.EVENTS, 19: ("spindle", "oriented")}
-
 #: Letters of axes; a machine has five of them.
 AXES: Final = "XYZABCUVW"
 
@@ -227,10 +224,8 @@ class Rs274Interpreter(Interpreter[A]):
     def _common_m_code(self, code: int) -> bool:
         """Execute an M code that all these languages share; False if it is another one."""
         control = self.control
-        if code in iso_m_codes.SPINDLE:
-            control.modal.spindle.set(control.row, iso_m_codes.SPINDLE[code])
-        if code in EVENTS:
-            control.add_event(*EVENTS[code])
+        if code in iso_m_codes.EVENTS:
+            control.add_event(*iso_m_codes.EVENTS[code])
         elif code == iso_m_codes.TOOL_CHANGE:
             control.change_tool()
         elif code in iso_m_codes.PROGRAM_ENDS:

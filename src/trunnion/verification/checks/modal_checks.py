@@ -64,7 +64,7 @@ def _changed_while_turning(context: Context) -> Iterator[Place]:
     turning = False
     for event in events:
         if event.kind == "spindle":
-            turning = event.value not in (0, 0.0, "off", "oriented", None)
+            turning = event.value in ("clockwise", "counter-clockwise")
         elif event.kind == "tool_change" and turning and 0 < event.before_row <= len(context.run):
             yield context.place_of_event(event, 0.0, "changes the tool while the spindle turns")
 

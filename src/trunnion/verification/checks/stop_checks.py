@@ -93,6 +93,9 @@ def _compare(
             row = min(wanted.row, len(context.expected) - 1)
             place = context.place_of_missing(row, f"the CL file wants {wanted} before this")
             yield replace(place, cl_file=wanted.file, cl_line=wanted.line)
+        elif event.kind == "stop" and _spindle_turns(run, event):
+            text = "stops while the spindle turns: at a STOP of the CL file it stands (M5 before it)"
+            yield replace(context.place_of_event(event, 0.0, text), cl_file=wanted.file, cl_line=wanted.line)
         elif not _same(run, event, wanted):
             text = f"{_words(event.kind, _amount(event))}; the CL file wants {wanted}"
             yield replace(context.place_of_event(event, 0.0, text), cl_file=wanted.file, cl_line=wanted.line)
@@ -120,6 +123,17 @@ def _same(run: Run, event: RunEvent, wanted: _ExpectedStop) -> bool:
         return False
     rpm = float(run.state.rpm[min(event.before_row, len(run) - 1)]) if len(run) else 0.0
     return abs(_seconds(_amount(event), rpm) - _seconds(wanted.amount, rpm)) <= _TOLERANCE
+
+
+def _spindle_turns(run: Run, stop: RunEvent) -> bool:
+    """Whether the spindle turns at a stop: what the last word for it before the stop said."""
+    turns = False
+    for event in run.events:
+        if event is stop:
+            return turns
+        if event.kind == "spindle":
+            turns = event.value in ("clockwise", "counter-clockwise")
+    return turns
 
 
 def _seconds(amount: float, rpm: float) -> float:

@@ -15,7 +15,7 @@ READER = (DOCS / "reader.md").read_text(encoding="utf-8")
 NOT_SIMULATED = set(re.findall(r"`([^`\n]+)`", PAGE))
 
 M_WORDS = {
-    *words.M_EVENTS, *words.M_SPINDLE, *words.M_AFTER_MOTION, *words.M_WITHOUT_PATH_EFFECT, *words.M_NOT_SIMULATED,
+    *words.M_EVENTS, *words.M_AFTER_MOTION, *words.M_WITHOUT_PATH_EFFECT, *words.M_NOT_SIMULATED,
     *words.M_PROGRAM_ENDS, words.M_MACHINE, words.M_SECOND_MACHINE, words.M_SHORTEST, words.M_TCP, words.M_CALL_MODAL,
     words.M_PER_TURN, words.M_PER_MINUTE,
 }  # fmt: skip

@@ -27,8 +27,8 @@ class CycleInterpreter(OffsetInterpreter):
         self._to_initial = True
         self._initial: float | None = None
         self._modal_words: dict[str, float] = {}
-        # A thread has stopped the spindle, and the program has not started it since.
-        self._stopped_by_thread = False
+        # What has stopped the spindle besides M5, if the program has not started it since; else empty.
+        self._spindle_stands = ""
         # Axes whose positions must be stated in a new plane before the tool cuts there.
         self._not_stated: frozenset[str] = frozenset()
 
@@ -36,7 +36,9 @@ class CycleInterpreter(OffsetInterpreter):
         """Select a motion or a cycle, or cancel the cycle."""
         control = self.control
         if self.motion_code in cycles.THREADS and code not in cycles.THREADS:
-            self._stopped_by_thread = control.settings.threads_stop_spindle
+            self._spindle_stands = "a thread has stopped it" if control.settings.threads_stop_spindle else ""
+        if code in cycles.THREADS:
+            self._spindle_stands = ""  # the cycle turns it
         if code in cycles.CYCLES:
             if self._initial is None:
                 self._initial = float(control.programmed_position[control.plane_axis])
@@ -94,9 +96,9 @@ class CycleInterpreter(OffsetInterpreter):
                 self._note(f"cuts in a new plane before {missing} is stated at rapid there", Severity.ERROR)
                 self._not_stated = frozenset()
             self._not_stated -= set(axes)
-        if self._stopped_by_thread and self.motion_code not in (0, *cycles.THREADS):
-            self._stopped_by_thread = False
-            self._note("cuts while the spindle stands still: a thread has stopped it", Severity.ERROR)
+        if self._spindle_stands and self.motion_code not in (0, *cycles.THREADS):
+            self._note(f"cuts while the spindle stands still: {self._spindle_stands}", Severity.ERROR)
+            self._spindle_stands = ""
 
     def _check_words(self, block: Block) -> None:
         """Refuse words that describe pecks and retracts on some controls, and dwells whose unit is in doubt."""

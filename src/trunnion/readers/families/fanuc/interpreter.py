@@ -44,7 +44,7 @@ class FanucInterpreter(CycleInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        in_doubt = self._stopped_by_thread or self._not_stated
+        in_doubt = self._spindle_stands or self._not_stated
         return self._stack[-1].modal is None and not in_doubt and super()._may_scan(source)
 
     def _system_value(self, key: int) -> float | None:
@@ -213,7 +213,9 @@ class FanucInterpreter(CycleInterpreter):
 
     def _m_code(self, code: int) -> None:
         if code in iso_m_codes.SPINDLE:
-            self._stopped_by_thread = False
+            self._spindle_stands = ""
+        elif code == words.RIGID_TAP and self.motion_code not in cycles.THREADS:
+            self._spindle_stands = "M29 has stopped it for a thread"
         if not self._common_m_code(code):
             self.control.add_event("m", float(code))
 

@@ -119,6 +119,9 @@ WORDS_OF_CODE: Final = {
 #: M codes that act after the motion of their block.
 AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198})
 
+#: Stops the spindle, for a rigid thread.
+RIGID_TAP: Final = 29
+
 CALL: Final = 98
 RETURN: Final = 99
 CALL_FILE: Final = 198

@@ -26,7 +26,6 @@ from trunnion.readers.families.heidenhain.words import (
     M_RETRACT,
     M_SECOND_MACHINE,
     M_SHORTEST,
-    M_SPINDLE,
     M_TCP,
     M_TCP_OFF,
     M_WITHOUT_PATH_EFFECT,
@@ -70,8 +69,6 @@ class MFunctions:
 
     def _execute(self, code: int, arguments: dict[str, float | None]) -> None:
         control = self._control
-        if code in M_SPINDLE:
-            control.modal.spindle.set(control.row, M_SPINDLE[code])
         for kind, value in M_EVENTS.get(code, ()):
             control.add_event(kind, value)
         if code in (M_SHORTEST, M_NOT_SHORTEST):

@@ -59,10 +59,8 @@ M_EVENTS: Final = {
     9: (("coolant", "off"),),
     13: (("spindle", "clockwise"), ("coolant", "flood")),
     14: (("spindle", "counter-clockwise"), ("coolant", "flood")),
+    19: (("spindle", "oriented"),),
 }
-
-#: Sense of rotation of the spindle after an M function.
-M_SPINDLE: Final = {3: 1, 4: -1, 5: 0, 13: 1, 14: -1}
 
 #: M functions that act after the motion of their block.
 M_AFTER_MOTION: Final = frozenset({0, 1, 5, 9, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_CALL}) | M_PROGRAM_ENDS

@@ -8,7 +8,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.run import Orientation
 from trunnion.readers.control.hole_motion import CycleExecutionError, finite
-from trunnion.readers.control.iso_m_codes import EVENTS, PROGRAM_ENDS, SPINDLE, TOOL_CHANGE
+from trunnion.readers.control.iso_m_codes import EVENTS, PROGRAM_ENDS, TOOL_CHANGE
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.sinumerik import cycles
@@ -37,6 +37,7 @@ from trunnion.readers.families.sinumerik.words import (
     G_UNITS,
     G_WITHOUT_PATH_EFFECT,
     M_AFTER_MOTION,
+    M_AXIS_MODE,
     M_RETURN,
     TOOL_FRAMES,
     WITHOUT_PATH_EFFECT,
@@ -280,10 +281,10 @@ class SinumerikInterpreter(CallInterpreter):
 
     def _m_code(self, code: int) -> None:
         control = self.control
-        if code in SPINDLE:
-            control.modal.spindle.set(control.row, SPINDLE[code])
         if code in EVENTS:
             control.add_event(*EVENTS[code])
+        elif code == M_AXIS_MODE:
+            control.add_event("spindle", "axis")
         elif code == TOOL_CHANGE:
             control.change_tool()
         elif code in PROGRAM_ENDS:

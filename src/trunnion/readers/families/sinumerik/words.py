@@ -194,6 +194,9 @@ CONSTANTS: Final = {
     "_TOP_SURFACE_SMOOTH_ON": 2000000,
 }
 
+#: The spindle becomes an axis.
+M_AXIS_MODE: Final = 70
+
 #: The M code that ends a subprogram. Those that are not in ``iso_m_codes`` are the machine builder's: events "m".
 M_RETURN: Final = 17
 
