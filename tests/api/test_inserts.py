@@ -14,21 +14,33 @@ BENDING = {
         "G0 Z-20": "moves the machine", "G55": "work offset", "G700": "", "TRAORI": "TCP",
         "TRANS X10": "elsewhere", "M5": "spindle", "S100": "spindle speed", "G41": "compensation", "G999": "G999",
         "GOTOF NOWHERE": "", "M8": "coolant", "SUPA G0 Z=100": "moves the machine", "T=7": "",
+        "SPOS=90": "spindle", "M19": "spindle", "M70": "spindle", "OFFN=2": "OFFN=2", "G26 S100": "G26",
+        "OVR=10": "OVR",
+        "CUT3DC": "CUT3DC", "FL[X]=5": "FL[X]", "LIMS=100": "LIMS", "M61 G64": "G64", "M41": "M41", "M2=3": "M2=3",
+        "$TC_DP3[5,1]=0": "$TC_DP3", "F=IC(5)": "", "_camtolerance=5": "_camtolerance", "H1=5 OVR=10": "OVR",
     },
     "dmu65": {
         "M30": "ends the program", "L Z-20 F100": "moves the machine", "CYCL DEF 7.1 X+5": "", "M5": "spindle",
         "M128": "TCP", "TOOL CALL 9 Z S100": "", "CALL PGM X": "missing program", "L M140 MB MAX": "moves",
+        "M19": "spindle", "FN 17: SYSWRITE ID 50 NR1 IDX5 = +0": "FN 17", "CYCL DEF 9.0 DWELL TIME": "",
+        "CYCL DEF 8.0 MIRROR IMAGE": "", "BEGIN PGM A MM": "", "M103 F10": "M103", "M126": "M126", "M89": "M89",
+        "FN 0: Q202 = +1": "Q202", "BLK FORM 0.1 Z X-1 Y-1 Z-1": "BLK FORM",
     },
     "matsuura_mx330": {
         "M30": "ends the program", "G91": "elsewhere", "X99.": "moves the machine", "G20": "", "M98 P100": "O0100",
         "G55": "work offset", "G68 X0 Y0 R30.": "", "G92 X0": "", "G52 X5.": "elsewhere",
+        "M19": "spindle", "M29": "stands", "G10 L10 P5 R50": "G10", "G10 L12 P5 R3": "G10", "G10 L20 P1 X50": "",
+        "#10005=3": "#10005", "#2005=0": "#2005", "#3006=1": "#3006", "G64": "G64", "M48": "M48", "G98": "G98",
+        "/M8": "",
     },
     "hs664rt": {
         "M02": "ends the program", "G91": "elsewhere", "X99": "moves the machine", "M5": "spindle", "G999": "G999",
+        "M19": "spindle", "HD5": "",
     },
     "xyzac_trt": {
         "M2": "ends the program", "G91": "elsewhere", "X99": "moves the machine", "G20": "", "G92 X0": "",
-        "o100 call": "", "G43 H9": "",
+        "o100 call": "", "G43 H9": "", "M19": "spindle", "G10 L1 P5 Z0": "G10", "G10 L10 P5 Z0": "G10", "M50 P0": "M50",
+        "G64 P5": "", "#<_hal[x]>=1": "", "(PROBEOPEN,x)": "PROBEOPEN", "(ABORT,x)": "ABORT",
     },
 }  # fmt: skip
 HARMLESS = {

@@ -64,11 +64,21 @@ def insert_problems(program: Program) -> list[Problem]:
                 if isinstance(event, Insert):
                     lines.setdefault(event.text, event.line)
             trial = _Trial(program, motion, Path(folder))
-            for text, effect in trial.effects(list(lines)):
+            effects = dict(trial.effects(list(lines)))
+            for text in lines:
+                effect = effects.get(text) or _not_known(text, program)
+                if not effect:
+                    continue
                 problems.append(Problem(program.file, lines[text], f"INSERT/{text.strip()}: {effect}", _CURE))
                 if len(problems) >= _MOST_LISTED:
                     return problems
     return problems
+
+
+def _not_known(text: str, program: Program) -> str:
+    """Which word of a text nobody knows to change nothing: a run shows only what its reader follows."""
+    word = readers.reader_of(program.machine).raw_words.not_known(text, program.machine)
+    return f"nobody knows that {word} changes nothing" if word else ""
 
 
 class _Trial:

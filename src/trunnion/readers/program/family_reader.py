@@ -8,6 +8,7 @@ from typing import Any
 from trunnion.machines import Machine
 from trunnion.readers.program.interpreter import Interpreter
 from trunnion.readers.program.options import RunOptions
+from trunnion.readers.program.raw_text import NO_RAW_WORDS, RawWords
 from trunnion.readers.program.work_offsets import WorkOffsetWords
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
@@ -23,6 +24,7 @@ class FamilyReader:
     comments             regular expression of comments and texts, in which words mean nothing
     work_offsets         how programs select work offsets
     uses_length_numbers  programs select the tool length by a number (H); it is the column ``Run.edge``
+    raw_words            the words that may stand in raw text
     offsets_of           makes ``work_offsets`` for controls of the family that have other words; None: all have these
     """
 
@@ -31,6 +33,7 @@ class FamilyReader:
     work_offsets: WorkOffsetWords
     comments: bytes = RS274_COMMENTS
     uses_length_numbers: bool = False
+    raw_words: RawWords = NO_RAW_WORDS
     offsets_of: Callable[[Machine], WorkOffsetWords] | None = None
 
 

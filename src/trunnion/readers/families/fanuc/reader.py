@@ -6,11 +6,28 @@ from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
 from trunnion.readers.families.fanuc.words import WITHOUT_PATH_EFFECT
 from trunnion.readers.families.fanuc.work_offsets import WORK_OFFSETS, offsets_of
 from trunnion.readers.program.family_reader import FamilyReader, g_words
+from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, RS274_VALUE, raw_words
+
+#: Common variables are the program's; those from 1000 on are the control's. M48 and M49 switch overrides.
+RAW_WORDS: Final = raw_words(
+    (RS274_COMMENT,),
+    (
+        r"N[0-9]+",
+        rf"#(?:[0-9]|[12][0-9]|3[0-3]|1[0-9]{{2}}|[5-9][0-9]{{2}})[ \t]*=[ \t]*{RS274_VALUE}",
+        rf"G0*4[ \t]*[PXU]{NUMBER}",
+        r"G(?:0*[0-3]|17|20|21|40|49|5[4-9]|69|80|90|91|9[345])",
+        rf"[FS]{NUMBER}",
+        r"T[0-9]+",
+        r"M0*(?P<m>[0-9]+)",
+    ),
+    (48, 49),
+)
 
 READER: Final = FamilyReader(
     FanucInterpreter,
     g_words(WITHOUT_PATH_EFFECT),
     WORK_OFFSETS,
     uses_length_numbers=True,
+    raw_words=RAW_WORDS,
     offsets_of=offsets_of,
 )

@@ -6,6 +6,7 @@ from typing import Final
 from trunnion.readers.families.fidia.interpreter import FidiaInterpreter
 from trunnion.readers.families.fidia.words import OFFSET_BASE, WITHOUT_PATH_EFFECT
 from trunnion.readers.program.family_reader import FamilyReader, g_words
+from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, raw_words
 from trunnion.readers.program.work_offsets import WorkOffsetWords
 
 #: G55 with the number of the offset; the column counts from 501.
@@ -16,4 +17,14 @@ WORK_OFFSETS: Final = WorkOffsetWords(
     lambda value: f"G55 O{value - OFFSET_BASE}",
 )
 
-READER: Final = FamilyReader(FidiaInterpreter, g_words(WITHOUT_PATH_EFFECT), WORK_OFFSETS)
+RAW_WORDS: Final = raw_words(
+    (RS274_COMMENT,),
+    (
+        r"N[0-9]+",
+        r"G(?:0*[0-3]|17|40|70|71|80|90|91)",
+        rf"[FS]{NUMBER}",
+        r"M0*(?P<m>[0-9]+)",
+    ),
+)
+
+READER: Final = FamilyReader(FidiaInterpreter, g_words(WITHOUT_PATH_EFFECT), WORK_OFFSETS, raw_words=RAW_WORDS)

@@ -6,6 +6,7 @@ from typing import Final
 from trunnion.readers.families.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.readers.families.linuxcnc.words import WITHOUT_PATH_EFFECT, WITHOUT_PATH_EFFECT_M
 from trunnion.readers.program.family_reader import FamilyReader, g_words
+from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, RS274_VALUE, raw_words
 from trunnion.readers.program.work_offsets import WorkOffsetWords, g_word
 
 #: G54 to G59 are 54 to 59, G59.1 to G59.3 are 591 to 593.
@@ -16,9 +17,26 @@ WORK_OFFSETS: Final = WorkOffsetWords(
     lambda value: f"G{value / 10:g}" if value > 590 else g_word(value),
 )
 
+#: Parameters up to 5000 and named ones are the program's. M48 to M53 switch overrides.
+RAW_WORDS: Final = raw_words(
+    (RS274_COMMENT, r"\([ \t]*(?:MSG|PRINT|DEBUG)[ \t]*,[^()]*\)"),
+    (
+        r"N[0-9]+",
+        rf"#(?:[0-9]{{1,3}}|[1-4][0-9]{{3}}|<[ \t]*[A-Z][A-Z0-9_ ]*>)[ \t]*=[ \t]*{RS274_VALUE}",
+        rf"G0*4[ \t]*P{NUMBER}",
+        r"G(?:0*[0-3]|17|20|21|40|49|5[4-9]|59\.[123]|80|90|91|9[345])",
+        rf"[FS]{NUMBER}",
+        r"T[0-9]+",
+        rf"M0*(?:6[2-8]|1[0-9]{{2}})(?:[ \t]*[PELQ]{NUMBER})*",
+        r"M0*(?P<m>[0-9]+)",
+    ),
+    range(48, 54),
+)
+
 READER: Final = FamilyReader(
     LinuxcncInterpreter,
     g_words(WITHOUT_PATH_EFFECT) | {f"M{code}" for code in WITHOUT_PATH_EFFECT_M},
     WORK_OFFSETS,
     uses_length_numbers=True,
+    raw_words=RAW_WORDS,
 )

@@ -11,11 +11,31 @@ from trunnion.readers.families.sinumerik.words import (
     WITHOUT_PATH_EFFECT_VALUES,
 )
 from trunnion.readers.program.family_reader import FamilyReader
+from trunnion.readers.program.raw_text import NUMBER, raw_words
 from trunnion.readers.program.work_offsets import WorkOffsetWords, first_number, g_word
 
 #: G54 to G57 and G505 to G599.
 WORK_OFFSETS: Final = WorkOffsetWords(
     "G54 to G57, or G505 to G599", re.compile(r"G(5[4-7]|5(?:0[5-9]|[1-9][0-9]))"), first_number, g_word
+)
+
+_VALUE: Final = rf"(?:{NUMBER}|[-+]?R[0-9]+)"
+
+#: M40 to M45 choose a gear; what a gear turns at is known to the machine only.
+RAW_WORDS: Final = raw_words(
+    (r";.*", r'MSG[ \t]*\([ \t]*(?:"[^"]*")?[ \t]*\)'),
+    (
+        r"N[0-9]+",
+        rf"R[0-9]+[ \t]*=[ \t]*{_VALUE}(?:[ \t]*[-+*/][ \t]*{_VALUE})*",
+        rf"H[0-9]*=?{NUMBER}",
+        r"G(?:0*[0-4]|17|40|5[4-7]|500|50[5-9]|5[1-9][0-9]|70|71|700|710|90|91|9[345]|97)",
+        rf"[FS]=?{NUMBER}",
+        r"D[0-9]+",
+        r"T=?[0-9]+",
+        r"M0*(?P<m>[0-9]+)",
+        r"(?:STOPRE|TRAORI|TRAFOOF)(?![A-Z_(\[])",
+    ),
+    range(40, 46),
 )
 
 READER: Final = FamilyReader(
@@ -26,4 +46,5 @@ READER: Final = FamilyReader(
     | {f"G{code}" for code in G_WITHOUT_PATH_EFFECT},
     WORK_OFFSETS,
     comments=rb';[^\n]*|"[^"\n]*"',
+    raw_words=RAW_WORDS,
 )

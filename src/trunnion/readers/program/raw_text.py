@@ -1,0 +1,62 @@
+"""Words that may stand in raw text: those that a family's reader follows, so that running them shows what they do.
+
+Of all other words nobody knows that they change nothing: offsets of tools, overrides, limits of the speed, modes of the
+compensation, system variables are among them. So the words that may be there are listed, and not those that may not.
+"""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.machines import Machine
+from trunnion.readers.program.known_words import begins_with, known_words
+
+#: Parts of words: a number, what a variable may become, and comments of languages of the RS274 kind. A comment that
+#: begins with a name and a comma may be a command.
+NUMBER: Final = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+RS274_COMMENT: Final = r"\((?![ \t]*[A-Z_]+[ \t]*,)[^()]*\)"
+RS274_VALUE: Final = rf"(?:{NUMBER}|[-+]?#[0-9]+|\[[^\[\]]*\])"
+
+_SHORT: Final = 40
+
+
+@dataclass(frozen=True, slots=True)
+class RawWords:
+    """The words of one family.
+
+    word     one word or comment that may stand in raw text; a group ``m`` is the number of an M code
+    other_m  M codes of the family that the reader does not follow: they may not; codes of the machine's builder may
+    """
+
+    word: re.Pattern[str]
+    other_m: frozenset[int] = frozenset()
+
+    def not_known(self, text: str, machine: Machine) -> str:
+        """Return the first part of a text of which nobody knows what it changes; empty if there is none."""
+        declared = known_words(machine)
+        if begins_with(declared, text):
+            return ""
+        codes = {word.code for word in declared}
+        at, end = 0, len(text)
+        while at < end:
+            if text[at] in " \t":
+                at += 1
+                continue
+            match = self.word.match(text, at)
+            code = match and match.groupdict().get("m")
+            refused = code is not None and int(code) in self.other_m and int(code) not in codes
+            if match is None or match.end() == at or refused:
+                return text[at:].strip()[:_SHORT]
+            at = match.end()
+        return ""
+
+
+def raw_words(comments: Iterable[str], words: Iterable[str], other_m: Iterable[int] = ()) -> RawWords:
+    """Return the words of a family from regular expressions; no rest of a number or value follows one."""
+    pattern = rf"{'|'.join(comments)}|(?:{'|'.join(words)})(?![0-9.=])"
+    return RawWords(re.compile(pattern, re.IGNORECASE), frozenset(other_m))
+
+
+#: No word at all.
+NO_RAW_WORDS: Final = RawWords(re.compile(r"(?!)"))
