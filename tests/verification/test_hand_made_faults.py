@@ -70,6 +70,12 @@ FAULTS = [
     ("yl569", "G1 Z10. F500.", "SPOS=90\nG1 Z10. F500.", "spindle"),
     ("yl569", "G1 Z10. F500.", "G1 Z10. F500. M19", "spindle"),
     ("yl569", "G1 Z10. F500.", "M70\nG1 Z10. F500.", "spindle"),
+    # In and out at a feed is no thread, along another axis no hole, and M99 no end.
+    ("yl569", "CYCLE84(16.,11.,5.,-1.,,,3,,1.5,0,500,500)", "CYCLE85(16.,11.,5.,-1.,,,750,750)", "holes"),
+    ("yl569", ",3,,1.5,0,500,500)", ",3,,1.5,0,500,500,1)", "words"),
+    ("matsuura_mx330", " G84 ", " G85 ", "words"),
+    ("hs664rt", " G84 ", " G85 ", "holes"),
+    ("matsuura_mx330", "M30", "M99", "modal"),
     # A spindle that is oriented stands, and so does one that waits for a thread.
     ("dmu65", " F500", " F500 M19", "spindle"),
     ("matsuura_mx330", " F500.", " F500. M19", "spindle"),

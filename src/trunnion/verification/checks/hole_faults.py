@@ -154,10 +154,17 @@ def _dwell_faults(
 
 
 def _thread_faults(hole: Hole, match: MatchedHole, spindle_work: Mapping[int, SpindleWork]) -> Iterator[HoleFault]:
-    """A thread of the other hand than the sense of the CL file's spindle, and one where it wants none."""
+    """A thread of the other hand than the CL file's spindle, a thread where it wants none, and none where it wants one.
+
+    In and out at the same feed is no thread: only a cycle that turns the spindle back cuts one.
+    """
     rows = (row for row in range(match.first, match.end) if row in spindle_work)
     row = next((row for row in rows if spindle_work[row].task is SpindleTask.TAP), None)
     if row is None:
+        if hole.cycle.mode[:1] == ("TAP",):
+            yield HoleFault(
+                match.first, 0.0, "cuts no thread where the CL file wants one: the spindle does not turn back"
+            )
         return
     hand = spindle_work[row].hand  # 0: that of the spindle, which is judged by itself
     if hole.cycle.mode[:1] != ("TAP",):

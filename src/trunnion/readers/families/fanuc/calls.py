@@ -127,8 +127,8 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             if target is not None:
                 self._flow.jump(active, line, _program_number(target))
                 return
-            self._note("M99 begins the program anew without end: it ends here", Severity.WARNING)
-            self.control.add_event("end", "M99")
+            # No event "end": the control goes on at the first block.
+            self._note("M99 begins the program anew without end: only its first run is followed", Severity.WARNING)
             raise ProgramEnd
         depth = len(self._stack)
         self._leave_program()

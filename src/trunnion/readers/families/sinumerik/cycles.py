@@ -43,6 +43,9 @@ _LENGTH_PLACES: Final[dict[str, tuple[int, ...]]] = {
 }
 _FEED_PLACES: Final[dict[str, tuple[int, ...]]] = {"CYCLE85": (7, 8)}
 
+#: The axis along which a cycle drills: 1 and 2 are the first and second axis of the geometry, 3 or none the tool's.
+_AXIS_PLACES: Final = {"CYCLE83": 13, "CYCLE84": 13, "CYCLE840": 12}
+
 #: The degression of CYCLE83; the pitch of threads, and its unit (_PITA).
 _DEGRESSION: Final = 8
 _PITCH_PLACES: Final = {"CYCLE84": (9, 14), "CYCLE840": (11, 13)}
@@ -60,6 +63,8 @@ def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotio
     rpm
         Spindle speed in force, for taps without one of their own.
     """
+    if name in _AXIS_PLACES and _or(arguments, _AXIS_PLACES[name]) not in (0.0, 3.0):
+        raise CycleExecutionError("drills along an axis of its own (_AXN), which is not simulated")
     heights = _heights(arguments)
     motions = CYCLES[name](arguments, heights, rpm)
     if any(step.feed is not None and abs(step.feed) > MAX_FEED for step in motions):
