@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.block_of_holes import BLOCK
 from tests.support.verifying import check
-from tests.verification.test_turns import BLOCK
 from trunnion import diff, verify
 from trunnion.cli import main
 
