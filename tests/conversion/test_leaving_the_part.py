@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
+from tests.support.posting import FOOT, HEAD
 from trunnion.controls import load_control
 from trunnion.conversion import Conversion, convert
 from trunnion.machines import Machine, load_machine
@@ -275,3 +276,17 @@ def test_control_characters_in_comments_become_blanks(tmp_path: Path) -> None:
     program.write_bytes(text.encode())
     found = trunnion.convert(program, machine="mikron_600u", to_cl=True)
     assert "PPRINT/D32 LONG" in (found.text or "")
+
+
+def test_a_retract_of_which_no_row_tells_divides_operations_of_one_tool(tmp_path: Path) -> None:
+    """M242 where the travel of Z is not known: the tool is not at the last Z any more."""
+    (tmp_path / "part.cls").write_text(HEAD + FOOT + HEAD.replace("OP1", "OP2") + FOOT)
+    first, second = tmp_path / "a.nc", tmp_path / "b.nc"
+    trunnion.post(tmp_path / "part.cls", machine="hs664rt", output=first)
+    converted = trunnion.convert(first, machine="hs664rt", to_machine="hs664rt", output=second)
+    assert len(converted.toolpath.operations) == 2
+    one, two = (
+        [line.split(" ", 1)[-1] for line in path.read_text().splitlines() if not line.startswith("(")]
+        for path in (first, second)
+    )
+    assert one[one.index("M306 T.1") :] == two[two.index("M306 T.1") :]

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+import trunnion
 from tests.support.posting import FOOT, HEAD
 from tests.support.toolpath_strategies import SAYABLE, sensible, toolpaths
 from trunnion.cl import read_cl
@@ -128,3 +129,18 @@ def test_a_tool_whose_name_is_a_number_is_called_by_its_name_again(tmp_path: Pat
     assert first is not None
     assert first.count(b'T="7"') == 1
     assert there_and_back(first, tmp_path) == first
+
+
+@pytest.mark.parametrize("machine", ["yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt", "haas_umc750"])
+def test_a_stop_behind_the_last_point_stays_in_its_operation(machine: str, tmp_path: Path) -> None:
+    text = HEAD + FOOT.replace("END-OF-PATH", "STOP\nEND-OF-PATH")
+    (tmp_path / "part.cls").write_text(text + text.replace("OP1", "OP2"))
+    first, second = tmp_path / "a.nc", tmp_path / "b.nc"
+    trunnion.post(tmp_path / "part.cls", machine=machine, output=first)
+    trunnion.convert(first, machine=machine, to_machine=machine, output=second)
+    around = []
+    for path in (first, second):
+        lines = [line.split(" ", 1)[-1] for line in path.read_text(encoding="utf-8").splitlines()]
+        around.append([lines[n - 2 : n + 3] for n, line in enumerate(lines) if line == "M0"])
+    assert len(around[0]) == 2
+    assert around[1] == around[0]

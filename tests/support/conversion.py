@@ -118,7 +118,7 @@ def made(path: Toolpath, site: Site, given: dict[str, str], target: Path) -> tup
 def converted(run: Run, one: Site, two: Site, target: Path) -> Run:
     """The run of a program of one control that is posted for another, without losing anything."""
     found = convert(run, one.control)
-    assert losses(found) == []
+    assert not losses(found), losses(found)
     return posted(found.toolpath, two, transfer_settings(found.settings, one.control, two.control), target)
 
 

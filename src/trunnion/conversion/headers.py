@@ -64,9 +64,11 @@ class HeaderReader:
                 program_start = self._text.line_texts(1, section.line if section.line > 1 else first)
                 self.template_lines |= match_lines(program_start, self._patterns.of("program_start"), program_values)
             self.template_lines |= match_lines(self._text.line_texts(section.line, first), header, section.values)
-            ended = match_lines(self._text.line_texts(last + 1, next_line), end, section.values)
+            lines_behind = self._text.line_texts(last + 1, next_line)
+            # From the back: an M5 of the operation is not the one with which its end closes.
+            ended = match_lines(lines_behind[::-1], end[::-1], section.values)
             self.template_lines |= ended
-            section.end_event = _first_event_at(ended, section, events)
+            section.end_event = _first_event_at(_last_block(lines_behind, ended), section, events)
             section.values = {
                 **program_values,
                 **self._in_millimetres(section),
@@ -126,6 +128,17 @@ class HeaderReader:
 
 def _matches_any(text: str, patterns: Iterable[LinePattern]) -> bool:
     return any(pattern.expression.fullmatch(text) for pattern in patterns)
+
+
+def _last_block(lines: Sequence[tuple[int, str]], ended: set[int]) -> set[int]:
+    """The last of the lines that ``ended`` without another between them: an M5 before a STOP does not end the path."""
+    block: set[int] = set()
+    for number, text in reversed(lines):
+        if number in ended:
+            block.add(number)
+        elif block and text:
+            break
+    return block
 
 
 def _first_event_at(lines: set[int], section: ProgramSection, events: Sequence[ProgramEvent]) -> int:

@@ -2,7 +2,7 @@
 
 A position of the machine's slides is one of the part only where the workpiece zero and the tool length are known.
 Without them the tip is known once X, Y and Z have been programmed in workpiece coordinates, and no longer after motion
-to positions of the machine, or after the rotary axes have turned without TCP.
+to positions of the machine, after the rotary axes have turned without TCP, or after a retract over an unknown travel.
 """
 
 import numpy as np
@@ -24,7 +24,8 @@ def known_positions(run: Run) -> Flags:
     """(n,) bool: the tip at the end of each row follows from the program, and from what is known of the setup."""
     count = len(run)
     zero, length = run.machine.workpiece_zero is not None, run.machine.tool_length is not None
-    if zero and length:
+    retracted = behind_retracts(run)
+    if zero and length and not retracted.any():
         return np.ones(count, np.bool_)
     heads = any(axis.is_rotary and axis.mount is Mount.TOOL for axis in run.machine.axes)
     programmed = (run.programmed & sum(_XYZ)) != 0
@@ -39,7 +40,7 @@ def known_positions(run: Run) -> Flags:
     leaves[[event.before_row for event in run.events if event.kind == "leave" and event.before_row < count]] = True
     of_machine = run.machine_frame | (run.work_offset == NO_OFFSET)
     lost_at = programmed & (of_machine | ~meaningful) & ~leaves
-    lost_before = turns & ~tip_programmed & (not through_setup)
+    lost_before = (turns & ~tip_programmed & (not through_setup)) | retracted
     # Twice the row, and one more where the row's own words are lost too.
     lost = np.maximum(2 * _latest(lost_before), 2 * _latest(lost_at) + 1)
     counts = meaningful & ~of_machine & ~leaves
@@ -47,6 +48,13 @@ def known_positions(run: Run) -> Flags:
     latest_of_all = np.minimum.reduce(axes)
     lost = np.maximum(lost, _lost_in_other_planes(run, lost, latest_of_all, upright))
     return np.asarray((latest_of_all >= lost) & (latest_of_all >= 0))
+
+
+def behind_retracts(run: Run) -> Flags:
+    """(n,) bool: rows right behind a retract of which no row tells (M242 where the travel of Z is not known)."""
+    found = np.zeros(len(run), np.bool_)
+    found[[event.before_row for event in run.events if event.kind == "retract" and event.before_row < len(run)]] = True
+    return found & ~run.machine_frame
 
 
 def _lost_in_other_planes(run: Run, lost: Ints, latest_of_all: Ints, upright: Flags) -> Ints:

@@ -81,7 +81,7 @@ def divide_sections(
     for section in sections:
         first_event = section.first_event
         for k, rows in enumerate(section.stretches):
-            later = (n for n in range(first_event, section.end_event) if events[n].row > rows[-1])
+            later = (n for n in range(first_event, section.end_event) if _comes_after(events[n], int(rows[-1]), run))
             is_last = k + 1 == len(section.stretches)
             end_event = section.end_event if is_last else next(later, section.end_event)
             line = section.line if k == 0 else int(run.line[rows[0]])
@@ -94,6 +94,13 @@ def divide_sections(
                 warn.refuse(sides[-1].line, what, "end it with G40 (R0) before", sides[-1].file)
             first_event = end_event
     return divided
+
+
+def _comes_after(event: ProgramEvent, row: int, run: Run) -> bool:
+    """Whether an event comes when the tool has left the workpiece after a row: not before the block that leaves."""
+    if event.row != row + 1 or event.row >= len(run) or event.file != run.file[event.row]:
+        return event.row > row
+    return event.line >= int(run.line[event.row])
 
 
 def _is_off(event: ProgramEvent) -> bool:

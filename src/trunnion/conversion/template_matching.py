@@ -19,6 +19,8 @@ _WORD_SETTING = re.compile(r"[A-Z]+\d+(?: [A-Z]+\d+)*")
 #: Work offsets called by a G word of their own, or by one with a number.
 _OFFSET_WORD = r"(?:G5(?:[4-9](?:\.\d)?|\d\d)|G\d{3}(?= ?P))(?: ?P\d+)?"
 
+_M_WORD = re.compile(r"M\d+")
+
 #: Put in for number settings, and found again in what the family makes of them.
 _ANY_NUMBER = "98765.25"
 
@@ -43,6 +45,8 @@ class TemplatePatterns:
         self._family_values = family_value_expressions(control)
         rules = {name: rule.one_of for name, rule in control.setting_rules.items() if rule.one_of}
         self._choices = {name: "|".join(map(re.escape, words)) for name, words in rules.items()}
+        # An M word of any number would take an M0 for the one that ends TCP.
+        self._choices |= {name: word for name, word in control.settings.items() if _M_WORD.fullmatch(word)}
 
     def of(self, *names: str) -> list[LinePattern]:
         """The lines of all templates whose names begin with one of ``names``, in the order of ``names``."""

@@ -9,6 +9,7 @@ from collections.abc import Collection
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.conversion.known_positions import behind_retracts
 from trunnion.conversion.unsupported import Warnings
 from trunnion.machines import forward
 from trunnion.model.run import ProgrammedWord, Run
@@ -59,10 +60,11 @@ def workpiece_stretches(
     _refuse_lost_cuts(run, rows[~known[rows] & ~run.machine_frame[rows]], rows, warn)
     _refuse_machine_cuts(run, rows, warn)
     kept = np.flatnonzero(at_part)
-    left_out = np.cumsum(~(at_part | approach) | _swings(run, rows))
+    left_out = np.cumsum(~(at_part | approach) | _swings(run, rows) | behind_retracts(run)[rows])
     stretches: list[Ints] = []
     for part in np.split(kept, np.flatnonzero(np.diff(left_out[kept])) + 1) if len(kept) else []:
-        moved = np.flatnonzero(positions[part] | (run.kind[rows[part]] != Kind.RAPID))
+        cuts = (run.kind[rows[part]] != Kind.RAPID) & ~(bool(stretches) & _turns_only(run, rows[part]))
+        moved = np.flatnonzero(positions[part] | cuts)
         if not len(moved):
             continue  # only rotary axes that turn away from the part
         stretch = rows[part[moved[0] :]]

@@ -79,7 +79,9 @@ class EventWriter:
         events = motion.operation.events
         for k, event in enumerate(events):
             if not _is_said_again(events, k):
-                self._write_event(event, end_lines if event.row == rows else ())
+                # What is switched off before a stop is off while the machine stands.
+                at_end = event.row == rows and not any(isinstance(each, Stop) for each in events[k + 1 :])
+                self._write_event(event, end_lines if at_end else ())
         self._write_rows(rows)
         for event in self._joining_events:
             if event.row == rows:
