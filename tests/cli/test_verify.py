@@ -322,7 +322,10 @@ def test_post_says_what_it_proved_with_half_the_last_digit_allowed(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     both = [str(YL569 / "1_contour_rough.cls"), str(YL569 / "2_hub_rough.cls")]
-    assert main(["post", *both, "--machine", "yl569", "--output", str(tmp_path / "p.mpf"), "--set=tool=7"]) == 0
+    assert (
+        main(["post", *both, "--machine", "yl569", "--output", str(tmp_path / "p.mpf"), "--set=tool=7,CAVITY_MILL:6"])
+        == 0
+    )
     err = capfd.readouterr().err
     assert "FAIL" not in err
     assert "82 points in their order" in err
