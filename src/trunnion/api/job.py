@@ -26,6 +26,7 @@ from trunnion.model.motion import MachiningMode, PoleStrategy
 from trunnion.output.capabilities import control_capabilities
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
+from trunnion.readers import check_reading
 
 #: Values of the setting ``mode``.
 _MODES: Final = {
@@ -125,6 +126,7 @@ def prepare(
         With every setting that the control does not have or that makes no sense.
     """
     control = load_control(machine.control)
+    check_reading(machine)
     texts = as_texts(settings)
     control = in_units(control, texts.get("units") or control.settings.get("units", MM))
     texts, own = split_by_operation(texts, control, machine)

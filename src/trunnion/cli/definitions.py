@@ -17,7 +17,7 @@ from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
-from trunnion.readers import known_words
+from trunnion.readers import check_reading, known_words
 
 
 def machines(arguments: argparse.Namespace) -> int:
@@ -46,7 +46,7 @@ def check(arguments: argparse.Namespace) -> int:
         good = f"{arguments.file}: good"
         print_result(*([as_json(asdict(control))] if arguments.json else [good, "", *control_lines(control)]))
         return 0
-    _raise_all(arguments.file, (load_machine, _load_control, _load_known_words))
+    _raise_all(arguments.file, (load_machine, _load_control, _load_known_words, _check_reading))
     found = describe_machine(arguments.file)
     good = f"{arguments.file}: good"
     print_result(*([as_json(machine_data(found))] if arguments.json else [good, "", *machine_lines(found)]))
@@ -69,12 +69,17 @@ def _check_control_file(file: str) -> None:
     """Raise every mistake of a control's own file, the words that it declares for readers among them."""
     table = load_control_table(file)
     machine = Machine(key=file, name=file, axes=(), control=table)
-    _raise_all(file, (lambda _: load_control(table), lambda _: known_words(machine)))
+    _raise_all(file, (lambda _: load_control(table), lambda _: known_words(machine), lambda _: check_reading(machine)))
 
 
 def _load_known_words(file: str) -> None:
     """Read the words that a definition declares."""
     known_words(load_machine(file))
+
+
+def _check_reading(file: str) -> None:
+    """Judge what a definition says to the reader of its programs."""
+    check_reading(load_machine(file))
 
 
 def _load_control(file: str) -> None:

@@ -5,13 +5,13 @@ from dataclasses import replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
+from trunnion.controls.consistency import check_formats, check_setting_names, check_templates
 from trunnion.controls.definition import MM_PER_INCH, ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.setting_rules import SettingKind, SettingRule, read_setting_rules
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
     AXIS_WORDS,
-    COMMON_TEMPLATE_FIELDS,
     COOLANTS,
     DRAW_BACK,
     FEEDS_WITHOUT_TCP,
@@ -30,6 +30,7 @@ from trunnion.controls.vocabulary import (
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat
 from trunnion.definitions import Table, definition_names, resolve_extends
+from trunnion.definitions.twin_keys import report_twins, statement_form
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance
 
@@ -107,7 +108,9 @@ def load_control(own: Table) -> Control:
     defined = {word.name for word in control.words}
     for missing in dict.fromkeys(name for name in words if name not in defined):
         table.add_problem("word", f"has no entry {missing!r}, which programs of this family need", "write it")
-    _check_templates(templates, control)
+    check_templates(templates, control)
+    check_formats(table.tables("format"), control)
+    check_setting_names(settings, control)
     _check_settings(settings, table.tables("by_method"), control)
     units.report_unread_keys()
     table.report_unread_keys()
@@ -233,6 +236,7 @@ def _read_statements(table: Table) -> dict[str, str]:
     for statement, line in found.items():
         if any(ord(character) < 32 for character in line):
             table.add_problem(statement, "has a line break or a control character in it", "write one line of a program")
+    report_twins(table, statement_form)
     table.report_unread_keys()
     return found
 
@@ -348,26 +352,3 @@ def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
         found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
     table.report_unread_keys()
     return found
-
-
-def _check_templates(table: Table, control: Control) -> None:
-    """Report fields and formats that do not exist: a mistake of the definition, not of the run that prints them."""
-    known = COMMON_TEMPLATE_FIELDS | control.family.TEMPLATE_FIELDS | control.settings.keys()
-    call = control.templates.get(SUBPROGRAM_TEMPLATES[0])
-    if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
-        table.add_problem(call.name, "does not say which subprogram it calls", "write {subprogram} in it")
-    for template in control.templates.values():
-        for name, _ in sorted(template.fields()):
-            if name not in known:
-                table.add_problem(
-                    template.name,
-                    f"prints {{{name}}}, which is neither a template field nor a setting",
-                    f"write one of {', '.join(sorted(known))}, or add it to [control.settings]",
-                )
-        for name, number_format in sorted(template.fields() | template.numbers()):
-            if number_format and number_format not in control.formats:
-                table.add_problem(
-                    template.name,
-                    f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}",
-                    f"write one of {', '.join(sorted(control.formats))}",
-                )

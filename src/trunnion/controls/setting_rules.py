@@ -29,8 +29,8 @@ class SettingKind(StrEnum):
     PATH    a folder of the control
     NUMBER  a number, without an exponent
     WHOLE   a whole number, without a sign
-    G_CODE  G and a number of up to three digits, with a tenth at most
-    M_CODE  M and a number of up to four digits
+    G_CODE  G and a number of up to three digits, with a tenth at most, and no motion
+    M_CODE  M and a number of up to four digits, of those that builders choose
     CHOICE  one of some words
     TOOL    a tool number, or the name of a tool where the family calls tools by name
     """
@@ -51,9 +51,18 @@ class SettingKind(StrEnum):
 _FORMS: Final = {
     SettingKind.STRING: (re.compile(r'[^"]*'), "a text without quotation marks"),
     SettingKind.QUOTED: (re.compile(r'"[^"]*"'), "a text in quotation marks"),
-    SettingKind.PATH: (re.compile(r"[A-Za-z0-9_:./\\-]*"), "a folder: letters, digits and _ - . : / \\"),
-    SettingKind.G_CODE: (re.compile(r"G[0-9]{1,3}(\.[1-9])?"), "a G code, such as G43.4"),
-    SettingKind.M_CODE: (re.compile(r"M[0-9]{1,4}"), "an M code, such as M29"),
+    SettingKind.PATH: (
+        re.compile(r"[A-Za-z0-9_:./\\-]*[/\\]"),
+        "a folder with / or \\ at its end, of letters, digits and _ - . : / \\",
+    ),
+    SettingKind.G_CODE: (
+        re.compile(r"G(?!0*[0-4]$)[0-9]{1,3}(\.[1-9])?"),
+        "a G code, such as G43.4, and none of motion (G0 to G4)",
+    ),
+    SettingKind.M_CODE: (
+        re.compile(r"M(?!0*(?:[0-9]|30|98|99)$)[0-9]{1,4}"),
+        "an M code, such as M29, and none of those that are alike on all controls (M0 to M9, M30, M98, M99)",
+    ),
 }
 
 

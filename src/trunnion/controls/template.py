@@ -18,6 +18,7 @@ Value = str | float | None
 _OPTIONAL_PART = re.compile(r"\[\[(.*?)\]\]")
 _FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
 _NUMBER_FIELD = re.compile(r"\{([-+]?(?:\d+\.?\d*|\.\d+)):([A-Za-z_][A-Za-z0-9_]*)\}")
+_LEFT = re.compile(r"[{}]|\[\[|\]\]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +37,10 @@ class Template:
     def numbers(self) -> set[tuple[str, str]]:
         """Return the (number, format) of every field that is a number."""
         return {(number, number_format) for text in self.lines for number, number_format in _NUMBER_FIELD.findall(text)}
+
+    def unread_fields(self) -> list[str]:
+        """Return the lines with braces or double brackets that are no field and no optional part."""
+        return [text for text in self.lines if _LEFT.search(without_fields(_OPTIONAL_PART.sub(r"\1", text)))]
 
     def expand(
         self,

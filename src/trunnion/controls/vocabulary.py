@@ -54,6 +54,24 @@ PROGRAM_MEANINGS: Final = {
     "restart": "With on, every operation calls its tool and its speed, so that the program can be entered there.",
 }
 
+#: Settings of a run besides these: a definition cannot set them.
+RUN_ONLY_SETTINGS: Final = frozenset(
+    {
+        "cl_units", "dialect", "zero", "tcp", "tool_length", "tip_tolerance", "axis_tolerance", "numbers", "programs",
+        "split", "rewind", "frame", "mode", "cycles", "tool_retract", "limit_margin", "clearance", "pole",
+        "pole_angle", "lower_feed",
+    }
+)  # fmt: skip
+
+#: Settings whose value is also a template field.
+FIELD_SETTINGS: Final = frozenset({"tool"})
+
+#: Formats that writers use although no word and no template names them, and that of plane angles, which the basic Fanuc
+#: keeps for definitions that have planes.
+WRITER_FORMATS: Final = frozenset(
+    {"coordinate", "dwell", "feed", "speed", "pitch", "angle", "arc_angle", "primary", "inverse_time", "plane_angle"}
+)
+
 #: Templates that every definition must have.
 REQUIRED_TEMPLATES: Final = (
     "program_start", "operation_start", "first_tool", "tool_change", "approach_three_axis", "operation_end_three_axis",

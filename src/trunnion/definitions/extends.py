@@ -20,6 +20,9 @@ MAX_FILE_BYTES: Final = 1_000_000
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 
+#: Longer names are no file's.
+_MAX_NAME: Final = 1000
+
 Library: TypeAlias = Traversable | Path
 
 
@@ -87,9 +90,11 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
     if not isinstance(name, str):
         cure = 'write one name, such as extends = "generic_head_table_bc"'
         raise InputError(Problem(file, line, f"extends is {as_written(name)}", cure))
+    if len(name) > _MAX_NAME:
+        raise InputError(Problem(file, line, f"extends is a text of {len(name)} letters", "write one name or path"))
     if _NAME.fullmatch(name):
         found = _shipped(name, library)
-        if not found.location.is_file():
+        if not _is_file(found.location):
             names = definition_names(library)
             cure = did_you_mean(name, names) or "write one of " + ", ".join(names)
             raise InputError(Problem(file, line, f'extends: nothing shipped is called "{name}"', cure))
@@ -105,7 +110,7 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
     # A link may lead out of the folder although its name does not.
     if not _is_within(location, child.folder):
         raise InputError(Problem(file, line, f'extends: "{name}" leads out of the folder of the definition', cure))
-    if not location.is_file():
+    if not _is_file(location):
         raise InputError(Problem(file, line, f'extends: there is no file "{pure}" beside the definition', cure))
     return _DefinitionFile(location, str(location), location.parent)
 
@@ -115,6 +120,14 @@ def _is_within(location: Path, folder: Path) -> bool:
     try:
         return location.resolve().is_relative_to(folder.resolve())
     except (OSError, RuntimeError):
+        return False
+
+
+def _is_file(location: Library) -> bool:
+    """Whether a path is that of a file; one that is too long, or a link that goes round, is not."""
+    try:
+        return location.is_file()
+    except (OSError, RuntimeError, ValueError):
         return False
 
 
@@ -186,7 +199,7 @@ def load_table(
         source = _DefinitionFile(path, text, path.parent)
     else:
         source = _shipped(text, library)
-        if not _NAME.fullmatch(text) or not source.location.is_file():
+        if not _NAME.fullmatch(text) or not _is_file(source.location):
             _check_is_name(text, kind)
             names = definition_names(library)
             near = did_you_mean(text, names)

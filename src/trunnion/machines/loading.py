@@ -13,6 +13,7 @@ from pathlib import Path, PurePath
 from typing import Final, NamedTuple
 
 from trunnion.definitions import Table, definition_names, load_table
+from trunnion.definitions.twin_keys import report_twins, statement_form
 from trunnion.machines.chain_checks import check_chain
 from trunnion.machines.machine import (
     AngleOutput,
@@ -85,6 +86,7 @@ def read_machine(table: Table, key: str) -> Machine:
     if "axis" in table and axis_tables:
         check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
     cl_words = {word: words.text(word) for word in list(words.keys())}
+    report_twins(words, statement_form)
     for part in (spindle, workpiece, words, cl, table):
         part.report_unread_keys()
     table.raise_problems()

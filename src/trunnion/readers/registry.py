@@ -57,6 +57,7 @@ def run_program(
         control. Words that are not understood are in ``Run.diagnostics``.
     """
     reader = reader_of(machine, family)
+    check_reading(machine)
     options = RunOptions(tuple(subprograms), step_limit, skip, shortest)
     run = reader.interpreter(Path(path), machine, options).run(write_progress)
     return replace(run, uses_length_numbers=reader.uses_length_numbers, work_offset_name=reader.work_offsets.name)
@@ -80,6 +81,18 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     if reader.offsets_of is not None:
         reader = replace(reader, work_offsets=reader.offsets_of(machine))
     return reader
+
+
+def check_reading(machine: Machine) -> None:
+    """Judge the table ``reading`` of a machine's control.
+
+    Raises
+    ------
+    InputError
+        With every mistake in it.
+    """
+    if can_read(machine):
+        load_reader(family_of(machine)).check_reading(machine)
 
 
 def can_read(machine: Machine) -> bool:

@@ -9,6 +9,7 @@ from trunnion.machines import Machine
 from trunnion.readers.program.interpreter import Interpreter
 from trunnion.readers.program.options import RunOptions
 from trunnion.readers.program.raw_text import NO_RAW_WORDS, RawWords
+from trunnion.readers.program.settings import no_reading
 from trunnion.readers.program.work_offsets import WorkOffsetWords
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
@@ -26,6 +27,7 @@ class FamilyReader:
     uses_length_numbers  programs select the tool length by a number (H); it is the column ``Run.edge``
     raw_words            the words that may stand in raw text
     offsets_of           makes ``work_offsets`` for controls of the family that have other words; None: all have these
+    check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
     """
 
     interpreter: Callable[[Path, Machine, RunOptions], Interpreter[Any]]
@@ -35,6 +37,7 @@ class FamilyReader:
     uses_length_numbers: bool = False
     raw_words: RawWords = NO_RAW_WORDS
     offsets_of: Callable[[Machine], WorkOffsetWords] | None = None
+    check_reading: Callable[[Machine], object] = no_reading
 
 
 def g_words(tenths: frozenset[int]) -> frozenset[str]:

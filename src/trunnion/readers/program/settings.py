@@ -19,6 +19,14 @@ def reading_of(machine: Machine) -> Table:
     return control_of(machine).table("reading")
 
 
+def no_reading(machine: Machine) -> None:
+    """Raise ``InputError`` for every key of the table ``reading``, where the family's reader asks for none."""
+    table = reading_of(machine)
+    for key in list(table.keys()):
+        table.add_problem(key, "is not a key that is known here", "leave it out: this family has no such keys")
+    table.raise_problems()
+
+
 def unit_of(table: Table) -> str:
     """Return the unit in which a control counts before a program states one: ``mm``, ``inch``, or nothing."""
     return table.text("units", "", one_of=("", "mm", "inch"))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.definitions import Table
+from trunnion.definitions.twin_keys import report_twins
 from trunnion.readers.rs274.block import Block, g_code_text
 
 #: The control does not have the word.
@@ -77,6 +78,7 @@ def read_word_meanings(table: Table, meanings: Mapping[str, int] | None = None) 
         else:
             others = ", ".join((*(names if letter == "G" else ()), UNKNOWN))
             own.add_problem(key, f"is {value!r}", f"write the {letter} word that means the same, or {others}")
+    report_twins(own, lambda key: _code(key) or key)
     own.report_unread_keys()
     return WordMeanings(g, m)
 

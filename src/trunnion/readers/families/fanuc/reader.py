@@ -3,6 +3,7 @@
 from typing import Final
 
 from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
+from trunnion.readers.families.fanuc.settings import settings_of
 from trunnion.readers.families.fanuc.words import WITHOUT_PATH_EFFECT
 from trunnion.readers.families.fanuc.work_offsets import WORK_OFFSETS, offsets_of
 from trunnion.readers.program.family_reader import FamilyReader, g_words
@@ -30,4 +31,5 @@ READER: Final = FamilyReader(
     uses_length_numbers=True,
     raw_words=RAW_WORDS,
     offsets_of=offsets_of,
+    check_reading=settings_of,
 )

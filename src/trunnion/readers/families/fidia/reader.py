@@ -3,6 +3,7 @@
 import re
 from typing import Final
 
+from trunnion.readers.families.fidia.control import settings_of
 from trunnion.readers.families.fidia.interpreter import FidiaInterpreter
 from trunnion.readers.families.fidia.words import OFFSET_BASE, WITHOUT_PATH_EFFECT
 from trunnion.readers.program.family_reader import FamilyReader, g_words
@@ -27,4 +28,6 @@ RAW_WORDS: Final = raw_words(
     ),
 )
 
-READER: Final = FamilyReader(FidiaInterpreter, g_words(WITHOUT_PATH_EFFECT), WORK_OFFSETS, raw_words=RAW_WORDS)
+READER: Final = FamilyReader(
+    FidiaInterpreter, g_words(WITHOUT_PATH_EFFECT), WORK_OFFSETS, raw_words=RAW_WORDS, check_reading=settings_of
+)

@@ -14,7 +14,7 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
-from trunnion.readers.rs274.word_meanings import read_word_meanings
+from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
 
 #: Axes in the order of LinuxCNC's tables.
@@ -24,6 +24,15 @@ ORDER: Final = "XYZABC"
 _FINE: Final = 0.005
 _RATIO: Final = 0.001
 _COARSE: Final = 0.5
+
+
+def settings_of(machine: Machine) -> tuple[str, WordMeanings]:
+    """Read the unit and the own words of a machine's control; InputError if they are wrong."""
+    table = reading_of(machine)
+    unit, words = unit_of(table), read_word_meanings(table)
+    table.report_unread_keys()
+    table.raise_problems()
+    return unit, words
 
 
 @dataclass(slots=True)
@@ -54,11 +63,7 @@ class LinuxcncControl(Rs274Control):
         self._offset_values: dict[int, Offset] = {}
         self.axis_offset = np.zeros(6)
         self.axis_offset_active = False
-        table = reading_of(machine)
-        unit = unit_of(table)
-        self.own_words = read_word_meanings(table)
-        table.report_unread_keys()
-        table.raise_problems()
+        unit, self.own_words = settings_of(machine)
         self.count_in(unit)
 
     def takes_shortest_path(self, axis: Axis) -> bool:

@@ -3,6 +3,7 @@
 import re
 from typing import Final
 
+from trunnion.readers.families.linuxcnc.control import settings_of
 from trunnion.readers.families.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.readers.families.linuxcnc.words import WITHOUT_PATH_EFFECT, WITHOUT_PATH_EFFECT_M
 from trunnion.readers.program.family_reader import FamilyReader, g_words
@@ -39,4 +40,5 @@ READER: Final = FamilyReader(
     WORK_OFFSETS,
     uses_length_numbers=True,
     raw_words=RAW_WORDS,
+    check_reading=settings_of,
 )

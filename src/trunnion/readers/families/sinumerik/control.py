@@ -21,7 +21,7 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
-from trunnion.readers.program.settings import reading_of
+from trunnion.readers.families.sinumerik import settings
 from trunnion.readers.scan.letter_blocks import letter_table
 
 #: Motions in force besides rapid and lines: G2, G3 and CIP.
@@ -146,11 +146,7 @@ class SinumerikControl(VirtualControl):
     @cached_property
     def _cycles_along_tool(self) -> bool:
         """Whether cycles turn the frame as TOROT does while TCP is on: Siemens' do not, the machine's may."""
-        table = reading_of(self.machine)
-        along = table.flag("cycles_along_tool", False)
-        table.report_unread_keys()
-        table.raise_problems()
-        return along
+        return settings.cycles_along_tool(self.machine)
 
     def turn_frame(self, word: str) -> None:
         """TOROT (the zero stays), TOFRAME (the zero becomes that of the work offset), and the words that end them."""

@@ -4,6 +4,7 @@ import re
 from typing import Final
 
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
+from trunnion.readers.families.sinumerik.settings import cycles_along_tool
 from trunnion.readers.families.sinumerik.words import (
     G_WITHOUT_PATH_EFFECT,
     WITHOUT_PATH_EFFECT,
@@ -47,4 +48,5 @@ READER: Final = FamilyReader(
     WORK_OFFSETS,
     comments=rb';[^\n]*|"[^"\n]*"',
     raw_words=RAW_WORDS,
+    check_reading=cycles_along_tool,
 )

@@ -1,0 +1,70 @@
+"""What the parts of a control's definition say of each other: templates, fields, formats and settings.
+
+In:     tables of a definition, and the control that was read from them.
+Out:    problems, added to the tables.
+"""
+
+from collections.abc import Sequence
+
+from trunnion.controls.definition import Control
+from trunnion.controls.vocabulary import (
+    COMMON_TEMPLATE_FIELDS,
+    FIELD_SETTINGS,
+    RUN_ONLY_SETTINGS,
+    SUBPROGRAM_TEMPLATES,
+    WRITER_FORMATS,
+)
+from trunnion.definitions import Table
+from trunnion.definitions.messages import did_you_mean
+
+
+def check_templates(table: Table, control: Control) -> None:
+    """Report fields and formats that do not exist: a mistake of the definition, not of the run that prints them."""
+    known = COMMON_TEMPLATE_FIELDS | control.family.TEMPLATE_FIELDS | control.settings.keys()
+    call = control.templates.get(SUBPROGRAM_TEMPLATES[0])
+    if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
+        table.add_problem(call.name, "does not say which subprogram it calls", "write {subprogram} in it")
+    for template in control.templates.values():
+        for text in template.unread_fields():
+            cure = "write {name} or {name:format}, and a part that may be left out in [[ ]]"
+            table.add_problem(template.name, f"has a brace that belongs to no field: {text.strip()!r}", cure)
+        for name, _ in sorted(template.fields()):
+            if name not in known:
+                table.add_problem(
+                    template.name,
+                    f"prints {{{name}}}, which is neither a template field nor a setting",
+                    f"write one of {', '.join(sorted(known))}, or add it to [control.settings]",
+                )
+        for name, number_format in sorted(template.fields() | template.numbers()):
+            if number_format and number_format not in control.formats:
+                table.add_problem(
+                    template.name,
+                    f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}",
+                    f"write one of {', '.join(sorted(control.formats))}",
+                )
+
+
+def check_formats(entries: Sequence[Table], control: Control) -> None:
+    """Report formats that no word, no template and no writer uses: a new one with a misspelt name changes nothing."""
+    used = {word.format for word in control.words} | WRITER_FORMATS
+    for template in control.templates.values():
+        used |= {number_format for _, number_format in template.fields() | template.numbers()}
+    for entry in entries:
+        name = entry.text("name")
+        if name not in used and "name" in entry:
+            near = did_you_mean(name, control.formats.keys() - {name})
+            cure = f"{near} " if near else ""
+            cure += "write the name of the format to change, or print it in a word or a template"
+            entry.add_problem("name", f"is {name!r}, a format that nothing prints", cure)
+
+
+def check_setting_names(table: Table, control: Control) -> None:
+    """Report settings that would never count: those that only a run has, and fields that have another value."""
+    fields = (COMMON_TEMPLATE_FIELDS | control.family.TEMPLATE_FIELDS) - FIELD_SETTINGS
+    for name in list(table.keys()):
+        if name in RUN_ONLY_SETTINGS:
+            cure = f"leave it out, and give it to each run: setting {name}={table.to_dict()[name]}"
+            table.add_problem(name, "is a setting of a run, which a definition cannot set", cure)
+        elif name in fields:
+            what = "is a template field, whose value comes from the job, and no setting"
+            table.add_problem(name, what, "give the setting another name")
