@@ -154,3 +154,36 @@ def test_a_retract_aside_is_no_retract(tmp_path: Path) -> None:
         program_file.write_text(wrong, encoding="utf-8")
         checks = trunnion.verify(program_file, cl=cl, machine="xyzac_trt").checks
         assert "order" in [check.key for check in checks if not check.passed]
+
+
+HOLES = """TOOL PATH/HOLES,TOOL,DR8
+TLDATA/DRILL,MILL,8,0,100,118,60
+LOAD/TOOL,2
+SPINDL/RPM,2500,CLW
+RAPID
+GOTO/10,20,60,0.5,0,0.8660254
+CYCLE/DRILL,RAPTO,3,FEDTO,-22,RTRCTO,20,MMPM,250
+GOTO/0,0,10
+CYCLE/OFF
+RAPID
+GOTO/10,20,60
+RAPID
+GOTO/0,0,80,-0.5,0,0.8660254
+CYCLE/DRILL,RAPTO,3,FEDTO,-18,RTRCTO,25,MMPM,300
+GOTO/-20,0,10
+CYCLE/OFF
+{end}END-OF-PATH
+"""
+
+
+@pytest.mark.parametrize("end", ["", "SPINDL/OFF\nCOOLNT/OFF\n"])
+@pytest.mark.parametrize("machine", [*MACHINES, "generic_head_head_ca", "umc750"])
+def test_after_a_hole_there_is_no_retract_and_no_second_hole(machine: str, end: str, tmp_path: Path) -> None:
+    cl = tmp_path / "part.cls"
+    cl.write_text(HOLES.format(end=end), encoding="utf-8")
+    result = trunnion.post(cl, machine=machine, settings={"tool_retract": "30"})
+    plain = trunnion.post(cl, machine=machine).run
+    assert result.passed
+    assert plain is not None
+    assert result.run is not None
+    assert len(result.run.holes) == len(plain.holes) == 2

@@ -154,10 +154,46 @@ def convert(
             converter.report(write_cl(converted.toolpath, target.files.main, comments=comments))
             posted = None
         else:
-            job = replace(job, settings={**job.settings, **carried})
+            job = _with_settings(job, carried)
             posted = post_toolpaths([converted.toolpath], job, target, observer)
     problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
+
+
+def _with_settings(job: PostJob, carried: Mapping[str, str]) -> PostJob:
+    """A job with settings of which some are those of single operations; they have been judged."""
+    own = _by_operation(carried, job.control)
+    return replace(job, settings={**job.settings, **own.pop("")}, own_settings=own)
+
+
+def _by_operation(settings: Mapping[str, str], control: Control) -> dict[str, dict[str, str]]:
+    """Settings by the names of their operations, at least those of all operations, which have no name."""
+    found: dict[str, dict[str, str]] = {"": {}}
+    for key, text in settings.items():
+        for operation, value in control.values_by_operation(key, text):
+            found.setdefault(operation, {})[key] = value
+    return found
+
+
+def _with_own(settings: Mapping[str, str], job: PostJob) -> dict[str, str]:
+    """Settings with those that the job has for single operations in place of theirs."""
+    found = dict(settings)
+    for operation, values in job.own_settings.items():
+        for key, value in values.items():
+            entries = dict(job.control.values_by_operation(key, found.get(key, ""))) | {operation: value}
+            found[key] = ",".join(f"{name}:{text}" if name else text for name, text in entries.items() if text)
+    return found
+
+
+def _setting_faults(settings: Mapping[str, str], job: PostJob) -> dict[str, str]:
+    """The settings that the job's control cannot have for all operations or for one of them, each with its cure."""
+    by_operation = _by_operation(settings, job.control)
+    faults = [
+        fault
+        for own in by_operation.values()
+        for fault in control_setting_faults({**by_operation[""], **own}, job.control, job.machine)
+    ]
+    return {key: cure for key, cure in faults if key in settings}
 
 
 def _check_settings(job: PostJob, to_cl: bool) -> None:
@@ -225,22 +261,21 @@ class _ProgramConverter:
 
         Warns of each that is not carried over.
         """
-        target = job.control
+        target, given = job.control, {*job.printed, *(key for own in job.own_settings.values() for key in own)}
         carried = conversion.transfer_settings(stated, control, target)
         if "work_offset" in job.settings:
             carried.pop("work_offset", None)
         carried |= self._carried_offset(stated, control, job, source)
-        lost = sorted(stated.keys() - carried.keys() - {"work_offset"})
-        for key in lost:
-            what = f"{key} is {stated[key]!r}, which is not carried over"
+        lost = stated.keys() - carried.keys() - {"work_offset"}
+        if carried.keys() & target.method_defaults.keys():
+            lost -= control.method_defaults.keys()  # the modes of both follow from the machining method
+        for key in sorted(lost):
             known = key in target.settings
             cure = f"say it as {target.name} does" if known else f"{target.name} has no such setting"
-            self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
-        faults = [(key, cure) for key, cure in control_setting_faults(carried, target, job.machine) if key in carried]
-        for key, cure in faults:
-            what = f"{key} is {carried.pop(key)!r}, which {target.name} cannot have: it is not carried over"
-            self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
-        carried |= job.printed
+            self._not_carried(key, stated[key], f"which {target.name} cannot take", cure, key in given)
+        for key, cure in _setting_faults(carried, job).items():
+            self._not_carried(key, carried.pop(key), f"which {target.name} cannot have", cure, key in given)
+        carried = _with_own(carried | job.printed, job)
         if "tool" in job.printed and "tool_call" not in job.printed:
             carried.pop("tool_call", None)
         return carried
@@ -265,3 +300,12 @@ class _ProgramConverter:
             what = f"the work offset is {text}, which {target.name} does not have{words}"
             self._refuse([Problem(self._file, 0, what, "setting work_offset=… says it as the other control does")])
         return {}
+
+    def _not_carried(self, key: str, text: str, why: str, cure: str, is_given: bool) -> None:
+        """Warn of a setting that is not carried over; refuse if it is work offsets that no given setting replaces."""
+        if key == "work_offset" and ":" in text and not is_given:
+            what = f"operations have different work offsets ({text}), {why}"
+            self._refuse([Problem(self._file, 0, what, "setting work_offset=… says them as the other control does")])
+            return
+        what = f"{key} is {text!r}, {why}: it is not carried over"
+        self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])

@@ -154,11 +154,7 @@ def split_by_operation(
     own: dict[str, dict[str, str]] = {}
     problems: list[Problem] = []
     for key, text in settings.items():
-        if ":" not in text or not control.differs_by_operation(key):
-            program[key] = text
-            continue
-        for entry in text.split(","):
-            name, _, value = entry.rpartition(":")
+        for name, value in control.values_by_operation(key, text):
             if name and key in own.get(name, ()):
                 what = f"{key} has two values for operation {name}: {text!r}"
                 problems.append(argument_problem("settings", what, f"write {key}={name}:VALUE once"))

@@ -208,6 +208,13 @@ class Control:
         templates = [self.templates[name] for name in PROGRAM_TEMPLATES if name in self.templates]
         return all(name != setting for template in templates for name, _ in template.fields())
 
+    def values_by_operation(self, setting: str, text: str) -> list[tuple[str, str]]:
+        """Return the operations and values in a setting such as ``G54,TOP:G55``; no name stands for all operations."""
+        if ":" not in text or not self.differs_by_operation(setting):
+            return [("", text)]
+        entries = (entry.rpartition(":") for entry in text.split(","))
+        return [(operation, value) for operation, _, value in entries]
+
     def default_for_method(self, setting: str, method: str) -> str | None:
         """Return the default of a setting for operations of a machining method, or None if there is no rule for it."""
         rules = self.method_defaults.get(setting, ())

@@ -1,6 +1,7 @@
 """The settings of a program: what its headers contain that does not fit into a toolpath, as ``--set`` takes it."""
 
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from trunnion.controls.definition import Control
 from trunnion.conversion.unsupported import Warnings
@@ -11,6 +12,12 @@ from trunnion.model.machining_method import machining_method
 _COMMON_SETTINGS = frozenset(
     {"title", "part", "date", "program", "tool", "tool_call", "tolerance", "fallback_tolerance"}
 )
+
+#: Settings whose defaults a program states, so that those of another machine must not take their place.
+_DEFAULTS_OF_PROGRAMS = ("work_offset", "fallback_tolerance")
+
+#: With another operation's value of these a part is scrap.
+_MUST_NOT_BE_LOST = frozenset({"work_offset", "tolerance"})
 
 #: Tolerances are printed with five decimals.
 _SAME_TOLERANCE = 5e-6
@@ -30,39 +37,68 @@ def settings_from_headers(
     warn
         Takes settings that differ between operations: a program has one value of each.
     """
-    merged: dict[str, str] = {}
-    own: dict[str, str] = {}
-    every = list(headers)
-    names = [operation for _, operation, _ in every]
-    for line, operation, values in every:
-        for name, value in _header_settings(control, values).items():
-            if merged.setdefault(name, value) == value:
+    every = [_Header(line, operation, *_header_settings(control, values)) for line, operation, values in headers]
+    names = [header.operation for header in every]
+    found: dict[str, str] = {}
+    for name in dict.fromkeys(name for header in every for name in header.stated):
+        stating = [header for header in every if name in header.stated]
+        if all(header.says_what_follows(name) for header in stating):
+            continue
+        first = stating[0].stated[name]
+        text = first or control.settings[name]
+        for header in stating[1:]:
+            value = header.stated[name]
+            if value == first:
                 continue
-            is_named = names.count(operation) == 1 and not set(",:") & {*operation, *value}
+            is_named = names.count(header.operation) == 1 and not set(",:") & {*header.operation, *value}
             if is_named and control.differs_by_operation(name):
-                own[name] = f"{own.get(name, '')},{operation}:{value}"
-                continue
-            what = f"{name} is {value!r} here and {merged[name]!r} before; one program has one"
-            if name == "work_offset":
-                warn.refuse(line, what, "give each operation a name of its own")
+                text = f"{text},{header.operation}:{value}"
             else:
-                warn(line, what, f"the first is taken; see setting {name}=…")
-    differing = {name: (merged.pop(name) or control.settings[name]) + text for name, text in own.items()}
-    same = {name: value for name, value in merged.items() if value}
-    return differing | {k: value for k, value in same.items() if not _equal_values(value, control.settings[k])}
+                _warn_of_one_value(warn, header.line, f"{name} is {value!r} here and {first!r} before", name)
+        if text and not _equal_values(text, control.settings[name]):
+            found[name] = text
+    return found
 
 
 def transfer_settings(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
-    """The settings of a program for one control that another has too, and with the same meaning."""
-    known = {name: value for name, value in settings.items() if name in target.settings}
+    """The settings of a program for one control that another has too, and with the same meaning.
+
+    A default of the program's own control that is another one on the target is stated.
+    """
+    stated = {**_differing_defaults(control, target), **settings}
+    stated |= _modes_by_method(settings, control, target)
+    known = {name: value for name, value in stated.items() if name in target.settings}
     if control.family is target.family:
         return known
     offsets = {control.settings.get("work_offset"), target.settings.get("work_offset")}
-    offsets |= {entry.rpartition(":")[2] for entry in settings.get("work_offset", "").split(",") if entry}
+    offsets |= {offset for _, offset in control.values_by_operation("work_offset", stated.get("work_offset", "G54"))}
     same = _COMMON_SETTINGS | ({"work_offset"} if offsets <= COMMON_OFFSETS else frozenset())
     if target.settings.get("program", "").isdigit() and not settings.get("program", "").isdigit():
         same -= {"program"}  # a name, where programs have numbers
-    return {name: value for name, value in known.items() if name in same}
+    return {name: value for name, value in known.items() if name in {*same, *target.method_defaults}}
+
+
+def _differing_defaults(control: Control, target: Control) -> dict[str, str]:
+    """Defaults of a control that another has too, with other values there."""
+    both = [name for name in _DEFAULTS_OF_PROGRAMS if control.settings.get(name) and target.settings.get(name)]
+    return {name: control.settings[name] for name in both if control.settings[name] != target.settings[name]}
+
+
+def _modes_by_method(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
+    """Settings of the target that follow from the machining method, for what those of the program say of the method.
+
+    A mode that stands for several methods is that of the roughest.
+    """
+    found = {}
+    for name, rules in control.method_defaults.items():
+        methods = {value: part or "ROUGH" for part, value in rules}
+        stated = control.values_by_operation(name, settings[name]) if name in settings else []
+        if not stated or any(value not in methods for _, value in stated):
+            continue
+        for other in target.method_defaults:
+            modes = [(operation, target.default_for_method(other, methods[value])) for operation, value in stated]
+            found[other] = ",".join(f"{operation}:{mode}" if operation else f"{mode}" for operation, mode in modes)
+    return found
 
 
 def parse_number(text: str | None) -> float | None:
@@ -73,23 +109,50 @@ def parse_number(text: str | None) -> float | None:
         return None
 
 
-def _header_settings(control: Control, values: Mapping[str, str]) -> dict[str, str]:
-    """The settings in a header, without those that follow from others."""
+class _Header(NamedTuple):
+    """The settings in the header of an operation.
+
+    line, operation   of the header
+    stated            what it says
+    following         what it would say without a setting: what depends on method and tolerances of the operation
+    """
+
+    line: int
+    operation: str
+    stated: dict[str, str]
+    following: dict[str, str]
+
+    def says_what_follows(self, name: str) -> bool:
+        """Whether a setting is what it would be if it were not set."""
+        stated, following = self.stated[name], self.following.get(name)
+        if name != "tolerance" or following is None:
+            return stated == following
+        tolerance = parse_number(stated)
+        return tolerance is None or abs(tolerance - float(following)) < _SAME_TOLERANCE
+
+
+def _warn_of_one_value(warn: Warnings, line: int, what: str, name: str) -> None:
+    """Refuse, or warn of, a setting that differs between operations where the new program can have only one."""
+    if name in _MUST_NOT_BE_LOST:
+        warn.refuse(line, f"{what}; one program has one", "give each operation a name of its own")
+    else:
+        warn(line, f"{what}; one program has one", f"the first is taken; see setting {name}=…")
+
+
+def _header_settings(control: Control, values: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:
+    """The settings in a header, and what follows from others."""
     given = {name: value for name, value in values.items() if name in control.settings}
     intol, outtol = parse_number(values.get("intol")), parse_number(values.get("outtol"))
     default = control.settings.get("method", "")
     method = given.get("method", default)
     if method == default:
         method = machining_method(values.get("operation", ""), intol, outtol)
-    for setting in control.method_defaults:
-        if given.get(setting) == control.default_for_method(setting, method):
-            given.pop(setting, None)
     fallback = parse_number(control.settings.get("fallback_tolerance")) or 0.0
     expected = intol + outtol if intol is not None and outtol is not None else fallback
-    tolerance = parse_number(given.get("tolerance"))
-    if tolerance is None or abs(tolerance - expected) < _SAME_TOLERANCE:
-        given.pop("tolerance", None)
-    return given
+    following = {name: control.default_for_method(name, method) or "" for name in control.method_defaults}
+    if "tolerance" in control.settings:
+        following["tolerance"] = str(expected)
+    return given, following
 
 
 def _equal_values(a: str, b: str) -> bool:
