@@ -18,7 +18,9 @@ def with_tool_retract(motion: Motion, distance: float) -> Motion:
     which the cycle has retracted the tool, and one with radius compensation. Events at the end come after the retract.
     """
     operation = motion.operation
-    cycles = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
+    # A cycle that is switched off after the last row has made its hole there.
+    before_end = (event for event in operation.events if event.row < len(operation.moves))
+    cycles = [event for event in before_end if isinstance(event, CycleOn | CycleOff)]
     in_cycle = motion.ends_in_hole or (bool(cycles) and isinstance(cycles[-1], CycleOn))
     compensated = any(isinstance(event, CutterComp) for event in operation.events)
     if motion.mode is MachiningMode.THREE_AXIS or in_cycle or compensated or not len(operation.moves):
