@@ -272,7 +272,8 @@ class _ProgramConverter:
         for key in sorted(lost):
             known = key in target.settings
             cure = f"say it as {target.name} does" if known else f"{target.name} has no such setting"
-            self._not_carried(key, stated[key], f"which {target.name} cannot take", cure, key in given)
+            what = f"{key} is {stated[key]!r}, which is not carried over"
+            self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
         for key, cure in _setting_faults(carried, job).items():
             self._not_carried(key, carried.pop(key), f"which {target.name} cannot have", cure, key in given)
         carried = _with_own(carried | job.printed, job)
