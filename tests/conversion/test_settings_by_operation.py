@@ -102,13 +102,13 @@ def test_work_offsets_of_operations_that_the_other_control_names_otherwise_are_r
     two: str, tmp_path: Path
 ) -> None:
     program = posted(tmp_path, "yl569", {"work_offset": "G54,F:G55"})
-    with pytest.raises(RefusedError, match="the work offset is G54,F:G5.*, which .* does not have"):
+    with pytest.raises(RefusedError, match=r"the work offset is G54,F:G5.*, which .* does not have"):
         convert(program, "yl569", two)
 
 
 def test_a_work_offset_that_only_this_control_has_is_refused(tmp_path: Path) -> None:
     program = posted(tmp_path, "yl569", {"work_offset": "G54,F:G505"})
-    with pytest.raises(RefusedError, match="the work offset is G54,F:G5.*, which .* does not have"):
+    with pytest.raises(RefusedError, match=r"the work offset is G54,F:G5.*, which .* does not have"):
         convert(program, "yl569", "matsuura_mx330")
 
 
