@@ -14,6 +14,15 @@ _LETTER = re.compile(rb"[A-Za-z]")
 _MAX_STRETCHES = 4096
 
 
+#: Capitals of the ASCII letters alone: ``upper`` would make an S of the long s as well.
+_CAPITALS = {ord(letter): letter.upper() for letter in "abcdefghijklmnopqrstuvwxyz"}
+
+
+def capitals(text: str) -> str:
+    """Return a text with its ASCII letters in capitals; other characters are no words, and stay as they are."""
+    return text.translate(_CAPITALS)
+
+
 class EncodingDetector:
     """Takes a file piece by piece, and names its encoding at the end."""
 

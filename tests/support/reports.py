@@ -72,6 +72,8 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
             tool=same(len(tools) - 1, np.int32),
             edge=same(1, np.int32),
             compensation=same(0, np.int8),
+            radius=same(0, np.int8),
+            compensation_plane=same(0, np.int8),
             work_offset=same(54, np.uint16),
             tcp=same(1, np.bool_),
             machine_frame=same(0, np.bool_),

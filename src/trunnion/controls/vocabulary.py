@@ -9,7 +9,8 @@ from typing import Final
 COMMON_TEMPLATE_FIELDS: Final = frozenset(
     {
         "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
-        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine", "gauge_length",
+        "length_number", "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine",
+        "gauge_length",
         "zero_x", "zero_y", "zero_z", "time", "total_time", "time_shown", "total_time_shown",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
         "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",

@@ -119,6 +119,7 @@ class SpindleWork:
     stroke       a thread in strokes of this length, mm; 0: in one
     full         between strokes the tool leaves the hole
     clearance    from the surface of the hole up to where the feed begins, mm
+    after        sense in which the spindle turns after it: 1, -1, 0 for standing; None: as before
     """
 
     task: SpindleTask
@@ -129,6 +130,7 @@ class SpindleWork:
     stroke: float = 0.0
     full: bool = False
     clearance: float = 0.0
+    after: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,6 +179,8 @@ class ModalState:
     """Values that change seldom, as columns stored by their changes; ``Run`` has whole columns of the same names.
 
     xyz_is_tip  ``Run.xyz`` is the tool tip, not the slide positions
+    compensation_plane  where radius compensation is on, the row of ``Run.compensation_planes``; -1: across the tool
+    radius      the number by which radius compensation takes the radius (D); -1: it is that of the tool, or of the edge
     feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
     """
 
@@ -188,6 +192,8 @@ class ModalState:
     tool: StepColumn
     edge: StepColumn
     compensation: StepColumn
+    radius: StepColumn
+    compensation_plane: StepColumn
     work_offset: StepColumn
     tcp: StepColumn
     machine_frame: StepColumn
@@ -236,6 +242,7 @@ class Run:
                                    count so; None: never
     uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
     work_offset_name               what programs of this control call a value of the column ``work_offset``
+    compensation_planes  (k, 3)    unit normals of the planes in which radius compensation works, workpiece frame
     spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
 
     Computed on first access:
@@ -280,6 +287,7 @@ class Run:
     units_from: int | None = 0
     work_offset_name: Callable[[int], str] = field(default=_plain_offset_name)
     spindle_holes: tuple[SpindleHole, ...] = ()
+    compensation_planes: Floats = field(default_factory=lambda: np.zeros((0, 3)))
 
     def __post_init__(self) -> None:
         for each in fields(self):

@@ -218,7 +218,8 @@ class _ProgramWriter:
             self._preselect_next(tool)
         self._called_tool = tool
         self._operation += 1
-        self._loaded_tool = LoadedTool(tool, motion.operation.tool.name)
+        register = self._template_values.length_register(motion.operation, self._loaded_tool)
+        self._loaded_tool = LoadedTool(tool, motion.operation.tool.name, register)
 
     def _approach(self, motion: Motion, suffix: str, values: Mapping[str, Value]) -> None:
         """Place the rotary axes for the first row, and activate TCP or the tilted plane."""

@@ -37,10 +37,14 @@ _NO_POSITION: Final = (None, None, None)
 
 @dataclass(frozen=True, slots=True)
 class LoadedTool:
-    """The tool in the spindle: how the program called it, and its name; both empty before the first."""
+    """The tool in the spindle: how the program called it, and its name; both empty before the first.
+
+    register   the number of its length that LOAD/TOOL names; 0: that of the tool
+    """
 
     call: str = ""
     name: str = ""
+    register: int = 0
 
 
 class TemplateValues:
@@ -87,7 +91,8 @@ class TemplateValues:
             "operation": operation.name,
             "intol": operation.intol,
             "outtol": operation.outtol,
-            "tool": self.tool_call(operation, loaded),
+            "tool": (tool := self.tool_call(operation, loaded)),
+            "length_number": str(self.length_register(operation, loaded) or tool),
         }
         return {
             name: self._family.escape_comment(value) if isinstance(value, str) else value
@@ -234,6 +239,13 @@ class TemplateValues:
                 loaded = LoadedTool(self.tool_call(motion.operation, loaded), motion.operation.tool.name)
                 calls.append((loaded.call, motion.operation))
         return calls
+
+    def length_register(self, operation: Operation, loaded: LoadedTool) -> int:
+        """The register of LOAD/TOOL for the length, 0 for that of the tool, as where the settings name the tool."""
+        loads = [event for event in operation.events if isinstance(event, LoadTool)]
+        if not loads:
+            return loaded.register
+        return 0 if self._program.effective_setting("tool", operation) else loads[-1].adjust
 
     def _tool_setting(self, text: str) -> str:
         """The tool of the run's setting: a number as it is written, a name as the control takes names."""

@@ -7,6 +7,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import CycleParts
 from trunnion.cl.state import FEED_UNITS, ReaderState
 from trunnion.cl.statement import Statement, numbers
+from trunnion.cl.statements.motion import refuse_in_circle
 from trunnion.model.toolpath import CycleOff, CycleOn
 
 #: Words that need a number.
@@ -23,6 +24,7 @@ def cycle(state: ReaderState, statement: Statement) -> None:
     if statement.values == ("OFF",):
         state.add(CycleOff(row, line))
         return
+    refuse_in_circle(state, "CYCLE")
     if statement.values == ("ON",):
         if state.cycle is None:
             raise StatementError("CYCLE/ON before any cycle", "write the cycle with its values")

@@ -1,12 +1,12 @@
 """Hole-making cycles that a control does not have, or not so."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from trunnion.controls.definition import Control
 from trunnion.controls.vocabulary import CYCLE_CALL_WORD, HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.errors import Problem
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import CycleOn, Kind, Operation
+from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOff, SpindleOn
 from trunnion.output.holes.holes_under_tcp import check_holes_under_tcp
 from trunnion.output.program import Program
 from trunnion.output.validation.feeds import rounding_problem
@@ -85,7 +85,8 @@ def _check_cycle(
     spindle_here = spindle_state_at(operation.events, row, spindle)
     formats = program.control.number_formats(motion.three_axis)
     settings = program.effective_settings() | ({} if along_tool else {HOLES_SETTING: HOLES_IN_PLANES})
-    program.control.family.cycle_call(cycle, 0.0, spindle_here, settings, formats)
+    for state in _spindle_states(operation, event, spindle):
+        program.control.family.cycle_call(cycle, 0.0, state, settings, formats)
     feed, per_rev = cycle_feed(cycle, spindle_here, float(moves.feed[row]), bool(moves.per_rev[row]))
     if not feed > 0.0:
         raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
@@ -100,6 +101,16 @@ def _check_cycle(
     if per_rev and spindle_here is not None and CYCLE_CALL_WORD in words:
         feed, per_rev = feed * spindle_here.rpm, False  # a cycle that is called hole by hole has mm/min
     return rounding_problem(program.file, event.line, formats, feed, per_rev)
+
+
+def _spindle_states(operation: Operation, event: CycleOn, spindle: SpindleState) -> Iterator[SpindleState | None]:
+    """The spindle at the first hole of a cycle, and wherever it changes among its holes; ``spindle``: before all."""
+    events = operation.events
+    ends = [each.row for each in events if isinstance(each, CycleOn | CycleOff) and each.row > event.row]
+    end = min(ends, default=len(operation.moves))
+    changes = [each.row for each in events if isinstance(each, SpindleOn | SpindleOff)]
+    for row in dict.fromkeys([event.row, *(row for row in changes if event.row < row < end)]):
+        yield spindle_state_at(events, row, spindle)
 
 
 def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycleError:

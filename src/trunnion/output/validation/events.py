@@ -13,6 +13,9 @@ def event_problems(program: Program, motion: Motion, event: Event, rpm: float | 
     """Return what is wrong with an event; ``rpm`` is the spindle speed, None while it is stopped."""
     control, location = program.control, (program.file, event.line)
     if isinstance(event, Dwell):
+        if event.revolutions and not rpm:
+            what = "a dwell in spindle revolutions while the spindle stands: it would never end"
+            return [Problem(*location, what, "put SPINDL before it, or write DELAY in seconds")]
         try:
             control.family.dwell(event, rpm, control.number_formats(motion.three_axis))
         except UnsupportedFeatureError as why:

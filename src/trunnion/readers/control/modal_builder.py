@@ -21,6 +21,8 @@ class ModalBuilder:
         self.tool = StepColumnBuilder(0)
         self.edge = StepColumnBuilder(-1)
         self.compensation = StepColumnBuilder(0)
+        self.radius = StepColumnBuilder(-1)
+        self.compensation_plane = StepColumnBuilder(-1)
         self.work_offset = StepColumnBuilder(0)
         self.tcp = StepColumnBuilder(False)
         self.machine_frame = StepColumnBuilder(False)
@@ -40,6 +42,8 @@ class ModalBuilder:
             tool=self.tool.steps(n, np.int32),
             edge=self.edge.steps(n, np.int32),
             compensation=self.compensation.steps(n, np.int8),
+            radius=self.radius.steps(n, np.int32),
+            compensation_plane=self.compensation_plane.steps(n, np.int32),
             work_offset=self.work_offset.steps(n, np.uint16),
             tcp=self.tcp.steps(n, np.bool_),
             machine_frame=self.machine_frame.steps(n, np.bool_),

@@ -72,6 +72,10 @@ class ScannedRows(NamedTuple):
     feed_values: Floats
 
 
+#: Normals of planes that differ by less are the same.
+_SAME_NORMAL: Final = 1e-9
+
+
 class RowRecorder:
     """Records the rows and events of a run.
 
@@ -105,6 +109,7 @@ class RowRecorder:
         self._selected_tool = 0
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
         self._spindle_holes: list[SpindleHole] = []
+        self._compensation_planes: list[Floats] = []
         self._normals: list[tuple[Ints, Floats]] = []
         self._kinematics = kinematic_parameters(machine)
         self._slides = slide_columns(machine)
@@ -223,6 +228,16 @@ class RowRecorder:
         """Record that the rows from ``first`` on are a hole whose cycle drives the spindle."""
         self._spindle_holes.append(SpindleHole(first, self.row, self.line, int(self.modal.file.current), work))
 
+    def set_compensation_plane(self, normal: Floats | None) -> None:
+        """Record the normal of the plane of radius compensation from the next row on; None: it is across the tool."""
+        if normal is None:
+            self.modal.compensation_plane.set(self.row, -1)
+            return
+        planes = self._compensation_planes
+        if not planes or float(np.abs(planes[-1] - normal).max()) > _SAME_NORMAL:
+            planes.append(normal)
+        self.modal.compensation_plane.set(self.row, len(planes) - 1)
+
     def add_normal(self, normal: Floats) -> None:
         """Record the programmed surface normal (3,) of the last row."""
         self._normals.append((np.array([self.row - 1]), (self.vector_map @ normal)[None]))
@@ -331,6 +346,7 @@ class RowRecorder:
             diagnostics=tuple(diagnostics),
             units_from=self.units_from,
             spindle_holes=tuple(self._spindle_holes),
+            compensation_planes=np.array(self._compensation_planes).reshape(-1, 3),
         )
 
     def _normal_columns(self) -> SurfaceNormals:

@@ -47,6 +47,7 @@ class VirtualControl(CoordinateControl, ABC):
     preconditions  what the program must say before the tool moves at the part
     motion         the motion in force: ``RAPID``, ``LINEAR`` or one of the circles of the family
     shortest       how endless rotary axes reach plain words: True by the shorter way, False not so, None as the control
+    compensates_in_space  radius compensation is across the tool, by a word for it (G41.2, CUT3DC)
     rotary_names   letters of the rotary axes
     """
 
@@ -55,6 +56,7 @@ class VirtualControl(CoordinateControl, ABC):
         self.preconditions = Preconditions(note)
         self.motion = LINEAR
         self.shortest = shortest
+        self.compensates_in_space = False
         self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.rotary)
         # Rotary positions, and the map (3, 4) from slide positions to the tip at these positions.
         self._slide_map: tuple[float, float, Floats] | None = None
@@ -74,12 +76,35 @@ class VirtualControl(CoordinateControl, ABC):
 
     def execute_scanned(self, count: int, settings: ScanSettings) -> ScannedRows:
         """Execute the first ``count`` blocks of ``words``, which begin at ``line``."""
+        self._note_compensation_plane()
         scanned = super().execute_scanned(count, settings)
         self.motion = int(self.words.kind[count - 1])
         for axis in range(3):
             if scanned.words >> axis & 1:
                 self._increment_base.pop(axis, None)
         return scanned
+
+    # Radius compensation
+
+    def compensates_across_tool(self) -> bool:
+        """Whether radius compensation works across the tool wherever that points, and not in the working plane."""
+        return self.compensates_in_space
+
+    def _note_compensation_plane(self) -> None:
+        """Record the plane in which radius compensation offsets the next motions, if it is on."""
+        if not self.modal.compensation.current:
+            return
+        if self.compensates_across_tool():
+            self.set_compensation_plane(None)
+            return
+        linear = self.position_map[:, :3]
+        u, v = (linear[:, (self.plane_axis + k) % 3] for k in (1, 2))
+        if not self.tip_programmed:
+            slides = self._slides_to_tip()[:, :3]
+            u, v = slides @ u, slides @ v
+        normal = np.cross(u, v)
+        length = float(np.linalg.norm(normal))
+        self.set_compensation_plane(normal / length if length > 1e-12 else None)
 
     # Rotary words
 
@@ -159,6 +184,7 @@ class VirtualControl(CoordinateControl, ABC):
             return
         if circle is not None or vector is not None or axes.keys() & {"X", "Y", "Z"}:
             self.preconditions.report_motion()
+        self._note_compensation_plane()
         end, written = self._end_position(axes)
         arc = None
         if circle is not None and within_limits(end):

@@ -95,7 +95,11 @@ def split_line(raw: str, *, semicolon: bool) -> Line:
             raise BlockError("a comment does not end")
         comments.append(raw[begin.end() : end])
         at = end + 1
-    text = "".join("".join(parts).split()).upper()
+    outside = "".join(parts)
+    if not outside.isascii():  # a blank or a letter that only looks like one, and that no control takes
+        strange = next(character for character in outside if not character.isascii())
+        raise BlockError(f"{strange!r} outside a comment, where only ASCII may stand")
+    text = "".join(outside.split()).upper()
     block_skip = text.startswith("/")
     if block_skip:
         text = text[2:] if text[1:2].isdigit() else text[1:]

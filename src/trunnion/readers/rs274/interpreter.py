@@ -33,6 +33,7 @@ FEED_MODES: Final = {930: 93, 940: 94, 950: 95}
 
 #: Cutter radius compensation: left of the path, right of it, off.
 RADIUS_COMPENSATION: Final = {400: 0, 410: 1, 411: 1, 412: 1, 420: -1, 421: -1, 422: -1}
+COMPENSATION_IN_SPACE: Final = frozenset({412, 422})
 CANCEL: Final = 800
 
 #: Letters of axes; a machine has five of them.
@@ -190,11 +191,18 @@ class Rs274Interpreter(Interpreter[A]):
         """Report a G code that is not simulated or unknown; the tables are those of the family's ``words``."""
         if code in RADIUS_COMPENSATION:
             self.control.modal.compensation.set(self.control.row, RADIUS_COMPENSATION[code])
+            self.control.compensates_in_space = code in COMPENSATION_IN_SPACE
         if code in not_simulated:
             text, changes_path = not_simulated[code]
             self._note(f"{g_code_text(code)}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
         elif code not in without_path_effect:
             self._note(f"unknown word {g_code_text(code)}", Severity.ERROR)
+
+    def _take_radius(self, code: int, block: Block) -> None:
+        """Note the register D of G41 and G42; without one, the radius is that of the tool."""
+        if code in (410, 420):
+            number = block.words["D"].value if "D" in block.words else -1.0
+            self.control.modal.radius.set(self.control.row, int(number) if abs(number) < 1e6 else 0)
 
     def _axis_words(self, block: Block) -> dict[str, AxisWord]:
         """Return the words of the machine's axes; report those of other axes."""

@@ -17,20 +17,28 @@ _SIDES: Final = {1: "left of the path", -1: "right of the path", 0: "off"}
 
 
 def check_compensation(context: ComparedContext) -> Check:
-    """The side at every CL point, and no compensation on the way home."""
+    """The side and the register at every CL point, and no compensation on the way home."""
     run, matching = context.run, context.matching
     side = run.state.compensation
     states = compensation_states(context.expected)
-    asked = {state.value for state in states} - {0}
+    asked = {state.value.side for state in states} - {0}
     if not asked and set(side.distinct().tolist()) <= {0}:
         return Check("compensation", _TITLE, True, "the CL file asks for none")
     places: list[Place] = []
     for state in states:
         pairs = matching.pair_range(state.first, state.end)
-        bad = first_wrong_pair(matching, *pairs, partial(_is_on_other_side, run, state.value))
+        side_wanted = state.value.side
+        bad = first_wrong_pair(matching, *pairs, partial(_is_on_other_side, run, side_wanted))
         if bad is not None:
             row, cl = bad
-            text = f"radius compensation is {_SIDES[int(side[row])]}; the CL file wants it {_SIDES[state.value]}"
+            text = f"radius compensation is {_SIDES[int(side[row])]}; the CL file wants it {_SIDES[side_wanted]}"
+            places.append(context.place_with_cl(row, 0.0, text, cl))
+        register = state.value.register
+        bad = first_wrong_pair(matching, *pairs, partial(_takes_other_radius, run, register)) if register else None
+        if bad is not None:
+            row, cl = bad
+            has = run.state.radius[row]
+            text = f"radius compensation works {f'with D{has}' if has else 'without D'}; the CL file wants D{register}"
             places.append(context.place_with_cl(row, 0.0, text, cl))
     home = run.state.machine_frame.rows_with(True)
     still_on = home[side.at(home) != 0]
@@ -38,6 +46,11 @@ def check_compensation(context: ComparedContext) -> Check:
         places.append(context.place(int(still_on[0]), 0.0, "moves home with radius compensation on"))
     good = ", ".join(_SIDES[value] for value in sorted(asked))
     return check_from_places("compensation", _TITLE, sorted(places, key=lambda p: p.nc_line), good or "off")
+
+
+def _takes_other_radius(run: Run, register: int, nc: Ints) -> Flags:
+    radius = run.state.radius.at(nc)
+    return np.asarray((run.state.compensation.at(nc) != 0) & (radius >= 0) & (radius != register))
 
 
 def _is_on_other_side(run: Run, side: int, nc: Ints) -> Flags:

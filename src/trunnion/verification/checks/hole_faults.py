@@ -3,7 +3,7 @@
 Heights are as in ``trunnion.verification.expected.holes``.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -26,6 +26,21 @@ _INCH: Final = 25.4
 
 #: Half of the last digit of dwells, seconds.
 _DWELL: Final = 5.1e-4
+
+#: What a cycle does with the spindle, for messages.
+_TASKS: Final[dict[SpindleTask | None, str]] = {
+    None: "only turns the spindle",
+    SpindleTask.TAP: "cuts a thread",
+    SpindleTask.STOP: "stops the spindle at the bottom",
+    SpindleTask.LIFT: "lifts the oriented tool off the wall",
+    SpindleTask.MANUAL: "stops for a retract by hand",
+}
+
+#: Bores by the word behind BORE; those that motions of the program can make, which are judged by themselves.
+_BORES: Final = {"DRAG": SpindleTask.STOP, "NODRAG": SpindleTask.LIFT, "MANUAL": SpindleTask.MANUAL}
+_BY_MOTION: Final = (SpindleTask.STOP,)
+
+_SENSES: Final = {1: "turning clockwise", -1: "turning counter-clockwise", 0: "standing"}
 
 #: Cycles that leave the hole at feed.
 _FEED_OUT: Final = ("TAP", "REAM")
@@ -78,7 +93,7 @@ def hole_faults(
     yield from _feed_faults(run, hole, motions.row[kind == Kind.LINEAR], rpm)
     yield from _dwell_faults(hole, match, bottom, dwells, rpm)
     yield from _spindle_faults(run, hole, match, bottom)
-    yield from _thread_faults(hole, match, spindle_work)
+    yield from _work_faults(hole, match, spindle_work)
 
 
 def _approach_faults(
@@ -145,34 +160,49 @@ def _dwell_faults(
 ) -> Iterator[HoleFault]:
     """The dwell at the bottom, and dwells elsewhere in the hole; ``bottom`` is the deepest row."""
     wanted = 60.0 * hole.cycle.dwell / rpm if hole.cycle.dwell_turns and rpm else hole.cycle.dwell
-    has = sum(dwell if dwell >= 0.0 else -60.0 * dwell / max(rpm, 1e-9) for dwell in dwells.get(bottom + 1, ()))
+    has = _seconds(dwells.get(bottom + 1, ()), rpm)
     if abs(has - wanted) > _DWELL:
         yield HoleFault(bottom, has, f"waits {has:g} s at the bottom; the CL file wants {wanted:g}")
-    elsewhere = [row for row in range(match.first + 1, match.end) if row != bottom + 1 and row in dwells]
-    if match.by_motion and elsewhere:
-        yield HoleFault(elsewhere[0], 0.0, "waits in the hole where the CL file does not want it")
+    for row in range(match.first + 1, match.end):
+        if row == bottom + 1 or row not in dwells:
+            continue
+        waits = _seconds(dwells[row], rpm)
+        if match.by_motion or abs(waits - wanted) > _DWELL:  # some cycles wait after every peck
+            yield HoleFault(row, waits, f"waits {waits:g} s in the hole where the CL file does not want it")
+            return
 
 
-def _thread_faults(hole: Hole, match: MatchedHole, spindle_work: Mapping[int, SpindleWork]) -> Iterator[HoleFault]:
-    """A thread of the other hand than the CL file's spindle, a thread where it wants none, and none where it wants one.
+def _seconds(dwells: Iterable[float], rpm: float) -> float:
+    """Dwells together; negative ones are spindle revolutions."""
+    return sum(dwell if dwell >= 0.0 else -60.0 * dwell / max(rpm, 1e-9) for dwell in dwells)
 
-    In and out at the same feed is no thread: only a cycle that turns the spindle back cuts one.
-    """
-    rows = (row for row in range(match.first, match.end) if row in spindle_work)
-    row = next((row for row in rows if spindle_work[row].task is SpindleTask.TAP), None)
-    if row is None:
-        if hole.cycle.mode[:1] == ("TAP",):
-            yield HoleFault(
-                match.first, 0.0, "cuts no thread where the CL file wants one: the spindle does not turn back"
-            )
+
+def _work_faults(hole: Hole, match: MatchedHole, spindle_work: Mapping[int, SpindleWork]) -> Iterator[HoleFault]:
+    """A cycle of another kind than that of the CL file, a thread of the other hand, and a spindle left otherwise."""
+    row = next((row for row in range(match.first, match.end) if row in spindle_work), None)
+    work = None if row is None else spindle_work[row]
+    at = match.end - 1 if row is None else min(row, match.end - 1)
+    has, wants = None if work is None else work.task, _task(hole.cycle.mode)
+    if has is not wants and not (match.by_motion and wants in _BY_MOTION):
+        yield HoleFault(at, 0.0, f"{_TASKS[has]}; the CL file wants a hole whose cycle {_TASKS[wants]}")
         return
-    hand = spindle_work[row].hand  # 0: that of the spindle, which is judged by itself
-    if hole.cycle.mode[:1] != ("TAP",):
-        yield HoleFault(min(row, match.end - 1), 0.0, "cuts a thread where the CL file wants none")
-    elif hand and hole.spindle is not None and hole.spindle.sense and hand != hole.spindle.sense:
-        which, wants = ("left", "right") if hand < 0 else ("right", "left")
-        text = f"cuts a {which}-hand thread; the CL file wants a {wants}-hand one"
-        yield HoleFault(min(row, match.end - 1), hand, text)
+    if work is None or hole.spindle is None or not hole.spindle.sense:
+        return
+    hand, sense = work.hand, hole.spindle.sense  # 0: that of the spindle, which is judged by itself
+    if hand and hand != sense:
+        which, asked = ("left", "right") if hand < 0 else ("right", "left")
+        text = f"cuts a {which}-hand thread; the CL file wants a {asked}-hand one"
+        yield HoleFault(at, hand, text)
+    if work.after is not None and work.after != sense:
+        text = f"the cycle leaves the spindle {_SENSES[work.after]}; the CL file wants it {_SENSES[sense]}"
+        yield HoleFault(at, work.after, text)
+
+
+def _task(mode: tuple[str, ...]) -> SpindleTask | None:
+    """What the cycle of a hole does with the spindle besides turning it, by the words of CYCLE."""
+    if mode[:1] == ("TAP",):
+        return SpindleTask.TAP
+    return next((_BORES[word] for word in mode[1:] if word in _BORES), None) if mode[:1] == ("BORE",) else None
 
 
 def _spindle_faults(run: Run, hole: Hole, match: MatchedHole, bottom: int) -> Iterator[HoleFault]:

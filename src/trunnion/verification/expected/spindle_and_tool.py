@@ -41,10 +41,11 @@ class ExpectedTool:
 
     @property
     def lengths(self) -> tuple[int, ...]:
-        """Numbers that its tool length may have: the tool's own, or the register of LOAD/TOOL."""
+        """The number that its tool length must have: the register of LOAD/TOOL, or the tool's own; empty: any."""
         if self.called.isdigit():
             return (int(self.called),)
-        return tuple(number for number in (self.number, self.adjust) if number)
+        number = self.adjust or self.number
+        return (number,) if number else ()
 
 
 def names_tool(text: str, names: tuple[str, ...]) -> bool:

@@ -60,16 +60,30 @@ def all_coolants(expected: ExpectedPath) -> set[str]:
     return {event.kind for event in events if isinstance(event, Coolant)}
 
 
-def compensation_states(expected: ExpectedPath) -> list[StateRange[int]]:
-    """Sides of radius compensation: 1 left, -1 right, 0 off. An operation starts with it off; ON is the last side."""
-    states: list[StateRange[int]] = []
+@dataclass(frozen=True, slots=True)
+class ExpectedCompensation:
+    """Radius compensation: ``side`` 1 left, -1 right, 0 off; ``register`` of the radius, 0 if no number is known."""
+
+    side: int = 0
+    register: int = 0
+
+
+def compensation_states(expected: ExpectedPath) -> list[StateRange[ExpectedCompensation]]:
+    """Radius compensation, off where an operation starts; ON is the last side, the register CUTCOM's or the tool's."""
+    states: list[StateRange[ExpectedCompensation]] = []
+    number = 0
     for section in expected.sections:
-        changes = [(0, 0)]
+        changes = [(0, ExpectedCompensation())]
         last = 0
         for event in section.operation.events:
-            if isinstance(event, CutterComp):
+            if isinstance(event, LoadTool):
+                number = event.number
+            elif isinstance(event, CutterComp):
                 last = _SIDES.get(event.side, last)
-                changes.append((event.row, 0 if event.side == "OFF" else last))
+                called = section.settings.tool
+                own = int(called) if called.isdigit() else number
+                side = 0 if event.side == "OFF" else last
+                changes.append((event.row, ExpectedCompensation(side, event.register or own)))
         states += _ranges(section, changes)
     return states
 

@@ -26,6 +26,9 @@ from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 #: Circles have no word for whole turns. Tool length and radius are data of the control, called by number.
+#: Radius compensation works in the working plane, wherever the tool points.
+COMPENSATES_ACROSS_TOOL = False
+
 WORDS: tuple[str, ...] = (
     *(word for word in iso.WORDS if word != "turns"),
     *("length", "length_number", "radius_number", "axis_x", "axis_y", "axis_z"),

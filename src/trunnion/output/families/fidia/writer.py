@@ -21,6 +21,9 @@ from trunnion.output.shared.lines import program_stop
 from trunnion.output.shared.spindle import cycle_dwell_seconds, dwell_seconds, dwell_text, running_spindle
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 
+#: Radius compensation works in the working plane, wherever the tool points.
+COMPENSATES_ACROSS_TOOL = False
+
 WORDS: tuple[str, ...] = (
     "cutter_comp", "plane", "motion", "I", "J", "K", "speed", "spindle", "coolant", "feed",
 )  # fmt: skip

@@ -22,6 +22,9 @@ from trunnion.output.shared.lines import program_stop, split_text
 from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
+#: Radius compensation works in the working plane, wherever the tool points.
+COMPENSATES_ACROSS_TOOL = False
+
 WORDS: tuple[str, ...] = iso.WORDS
 CODES: tuple[str, ...] = iso.CODES
 PLANE_COMMANDS: tuple[str, ...] = ()

@@ -34,6 +34,7 @@ class FanucInterpreter(CycleInterpreter):
         super().__init__(path, machine, options)
         # The last H, -1 before the first.
         self._length_number = -1
+        self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
 
     @property
     def _letter_table(self) -> Codes:
@@ -113,7 +114,9 @@ class FanucInterpreter(CycleInterpreter):
             self._length_number = int(number)
         # The control keeps H after G49, but no length is in force.
         control.modal.edge.set(control.row, self._length_number if control.length_active else -1)
-        block.take("D")
+        radius = block.take("D")
+        if radius is not None and 0 <= radius < 1e6:
+            control.modal.radius.set(control.row, int(radius))
         if with_axis_words is not None:
             self._execute_with_axis_words(with_axis_words, block)
         elif not any(code in words.NO_MOTION for code in block.g):

@@ -112,6 +112,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
 
     def _g_code(self, code: int, block: Block) -> None:
         control = self.control
+        self._take_radius(code, block)
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in words.UNITS:

@@ -45,6 +45,10 @@ class HeidenhainControl(PlaneControl):
         """The letter table for the present modes: rotary words are plain only if they are positions of one axis."""
         return self._letter_tables[self.spatial_angles_active or (self.tilted and not self.tcp)]
 
+    def compensates_across_tool(self) -> bool:
+        """With M128, across the tool wherever it points."""
+        return self.tcp
+
     def takes_shortest_path(self, axis: Axis) -> bool:
         """With M126."""
         return self.shortest_path

@@ -3,6 +3,7 @@
 import re
 from typing import Final, NamedTuple
 
+from trunnion.encoding import capitals
 from trunnion.readers.families.heidenhain.parameters import KlartextError
 
 #: Longer statements are not executed.
@@ -80,9 +81,9 @@ def split_line(raw: str) -> Line:
             comment, rest = rest[words.end() + 1 :].strip("\r"), rest[: words.end()]
     statement = rest.strip()
     if '"' not in statement:
-        statement = statement.upper()
+        statement = capitals(statement)
     else:
-        statement = '"'.join(part if k % 2 else part.upper() for k, part in enumerate(statement.split('"')))
+        statement = '"'.join(part if k % 2 else capitals(part) for k, part in enumerate(statement.split('"')))
     return Line(number, bool(head.group(1) or head.group(3)), statement, comment, continues)
 
 

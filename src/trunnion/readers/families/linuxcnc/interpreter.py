@@ -158,6 +158,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         control = self.control
         if code in words.ADDED_LENGTHS:
             self._added_length(code, block)
+        self._take_radius(code, block)
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in words.OFFSETS:

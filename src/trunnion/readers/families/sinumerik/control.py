@@ -187,6 +187,12 @@ class SinumerikControl(VirtualControl):
         if turns:
             self.set_program_frame(program, keep_base=False)
 
+    def leave_spindle(self, sense: int) -> None:
+        """Let a cycle leave the spindle turning in a sense (1, -1), or standing (0)."""
+        if sense != int(self.modal.spindle.current):
+            self.modal.spindle.set(self.row, sense)
+            self.add_event("spindle", {1: "clockwise", -1: "counter-clockwise", 0: "off"}[sense])
+
     # CYCLE800
 
     def swivel(self, frame: AffineMap, *, add: bool, direction: float, direct: tuple[float, float] | None) -> None:

@@ -43,8 +43,18 @@ _LENGTH_PLACES: Final[dict[str, tuple[int, ...]]] = {
 }
 _FEED_PLACES: Final[dict[str, tuple[int, ...]]] = {"CYCLE85": (7, 8)}
 
-#: The axis along which a cycle drills: 1 and 2 are the first and second axis of the geometry, 3 or none the tool's.
+#: Places of the sense of the spindle after a cycle (SDAC, SDIR), and what its values say; places of the drilling axis
+#: (_AXN); and the first of the three places of _GMODE, _DMODE and _AMODE, which newer controls have.
+_SENSE_PLACES: Final = {"CYCLE84": 7, "CYCLE840": 8, "CYCLE86": 7, "CYCLE87": 6, "CYCLE88": 7}
+_SENSES: Final = {0.0: None, 3.0: 1, 4.0: -1, 5.0: 0}
 _AXIS_PLACES: Final = {"CYCLE83": 13, "CYCLE84": 13, "CYCLE840": 12}
+_MODE_PLACES: Final = {
+    "CYCLE81": 7, "CYCLE82": 7, "CYCLE83": 18, "CYCLE84": 22, "CYCLE840": 18,
+    "CYCLE85": 9, "CYCLE86": 12, "CYCLE87": 7, "CYCLE88": 8, "CYCLE89": 7,
+}  # fmt: skip
+
+#: _AMODE of CYCLE81 and CYCLE82: how the depth counts (1 by DPR, 2 by DP), and in tens the dwell (1 s, 2 turns).
+_ALTERNATIVES: Final = frozenset(float(10 * dwell + depth) for dwell in range(3) for depth in range(3))
 
 #: The degression of CYCLE83; the pitch of threads, and its unit (_PITA).
 _DEGRESSION: Final = 8
@@ -63,8 +73,6 @@ def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotio
     rpm
         Spindle speed in force, for taps without one of their own.
     """
-    if name in _AXIS_PLACES and _or(arguments, _AXIS_PLACES[name]) not in (0.0, 3.0):
-        raise CycleExecutionError("drills along an axis of its own (_AXN), which is not simulated")
     heights = _heights(arguments)
     motions = CYCLES[name](arguments, heights, rpm)
     if any(step.feed is not None and abs(step.feed) > MAX_FEED for step in motions):
@@ -106,18 +114,61 @@ def spindle_work(name: str, arguments: Arguments) -> SpindleWork | None:
                 stroke=stroke,
                 full=bool(stroke) and _or(arguments, 16) == 2.0,
                 clearance=clearance,
+                after=_sense(arguments, name),
             )
         case "CYCLE840":
             size, pitch = _get(arguments, 10), _get(arguments, 11)
             lead = _pitch(size, pitch, _or(arguments, 13)) if size or pitch else math.nan
             hand = int(math.copysign(1, pitch or size or 1.0)) if pitch or size else 0
-            return SpindleWork(SpindleTask.TAP, pitch=lead, hand=hand, floating=True, clearance=clearance)
+            after = _sense(arguments, name)
+            return SpindleWork(SpindleTask.TAP, lead, hand, floating=True, clearance=clearance, after=after)
         case "CYCLE86":
             lifts = any(_or(arguments, place) for place in (8, 9, 10))
-            return SpindleWork(SpindleTask.LIFT if lifts else SpindleTask.STOP, clearance=clearance)
+            task = SpindleTask.LIFT if lifts else SpindleTask.STOP
+            return SpindleWork(task, clearance=clearance, after=_sense(arguments, name))
         case "CYCLE87" | "CYCLE88":
-            return SpindleWork(SpindleTask.MANUAL, clearance=clearance)
+            return SpindleWork(SpindleTask.MANUAL, clearance=clearance, after=_sense(arguments, name))
     return None
+
+
+def _sense(arguments: Arguments, name: str) -> int | None:
+    """Return the sense in which a cycle leaves the spindle; None: as it was."""
+    code = _or(arguments, _SENSE_PLACES[name])
+    if code not in _SENSES:
+        raise CycleExecutionError(f"has {code:g} for the sense of the spindle, which is 3, 4 or 5")
+    return _SENSES[code]
+
+
+def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
+    """Refuse values of a cycle that change the hole and are not simulated.
+
+    plane_axis   the axis along which it drills here: that perpendicular to the working plane
+    """
+    place = _AXIS_PLACES.get(name, 0)
+    axis = _or(arguments, place) if place else 0.0
+    if axis and axis != plane_axis + 1:
+        raise CycleExecutionError(f"has _AXN {axis:g}, and the working plane wants {plane_axis + 1}")
+    if name == "CYCLE840" and _or(arguments, 7) not in (0.0, 3.0, 4.0):
+        raise CycleExecutionError("has an SDR that is not 0, 3 or 4")
+    if name == "CYCLE840" and (back := _or(arguments, 7)):
+        pitch = _get(arguments, 11) or _get(arguments, 10)
+        if not pitch or (back == 3.0) is (pitch > 0.0):
+            raise CycleExecutionError("would leave the thread in the sense of SDR, which is not the other one: write 0")
+    first = _MODE_PLACES[name]
+    geometry, plane, alternatives = (_or(arguments, first + k) for k in range(3))
+    if geometry:
+        raise CycleExecutionError(f"has _GMODE {geometry:g}, which is not simulated")
+    if plane and plane != 3 - plane_axis:
+        raise CycleExecutionError(f"has _DMODE {plane:g}, which is not the working plane")
+    if not alternatives:
+        return
+    if name not in ("CYCLE81", "CYCLE82") or alternatives not in _ALTERNATIVES:
+        raise CycleExecutionError(f"has _AMODE {alternatives:g}, which is not simulated")
+    depth, dwell = alternatives % 10, alternatives // 10
+    if (depth == 1 and not _or(arguments, 5)) or (depth == 2 and _or(arguments, 5)):
+        raise CycleExecutionError(f"has _AMODE {alternatives:g}, which does not fit DP and DPR")
+    if (dwell == 1 and _or(arguments, 6) < 0.0) or (dwell == 2 and _or(arguments, 6) > 0.0):
+        raise CycleExecutionError(f"has _AMODE {alternatives:g}, which does not fit the dwell DTB")
 
 
 def _get(arguments: Arguments, place: int) -> float | None:

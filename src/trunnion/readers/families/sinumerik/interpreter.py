@@ -263,6 +263,8 @@ class SinumerikInterpreter(CallInterpreter):
                 control.set_machine_vectors(word == "ORIMKS")
             case _ if word in TOOL_FRAMES:
                 control.turn_frame(word)
+            case _ if word.startswith("CUT2D") or word.startswith("CUT3D"):
+                control.compensates_in_space = word.startswith("CUT3D")
             case "SPOS":
                 control.add_event("spindle", "oriented")
             case _:
@@ -346,6 +348,7 @@ class SinumerikInterpreter(CallInterpreter):
         try:
             numbers = [finite(_number(value)) for value in call.arguments]
             control, rpm = self.control, float(self.control.modal.rpm.current)
+            cycles.check_unread(call.name, numbers, control.plane_axis)
             numbers = cycles.in_millimetres(call.name, numbers, control.length_unit, control.feed_unit)
             motions, work = cycles.cycle_motions(call.name, numbers, rpm), cycles.spindle_work(call.name, numbers)
         except CycleExecutionError as error:
@@ -353,6 +356,8 @@ class SinumerikInterpreter(CallInterpreter):
             return
         self._counter.count_blocks(len(motions))
         control.drill([motion.with_lengths_in(control.length_unit) for motion in motions], work)
+        if work is not None and work.after is not None:
+            control.leave_spindle(work.after)
 
 
 def _number(value: Value | None) -> float | None:

@@ -1,0 +1,40 @@
+"""Radius compensation that the control would make in another plane than across the tool."""
+
+from typing import Final
+
+import numpy as np
+
+from trunnion.errors import Problem
+from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.toolpath import CutterComp
+from trunnion.output.program import Program
+
+#: The axis perpendicular to each plane of CUTCOM; without one the control works in XY.
+_NORMALS: Final = {"": 2, "XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
+
+#: How far the tool axis may be off that axis, as the sine of the angle.
+_ASKEW: Final = 1e-4
+
+
+def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
+    """Refuse CUTCOM where the plane of compensation is not perpendicular to the tool: it would offset along it."""
+    if motion.mode is MachiningMode.TCP and program.control.family.COMPENSATES_ACROSS_TOOL:
+        return []
+    if motion.mode is MachiningMode.WITHOUT_TCP:
+        return []  # refused altogether
+    operation = motion.as_written()
+    events = [event for event in operation.events if isinstance(event, CutterComp)]
+    ends = [*(event.row for event in events[1:]), len(operation.moves)] if events else []
+    problems = []
+    for event, end in zip(events, ends, strict=True):
+        axes = operation.moves.axis[event.row : end]
+        if event.side == "OFF" or not len(axes):
+            continue
+        in_plane = np.delete(axes, _NORMALS.get(event.plane, 2), axis=1)
+        if float(np.abs(in_plane).max()) <= _ASKEW:
+            continue
+        plane = event.plane or "XYPLAN"
+        what = f"CUTCOM in {plane} with {motion.mode}, where the tool is not perpendicular to that plane"
+        cure = "setting mode=tilted makes the operation in a tilted plane, or output the path without CUTCOM"
+        problems.append(Problem(program.file, event.line, f"{what}: it would offset along the tool", cure))
+    return problems
