@@ -48,6 +48,7 @@ class ReaderState:
     first_mm_feed    line of the first feed in mm, 0 if there is none
     first_inch_feed  line of the first feed in inches, 0 if there is none
     spindle, cycle   last ones of the operation, which SPINDL/ON and CYCLE/ON repeat
+    cycle_line       line where the cycle began that is on, 0 if none is
     spline_reported  the file has splines, and an error says so
     tool             the last LoadTool of the file
     cutter_row       row before which a statement last told the form of a tool, -1 if none has
@@ -80,6 +81,7 @@ class ReaderState:
     first_inch_feed: int = 0
     spindle: SpindleOn | SurfaceSpeed | None = None
     cycle: CycleOn | None = None
+    cycle_line: int = 0
     spline_reported: bool = False
     tool: LoadTool | None = None
     cutter_row: int = -1

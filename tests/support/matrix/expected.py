@@ -58,7 +58,7 @@ REFUSED: Final[dict[str, dict[str, str]]] = {
     "fanuc_31i_basic": {
         **_FANUC,
         "simultaneous milling with TCP": "tcp is on, and the machine's control has none",
-        "the same, the tool axis as a vector": "tcp is on, and the machine's control has none",
+        "the same, the tool axis as a vector": "it has no effect on Fanuc 31i without options, for it has no TCP",
     },
     "fidia_nc15": {
         "the same, the tool axis as a vector": _NO_VECTORS,

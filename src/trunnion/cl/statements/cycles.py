@@ -23,6 +23,7 @@ def cycle(state: ReaderState, statement: Statement) -> None:
     row, line = state.operation_row, state.line
     if statement.values == ("OFF",):
         state.add(CycleOff(row, line))
+        state.cycle_line = 0
         return
     refuse_in_circle(state, "CYCLE")
     if statement.values == ("ON",):
@@ -33,6 +34,7 @@ def cycle(state: ReaderState, statement: Statement) -> None:
         found = _parse(state, statement)
         state.cycle = CycleOn(row, line, tuple(found.mode), tuple(found.couplets), tuple(found.words))
     state.add(state.cycle)
+    state.cycle_line = line
 
 
 def _parse(state: ReaderState, statement: Statement) -> CycleParts:

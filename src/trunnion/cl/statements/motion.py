@@ -4,7 +4,7 @@ from trunnion.cl.builder import CircleStatement, FromStatement, NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole, numbers
-from trunnion.model.toolpath import CycleOff, CycleOn, GoHome
+from trunnion.model.toolpath import GoHome
 
 #: No helix has more turns; a larger TIMES is a mistake in the file.
 MAX_TURNS = 10000
@@ -88,9 +88,8 @@ def begin_circle(state: ReaderState, numbers: tuple[float, ...], turns: int, *, 
     turns    turns that the arc begins
     """
     refuse_in_circle(state, "another CIRCLE")
-    cycles = [event for event in state.builder.events if isinstance(event, CycleOn | CycleOff)]
-    if cycles and isinstance(cycles[-1], CycleOn):
-        what = f"CIRCLE within the cycle of line {cycles[-1].line}, where each point is a hole"
+    if state.cycle_line:
+        what = f"CIRCLE within the cycle of line {state.cycle_line}, where each point is a hole"
         raise StatementError(what, "write CYCLE/OFF before it")
     if state.operation_row == 0 and state.builder.continues:
         start = current_tip(state)

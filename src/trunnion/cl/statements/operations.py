@@ -54,6 +54,7 @@ def tool_path(state: ReaderState, statement: Statement) -> None:
     state.in_operation = True
     state.spindle = None
     state.cycle = None
+    state.cycle_line = 0
 
 
 def end_of_path(state: ReaderState, statement: Statement) -> None:
