@@ -35,6 +35,8 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
             continue
         plane = event.plane or "XYPLAN"
         what = f"CUTCOM in {plane} with {motion.mode}, where the tool is not perpendicular to that plane"
-        cure = "setting mode=tilted makes the operation in a tilted plane, or output the path without CUTCOM"
+        in_tilted_plane = "setting mode=tilted makes the operation in a tilted plane, or "
+        has_planes = MachiningMode.TILTED in program.control.modes({})
+        cure = (in_tilted_plane if has_planes else "") + "output the path without CUTCOM"
         problems.append(Problem(program.file, event.line, f"{what}: it would offset along the tool", cure))
     return problems
