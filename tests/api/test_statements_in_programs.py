@@ -153,3 +153,10 @@ def test_a_warning_comes_once_with_its_number(tmp_path: Path) -> None:
     result = posted(tmp_path, HEAD + "FEDRAT/MMPM,0\nFEDRAT/MMPM,500\nGOTO/20,0,5\n" * 62 + FOOT)
     (warning,) = (problem.what for problem in result.problems if "FEDRAT is 0" in problem.what)
     assert "(62 times, first here)" in warning
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("stands", ["STOP\n", "SPINDL/OFF\n"])
+def test_a_dwell_in_revolutions_of_a_spindle_that_stands_is_refused(tmp_path: Path, machine: str, stands: str) -> None:
+    with pytest.raises(trunnion.InputError, match="a dwell in spindle revolutions while the spindle stands"):
+        posted(tmp_path, HEAD + FOOT.replace("END-OF-PATH", f"{stands}DELAY/2,REV\nEND-OF-PATH"), machine)
