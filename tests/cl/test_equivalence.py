@@ -44,11 +44,11 @@ def arcs(draw: st.DrawFn, axis: Vector) -> list[Step]:
         point = list(centre)
         point[first] += radius * math.cos(math.radians(angle))
         point[second] += radius * math.sin(math.radians(angle))
-        ends.append(tuple(round(value, 6) for value in point))
-    start: Any = ends[0]
+        ends.append((round(point[0], 6), round(point[1], 6), round(point[2], 6)))
+    turn = (normal[0], normal[1], normal[2])
     return [
-        Step("GOTO", point=start, axis=axis),
-        Step("ARC", point=ends[1], axis=axis, centre=centre, normal=tuple(normal), start=start),  # type: ignore[arg-type]
+        Step("GOTO", point=ends[0], axis=axis),
+        Step("ARC", point=ends[1], axis=axis, centre=centre, normal=turn, start=ends[0]),
     ]
 
 

@@ -77,10 +77,11 @@ class EventWriter:
             if not any(isinstance(event, SpindleOn) and event.row == 0 for event in motion.operation.events):
                 self._restart_spindle(0)
         events = motion.operation.events
+        last_stop = max((k for k, event in enumerate(events) if isinstance(event, Stop)), default=-1)
         for k, event in enumerate(events):
             if not _is_said_again(events, k):
                 # What is switched off before a stop is off while the machine stands.
-                at_end = event.row == rows and not any(isinstance(each, Stop) for each in events[k + 1 :])
+                at_end = event.row == rows and k > last_stop
                 self._write_event(event, end_lines if at_end else ())
         self._write_rows(rows)
         for event in self._joining_events:
