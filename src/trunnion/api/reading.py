@@ -198,7 +198,9 @@ def _control(machine: Machine) -> dict[str, object]:
 
 def as_machine(machine: MachineLike, argument: str = "machine") -> Machine:
     """The machine itself, loaded if it is named; errors name the argument."""
-    return machine if isinstance(machine, Machine) else load_machine(check_path(argument, machine))
+    loaded = machine if isinstance(machine, Machine) else load_machine(check_path(argument, machine))
+    readers.check_reading(loaded)
+    return loaded
 
 
 def as_toolpaths(

@@ -1,7 +1,8 @@
 """Running a program with the reader of a machine's control."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem
@@ -10,8 +11,10 @@ from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.readers.program.family_reader import FamilyReader
+from trunnion.readers.program.known_words import check_known_words, plain_code
 from trunnion.readers.program.options import DEFAULT_STEP_LIMIT, RunOptions
-from trunnion.readers.program.settings import family_of
+from trunnion.readers.program.settings import family_of, reading_of
+from trunnion.readers.rs274.word_meanings import UNKNOWN
 
 
 def run_program(
@@ -83,16 +86,36 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     return reader
 
 
+@lru_cache(maxsize=8)
 def check_reading(machine: Machine) -> None:
-    """Judge the table ``reading`` of a machine's control.
+    """Check what the definition of a machine's control says to readers: ``[control.known]`` and ``[control.reading]``.
 
     Raises
     ------
     InputError
-        With every mistake in it.
+        With every mistake, each at its file and line.
     """
-    if can_read(machine):
-        load_reader(family_of(machine)).check_reading(machine)
+    if not can_read(machine):
+        return
+    reader = reader_of(machine)
+    own = {plain_code(key.upper()): means for key, means in reading_of(machine).table("words").to_dict().items()}
+
+    def is_own_word(word: str) -> bool:
+        first = word.partition(" ")[0]
+        return own[first] != UNKNOWN if first in own else reader.is_own_word(word)
+
+    problems: list[Problem] = []
+    checks: tuple[Callable[[], object], ...] = (
+        lambda: check_known_words(machine, is_own_word),
+        lambda: reader.check_reading(machine),
+    )
+    for check in checks:
+        try:
+            check()
+        except InputError as error:
+            problems += [problem for problem in error.problems if problem not in problems]
+    if problems:
+        raise InputError(problems)
 
 
 def can_read(machine: Machine) -> bool:

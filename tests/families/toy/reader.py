@@ -109,6 +109,7 @@ READER: Final = FamilyReader(
     ToyInterpreter,
     frozenset(),
     WorkOffsetWords("1 to 99", re.compile(r"([0-9]{1,2})"), first_number, lambda value: f"ORIGIN {value}"),
+    is_own_word=lambda word: False,
     comments=rb";[^\n]*",
     uses_length_numbers=False,
 )

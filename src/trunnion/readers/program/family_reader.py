@@ -26,6 +26,7 @@ class FamilyReader:
     work_offsets         how programs select work offsets
     uses_length_numbers  programs select the tool length by a number (H); it is the column ``Run.edge``
     raw_words            the words that may stand in raw text
+    is_own_word          whether a declared word, in capitals, begins with one that the control has itself
     offsets_of           makes ``work_offsets`` for controls of the family that have other words; None: all have these
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
     """
@@ -33,6 +34,7 @@ class FamilyReader:
     interpreter: Callable[[Path, Machine, RunOptions], Interpreter[Any]]
     words_without_path: frozenset[str]
     work_offsets: WorkOffsetWords
+    is_own_word: Callable[[str], bool]
     comments: bytes = RS274_COMMENTS
     uses_length_numbers: bool = False
     raw_words: RawWords = NO_RAW_WORDS

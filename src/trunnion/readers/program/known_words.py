@@ -5,12 +5,13 @@ an M code acts wherever it stands in a block. Any other word begins a block, and
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
 from trunnion.definitions import Table
+from trunnion.definitions.twin_keys import report_twins
 from trunnion.machines import Machine
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.settings import control_of
@@ -29,7 +30,14 @@ _BEFORE_MOTION: Final = (
 #: Effects that are not events of their own: the word itself says what happens.
 _SILENT: Final = frozenset({"no effect", "comes back", "comes back home"})
 
+_OWN: Final = (
+    "is a word of the control itself, or begins with one: the declaration would hide it",
+    "leave it out: only words that the control does not know can be declared",
+)
+_LEADING_ZEROS: Final = re.compile(r"^([GM])0+([0-9])")
 _M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
+#: A G code without tenths: one with them is another word.
+_G_CODE: Final = re.compile(r"G[0-9]+")
 _BLOCK_BEGIN: Final = re.compile(r"[ \t]*/?[0-9]?[ \t]*(?:N[0-9]+|[0-9]+(?=[ \t]))?[ \t]*/?[ \t]*")
 _TOOL: Final = re.compile(r"(?<![A-Z0-9])T=?[ \t]*([0-9]{1,9})")
 
@@ -63,10 +71,33 @@ def known_words(machine: Machine) -> tuple[KnownWord, ...]:
     InputError
         If one of them is written wrongly.
     """
-    table = control_of(machine).table("known")
-    found = tuple(_known_word(table, key) for key in list(table.keys()))
+    return _read(control_of(machine).table("known"), None)
+
+
+def check_known_words(machine: Machine, is_own_word: Callable[[str], bool]) -> None:
+    """Check the words that the definition of a machine's control declares.
+
+    Raises
+    ------
+    InputError
+        If one of them is written wrongly, declared twice, or a word that the control has itself.
+    """
+    _read(control_of(machine).table("known"), is_own_word)
+
+
+def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[KnownWord, ...]:
+    found: dict[str, KnownWord] = {}
+    for key in list(table.keys()):
+        word = _known_word(table, key)
+        normal = plain_code(word.word)
+        if is_own_word is not None and is_own_word(normal):
+            table.add_problem(key, *_OWN)
+        elif normal != word.word and word.code is None:
+            table.add_problem(key, "begins with a code with leading zeros", f"write {normal}")
+        found[normal] = word
+    report_twins(table, lambda key: plain_code(_normal(key)))
     table.raise_problems()
-    return found
+    return tuple(found.values())
 
 
 def _known_word(table: Table, key: str) -> KnownWord:
@@ -74,9 +105,21 @@ def _known_word(table: Table, key: str) -> KnownWord:
     effects = tuple(effect.strip() for effect in text.split(","))
     if unknown := [effect for effect in effects if effect not in EFFECTS]:
         table.add_problem(key, f"has no effect {unknown[0]!r}", f"write one of {', '.join(EFFECTS)}")
-    if not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
+    if not key.strip():
+        table.add_problem("", "has a word without letters", 'write such as M60, "CYCL DEF 392" or "G65 P9810"')
+    elif not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
         table.add_problem(key, "is no word of a program", 'write such as M60, "CYCL DEF 392" or "G65 P9810"')
-    return KnownWord(" ".join(key.upper().split()), effects, means.strip())
+    return KnownWord(_normal(key), effects, means.strip())
+
+
+def _normal(key: str) -> str:
+    """Return a word in capitals, with single blanks."""
+    return " ".join(key.upper().split())
+
+
+def plain_code(word: str) -> str:
+    """Return a word in capitals whose G or M code has no leading zeros."""
+    return _LEADING_ZEROS.sub(r"\1\2", word)
 
 
 def begins_with(words: Iterable[KnownWord], text: str) -> bool:
@@ -165,4 +208,5 @@ class KnownWords:
 
 def _pattern(word: str) -> str:
     """Return the regular expression of a word; blanks between its parts may be more, or missing."""
-    return r"[ \t]*".join(re.escape(part) for part in word.split())
+    parts = r"[ \t]*".join(re.escape(part) for part in word.split())
+    return parts + (r"(?!\.[0-9])" if _G_CODE.fullmatch(word) else "")

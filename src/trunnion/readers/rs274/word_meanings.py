@@ -5,12 +5,13 @@ their own there, or to ``unknown`` where the control does not have the word, or 
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
 from trunnion.definitions import Table
 from trunnion.definitions.twin_keys import report_twins
+from trunnion.readers.program.known_words import plain_code
 from trunnion.readers.rs274.block import Block, g_code_text
 
 #: The control does not have the word.
@@ -48,13 +49,17 @@ class WordMeanings:
 NO_WORDS: Final = WordMeanings({}, {})
 
 
-def read_word_meanings(table: Table, meanings: Mapping[str, int] | None = None) -> WordMeanings:
+def read_word_meanings(
+    table: Table, is_own_word: Callable[[str], bool], meanings: Mapping[str, int] | None = None
+) -> WordMeanings:
     """Read the words of a control; mistakes are added to the table's problems.
 
     Parameters
     ----------
     table
         ``[control.reading]``.
+    is_own_word
+        Whether the family has a word: only such a one can be what another means.
     meanings
         Meanings of G words besides those that the family has words for: name -> code that stands for it, in tenths.
     """
@@ -73,6 +78,8 @@ def read_word_meanings(table: Table, meanings: Mapping[str, int] | None = None) 
             (g if letter == "G" else m)[code] = None
         elif letter == "G" and value in names:
             g[code] = names[value]
+        elif target is not None and not is_own_word(plain_code(value)):
+            own.add_problem(key, f"is {value!r}, which the family does not have", "write a word that it has")
         elif target is not None and target[0] == letter:
             (g if letter == "G" else m)[code] = target[1]
         else:

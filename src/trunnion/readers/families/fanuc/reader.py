@@ -3,6 +3,7 @@
 from typing import Final
 
 from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
+from trunnion.readers.families.fanuc.own_words import is_own_word
 from trunnion.readers.families.fanuc.settings import settings_of
 from trunnion.readers.families.fanuc.words import WITHOUT_PATH_EFFECT
 from trunnion.readers.families.fanuc.work_offsets import WORK_OFFSETS, offsets_of
@@ -28,6 +29,7 @@ READER: Final = FamilyReader(
     FanucInterpreter,
     g_words(WITHOUT_PATH_EFFECT),
     WORK_OFFSETS,
+    is_own_word,
     uses_length_numbers=True,
     raw_words=RAW_WORDS,
     offsets_of=offsets_of,

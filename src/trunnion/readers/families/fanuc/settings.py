@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.machines import Machine
+from trunnion.readers.families.fanuc.own_words import is_own_word
 from trunnion.readers.families.fanuc.words import MEANINGS, MORE_OFFSETS
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number, g_code_text
@@ -113,7 +114,7 @@ def settings_of(machine: Machine) -> Settings:
         numbers == "calculator",
         increment,
         unit,
-        read_word_meanings(table, MEANINGS),
+        read_word_meanings(table, is_own_word, MEANINGS),
         point_is_seconds=table.text("dwells", "milliseconds", one_of=("milliseconds", "point")) == "point",
         m_codes_last=table.text("m_codes", "each", one_of=("each", "last")) == "last",
         repeat_letter=table.text("cycles_repeat_with", "K", one_of=("K", "L")),

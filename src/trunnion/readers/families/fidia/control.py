@@ -12,6 +12,7 @@ from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.families.fidia.own_words import is_own_word
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
@@ -32,7 +33,7 @@ def settings_of(machine: Machine) -> Settings:
     table = reading_of(machine)
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
     unit = unit_of(table)
-    words = read_word_meanings(table)
+    words = read_word_meanings(table, is_own_word)
     table.report_unread_keys()
     table.raise_problems()
     return Settings(FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit, words)

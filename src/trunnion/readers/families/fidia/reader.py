@@ -5,6 +5,7 @@ from typing import Final
 
 from trunnion.readers.families.fidia.control import settings_of
 from trunnion.readers.families.fidia.interpreter import FidiaInterpreter
+from trunnion.readers.families.fidia.own_words import is_own_word
 from trunnion.readers.families.fidia.words import OFFSET_BASE, WITHOUT_PATH_EFFECT
 from trunnion.readers.program.family_reader import FamilyReader, g_words
 from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, raw_words
@@ -29,5 +30,10 @@ RAW_WORDS: Final = raw_words(
 )
 
 READER: Final = FamilyReader(
-    FidiaInterpreter, g_words(WITHOUT_PATH_EFFECT), WORK_OFFSETS, raw_words=RAW_WORDS, check_reading=settings_of
+    FidiaInterpreter,
+    g_words(WITHOUT_PATH_EFFECT),
+    WORK_OFFSETS,
+    is_own_word,
+    raw_words=RAW_WORDS,
+    check_reading=settings_of,
 )

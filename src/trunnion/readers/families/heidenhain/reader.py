@@ -4,6 +4,7 @@ import re
 from typing import Final
 
 from trunnion.readers.families.heidenhain.interpreter import HeidenhainInterpreter
+from trunnion.readers.families.heidenhain.own_words import is_own_word
 from trunnion.readers.families.heidenhain.words import (
     M_CALL,
     M_CALL_MODAL,
@@ -47,6 +48,7 @@ READER: Final = FamilyReader(
     HeidenhainInterpreter,
     frozenset(f"M{code}" for code in M_WITHOUT_PATH_EFFECT),
     WORK_OFFSETS,
+    is_own_word,
     comments=rb";[^\n]*|^\d+ \*[^\n]*",
     raw_words=RAW_WORDS,
 )

@@ -12,6 +12,7 @@ from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.families.linuxcnc.own_words import is_own_word
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
@@ -29,7 +30,7 @@ _COARSE: Final = 0.5
 def settings_of(machine: Machine) -> tuple[str, WordMeanings]:
     """Read the unit and the own words of a machine's control; InputError if they are wrong."""
     table = reading_of(machine)
-    unit, words = unit_of(table), read_word_meanings(table)
+    unit, words = unit_of(table), read_word_meanings(table, is_own_word)
     table.report_unread_keys()
     table.raise_problems()
     return unit, words

@@ -12,7 +12,6 @@ from trunnion.readers.families.linuxcnc import cycles, words
 from trunnion.readers.families.linuxcnc.control import ORDER
 from trunnion.readers.families.linuxcnc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.linuxcnc.flow import ActiveProgram
-from trunnion.readers.families.linuxcnc.offsets_and_frames import SPECIAL, TAKING_AXIS_WORDS
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC
 from trunnion.readers.families.linuxcnc.text import LinuxcncText
 from trunnion.readers.program.source_text import SourceText
@@ -118,7 +117,7 @@ class LinuxcncInterpreter(CycleInterpreter):
                 self._m_code(code, block)
         special = self._g_codes(block)
         selected = [code for code in block.g if code in cycles.CYCLES or code == CANCEL]
-        if special in TAKING_AXIS_WORDS or any(code in words.NO_MOTION for code in block.g):
+        if special in words.TAKING_AXIS_WORDS or any(code in words.NO_MOTION for code in block.g):
             self.motion_code = CANCEL if CANCEL in selected else self.motion_code
         else:
             self._execute_motion(block, selected[-1] if selected else None)
@@ -128,14 +127,14 @@ class LinuxcncInterpreter(CycleInterpreter):
                 self._m_code(code, block)
 
     def _g_codes(self, block: Block) -> int | None:
-        """Execute the G codes of a block other than motions; returns that of ``SPECIAL``, if any."""
+        """Execute the G codes of a block other than motions; returns that of ``words.SPECIAL``, if any."""
         special = None
         for code in block.g:
-            if code in SPECIAL:
+            if code in words.SPECIAL:
                 special = code
             elif code not in cycles.CYCLES and code not in _FEED_MODES and code not in (CANCEL, words.MACHINE):
                 self._g_code(code, block)
-        if special in TAKING_AXIS_WORDS and self._has_motion_code(block):
+        if special in words.TAKING_AXIS_WORDS and self._has_motion_code(block):
             raise BlockError("two G words want the axis words")
         if special is not None:
             self._execute_special(special, block)

@@ -1,7 +1,6 @@
 """Blocks of LinuxCNC whose axis words are no target: dwells, offsets and home."""
 
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 
@@ -14,21 +13,10 @@ from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.linuxcnc.control import ORDER, LinuxcncControl, Offset
 from trunnion.readers.families.linuxcnc.flow import OWordInterpreter
+from trunnion.readers.families.linuxcnc.words import AXIS_OFFSET_SWITCHES, AXIS_OFFSETS, DWELL, HOMES, SET_DATA
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
-
-#: G codes, in tenths: dwell, data of offsets and tools, home with the codes that store its positions, and axis offsets
-#: that a block sets, switches off or on again.
-DWELL: Final = 40
-SET_DATA: Final = 100
-HOMES: Final = {280: 281, 300: 301}
-AXIS_OFFSETS: Final = frozenset({520, 920})
-AXIS_OFFSET_SWITCHES: Final = frozenset({921, 922, 923})
-
-#: All of them, and those that take the axis words of their block.
-SPECIAL: Final = frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, *AXIS_OFFSET_SWITCHES})
-TAKING_AXIS_WORDS: Final = frozenset({SET_DATA, *HOMES, *AXIS_OFFSETS})
 
 
 class OffsetInterpreter(OWordInterpreter):

@@ -122,3 +122,15 @@ USERS: Final = range(100, 200)
 TCP_ON: Final = 428
 TCP_OFF: Final = 429
 TCP_USER: Final = 430
+
+#: G codes, in tenths: dwell, data of offsets and tools, home with the codes that store its positions, and axis offsets
+#: that a block sets, switches off or on again.
+DWELL: Final = 40
+SET_DATA: Final = 100
+HOMES: Final = {280: 281, 300: 301}
+AXIS_OFFSETS: Final = frozenset({520, 920})
+AXIS_OFFSET_SWITCHES: Final = frozenset({921, 922, 923})
+
+#: All of them, and those that take the axis words of their block.
+SPECIAL: Final = frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, *AXIS_OFFSET_SWITCHES})
+TAKING_AXIS_WORDS: Final = frozenset({SET_DATA, *HOMES, *AXIS_OFFSETS})

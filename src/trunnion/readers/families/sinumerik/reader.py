@@ -4,6 +4,7 @@ import re
 from typing import Final
 
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
+from trunnion.readers.families.sinumerik.own_words import is_own_word
 from trunnion.readers.families.sinumerik.settings import cycles_along_tool
 from trunnion.readers.families.sinumerik.words import (
     G_WITHOUT_PATH_EFFECT,
@@ -46,6 +47,7 @@ READER: Final = FamilyReader(
     | WITHOUT_PATH_EFFECT_CALLS
     | {f"G{code}" for code in G_WITHOUT_PATH_EFFECT},
     WORK_OFFSETS,
+    is_own_word,
     comments=rb';[^\n]*|"[^"\n]*"',
     raw_words=RAW_WORDS,
     check_reading=cycles_along_tool,

@@ -33,6 +33,9 @@ G_MACHINE: Final = frozenset({53, 153})
 #: Cutter radius compensation: left of the path, right of it, off.
 G_RADIUS_COMPENSATION: Final = {40: 0, 41: 1, 42: -1}
 
+#: What the machine's builder gives a meaning.
+RESERVED: Final = "reserved for the machine builder"
+
 #: G words that the path does not depend on.
 G_WITHOUT_PATH_EFFECT: Final = {
     9: "exact stop, one block",
@@ -60,16 +63,16 @@ G_WITHOUT_PATH_EFFECT: Final = {
     460: "collision monitoring",
     461: "collision monitoring",
     462: "collision monitoring",
-    810: "reserved for the machine builder",
-    811: "reserved for the machine builder",
-    812: "reserved for the machine builder",
-    813: "reserved for the machine builder",
-    814: "reserved for the machine builder",
-    820: "reserved for the machine builder",
-    821: "reserved for the machine builder",
-    822: "reserved for the machine builder",
-    823: "reserved for the machine builder",
-    824: "reserved for the machine builder",
+    810: RESERVED,
+    811: RESERVED,
+    812: RESERVED,
+    813: RESERVED,
+    814: RESERVED,
+    820: RESERVED,
+    821: RESERVED,
+    822: RESERVED,
+    823: RESERVED,
+    824: RESERVED,
 }
 
 #: G words that are not simulated: the message, and whether the path is wrong without them.
