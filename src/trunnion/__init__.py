@@ -10,6 +10,7 @@
 Functions
 
     read_cl        CL file -> Toolpath
+    describe_cl    CL files -> ClDescription: what they hold
     load_machine   definition -> Machine
     plan           CL files -> Plan: motions on the machine
     post           CL files -> NC program with its proof
@@ -18,6 +19,7 @@ Functions
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
     write_report   Verification -> page or data
+    write_plot     ClDescription -> page with the path in space
 
 They print nothing and raise ``TrunnionError``. Names are imported when they are first used.
 """
@@ -32,10 +34,13 @@ if TYPE_CHECKING:
     from trunnion.api.describing import ControlDescription as ControlDescription
     from trunnion.api.describing import describe_control as describe_control
     from trunnion.api.describing import describe_controls as describe_controls
+    from trunnion.api.describing_cl import ClDescription as ClDescription
+    from trunnion.api.describing_cl import describe_cl as describe_cl
     from trunnion.api.describing_machine import MachineDescription as MachineDescription
     from trunnion.api.describing_machine import describe_machine as describe_machine
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.planning import plan as plan
+    from trunnion.api.plotting import write_plot as write_plot
     from trunnion.api.post_result import PostResult as PostResult
     from trunnion.api.post_result import ProofFailedError as ProofFailedError
     from trunnion.api.posting import post as post
@@ -68,6 +73,7 @@ __version__ = "0.1.0"
 _MODULES: Final = {
     "Axis": "machines.machine",
     "Check": "verification.results",
+    "ClDescription": "api.describing_cl",
     "ControlDescription": "api.describing",
     "Comparison": "verification.comparison.result",
     "ConvertResult": "api.converting",
@@ -90,6 +96,7 @@ _MODULES: Final = {
     "TrunnionError": "errors",
     "Verification": "verification.results",
     "convert": "api.converting",
+    "describe_cl": "api.describing_cl",
     "describe_control": "api.describing",
     "describe_controls": "api.describing",
     "describe_machine": "api.describing_machine",
@@ -100,12 +107,14 @@ _MODULES: Final = {
     "read_cl": "api.reading",
     "read_program": "api.reading",
     "verify": "api.verifying",
+    "write_plot": "api.plotting",
     "write_report": "api.reports",
 }
 
 __all__ = [
     "Axis",
     "Check",
+    "ClDescription",
     "Comparison",
     "ControlDescription",
     "ConvertResult",
@@ -129,6 +138,7 @@ __all__ = [
     "Verification",
     "__version__",
     "convert",
+    "describe_cl",
     "describe_control",
     "describe_controls",
     "describe_machine",
@@ -139,6 +149,7 @@ __all__ = [
     "read_cl",
     "read_program",
     "verify",
+    "write_plot",
     "write_report",
 ]
 

@@ -210,12 +210,32 @@ def as_toolpaths(
     observer: Observer,
     dialect: str | None = None,
 ) -> list[Toolpath]:
-    """Toolpaths in their order, read if they are named; ``units``, ``dialect``, ``strict`` as ``read_cl`` has them.
+    """The toolpaths of one program, as ``read_toolpaths`` has them.
 
     Raises
     ------
     InputError
         If a file cannot be used, or the points of two files are in different coordinate systems.
+    """
+    toolpaths = read_toolpaths(cl, units, strict, observer, dialect)
+    if problem := other_system(toolpaths):
+        raise InputError(problem)
+    return toolpaths
+
+
+def read_toolpaths(
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    units: str | None,
+    strict: bool,
+    observer: Observer,
+    dialect: str | None = None,
+) -> list[Toolpath]:
+    """Toolpaths in their order, read if they are named; ``units``, ``dialect``, ``strict`` as ``read_cl`` has them.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used.
     """
     if isinstance(cl, str | os.PathLike | Toolpath):
         cl = [cl]
@@ -223,12 +243,9 @@ def as_toolpaths(
         raise wrong_argument("cl", cl, "give CL files: a path, a Toolpath, or a list of them")
     check_observer(observer)
     paths = (each if isinstance(each, Toolpath) else check_path("cl", each) for each in cl)
-    toolpaths = [
+    return [
         each
         if isinstance(each, Toolpath)
         else read_cl(each, units=units, dialect=dialect, strict=strict, observer=observer)
         for each in paths
     ]
-    if problem := other_system(toolpaths):
-        raise InputError(problem)
-    return toolpaths

@@ -5,7 +5,7 @@ from trunnion.cl.dialects import DIALECTS
 from trunnion.cl.read import read_cl
 from trunnion.cl.scan import fill_modal_axes, scan
 from trunnion.cl.systems import other_system
-from trunnion.cl.unknown import statement_words, unknown_statement_problems
+from trunnion.cl.unknown import statement_words, unknown_statement_problems, unknown_statements
 from trunnion.cl.word_events import events_of
 
 #: Kernels that every file needs.
@@ -20,4 +20,5 @@ __all__ = [
     "read_cl",
     "statement_words",
     "unknown_statement_problems",
+    "unknown_statements",
 ]

@@ -17,6 +17,16 @@ def statement_words(text: str) -> tuple[str, frozenset[str]]:
     return statement.major, frozenset(statement.listed().split(",")) - {""}
 
 
+def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
+    """The statements of a toolpath that are not known, those alike together, by their first lines."""
+    alike: dict[str, list[UnknownStatement]] = {}
+    for operation in toolpath.operations:
+        for event in operation.events:
+            if isinstance(event, UnknownStatement):
+                alike.setdefault(event.what, []).append(event)
+    return list(alike.values())
+
+
 def unknown_statement_problems(toolpath: Toolpath, cure: str = "") -> tuple[Problem, ...]:
     """What is not known in a toolpath, one problem for all statements alike.
 

@@ -100,6 +100,7 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     _add_convert(
         commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
     )
+    _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
@@ -209,6 +210,16 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
         "--force", action="store_true", help="convert what was understood, and write a program that must not run"
     )
     parser.set_defaults(run=_lazy_command("convert", "run"))
+
+
+def _add_info(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("files", nargs="+", metavar="CL", help="CL file; several are one job in their order")
+    parser.add_argument("--units", choices=("mm", "inch"), help="length unit of files that do not state it")
+    parser.add_argument("--dialect", choices=DIALECTS, help="what they are written in")
+    parser.add_argument("--strict", action="store_true", help="unknown statements are errors")
+    parser.add_argument("--json", action="store_true", help="data in place of text")
+    parser.add_argument("--plot", metavar="FILE", help="the path by operation in space, as a page (.html)")
+    parser.set_defaults(run=_lazy_command("info", "info"))
 
 
 def _add_machines(parser: argparse.ArgumentParser) -> None:

@@ -25,7 +25,7 @@ def normalize_cycles(operation: Operation) -> Operation:
     """
     if not any(isinstance(event, CycleOn) for event in operation.events):
         return operation
-    holes, moves = _hole_rows(operation), operation.moves
+    holes, moves = hole_rows(operation), operation.moves
     events: list[Event] = []
     cycle: CycleOn | None = None
     edges = np.flatnonzero(np.diff(holes, prepend=False, append=False)).tolist()
@@ -44,7 +44,7 @@ def normalize_cycles(operation: Operation) -> Operation:
     return replace(operation, moves=replace(moves, kind=kind), events=tuple(events))
 
 
-def _hole_rows(operation: Operation) -> Flags:
+def hole_rows(operation: Operation) -> Flags:
     """(n,) bool: the row is a hole: a cycle is on there, and it is no rapid."""
     is_on = np.zeros(len(operation.moves), bool)
     for event in operation.events:

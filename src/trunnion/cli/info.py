@@ -1,0 +1,165 @@
+"""``trunnion info``: what CL files hold."""
+
+import argparse
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Final
+
+from trunnion.api.describing_cl import ClDescription, OperationDescription, ToolDescription, Vector, describe_cl
+from trunnion.api.plotting import check_plot, write_plot
+from trunnion.cli.results import as_json, print_result
+from trunnion.cli.terminal import Terminal
+from trunnion.machines.motion_time import format_duration
+from trunnion.model.toolpath import Frame
+from trunnion.wording import counted
+
+_INDENT: Final = "  "
+
+#: Decimals of numbers in data.
+_DECIMALS: Final = 9
+
+#: Planes that the text shows of an operation.
+_MOST_PLANES: Final = 6
+
+#: Fields of a description that are no data.
+_NOT_DATA: Final = frozenset({"toolpaths", "remarks"})
+
+
+def info(arguments: argparse.Namespace) -> int:
+    """Show what CL files hold, as text or data, and draw it."""
+    if arguments.plot is not None:
+        check_plot(arguments.plot, arguments.files)
+    terminal = Terminal()
+    found = describe_cl(
+        arguments.files,
+        units=arguments.units,
+        dialect=arguments.dialect,
+        strict=arguments.strict,
+        observer=terminal,
+    )
+    terminal.problems(found.remarks)
+    if arguments.plot is not None:
+        write_plot(found, arguments.plot)
+    print_result(*([as_json(info_data(found))] if arguments.json else info_lines(found)))
+    return 0
+
+
+def info_data(found: ClDescription) -> dict[str, object]:
+    """A description as data."""
+    data: dict[str, object] = {"schema": 1}
+    for field in fields(found):
+        if field.name not in _NOT_DATA:
+            data[field.name] = _plain(getattr(found, field.name))
+    data["remarks"] = [{"file": r.file, "line": r.line, "what": r.what, "cure": r.cure} for r in found.remarks]
+    return data
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, Frame):
+        x, y, z = value.matrix().T.tolist()
+        return _plain({"origin": value.origin, "x": x, "y": y, "z": z})
+    if isinstance(value, float):
+        return round(value, _DECIMALS) + 0.0
+    if isinstance(value, tuple | list):
+        return [_plain(each) for each in value]
+    if isinstance(value, dict):
+        return {key: _plain(each) for key, each in value.items()}
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+    return value
+
+
+def info_lines(found: ClDescription) -> Iterator[str]:
+    """A description in lines."""
+    for file in found.files:
+        unit = file.units if file.states_units else f"{file.units}, which it does not state"
+        part = f"; part {file.part}" if file.part else ""
+        yield f"{file.file}: {file.title} ({file.recognized}); lengths in {unit}{part}"
+        if file.system:
+            yield f"{_INDENT}coordinate system of the points: {' '.join(f'{number:g}' for number in file.system)}"
+    points, arcs, holes = (
+        sum(getattr(operation, name) for operation in found.operations) for name in ("points", "arcs", "holes")
+    )
+    yield f"{counted(len(found.operations), 'operation')}: {_motions(points, arcs, holes)}"
+    yield f"cutting {_lengths(found)}; rapids {found.rapid_length:.0f} mm"
+    if found.extents is not None:
+        yield f"points from {_vector(found.extents[0])} to {_vector(found.extents[1])} mm"
+    yield from ("", "Operations")
+    for number, operation in enumerate(found.operations, 1):
+        yield from _operation_lines(number, operation, found)
+    yield from ("", "Tools")
+    yield from (_INDENT + _tool_line(tool) for tool in found.tools)
+    if found.systems != (Frame(),):
+        yield from ("", "Coordinate systems: origin, X, Y in the CAM's absolute system")
+        for number, frame in enumerate(found.systems, 1):
+            yield f"{_INDENT}{number}  {_vector(frame.origin)}  {_vector(frame.x)}  {_vector(frame.y)}"
+    if found.unknown:
+        yield from ("", "Statements that are not known")
+        for unknown in found.unknown:
+            times = counted(unknown.count, "time")
+            yield f"{_INDENT}{unknown.file}:{unknown.line}: {unknown.statement}  {times}: {unknown.what}"
+
+
+def _operation_lines(number: int, operation: OperationDescription, found: ClDescription) -> Iterator[str]:
+    tool = found.tools[operation.tool]
+    motions = _motions(operation.points, operation.arcs, operation.holes)
+    yield f"{_INDENT}{number}  {operation.name}  {operation.kind}  {_tool_name(tool)}  {motions}"
+    details = [f"cutting {_lengths(operation)}", *operation.cycles, *_rates(operation)]
+    if len(found.systems) > 1:
+        details.append(f"coordinate system {operation.system + 1}")
+    yield _INDENT * 3 + "; ".join(details)
+    if operation.planes:
+        shown = ", ".join(map(_vector, operation.planes[:_MOST_PLANES]))
+        more = len(operation.planes) - _MOST_PLANES
+        yield f"{_INDENT * 3}planes {shown}{f' and {more} more' if more > 0 else ''}"
+    if operation.extents is not None:
+        yield f"{_INDENT * 3}points from {_vector(operation.extents[0])} to {_vector(operation.extents[1])} mm"
+
+
+def _motions(points: int, arcs: int, holes: int) -> str:
+    return f"{counted(points, 'point')}, {counted(arcs, 'arc')}, {counted(holes, 'hole')}"
+
+
+def _lengths(found: ClDescription | OperationDescription) -> str:
+    time = f"{found.cutting_length:.0f} mm in {format_duration(found.cutting_seconds)} at the programmed feeds"
+    unknown = found.moves_without_time
+    return time if not unknown else f"{time}, without the time of {counted(unknown, 'move')} of unknown feed"
+
+
+def _rates(operation: OperationDescription) -> Iterator[str]:
+    for name, values, unit in (
+        ("feed", operation.feed, "mm/min"),
+        ("feed", operation.feed_per_rev, "mm/rev"),
+        ("speed", operation.rpm, "rev/min"),
+    ):
+        if values is not None:
+            low, high = values
+            yield f"{name} {low:g} {unit}" if low == high else f"{name} {low:g} to {high:g} {unit}"
+
+
+def _tool_name(tool: ToolDescription) -> str:
+    number = "no tool" if tool.number is None else f"T{tool.number}"
+    return f"{number} {tool.name}".strip()
+
+
+def _tool_line(tool: ToolDescription) -> str:
+    sizes = [
+        f"{title} {value:g}"
+        for title, value in (
+            ("d", tool.diameter),
+            ("r", tool.corner_radius),
+            ("upper r", tool.upper_radius),
+            ("length", tool.length),
+            ("flutes", tool.flute_length),
+            ("taper", tool.taper_angle),
+            ("tip angle", tool.tip_angle),
+        )
+        if value
+    ]
+    register = [f"length register {tool.register}"] if tool.register else []
+    where = "operations " + ", ".join(str(place + 1) for place in tool.operations)
+    return "; ".join([f"{_tool_name(tool)}  {tool.kind} {' '.join(sizes)}".rstrip(), *register, where])
+
+
+def _vector(values: Vector | Sequence[float]) -> str:
+    return "(" + ", ".join(f"{round(value, 4) + 0.0:g}" for value in values) + ")"
