@@ -33,11 +33,13 @@ NAIVE_RATIO = 4.0  # times the naive post's points/s, at least
 MEMORY_RATIO = 4.0  # peak memory in input sizes, below
 SMALL_SECONDS = 0.7  # a small file from start to end, at most
 FIRST_SECONDS = 15.0  # the first post of the sample, its kernels compiled on two cores, at most
+REFERENCE_SECONDS = 5.94  # of the naive post, a million points, on the machine for which seconds are asked
 
 SAMPLE = HERE.parent / "tests" / "golden" / "yl569" / "3_blade_finish.cls"
 
 FLOOR = "C floor"
 BARE = "trunnion without its proof"
+NAIVE = "naive post"
 
 #: A block that moves, without its number and G word, and with the words of its position alone.
 MOTION = re.compile(rb"^(?:N\d+ )?(?:G[01] )?((?:[XYZBC]-?[\d.]+ ?)+)", re.MULTILINE)
@@ -337,11 +339,11 @@ def table(rows: Sequence[Sequence[str]]) -> None:
 
 def contestants(source: Path, folder: Path) -> list[Contestant]:
     """Everything that posts the large file: Trunnion, without its proof too, the naive post, and the C floor."""
-    names = ("trunnion", BARE, "naive post", FLOOR)
+    names = ("trunnion", BARE, NAIVE, FLOOR)
     outputs = {name: folder / f"{name.replace(' ', '_')}.mpf" for name in names}
     bare = [sys.executable, str(HERE / "unproven.py"), str(source), MACHINE, str(outputs[BARE])]
-    naive = [sys.executable, str(HERE / "naive_post.py"), str(source), str(outputs["naive post"])]
-    commands = {"trunnion": trunnion(source, outputs["trunnion"]), BARE: bare, "naive post": naive}
+    naive = [sys.executable, str(HERE / "naive_post.py"), str(source), str(outputs[NAIVE])]
+    commands = {"trunnion": trunnion(source, outputs["trunnion"]), BARE: bare, NAIVE: naive}
     if program := compile_floor(folder):
         commands[FLOOR] = [str(program), str(source), str(outputs[FLOOR])]
     return [Contestant(name, command, outputs[name]) for name, command in commands.items()]
@@ -359,30 +361,40 @@ def print_times(able: Sequence[Contestant], points: int) -> None:
     print()
 
 
-def seconds_figure(what: str, seconds: float | None, most: float) -> Figure:
-    """Wall seconds from the start of a process to its end; None: it failed."""
+def slowness(able: Sequence[Contestant], points: int) -> float:
+    """How many times slower the naive post is here than where seconds are asked; 1 if it failed."""
+    naive = [one.wall for one in able if one.name == NAIVE]
+    return naive[0] * MILLION / points / REFERENCE_SECONDS if naive else 1.0
+
+
+def seconds_figure(what: str, seconds: float | None, most: float, slower: float) -> Figure:
+    """Wall seconds from the start of a process to its end, as on the machine for which they are asked.
+
+    None: it failed.
+    """
     if seconds is None:
         return Figure(what, f"<= {most:g} s", "not measured", False)
-    return Figure(what, f"<= {most:g} s", f"{seconds:.2f} s", seconds <= most)
+    scaled = seconds / slower
+    return Figure(what, f"<= {most:g} s", f"{scaled:.2f} s ({seconds:.2f} s here)", scaled <= most)
 
 
-def small_file(runs: int, folder: Path) -> Figure:
+def small_file(runs: int, folder: Path, slower: float) -> Figure:
     """How long a small file takes, with compiled kernels on disk."""
     source, target = folder / "small.cls", folder / "small.mpf"
     make_cls(SMALL, source)
     able = race([Contestant("small file", trunnion(source, target), target)], runs)
-    return seconds_figure(f"{SMALL} points from start to end", able[0].wall if able else None, SMALL_SECONDS)
+    return seconds_figure(f"{SMALL} points from start to end", able[0].wall if able else None, SMALL_SECONDS, slower)
 
 
-def first_post(folder: Path) -> Figure:
+def first_post(folder: Path, slower: float) -> Figure:
     """How long a newcomer's first post takes: of the sample, with no compiled kernels on disk."""
     empty = {"NUMBA_CACHE_DIR": str(folder / "kernels")}
+    seconds = None
     try:
         seconds = run(trunnion(SAMPLE, folder / "sample.mpf"), empty).wall
     except Failed as failed:
         print(f"the first post failed: {failed}")
-        return seconds_figure("first post of the sample", None, FIRST_SECONDS)
-    return seconds_figure("first post of the sample", seconds, FIRST_SECONDS)
+    return seconds_figure("first post of the sample", seconds, FIRST_SECONDS, slower)
 
 
 def measure(points: int, runs: int, folder: Path) -> list[Figure]:
@@ -405,7 +417,8 @@ def measure(points: int, runs: int, folder: Path) -> list[Figure]:
     figures += speed_figures(bare, rivals, False)
     if not any(one.name == FLOOR for one in started):
         figures.append(Figure(f"points/s, trunnion / {FLOOR}", f">= {C_RATIO:g}", f"skipped: no {FLOOR}", None))
-    figures += [memory_figure(product, size, large), small_file(runs, folder), first_post(folder)]
+    slower = slowness(able, points)
+    figures += [memory_figure(product, size, large), small_file(runs, folder, slower), first_post(folder, slower)]
     figures += [Figure(f"{one.name} runs", "yes", "no", False) for one in started if one not in able]
     # only now, as what this process holds in memory would count as its children's
     given = read_points(source)

@@ -27,7 +27,7 @@ from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.toolpath import Arcs
 
 #: Rows computed at a time: a few megabytes, and long enough that handing over to the other thread costs nothing.
-CHUNK_ROWS = 32768
+CHUNK_ROWS = 16384
 
 
 class ProgrammedWord(IntFlag):

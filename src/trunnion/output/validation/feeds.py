@@ -35,7 +35,7 @@ def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     moves, formats = motion.operation.moves, program.control.number_formats(motion.three_axis)
     if motion.mode is MachiningMode.WITHOUT_TCP or not len(moves):
         return []
-    changes = np.flatnonzero(np.diff(moves.feed, prepend=np.nan) != 0.0)
+    changes = np.concatenate(([0], np.flatnonzero(moves.feed[1:] != moves.feed[:-1]) + 1))
     rows = changes[(moves.kind[changes] != Kind.RAPID) & (moves.feed[changes] > 0.0)]
     lowered = set(motion.deviations.slowed_feed.tolist())
     found = []

@@ -7,7 +7,9 @@ Heights are distances from the hole's CL point along the tool axis, mm. docs/cl.
 """
 
 import math
+from bisect import bisect_right
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -90,9 +92,10 @@ def without_holes(operation: Operation) -> tuple[Operation, Flags]:
     """The operation without the rows that are holes, and which rows these are, (n,) bool."""
     moves = operation.moves
     holes = np.zeros(len(moves), bool)
-    for event in operation.events:
-        if isinstance(event, CycleOn | CycleOff):
-            holes[event.row :] = isinstance(event, CycleOn)
+    switches = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
+    for event, following in pairwise([*switches, None]):
+        if isinstance(event, CycleOn):
+            holes[event.row : following.row if following else None] = True
     holes &= moves.kind != Kind.RAPID
     if not holes.any():
         return operation, holes
@@ -127,17 +130,20 @@ def holes_of_operation(
     spindle
         The spindle when the operation begins.
     """
-    cl_row = first + np.concatenate(([0], np.cumsum(~hole_rows)))
+    rows = np.flatnonzero(hole_rows)
+    cl_rows = first + rows - np.arange(len(rows))
+    cycles = [event for event in operation.events if isinstance(event, CycleOn)]
+    cycle_rows = [cycle.row for cycle in cycles]
     found: list[Hole] = []
     cycle_first = -1
-    for row in np.flatnonzero(hole_rows).tolist():
-        cycle = next(e for e in reversed(operation.events) if isinstance(e, CycleOn) and e.row <= row)
+    for row, cl_row in zip(rows.tolist(), cl_rows.tolist(), strict=True):
+        cycle = cycles[bisect_right(cycle_rows, row) - 1]
         cycle_first = cycle_first if cycle_first >= cycle.row and hole_rows[row - 1] else row
         found.append(
             Hole(
                 tip=operation.moves.tip[row],
                 axis=operation.moves.axis[row],
-                row=int(cl_row[row]),
+                row=cl_row,
                 line=int(operation.moves.line[row]),
                 file=file,
                 cycle=_hole_cycle(operation, cycle, cycle_first, row),

@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Ints
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.row_ranges import chunk_bounds
+from trunnion.verification.row_ranges import RowRanges, chunk_bounds
 
 #: Words that position the tip or the tool axis.
 POSITION_WORDS = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.VECTOR
@@ -35,7 +35,11 @@ def only_positions_rotary_axes(run: Run, rows: Ints) -> Flags:
 
 
 def _turns_only(programmed: Codes) -> Flags:
-    return np.asarray(((programmed & int(POSITION_WORDS)) == 0) & ((programmed & int(ROTARY_WORDS)) != 0))
+    return np.asarray(~_positions(programmed) & ((programmed & int(ROTARY_WORDS)) != 0))
+
+
+def _positions(programmed: Codes) -> Flags:
+    return np.asarray((programmed & int(POSITION_WORDS)) != 0)
 
 
 def tool_axis_exit_rows(run: Run) -> Ints:
@@ -65,13 +69,13 @@ def approach_rows(run: Run) -> Ints:
     """
     starts = {event.before_row for event in run.events if event.kind == "retract"}
     starts.update(row for row in run.state.machine_frame.rows_changing_to(False) if row > 0)
-    positions = (run.programmed & int(POSITION_WORDS)) != 0
-    for first, end in chunk_bounds(len(run)):
-        positions[first:end] &= ~run.state.machine_frame.part(first, end)
-    rows = np.flatnonzero(positions)
-    at = np.searchsorted(rows, sorted(starts))
+    rows = RowRanges.from_flags(
+        (first, _positions(run.programmed[first:end]) & ~run.state.machine_frame.part(first, end))
+        for first, end in chunk_bounds(len(run))
+    )
+    following = {rows.count_before(start) for start in starts}
     found = []
-    for row in np.unique(rows[at[at < len(rows)]]).tolist():
+    for row in (rows[k] for k in sorted(following) if k < len(rows)):
         if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any() or run.state.machine_frame[row + 1]:
             continue
         if run.state.tcp[row] and int(run.programmed[row]) & int(ROTARY_WORDS):

@@ -41,7 +41,8 @@ def rows_to_match(run: Run, expected: ExpectedPath) -> RowRanges:
     if not len(without) and not len(turns):
         return rows
     flags = np.zeros(len(run), np.bool_)
-    flags[rows.rows(0, len(rows))] = True
+    for first, count in rows.ranges(0, len(rows)):
+        flags[first : first + count] = True
     flags[without] = False
     flags[turns] = True
     return RowRanges.from_flags([(0, flags)])
