@@ -87,6 +87,7 @@ def test_every_fault_that_changes_the_work_is_reported_at_its_block(name: str, t
         (10, "N100 G40 G17 G710 G94 G90 G60 G602 FNORM", "OUTSIDE", DRIVES),
         (44, "N440 ORIMKS", "OUTSIDE", DRIVES),
         (23, "N230 _camtolerance=.07", "OUTSIDE", SMOOTHING),
+        (23, "N230 _camtolerance=.96", "CAUGHT", "SHOWS"),
         (29, "", "OUTSIDE", AGAIN),
         (31, "", "OUTSIDE", START),
         (38, "", "OUTSIDE", HOME),
