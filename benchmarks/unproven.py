@@ -25,7 +25,7 @@ def main() -> None:
         from trunnion.machines import load_machine
         from trunnion.output.program_writer import write_program
 
-        program = plan_program([next(coming)], prepare(load_machine(name)))[0]
+        program = plan_program(next(coming), prepare(load_machine(name)))[0]
         with atomic_file(target) as sink:
             write_program(program, sink)
     os._exit(0)  # as the command ends

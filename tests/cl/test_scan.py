@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from tests.support.naive import cl_scan as naive
 from trunnion.arrays import Floats, Lines
-from trunnion.cl.read import read_cl, read_in_chunks
+from trunnion.cl.read import read_cl, read_source
 from trunnion.cl.scan import COMMENT, MAKES_ROW, SPAN_COLUMNS, UNFINISHED, PointColumns, fill_modal_axes, scan
+from trunnion.cl.sources import cl_sources
 from trunnion.errors import InputError
 from trunnion.model.toolpath import Toolpath
 
@@ -81,7 +82,7 @@ def test_a_point_is_read_to_the_last_bit_or_left_to_python(fields: list[str], bl
 def test_what_the_reader_gives_is_what_python_reads(tmp_path: Path, fields: list[str]) -> None:
     path = tmp_path / "a.cls"
     path.write_text(f"TOOL PATH/A,TOOL,T\nGOTO/{','.join(fields)}\nEND-OF-PATH\n")
-    (operation,) = read_in_chunks(path, 1 << 16).operations
+    (operation,) = read_source(cl_sources(path)[0], 1 << 16).operations
     assert [bits(number) for number in operation.moves.tip[0]] == [bits(float(field)) for field in fields]
 
 
@@ -193,7 +194,7 @@ def fingerprint(toolpath: Toolpath) -> object:
 
 def outcome(path: Path, chunk: int) -> object:
     try:
-        return fingerprint(read_in_chunks(path, chunk))
+        return fingerprint(read_source(cl_sources(path)[0], chunk))
     except InputError as error:
         return error.problems
 

@@ -127,7 +127,8 @@ def test_contact_points_are_those_that_a_plain_look_finds(
     line = np.array([k for k, each in enumerate(text.splitlines(), 1) if each.startswith("GOTO")])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(surface_normals, "_CHUNK", chunk)
-        found = contact_points(file, line.astype(np.int32))
+        with file.open("rb") as source:
+            found = contact_points(source, line.astype(np.int32))
     assert [None if np.isnan(row).any() else tuple(row.tolist()) for row in found] == naive(text)
 
 

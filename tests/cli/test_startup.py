@@ -33,13 +33,13 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
 def test_toolpaths_come_in_order_and_are_not_kept() -> None:
     with ThreadPoolExecutor(1) as executor:
         coming = read_toolpaths(FILES, None, False, executor)
-        first = next(coming)
+        (first,) = next(coming)
         assert first.file == FILES[0]
         gone = weakref.ref(first.operations[0].moves.tip)
         del first
-        assert next(coming).file == FILES[1]
+        assert [path.file for path in next(coming)] == FILES[1:2]
         assert gone() is None
-        assert [path.file for path in coming] == [FILES[2]]
+        assert [path.file for (path,) in coming] == [FILES[2]]
 
 
 def test_a_file_that_cannot_be_read_is_said_where_its_toolpath_is_wanted(tmp_path: Path) -> None:

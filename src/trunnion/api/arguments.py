@@ -3,7 +3,7 @@
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import BinaryIO, TypeGuard, TypeVar
 
 from trunnion.api.observer import Observer
 from trunnion.errors import InputError, argument_problem
@@ -22,6 +22,11 @@ def check_path(name: str, value: object) -> Path:
     if isinstance(value, str | os.PathLike) and isinstance(text := os.fspath(value), str) and text and "\0" not in text:
         return Path(text)
     raise wrong_argument(name, value, "give the path of a file")
+
+
+def is_stream(value: object) -> TypeGuard[BinaryIO]:
+    """Whether something can be read as a stream."""
+    return hasattr(value, "read") and not isinstance(value, str | os.PathLike)
 
 
 def check_paths(name: str, values: object) -> list[Path]:

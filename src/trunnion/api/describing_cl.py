@@ -177,7 +177,8 @@ def describe_cl(
     Parameters
     ----------
     cl
-        CL files in the order in which they are cut: paths, or toolpaths that are already read.
+        CL files in the order in which they are cut: paths (of archives too), binary streams, or toolpaths that are
+        already read.
     units
         Length unit of the files, ``"mm"`` or ``"inch"``; by default each file decides.
     dialect

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike
 from trunnion.controls import control_library
 from trunnion.definitions import resolve_extends
+from trunnion.files import file_on_disk
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.verification import Verification
@@ -15,7 +16,11 @@ def cl_files(cl: ToolpathLike | Iterable[ToolpathLike]) -> list[FilePath]:
     """CL files, as far as they are known before any is read: an iterator is left alone."""
     if isinstance(cl, str | os.PathLike | Toolpath):
         cl = [cl]
-    files = [each.file if isinstance(each, Toolpath) else each for each in cl] if isinstance(cl, Sequence) else []
+    files = (
+        [file_on_disk(each.file) if isinstance(each, Toolpath) else each for each in cl]
+        if isinstance(cl, Sequence)
+        else []
+    )
     return [file for file in files if isinstance(file, str | os.PathLike)]
 
 
@@ -29,5 +34,5 @@ def definition_files(machine: MachineLike, loaded: Machine) -> list[FilePath]:
 def verified_files(verification: Verification) -> list[FilePath]:
     """The files that a verification is about."""
     run = verification.run
-    cl = {operation.cl_file for operation in verification.operations}
+    cl = {file_on_disk(operation.cl_file) for operation in verification.operations}
     return [verification.program, *run.files, *cl, *definition_files(run.machine, run.machine)]

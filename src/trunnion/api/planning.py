@@ -35,7 +35,8 @@ def plan(
     Parameters
     ----------
     cl
-        CL files in the order in which they are cut: paths, or toolpaths that are already read.
+        CL files in the order in which they are cut: paths (of archives too), binary streams, or toolpaths that are
+        already read.
     machine
         A name, a path or a ``Machine``.
     settings

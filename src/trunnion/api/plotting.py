@@ -8,7 +8,7 @@ from trunnion.api.arguments import check_path, wrong_argument
 from trunnion.api.describing_cl import ClDescription
 from trunnion.api.reading import FilePath
 from trunnion.errors import InputError, Problem
-from trunnion.files import OutputPlace, atomic_file, check_outputs, resolve_output
+from trunnion.files import OutputPlace, atomic_file, check_outputs, file_on_disk, resolve_output
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import Frame
 from trunnion.reporting.path_page import render_path_page
@@ -48,7 +48,8 @@ def write_plot(description: ClDescription, plot: FilePath) -> None:
     """
     if not isinstance(description, ClDescription):
         raise wrong_argument("description", description, "give the result of trunnion.describe_cl")
-    inputs = [file.file for file in description.files]
+    names = [file.file for file in description.files]
+    inputs = list(map(file_on_disk, names))
     place = check_plot(plot, inputs)
     operations = [operation for toolpath in description.toolpaths for operation in toolpath.operations]
     first = next((operation.frame for operation in operations if len(operation.moves)), Frame())
@@ -57,4 +58,4 @@ def write_plot(description: ClDescription, plot: FilePath) -> None:
         for about, operation in zip(description.operations, operations, strict=True)
     )
     with atomic_file(place, inputs=inputs) as sink:
-        sink.writelines(render_path_page(", ".join(Path(file).name for file in inputs), paths, tolerance))
+        sink.writelines(render_path_page(", ".join(Path(file).name for file in names), paths, tolerance))

@@ -24,6 +24,7 @@ from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
 from trunnion.errors import Problem, Severity, TrunnionError
+from trunnion.files import file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -53,7 +54,8 @@ def post(
     Parameters
     ----------
     cl
-        CL files in the order in which they are cut: paths, or toolpaths that are already read.
+        CL files in the order in which they are cut: paths (of archives too), binary streams, or toolpaths that are
+        already read.
     machine
         The name of a shipped machine, the path of a definition, or a ``Machine``.
     output
@@ -139,7 +141,7 @@ def post_beside(
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         toolpaths = load_toolpaths(cl, job, strict, observer)
-        target.files.protect(toolpath.file for toolpath in toolpaths)
+        target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer)
 
 

@@ -3,13 +3,20 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
-from typing import Final, TypeAlias
+from pathlib import Path
+from typing import BinaryIO, Final, TypeAlias
 
 from trunnion import machines, readers
-from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths, wrong_argument
+from trunnion.api.arguments import (
+    check_choice,
+    check_observer,
+    check_path,
+    check_paths,
+    is_stream,
+    wrong_argument,
+)
 from trunnion.api.observer import SILENT, Observer
-from trunnion.cl import DIALECTS, other_system
-from trunnion.cl import read_cl as read_cl_file
+from trunnion.cl import DIALECTS, not_one_file, other_system, read_cl_files
 from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
 from trunnion.errors import InputError, Problem, unusable_file
@@ -23,15 +30,15 @@ FilePath: TypeAlias = str | os.PathLike[str]
 #: A shipped machine by its name, a definition by its path, or a machine that is already loaded.
 MachineLike: TypeAlias = str | os.PathLike[str] | Machine
 
-#: A CL file by its path, or already read.
-ToolpathLike: TypeAlias = FilePath | Toolpath
+#: A CL file by its path, packed or not; a binary stream of one; or a CL file that is already read.
+ToolpathLike: TypeAlias = FilePath | BinaryIO | Toolpath
 
 #: Fields of a ``Machine`` that do not say how it moves: its names, its setup, and its control, which is a table.
 _NO_CONTENT: Final = {"key", "name", "description", "files", "workpiece_zero", "tool_length", "control", "cl_words"}
 
 
 def read_cl(
-    path: FilePath,
+    path: FilePath | BinaryIO,
     *,
     units: str | None = None,
     dialect: str | None = None,
@@ -43,7 +50,7 @@ def read_cl(
     Parameters
     ----------
     path
-        The file.
+        The file; it may be packed by gzip or bzip2, be the only CL file of a ZIP archive, or be a binary stream.
     units
         Length unit of the file, ``"mm"`` or ``"inch"``; by default the file decides.
     dialect
@@ -62,7 +69,7 @@ def read_cl(
     Raises
     ------
     InputError
-        With every problem found, if the file cannot be used.
+        With every problem found, if the file cannot be used, or is an archive of several.
 
     Examples
     --------
@@ -71,14 +78,25 @@ def read_cl(
     >>> toolpath.operations[0].moves.tip.shape
     (23, 3)
     """
-    path = check_path("path", path)
+    toolpaths = _read(path, units, dialect, strict, observer, "path")
+    if len(toolpaths) > 1:
+        raise not_one_file(toolpaths[0].file, len(toolpaths))
+    return toolpaths[0]
+
+
+def _read(
+    cl: object, units: str | None, dialect: str | None, strict: bool, observer: Observer, argument: str
+) -> list[Toolpath]:
+    """The toolpaths of a CL file, a stream or an archive; errors name the argument."""
+    path = cl if is_stream(cl) else check_path(argument, cl)
     check_observer(observer)
     if units is not None:
         check_choice("units", units.lower() if isinstance(units, str) else units, ("mm", "inch"))
     if dialect is not None:
         check_choice("dialect", dialect, tuple(DIALECTS))
-    size = path.stat().st_size if unusable_file(path, "a CL file") is None else 0
-    with observer.progress(path.name, size, "B") as advance:
+    is_plain = isinstance(path, Path) and unusable_file(path, "a CL file") is None
+    size = path.stat().st_size if isinstance(path, Path) and is_plain else 0
+    with observer.progress(path.name if isinstance(path, Path) else "stdin", size, "B") as advance:
         done = 0
 
         def read(total: int) -> None:
@@ -86,7 +104,7 @@ def read_cl(
             advance(total - done)
             done = total
 
-        return read_cl_file(path, units=units, dialect=dialect, strict=strict, progress=read)
+        return read_cl_files(path, units=units, dialect=dialect, strict=strict, progress=read)
 
 
 def load_machine(machine: FilePath) -> Machine:
@@ -237,15 +255,13 @@ def read_toolpaths(
     InputError
         If a file cannot be used.
     """
-    if isinstance(cl, str | os.PathLike | Toolpath):
+    if isinstance(cl, str | os.PathLike | Toolpath) or is_stream(cl):
         cl = [cl]
     if isinstance(cl, bytes | Mapping) or not isinstance(cl, Iterable):
         raise wrong_argument("cl", cl, "give CL files: a path, a Toolpath, or a list of them")
     check_observer(observer)
-    paths = (each if isinstance(each, Toolpath) else check_path("cl", each) for each in cl)
     return [
-        each
-        if isinstance(each, Toolpath)
-        else read_cl(each, units=units, dialect=dialect, strict=strict, observer=observer)
-        for each in paths
+        toolpath
+        for each in cl
+        for toolpath in ([each] if isinstance(each, Toolpath) else _read(each, units, dialect, strict, observer, "cl"))
     ]

@@ -2,8 +2,9 @@
 
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialects import DIALECTS
-from trunnion.cl.read import read_cl
+from trunnion.cl.read import read_cl, read_cl_files
 from trunnion.cl.scan import fill_modal_axes, scan
+from trunnion.cl.sources import not_one_file
 from trunnion.cl.systems import other_system
 from trunnion.cl.unknown import statement_words, unknown_statement_problems, unknown_statements
 from trunnion.cl.word_events import events_of
@@ -16,8 +17,10 @@ __all__ = [
     "KERNELS",
     "StatementError",
     "events_of",
+    "not_one_file",
     "other_system",
     "read_cl",
+    "read_cl_files",
     "statement_words",
     "unknown_statement_problems",
     "unknown_statements",

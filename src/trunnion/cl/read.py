@@ -1,4 +1,4 @@
-"""Reads a CL file of any dialect into a ``Toolpath``.
+"""Reads CL files of any dialect, packed or not, into ``Toolpath``.
 
 The file is read twice, in pieces: first for its encoding and the length of its lines, from which the columns are
 sized; then for its content. Points never become Python objects.
@@ -18,9 +18,9 @@ from trunnion.cl.diagnostics import Diagnostics
 from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
+from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.unknown import unknown_statement_problems
 from trunnion.encoding import EncodingDetector
-from trunnion.errors import InputError, unusable_file
 from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time.
@@ -56,19 +56,40 @@ class Survey:
 
 
 def read_cl(
-    path: Path,
+    path: Path | BinaryIO,
     *,
     units: str | None = None,
     dialect: str | None = None,
     strict: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
-    """Read a CL file.
+    """Read a CL file, as ``read_cl_files`` does.
+
+    Raises
+    ------
+    InputError
+        If it cannot be used, with every problem found, or is an archive of several.
+    """
+    sources = cl_sources(path)
+    if len(sources) > 1:
+        raise not_one_file(sources[0].name, len(sources))
+    return read_source(sources[0], units=units, dialect=dialect, strict=strict, progress=progress)
+
+
+def read_cl_files(
+    path: Path | BinaryIO,
+    *,
+    units: str | None = None,
+    dialect: str | None = None,
+    strict: bool = False,
+    progress: Callable[[int], None] | None = None,
+) -> list[Toolpath]:
+    """Read a CL file, or all those of an archive in the order of their names.
 
     Parameters
     ----------
     path
-        The file.
+        A plain file, one packed by gzip or bzip2, a ZIP archive, or a binary stream.
     units
         Length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says.
     dialect
@@ -80,46 +101,46 @@ def read_cl(
 
     Returns
     -------
-    Toolpath
+    list of Toolpath
         All lengths in mm, in the frame of each operation.
 
     Raises
     ------
     InputError
-        If the file cannot be used, with every problem found.
+        If a file cannot be used, with every problem found.
     """
-    return read_in_chunks(path, CHUNK, units=units, dialect=dialect, strict=strict, progress=progress)
+    return [
+        read_source(source, units=units, dialect=dialect, strict=strict, progress=progress)
+        for source in cl_sources(path)
+    ]
 
 
-def read_in_chunks(
-    path: Path,
-    chunk: int,
+def read_source(
+    source: ClSource,
+    chunk: int = CHUNK,
     *,
     units: str | None = None,
     dialect: str | None = None,
     strict: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
-    """Do what ``read_cl`` does, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
-    diagnostics = Diagnostics(str(path))
+    """Read one CL file, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
+    diagnostics = Diagnostics(source.name)
     if units is not None and units.lower() not in ("mm", "inch"):
         raise diagnostics.fatal(0, f"units are {units!r}", "units are mm or inch")
     if dialect is not None and dialect not in DIALECTS:
         raise diagnostics.fatal(0, f"dialect is {dialect!r}", f"dialects are {', '.join(DIALECTS)}")
-    unusable = unusable_file(path, "a CL file")
-    if unusable:
-        raise InputError(unusable)
     try:
-        with path.open("rb", buffering=0) as file:
-            survey = _survey(file, diagnostics)
-            if dialect is None:
-                recognized = recognize_dialect(survey.head)
-            else:
-                recognized = Recognition(DIALECTS[dialect], "as it was asked for")
-            columns = MoveColumns.allocate(survey.rows)
-            interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, strict)
-            file.seek(survey.bom_bytes)
-            scanner = _Scanner(columns, interpreter, diagnostics, apt=not recognized.dialect.in_sections)
+        survey = _survey(source, diagnostics)
+        if dialect is None:
+            recognized = recognize_dialect(survey.head)
+        else:
+            recognized = Recognition(DIALECTS[dialect], "as it was asked for")
+        columns = MoveColumns.allocate(survey.rows)
+        interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, strict)
+        scanner = _Scanner(columns, interpreter, diagnostics, apt=not recognized.dialect.in_sections)
+        with source.open() as file:
+            file.read(survey.bom_bytes)
             scanner.read(file, chunk, survey.bom_bytes, progress)
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
@@ -134,18 +155,24 @@ def read_in_chunks(
     )
     diagnostics.raise_errors()
     toolpath = Toolpath(
-        str(path), operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units),
+        source.name, operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units),
         dialect=recognized.dialect.name,
         recognized=f"{recognized.dialect.title}: {recognized.why}",
+        reopen=source.open if source.packed else None,
         system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
     )  # fmt: skip
     for problem in unknown_statement_problems(toolpath):
         diagnostics.remark(problem.line, problem.what, problem.cure)
-    return replace(toolpath, remarks=diagnostics.remarks)
+    return replace(toolpath, remarks=(*source.remarks, *diagnostics.remarks))
 
 
-def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:
+def _survey(source: ClSource, diagnostics: Diagnostics) -> Survey:
     """Read the whole file once, and refuse what is no text."""
+    with source.open() as file:
+        return _surveyed(file, source, diagnostics)
+
+
+def _surveyed(file: BinaryIO, source: ClSource, diagnostics: Diagnostics) -> Survey:
     detector = EncodingDetector()
     bom_bytes = size = 0
     per_byte = 1.0
@@ -159,7 +186,7 @@ def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:
             per_byte = (piece.count(b"\n") + 1) / len(piece)
             head = piece[bom_bytes:_HEAD]
         if (nul := piece.find(0)) >= 0:
-            line = _line_at(file, size + nul)
+            line = _line_at(source, size + nul)
             raise diagnostics.fatal(line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT)
         detector.add(piece)
         size += len(piece)
@@ -175,13 +202,13 @@ def _survey(file: BinaryIO, diagnostics: Diagnostics) -> Survey:
     return Survey(bom_bytes, int(rows) + 16, detector.encoding(), complete, head)
 
 
-def _line_at(file: BinaryIO, offset: int) -> int:
+def _line_at(source: ClSource, offset: int) -> int:
     """The line, from 1, that a byte of the file belongs to."""
-    file.seek(0)
     line, left = 1, offset
-    while left and (piece := file.read(min(left, _SURVEY_CHUNK))):
-        line += piece.count(b"\n")
-        left -= len(piece)
+    with source.open() as file:
+        while left and (piece := file.read(min(left, _SURVEY_CHUNK))):
+            line += piece.count(b"\n")
+            left -= len(piece)
     return line
 
 

@@ -13,7 +13,7 @@ the part lies along the same direction.
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
 import numpy as np
 
@@ -50,7 +50,8 @@ def with_normals(toolpath: Toolpath) -> Toolpath:
         return toolpath
     line = np.concatenate([operation.moves.line for operation in moving])
     try:
-        contact = contact_points(Path(toolpath.file), line) * toolpath.unit
+        with _text_of(toolpath) as source:
+            contact = contact_points(source, line) * toolpath.unit
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
         raise InputError(Problem(toolpath.file, 0, what, "leave the file where it is")) from error
@@ -66,6 +67,11 @@ def with_normals(toolpath: Toolpath) -> Toolpath:
             remarks.append(_remark(toolpath.file, operation, why))
         operations.append(replace(operation, moves=replace(moves, normal=normal)))
     return replace(toolpath, operations=tuple(operations), remarks=tuple(remarks))
+
+
+def _text_of(toolpath: Toolpath) -> BinaryIO:
+    """The text of the file that a toolpath was read from, from its beginning."""
+    return toolpath.reopen() if toolpath.reopen else Path(toolpath.file).open("rb", buffering=0)
 
 
 def _why_no_normals(tool: Tool, contact: Floats) -> str:
@@ -111,24 +117,23 @@ def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:
     return np.asarray(found)
 
 
-def contact_points(file: Path, line: Lines) -> Floats:
+def contact_points(source: BinaryIO, line: Lines) -> Floats:
     """Contact points behind the GOTOs of a file, (n, 3) float64, in units of the file; NaN where there is none.
 
     They count from a comment that announces contact points up to the next operation.
 
-    file  the CL file
-    line  (n,) int32, lines of the GOTOs, increasing
+    source  the text of the CL file from its beginning
+    line    (n,) int32, lines of the GOTOs, increasing
     """
     found = np.full((len(line), 3), np.nan)
     state = np.array([1, 0, 0], np.int64)
-    with file.open("rb", buffering=0) as source:
-        rest = b""
-        while piece := source.read(_CHUNK):
-            whole = rest + piece
-            end = whole.rfind(b"\n") + 1
-            rest = whole[end:]
-            if end:
-                _scan_contact_points(np.frombuffer(whole, np.uint8), end, line, found, state)
+    rest = b""
+    while piece := source.read(_CHUNK):
+        whole = rest + piece
+        end = whole.rfind(b"\n") + 1
+        rest = whole[end:]
+        if end:
+            _scan_contact_points(np.frombuffer(whole, np.uint8), end, line, found, state)
     if rest:
         _scan_contact_points(np.frombuffer(rest + b"\n", np.uint8), len(rest) + 1, line, found, state)
     return found

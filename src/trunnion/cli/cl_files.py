@@ -1,40 +1,85 @@
-"""Reading CL files for a command, with a progress bar."""
+"""CL files of a command: files, archives and stdin; and reading them with a progress bar."""
 
+import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 from threading import Event
+from typing import BinaryIO
 
-from trunnion.cl import read_cl
+from trunnion.cl import read_cl_files
 from trunnion.cli.progress import progress
+from trunnion.errors import InputError, Problem
 from trunnion.model.toolpath import Toolpath
+
+#: stdin as a CL file.
+STDIN = "-"
+
+#: Endings that archives add to the name of what they hold.
+_PACKED = frozenset({".gz", ".bz2"})
+
+
+def cl_inputs(files: Sequence[str]) -> list[str | BinaryIO]:
+    """CL files as the library takes them.
+
+    Raises
+    ------
+    InputError
+        If stdin is named twice: it can be read once.
+    """
+    if files.count(STDIN) > 1:
+        raise InputError(Problem("stdin", 0, "is named twice", f"write {STDIN} once"))
+    return [sys.stdin.buffer if file == STDIN else file for file in files]
+
+
+def named_files(files: Sequence[str]) -> list[str]:
+    """CL files but stdin."""
+    return [file for file in files if file != STDIN]
+
+
+def result_stem(file: str) -> str:
+    """The name of what is made of a CL file, without its ending.
+
+    Raises
+    ------
+    InputError
+        For stdin, which has no name.
+    """
+    if file == STDIN:
+        raise InputError(Problem("stdin", 0, "has no name that the result could have", "name the output"))
+    path = Path(file)
+    return Path(path.stem).stem if path.suffix.lower() in _PACKED else path.stem
 
 
 def read_toolpaths(
     files: Sequence[str], units: str | None, strict: bool, executor: Executor, dialect: str | None = None
-) -> Iterator[Toolpath]:
-    """Toolpaths of CL files, one after the other; units, dialect and ``strict`` as ``trunnion.cl.read_cl`` has them.
+) -> Iterator[list[Toolpath]]:
+    """Toolpaths of CL files, those of one file or archive after the other.
 
-    The first one is read at once in ``executor``, the others when they are due; none is kept. Returns when reading runs
-    in its kernel, which leaves the interpreter to the imports of the caller.
+    Units, dialect and ``strict`` are as ``trunnion.cl.read_cl_files`` has them. The first file is read at once in
+    ``executor``, the others when they are due; none is kept. Returns when reading runs in its kernel, which leaves the
+    interpreter to the imports of the caller.
     """
     scanning = Event()
-    begun = [executor.submit(_read, files[0], units, dialect, strict, scanning)]
+    inputs = cl_inputs(files)
+    begun = [executor.submit(_read, inputs[0], units, dialect, strict, scanning)]
     begun[0].add_done_callback(lambda _: scanning.set())
     scanning.wait()
 
-    def one_by_one() -> Iterator[Toolpath]:
+    def one_by_one() -> Iterator[list[Toolpath]]:
         yield begun.pop().result()
-        for file in files[1:]:
+        for file in inputs[1:]:
             yield _read(file, units, dialect, strict, Event())
 
     return one_by_one()
 
 
-def _read(file: str, units: str | None, dialect: str | None, strict: bool, scanning: Event) -> Toolpath:
-    path = Path(file)
-    size = path.stat().st_size if path.is_file() else 0
-    with progress(path.name, size, "B") as advance:
+def _read(
+    file: str | BinaryIO, units: str | None, dialect: str | None, strict: bool, scanning: Event
+) -> list[Toolpath]:
+    path = Path(file) if isinstance(file, str) else file
+    name, size = (path.name, path.stat().st_size if path.is_file() else 0) if isinstance(path, Path) else ("stdin", 0)
+    with progress(name, size, "B") as advance:
         done = 0
 
         def so_far(read: int) -> None:
@@ -43,4 +88,4 @@ def _read(file: str, units: str | None, dialect: str | None, strict: bool, scann
             done = read
             scanning.set()
 
-        return read_cl(path, units=units, dialect=dialect, strict=strict, progress=so_far)
+        return read_cl_files(path, units=units, dialect=dialect, strict=strict, progress=so_far)

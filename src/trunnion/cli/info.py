@@ -7,6 +7,7 @@ from typing import Final
 
 from trunnion.api.describing_cl import ClDescription, OperationDescription, ToolDescription, Vector, describe_cl
 from trunnion.api.plotting import check_plot, write_plot
+from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.machines.motion_time import format_duration
@@ -28,10 +29,10 @@ _NOT_DATA: Final = frozenset({"toolpaths", "remarks"})
 def info(arguments: argparse.Namespace) -> int:
     """Show what CL files hold, as text or data, and draw it."""
     if arguments.plot is not None:
-        check_plot(arguments.plot, arguments.files)
+        check_plot(arguments.plot, named_files(arguments.files))
     terminal = Terminal()
     found = describe_cl(
-        arguments.files,
+        cl_inputs(arguments.files),
         units=arguments.units,
         dialect=arguments.dialect,
         strict=arguments.strict,

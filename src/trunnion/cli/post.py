@@ -3,13 +3,14 @@
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 
 from trunnion.api.input_files import definition_files
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.reading import load_machine
+from trunnion.cli.cl_files import named_files, result_stem
 from trunnion.cli.terminal import Terminal, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
@@ -19,14 +20,14 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.wording import counted
 
 
-def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
-    """Post every CL file, whose toolpaths come one after the other; 1 if one of the programs is forced."""
+def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> int:
+    """Post every CL file, whose toolpaths come file after file; 1 if one of the programs is forced."""
     machine = load_machine(arguments.machine)
     targets = _files_by_target(arguments, machine)
     if arguments.report is not None and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
-    read = [*arguments.files, *definition_files(arguments.machine, machine)]
+    read = [*named_files(arguments.files), *definition_files(arguments.machine, machine)]
     report = [] if arguments.report is None else [arguments.report]
     check_outputs([*(target for target in targets if target != "-"), *report], read)
     toolpaths = _with_dialects(toolpaths)
@@ -34,7 +35,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     passed = True
     for target, files in targets.items():
         result = post_beside(
-            islice(toolpaths, len(files)),
+            chain.from_iterable(islice(toolpaths, len(files))),
             [*read, *written],
             machine=machine,
             output=output_place(target),
@@ -53,12 +54,13 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[Toolpath]) -> int:
     return 0 if passed else 1
 
 
-def _with_dialects(toolpaths: Iterator[Toolpath]) -> Iterator[Toolpath]:
-    """The toolpaths; says what each is written in as it comes, where that is not NX's CLSF."""
-    for toolpath in toolpaths:
-        if toolpath.dialect != "clsf":
-            print(f"{toolpath.file}: read as {toolpath.recognized}", file=sys.stderr)
-        yield toolpath
+def _with_dialects(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:
+    """The toolpaths; says what each is written in as it comes, where that is not NX's CLSF, and those of an archive."""
+    for toolpaths in files:
+        for toolpath in toolpaths:
+            if toolpath.dialect != "clsf" or len(toolpaths) > 1:
+                print(f"{toolpath.file}: read as {toolpath.recognized}", file=sys.stderr)
+        yield toolpaths
 
 
 def _print_summary(target: str, result: PostResult) -> None:
@@ -86,7 +88,7 @@ def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[st
     extension = load_control(machine.control).extension
     targets: dict[str, list[str]] = {}
     for file in arguments.files:
-        targets.setdefault(str(into / (Path(file).stem + extension)), []).append(file)
+        targets.setdefault(str(into / (result_stem(file) + extension)), []).append(file)
     twice = next((files for files in targets.values() if len(files) > 1), None)
     if twice:
         raise InputError(Problem(twice[1], 0, f"would write over the program of {twice[0]}", "rename one of them"))

@@ -8,6 +8,7 @@ from trunnion.api.input_files import definition_files
 from trunnion.api.reading import load_machine
 from trunnion.api.reports import check_report, write_report
 from trunnion.api.verifying import verify
+from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import print_result
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity
@@ -22,12 +23,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Verify one program; 0 if every check has passed, else 1."""
     machine = load_machine(arguments.machine)
     if arguments.report is not None:
-        read = [arguments.file, *arguments.cl, *arguments.subprograms]
+        read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms]
         check_report(arguments.report, [*read, *definition_files(arguments.machine, machine)])
     verification = verify(
         arguments.file,
         machine=machine,
-        cl=arguments.cl,
+        cl=cl_inputs(arguments.cl),
         subprograms=arguments.subprograms,
         tolerance=arguments.tolerance,
         span=arguments.span,

@@ -1,7 +1,7 @@
 """Output files: settled before any work, complete or not there at all, alone or several together."""
 
 from trunnion.files.output import OutputFiles, atomic_file, atomic_output
-from trunnion.files.places import OutputPlace, check_outputs, resolve_output
+from trunnion.files.places import OutputPlace, check_outputs, file_on_disk, resolve_output
 from trunnion.files.streams import check_stream
 from trunnion.files.write_progress import WriteProgress, WritingStoppedError
 
@@ -14,5 +14,6 @@ __all__ = [
     "atomic_output",
     "check_outputs",
     "check_stream",
+    "file_on_disk",
     "resolve_output",
 ]

@@ -119,6 +119,15 @@ def cannot_write(name: str, error: OSError) -> InputError:
     return InputError(Problem(name, 0, f"cannot be written: {error.strerror or error}", _OTHER))
 
 
+def file_on_disk(name: str | os.PathLike[str]) -> str:
+    """The file that a name leads to: itself, or the archive that holds it (``jobs.zip`` of ``jobs.zip/top.cls``)."""
+    text = os.fspath(name)
+    try:
+        return next((str(path) for path in (Path(text), *Path(text).parents) if path.is_file()), text)
+    except (OSError, ValueError):
+        return text
+
+
 def file_identity(path: str | os.PathLike[str]) -> Hashable:
     """The same for all names of a file, hard links too; for what does not exist, the same for all spellings."""
     try:

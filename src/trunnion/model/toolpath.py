@@ -7,8 +7,10 @@ Units: mm, degrees, unit vectors for directions, mm/min or mm/rev for feeds.
 Frame: the operation's own coordinate system (``Operation.frame``, MSYS in a CLSF).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
+from typing import BinaryIO
 
 import numpy as np
 
@@ -311,7 +313,7 @@ class Operation:
 class Toolpath:
     """The content of a CL file.
 
-    file        path of the file
+    file        path of the file; in an archive, the path of the archive and the name there; ``stdin`` for a stream
     operations  in the order of the file
     part        name of the part
     remarks     warnings of the reader
@@ -321,6 +323,7 @@ class Toolpath:
     recognized  the title of the dialect, and by what it was recognized
     system      the coordinate system of the points in that of the model where the file gives it and its meaning is not
                 settled: 3 rows of 4 numbers, mm
+    reopen      opens the text of a file that is packed or a stream once more; None: it is the file of that path
     """
 
     file: str
@@ -332,6 +335,7 @@ class Toolpath:
     dialect: str = "clsf"
     recognized: str = ""
     system: tuple[float, ...] = ()
+    reopen: Callable[[], BinaryIO] | None = None
 
     def __repr__(self) -> str:
         """Return what matters in a notebook: the columns would fill pages."""

@@ -15,10 +15,11 @@ _NO_MARKS: Final = (b"PPRINT", b"INSERT", b"DISPLY", b"DISPLAY", b"TPRINT", b"GO
 
 @dataclass(frozen=True, slots=True)
 class Recognition:
-    """The dialect of a file, and why it is taken for that."""
+    """The dialect of a file, and why it is taken for that; ``marked``: by a mark, and not for want of any."""
 
     dialect: Dialect
     why: str
+    marked: bool = True
 
 
 def recognize(head: bytes, dialects: Sequence[Dialect], general: Dialect, default: Dialect) -> Recognition:
@@ -37,8 +38,8 @@ def recognize(head: bytes, dialects: Sequence[Dialect], general: Dialect, defaul
         if len(found) > most:
             best, why, most = dialect, min(found)[1], len(found)
     if not most and (found := _marks(general, seen)):
-        best, why = general, min(found)[1]
-    return Recognition(best, why)
+        best, why, most = general, min(found)[1], 1
+    return Recognition(best, why, most > 0)
 
 
 def _marks(dialect: Dialect, lines: dict[bytes, int]) -> list[tuple[int, str]]:

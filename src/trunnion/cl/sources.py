@@ -1,0 +1,311 @@
+"""Where the text of CL files comes from: plain files, gzip, bzip2, ZIP archives, and streams such as stdin.
+
+In:     a path or a binary stream.
+Out:    ``ClSource``: the texts of the CL files in it, each of which can be read from its beginning again and again.
+
+What a file is, its first bytes say, and never its name. Nothing is unpacked to disk. What grows beyond all measure
+while it is unpacked is refused.
+"""
+
+import bz2
+import gzip
+import io
+import re
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO, Final, cast
+
+from trunnion.cl.dialects import recognize_dialect
+from trunnion.errors import InputError, Problem, Severity, unusable_file
+
+#: A text that is longer than this may be no more than so many times as long as its archive. CL files are some 3 to 25
+#: times as long; what is made to fill the memory, 1000 times and more.
+_FREE_BYTES: Final = 16 << 20
+MAX_RATIO: Final = 200
+
+#: Longest text of an archive or a stream.
+MAX_BYTES: Final = 4 << 30
+
+#: Most files in an archive.
+MAX_FILES: Final = 500
+
+#: A stream is kept in memory up to this size, and beyond it in a file without a name.
+_IN_MEMORY: Final = 64 << 20
+_PIECE: Final = 1 << 20
+
+_GZIP, _BZIP2, _ZIP = b"\x1f\x8b", b"BZh", (b"PK\x03\x04", b"PK\x05\x06")
+
+#: First bytes of archives that are not read.
+_OTHERS: Final = {
+    b"\xfd7zXZ\x00": "an xz file",
+    b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",
+    b"Rar!\x1a\x07": "a RAR archive",
+    b"\x28\xb5\x2f\xfd": "a zstd file",
+    b"\x1f\x9d": "a compress file",
+}
+
+#: Where a tar archive says that it is one.
+_TAR: Final = slice(257, 262)
+
+#: Text that the reader refuses with a cure.
+_UTF16: Final = (b"\xff\xfe", b"\xfe\xff")
+
+#: Bytes by which the dialect of a file in an archive is recognized.
+_HEAD: Final = 1 << 16
+
+#: A statement that only CL files have.
+_MOTION: Final = re.compile(rb"^[ \t]*(?:GOTO|GODLTA|TLON)[ \t]*[/,]", re.MULTILINE | re.IGNORECASE)
+
+_CUT_OFF = "it is damaged or cut off: fetch or write it again"
+
+
+@dataclass(frozen=True, slots=True)
+class ClSource:
+    """The text of one CL file.
+
+    name     for messages: its path; in an archive, the path of the archive and its name there
+    open     the text from its beginning; raises ``InputError`` while it is read if it cannot be unpacked
+    packed   it is a stream, or packed: it cannot be opened by its name
+    remarks  what else is in the archive, with its first file
+    """
+
+    name: str
+    open: Callable[[], BinaryIO]
+    packed: bool = True
+    remarks: tuple[Problem, ...] = ()
+
+
+def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
+    """The CL files in a file or a stream: several in a ZIP archive, in the order of their names.
+
+    Parameters
+    ----------
+    file
+        A path, or a binary stream, which is read to its end.
+    name
+        What a stream is called in messages.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, is damaged, has no CL file, or is an archive in an archive.
+    """
+    if isinstance(file, Path):
+        unusable = unusable_file(file, "a CL file")
+        if unusable:
+            raise InputError(unusable)
+        name, path = str(file), file
+
+        def open_packed() -> BinaryIO:
+            return path.open("rb", buffering=0)
+
+        try:
+            with open_packed() as packed:
+                head, size = packed.read(1024), packed.seek(0, io.SEEK_END)
+        except OSError as error:
+            what = f"cannot be read: {error.strerror or error}"
+            raise InputError(Problem(name, 0, what, "give the name of a file that you may read")) from error
+    else:
+        spool = _spooled(file, name)
+        size = spool.seek(0, io.SEEK_END)
+
+        def open_packed() -> BinaryIO:
+            spool.seek(0)
+            return cast("BinaryIO", _Shared(spool))
+
+        head = open_packed().read(1024)
+    if head.startswith(_ZIP):
+        return _zip_sources(name, open_packed, size)
+    if unpack := _unpacker(head):
+        source = ClSource(name, lambda: cast("BinaryIO", _Unpacked(unpack(open_packed()), name, size)))
+        with source.open() as text:
+            _refuse_archive(name, text.read(1024), "an archive in an archive")
+        return [source]
+    _refuse_archive(name, head, "")
+    return [ClSource(name, open_packed, packed=not isinstance(file, Path))]
+
+
+def not_one_file(first: str, count: int) -> InputError:
+    """The error for an archive of several CL files where one is meant; ``first`` is its first file."""
+    what = f"is one of {count} CL files in an archive, and a toolpath is one"
+    return InputError(Problem(first, 0, what, "give the archive to post, verify or describe_cl, or unpack it"))
+
+
+def _unpacker(head: bytes) -> Callable[[BinaryIO], BinaryIO] | None:
+    """What unpacks a text that begins so; None if it is not packed."""
+    if head.startswith(_GZIP):
+        return lambda packed: cast("BinaryIO", gzip.GzipFile(fileobj=packed, mode="rb"))
+    if head.startswith(_BZIP2) and head[3:4].isdigit():
+        return lambda packed: cast("BinaryIO", bz2.BZ2File(packed))
+    return None
+
+
+def _refuse_archive(name: str, head: bytes, nested: str) -> None:
+    """Refuse a text that is an archive, of a kind that is not read or within another one."""
+    kind = next((kind for begin, kind in _OTHERS.items() if head.startswith(begin)), "")
+    if head[_TAR] == b"ustar":
+        kind = "a tar archive"
+    if nested and (head.startswith(_ZIP) or _unpacker(head)):
+        kind = nested
+    if kind:
+        raise InputError(Problem(name, 0, f"is {kind}, which is not read", "unpack it, or give a plain ZIP archive"))
+
+
+def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> list[ClSource]:
+    """The CL files of a ZIP archive."""
+    try:
+        with open_packed() as packed, zipfile.ZipFile(packed) as archive:
+            infos = [info for info in archive.infolist() if not info.is_dir()]
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, UnicodeDecodeError) as error:
+        raise InputError(Problem(name, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
+    _check_infos(name, infos, size)
+    sources, left_out = [], []
+    for info in sorted(infos, key=lambda info: _by_numbers(info.filename)):
+        inside = f"{name}/{info.filename}"
+        opened = _member_opener(inside, open_packed, info.filename, size)
+        why = _why_no_cl_file(inside, info, opened)
+        if why:
+            left_out.append(Problem(inside, 0, why, "nothing becomes of it", Severity.WARNING))
+        else:
+            sources.append(ClSource(inside, opened))
+    if not sources:
+        what = "has no CL file in it" if infos else "is empty"
+        raise InputError([Problem(name, 0, what, "put the CL files into the archive"), *left_out])
+    first = sources[0]
+    return [ClSource(first.name, first.open, remarks=tuple(left_out)), *sources[1:]]
+
+
+def _check_infos(name: str, infos: Iterable[zipfile.ZipInfo], size: int) -> None:
+    """Refuse an archive by its list of files."""
+    files = list(infos)
+    if len(files) > MAX_FILES:
+        raise InputError(
+            Problem(name, 0, f"has {len(files)} files, more than {MAX_FILES}", "post them in several jobs")
+        )
+    names = [info.filename for info in files]
+    if twice := next((each for each in names if names.count(each) > 1), ""):
+        raise InputError(Problem(name, 0, f"has two files named {twice}", "rename one of them"))
+    for info in files:
+        if info.flag_bits & 1:
+            what, cure = f"{info.filename} in it has a password", "pack it without a password"
+            raise InputError(Problem(name, 0, what, cure))
+    _check_size(name, sum(info.file_size for info in files), size)
+
+
+def _check_size(name: str, unpacked: int, packed: int) -> None:
+    """Refuse what is out of all proportion."""
+    if unpacked > MAX_BYTES:
+        what = f"is longer than {MAX_BYTES >> 30} GB when it is unpacked"
+    elif unpacked > _FREE_BYTES and unpacked > MAX_RATIO * packed:
+        what = f"becomes more than {MAX_RATIO} times as long when it is unpacked, which no CL file does"
+    else:
+        return
+    raise InputError(Problem(name, 0, what, "give the CL file itself"))
+
+
+def _by_numbers(name: str) -> list[tuple[int, int, str]]:
+    """Names in their order, with the numbers in them by their values: 2 comes before 10."""
+    parts = re.split(r"([0-9]+)", name)
+    return [(0, int(part), part) if part.isdecimal() and part.isascii() else (1, 0, part) for part in parts]
+
+
+def _member_opener(inside: str, open_packed: Callable[[], BinaryIO], member: str, size: int) -> Callable[[], BinaryIO]:
+    def opened() -> BinaryIO:
+        packed = open_packed()
+        try:
+            text = zipfile.ZipFile(packed).open(member)  # noqa: SIM115 - closed with what reads it
+        except (zipfile.BadZipFile, OSError, ValueError, KeyError, NotImplementedError, RuntimeError) as error:
+            packed.close()
+            raise InputError(Problem(inside, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
+        return cast("BinaryIO", _Unpacked(cast("BinaryIO", text), inside, size, packed))
+
+    return opened
+
+
+def _why_no_cl_file(inside: str, info: zipfile.ZipInfo, opened: Callable[[], BinaryIO]) -> str:
+    """Why a file of an archive is not read; empty if it is."""
+    parts = info.filename.split("/")
+    if "__MACOSX" in parts or parts[-1].startswith("."):
+        return "is a file of a system, and is left out"
+    with opened() as text:
+        head = text.read(_PIECE)
+    _refuse_archive(inside, head, "an archive in an archive")
+    if head.startswith(_UTF16) or _MOTION.search(head) or recognize_dialect(head[:_HEAD]).marked:
+        return ""  # damaged ones too: the reader says what is wrong
+    return "is no CL file, and is left out"
+
+
+def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
+    """The content of a stream, so that it can be read twice."""
+    spool = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115 - it lives as long as its sources
+    done = 0
+    try:
+        while piece := stream.read(_PIECE):
+            if not isinstance(piece, bytes):
+                raise InputError(Problem(name, 0, "is a stream of text", "give a binary stream"))
+            done += len(piece)
+            _check_size(name, done, done)
+            spool.write(piece)
+    except OSError as error:
+        raise InputError(Problem(name, 0, f"cannot be read: {error.strerror or error}", "")) from error
+    return cast("BinaryIO", spool)
+
+
+class _Shared(io.RawIOBase):
+    """A stream from its beginning, which stays open when this is closed."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET, /) -> int:
+        return self._stream.seek(offset, whence)
+
+    def tell(self) -> int:
+        return self._stream.tell()
+
+    def readinto(self, buffer: memoryview, /) -> int:  # type: ignore[override]
+        piece = self._stream.read(len(buffer))
+        buffer[: len(piece)] = piece
+        return len(piece)
+
+
+class _Unpacked(io.RawIOBase):
+    """A text while it is unpacked: damage and unreasonable growth are ``InputError``; reads are full up to the end."""
+
+    def __init__(self, text: BinaryIO, name: str, packed_bytes: int, packed: BinaryIO | None = None) -> None:
+        self._text = text
+        self._name = name
+        self._packed_bytes = packed_bytes
+        self._packed = packed
+        self._done = 0
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: memoryview, /) -> int:  # type: ignore[override]
+        count = 0
+        try:
+            while count < len(buffer) and (piece := self._text.read(min(len(buffer) - count, _PIECE))):
+                buffer[count : count + len(piece)] = piece
+                count += len(piece)
+                _check_size(self._name, self._done + count, self._packed_bytes)
+        except (OSError, EOFError, ValueError, zlib.error, zipfile.BadZipFile, NotImplementedError) as error:
+            raise InputError(Problem(self._name, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
+        self._done += count
+        return count
+
+    def close(self) -> None:
+        self._text.close()
+        if self._packed is not None:
+            self._packed.close()
+        super().close()

@@ -1,0 +1,139 @@
+"""CL files in archives and streams: read as they are, or refused with a cure; nothing is unpacked to disk."""
+
+import bz2
+import gzip
+import io
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.cl_dialects import WRITERS, Step
+from trunnion.cl import read_cl, read_cl_files, sources
+from trunnion.cl.surface_normals import with_normals
+
+PATH = [
+    Step("TOOL", (5.0, 10.0, 5.0)),
+    Step("SPINDLE", (900.0,), "CLW"),
+    Step("RAPID", point=(10.0, 0.0, 50.0)),
+    Step("FEED", (300.0,)),
+    Step("GOTO", point=(10.0, 0.0, 5.0)),
+]
+CLSF = WRITERS["clsf"](False).write(PATH)
+NCL = WRITERS["ncl"](True).write(PATH)
+
+
+def zipped(files: dict[str, str | bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", method) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return out.getvalue()
+
+
+def problem_of(file: Path) -> str:
+    with pytest.raises(trunnion.InputError) as caught:
+        read_cl_files(file)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "pack", [gzip.compress, bz2.compress, lambda text: zipped({"a.txt": text})], ids=["gz", "bz2", "zip"]
+)
+def test_a_packed_file_is_read_like_the_file(tmp_path: Path, pack: object) -> None:
+    plain, packed = tmp_path / "plain", tmp_path / "packed.cls"  # the name says nothing
+    plain.write_text(CLSF)
+    packed.write_bytes(pack(CLSF.encode()))  # type: ignore[operator]
+    one, other = read_cl(plain), read_cl(packed)
+    assert one.operations[0].moves.tip.tolist() == other.operations[0].moves.tip.tolist()
+    assert (one.dialect, one.recognized) == (other.dialect, other.recognized)
+    assert trunnion.read_cl(io.BytesIO(packed.read_bytes())).operations[0].name == "OP5"
+    assert [path.name for path in tmp_path.iterdir()] in (["plain", "packed.cls"], ["packed.cls", "plain"])
+
+
+def test_an_archive_is_one_job_in_the_order_of_its_names(tmp_path: Path) -> None:
+    names: dict[str, str | bytes] = {
+        "10.cls": CLSF,
+        "2/side.ncl": NCL,
+        "notes.txt": "CALL ME",
+        "__MACOSX/2/._side.ncl": b"\0",
+        "1.cls": CLSF,
+    }
+    file = tmp_path / "jobs.zip"
+    file.write_bytes(zipped(names))
+    found = read_cl_files(file)
+    assert [Path(toolpath.file).relative_to(file).as_posix() for toolpath in found] == ["1.cls", "2/side.ncl", "10.cls"]
+    assert [toolpath.dialect for toolpath in found] == ["clsf", "ncl", "clsf"]
+    assert [toolpath.unit for toolpath in found] == [1.0, 25.4, 1.0]
+    left_out = [remark.file.removeprefix(f"{file}/") for remark in found[0].remarks if "left out" in remark.what]
+    assert left_out == ["__MACOSX/2/._side.ncl", "notes.txt"]
+    with pytest.raises(trunnion.InputError, match="one of 3 CL files in an archive"):
+        trunnion.read_cl(file)
+    assert len(trunnion.describe_cl(file).files) == 3
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (gzip.compress(CLSF.encode())[:-9], "cannot be unpacked"),
+        (gzip.compress(CLSF.encode())[:40] + b"xxxx" + gzip.compress(CLSF.encode())[44:], "cannot be unpacked"),
+        (bz2.compress(CLSF.encode())[:-5], "cannot be unpacked"),
+        (zipped({"a.cls": CLSF})[:-30], "cannot be unpacked"),
+        (zipped({"a.cls": CLSF}, zipfile.ZIP_STORED).replace(b"GOTO", b"GOTP", 1), "Bad CRC-32"),
+        (zipped({"a.txt": "hello"}), "has no CL file in it"),
+        (zipped({}), "is empty"),
+        (zipped({"a.zip": zipped({"a.cls": CLSF})}), "an archive in an archive"),
+        (gzip.compress(gzip.compress(CLSF.encode())), "an archive in an archive"),
+        (b"7z\xbc\xaf\x27\x1c" + bytes(50), "is a 7-Zip archive"),
+        (gzip.compress(bytes(257) + b"ustar" + bytes(500)), "is a tar archive"),
+        (gzip.compress(b""), "the file is empty"),
+        (zipped({"a.cls": CLSF.encode("utf-16")}), "UTF-16"),
+    ],
+    ids=[
+        "gz cut", "gz damaged", "bz2 cut", "zip cut", "zip damaged", "no cl", "empty", "zip in zip", "gz in gz", "7z",
+        "tar", "gz of nothing", "utf-16",
+    ],
+)  # fmt: skip
+def test_what_cannot_be_read_is_refused_with_its_name(tmp_path: Path, content: bytes, said: str) -> None:
+    file = tmp_path / "part.cls"
+    file.write_bytes(content)
+    text = problem_of(file)
+    assert said in text
+    assert text.startswith(str(file))
+    assert "; " in text
+
+
+def test_a_password_and_two_files_of_one_name_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / "part.zip"
+    content = zipped({"a.cls": CLSF})
+    file.write_bytes(content.replace(b"PK\x01\x02\x14\x03\x14\x00\x00\x00", b"PK\x01\x02\x14\x03\x14\x00\x01\x00"))
+    assert "has a password" in problem_of(file)
+    file.write_bytes(zipped({"a.cls": CLSF, "b.cls": CLSF}).replace(b"b.cls", b"a.cls"))
+    assert "has two files named a.cls" in problem_of(file)
+
+
+def test_bombs_are_refused_before_they_fill_the_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sources, "_FREE_BYTES", 1 << 18)
+    bomb = (CLSF + "GOTO/0,0,0\n" * 100_000).encode()
+    file = tmp_path / "part.gz"
+    for content in (gzip.compress(bomb), bz2.compress(bomb), zipped({"a.cls": bomb})):
+        file.write_bytes(content)
+        assert "becomes more than 200 times as long" in problem_of(file)
+    monkeypatch.setattr(sources, "MAX_BYTES", 1000)
+    file.write_bytes(gzip.compress((CLSF * 20).encode()))
+    assert "is longer than" in problem_of(file)
+    with pytest.raises(trunnion.InputError, match="is longer than"):
+        read_cl_files(io.BytesIO(CLSF.encode() * 20))
+
+
+def test_contact_points_of_a_packed_file_are_found(tmp_path: Path) -> None:
+    text = CLSF.replace("TLDATA", "$$ centerline and contact point\nTLDATA")
+    lines = [f"{line} $$ 1.0,1.0,0.0" if line.startswith("GOTO") else line for line in text.splitlines()]
+    file = tmp_path / "part.zip"
+    file.write_bytes(zipped({"a.cls": "\n".join(lines) + "\n"}))
+    (toolpath,) = read_cl_files(file)
+    normal = with_normals(toolpath).operations[0].moves.normal
+    assert normal is not None
+    assert normal.shape == (2, 3)
+    assert (normal == normal).all()
