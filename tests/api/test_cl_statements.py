@@ -1,4 +1,7 @@
-"""CL statements that the reader does not know are refused, or become what the machine's definition says."""
+"""CL statements that the reader does not know become what the machine's definition says.
+
+Without it, what may change the machine is refused, and anything else is left out with a warning.
+"""
 
 from pathlib import Path
 
@@ -12,9 +15,21 @@ MACHINES = ("yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt")
 
 #: What moves an axis, changes a tool or switches something, in the words of several CAM systems.
 STATEMENTS = (
-    "ROTATE/TABLE,AAXIS,90", "ROTABL/ATANGL,90,CLW", "TLAXIS/0,1,0", "AUXFUN/31", "PREFUN/91", "CLAMP/ON", "SEQNO/100",
-    "USER_EVENT/1", "TURRET/3", "HEAD/2", "PIVOTZ/100", "COOLNT/MIST,HIGH", "SPINDL/RPM,800,CLW,RANGE,2",
-    "LOAD/TOOL,1,LENGTH,90", "SET/MODE,INCR", "MODE/TURN", "MULTAX/OFF", "REWIND/0", "OPSKIP/ON,2",
+    "ROTATE/TABLE,AAXIS,90", "ROTABL/ATANGL,90,CLW", "TLAXIS/0,1,0", "AUXFUN/31", "PREFUN/91", "CLAMP/ON",
+    "TURRET/3", "HEAD/2", "PIVOTZ/100", "COOLNT/MIST,HIGH", "SPINDL/RPM,800,CLW,RANGE,2",
+    "LOAD/TOOL,1,LENGTH,90", "SET/MODE,INCR", "MODE/TURN", "MULTAX/OFF", "OPSKIP/ON,2", "CLRSRF/50", "TOOLNO/3,TURN",
+)  # fmt: skip
+
+#: Damaged statements: a letter is wrong, missing or too many, a slash or a line end is lost.
+DAMAGED = (
+    "GOTP/1,2,3", "GTO/1,2,3", "GOTOO/1,2,3", "OGTO/1,2,3", "GOTO1,2,3", "RAPIDGOTO/1,2,3", "SPINDLOFF", "COLNT/ON",
+    "G0TO/1,2,3", "M3YS/0,0,0,1,0,0,0,1,0",
+)  # fmt: skip
+
+#: Words that nobody knows, and some that are known to say nothing about the machine.
+LEFT_OUT = (
+    "SEQNO/100", "USER_EVENT/1", "SHOPEV/1,2,3", "FROBNICATE", "PRINT/ON", "TITLES/A", "REWIND/0", "UDE/X", "NOTE/1",
+    "PPLOT/ON",
 )  # fmt: skip
 
 
@@ -37,6 +52,34 @@ def test_a_statement_that_moves_or_chooses_something_is_never_dropped(tmp_path: 
     (problem,) = caught.value.problems
     assert (problem.file, problem.line) == (str(tmp_path / "part.cls"), 12)
     assert "[control.statements]" in problem.cure
+
+
+def test_what_looks_like_a_damaged_statement_is_refused_too(tmp_path: Path) -> None:
+    with pytest.raises(trunnion.InputError) as caught:
+        trunnion.post(part(tmp_path, *DAMAGED), machine="yl569")
+    assert [problem.line for problem in caught.value.problems] == list(range(12, 12 + len(DAMAGED)))
+    assert all("may be a damaged" in problem.what for problem in caught.value.problems)
+
+
+def test_a_line_of_numbers_alone_is_refused(tmp_path: Path) -> None:
+    for line, said in (("1.0,2.0,3.0", "numbers without a word"), ("/1,2,3", "numbers without a word")):
+        with pytest.raises(trunnion.InputError, match=f"12: error: {said}"):
+            trunnion.post(part(tmp_path, line), machine="yl569")
+
+
+def test_a_word_that_nobody_knows_is_left_out_with_a_warning(tmp_path: Path) -> None:
+    plain = trunnion.post(part(tmp_path), machine="yl569").text
+    cl = part(tmp_path, *LEFT_OUT, "SHOPEV/4")
+    result = trunnion.post(cl, machine="yl569")
+    assert result.text == plain
+    warnings = {problem.line: problem.what for problem in result.problems if "is not known" in problem.what}
+    assert sorted(warnings) == list(range(12, 12 + len(LEFT_OUT)))
+    assert warnings[14] == "SHOPEV is not known (2 times, first here)"
+    found = {unknown.line: (unknown.count, unknown.acts) for unknown in trunnion.describe_cl(cl).unknown}
+    assert found == {line: (1 + (line == 14), False) for line in warnings}
+    with pytest.raises(trunnion.InputError) as caught:
+        trunnion.post(cl, machine="yl569", strict=True)
+    assert len(caught.value.problems) == len(LEFT_OUT) + 1
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -83,8 +126,8 @@ def test_the_definition_says_which_statement_a_word_is(tmp_path: Path) -> None:
     assert result.text is not None
     assert ";SHOP TEXT" in result.text
     assert "M8" in result.text.replace("\n", " ").split()
-    with pytest.raises(trunnion.InputError, match="SHOPCL is not known"):
-        trunnion.post(part(tmp_path, "SHOPCL/2"), machine=machine)
+    (left,) = (each for each in trunnion.post(part(tmp_path, "SHOPCL/2"), machine=machine).problems if each.line == 12)
+    assert left.what == "SHOPCL is not known"
 
 
 @pytest.mark.parametrize(

@@ -152,14 +152,23 @@ def test_the_head_says_so_where_the_control_reads_it(tmp_path: Path, machine: st
     assert "MUST NOT RUN AS IT IS" in lines[len(first)]
 
 
-@pytest.mark.parametrize("options", [(), ("--strict",), ("--force",)])
-def test_an_unknown_statement_is_an_error(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str], options: tuple[str, ...]
+@pytest.mark.parametrize(
+    ("word", "options"), [("FROBNICATE/ON", ("--strict",)), ("AUXFUN/31", ()), ("AUXFUN/31", ("--force",))]
+)
+def test_an_unknown_statement_is_an_error_where_it_may_act_and_when_strict(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], word: str, options: tuple[str, ...]
 ) -> None:
-    outcome = post_text(tmp_path, capfd, GOOD.replace(POINT, "FROBNICATE/ON\n" * 3 + POINT), *options)
+    outcome = post_text(tmp_path, capfd, GOOD.replace(POINT, f"{word}\n" * 3 + POINT), *options)
     assert (outcome.code, outcome.left) == (2, [])
-    assert "part.cls:17: error: FROBNICATE is not known" in outcome.err
-    assert "kept as it stands" not in outcome.err
+    assert f"part.cls:17: error: {word.partition('/')[0]} is not known" in outcome.err
+
+
+def test_any_other_unknown_statement_is_a_warning_with_its_count(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    outcome = post_text(tmp_path, capfd, GOOD.replace(POINT, "FROBNICATE/ON\n" * 3 + POINT))
+    assert outcome.code == 0
+    assert "part.cls:17: warning: FROBNICATE is not known (3 times, first here); nothing becomes of it" in outcome.err
 
 
 def test_an_old_program_stays_when_the_new_one_fails(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -1,14 +1,21 @@
-"""CL statements that the reader does not know: a definition says what becomes of each, or the file is refused.
+"""CL statements that the reader does not know: a definition says what becomes of each.
 
 In:     toolpaths, and the tables ``[cl.words]`` and ``[control.statements]`` of a definition.
-Out:    toolpaths with the events or the lines of the definition in place of these statements.
+Out:    toolpaths with the events or the lines of the definition in place of these statements. One that may change the
+        machine, and of which the definition says nothing, is an error; any other is left out, with a warning.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
-from trunnion.cl import StatementError, events_of, statement_words, unknown_statement_problems
+from trunnion.cl import (
+    StatementError,
+    events_of,
+    statement_words,
+    unknown_statement_errors,
+    unknown_statement_remarks,
+)
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Event, Insert, Operation, Toolpath, UnknownStatement
@@ -33,28 +40,42 @@ def replace_unknown_statements(
     Raises
     ------
     InputError
-        With every statement of which the definition says nothing, or if what it says is no event.
+        With every statement that may change the machine and of which the definition says nothing, or if what it says is
+        no event.
     """
     lines = {statement: (Insert(0, 0, line),) if line else () for statement, line in statements.items()}
     found_words = {word: _events(machine, word, text) for word, text in machine.cl_words.items()}
     entries = [(*statement_words(name), events) for name, events in (*found_words.items(), *lines.items())]
     entries.sort(key=lambda entry: -len(entry[1]))  # the one that says most comes first
     found = [(toolpath, _replaced(toolpath, entries)) for toolpath in toolpaths]
-    problems = [problem for _, new in found for problem in unknown_statement_problems(new, _CURE)]
+    problems = [problem for _, new in found for problem in unknown_statement_errors(new, _CURE)]
     if len(problems) > _MOST_LISTED:
         more = Problem(problems[0].file, 0, f"and {len(problems) - _MOST_LISTED} more")
         problems = [*problems[:_MOST_LISTED], more]
     if problems:
         raise InputError(problems)
-    return [new if new is not old else old for old, new in found]
+    return [_without_unknown(new) for _, new in found]
 
 
 def _replaced(toolpath: Toolpath, entries: _Entries) -> Toolpath:
-    """The toolpath without the statements that ``entries`` have, and without the remarks about them."""
-    remarks = set(toolpath.remarks) - set(unknown_statement_problems(toolpath))
+    """The toolpath without the statements that ``entries`` have; its remarks are about those that are left."""
+    before = frozenset(unknown_statement_remarks(toolpath))
     operations = tuple(_replaced_in_operation(operation, entries) for operation in toolpath.operations)
-    kept = tuple(remark for remark in toolpath.remarks if remark in remarks)
-    return replace(toolpath, operations=operations, remarks=kept)
+    others = [remark for remark in toolpath.remarks if remark not in before]
+    left = unknown_statement_remarks(replace(toolpath, operations=operations))
+    remarks = sorted((*others, *left), key=lambda remark: remark.line) if before else toolpath.remarks
+    return replace(toolpath, operations=operations, remarks=tuple(remarks))
+
+
+def _without_unknown(toolpath: Toolpath) -> Toolpath:
+    """The toolpath without the statements that nothing becomes of; its remarks name them."""
+    operations = tuple(
+        replace(each, events=tuple(event for event in each.events if not isinstance(event, UnknownStatement)))
+        if any(isinstance(event, UnknownStatement) for event in each.events)
+        else each
+        for each in toolpath.operations
+    )
+    return replace(toolpath, operations=operations)
 
 
 def _replaced_in_operation(operation: Operation, entries: _Entries) -> Operation:

@@ -122,10 +122,14 @@ class OperationDescription:
 
 @dataclass(frozen=True, slots=True)
 class UnknownDescription:
-    """Statements alike that the reader does not know: why, how many, and the first one."""
+    """Statements alike that the reader does not know: why, how many, and the first one.
+
+    acts  they may change the machine: ``post`` refuses them, unless a definition says what becomes of them
+    """
 
     statement: str
     what: str
+    acts: bool
     count: int
     file: str
     line: int
@@ -257,7 +261,7 @@ def _unknown(toolpaths: Sequence[Toolpath]) -> Iterable[UnknownDescription]:
     for toolpath in toolpaths:
         for same in unknown_statements(toolpath):
             first = same[0]
-            yield UnknownDescription(first.text.strip(), first.what, len(same), toolpath.file, first.line)
+            yield UnknownDescription(first.text.strip(), first.what, first.acts, len(same), toolpath.file, first.line)
 
 
 class _Description:

@@ -6,7 +6,12 @@ from trunnion.cl.read import read_cl, read_cl_files
 from trunnion.cl.scan import fill_modal_axes, scan
 from trunnion.cl.sources import not_one_file
 from trunnion.cl.systems import other_system
-from trunnion.cl.unknown import statement_words, unknown_statement_problems, unknown_statements
+from trunnion.cl.unknown import (
+    statement_words,
+    unknown_statement_errors,
+    unknown_statement_remarks,
+    unknown_statements,
+)
 from trunnion.cl.word_events import events_of
 
 #: Kernels that every file needs.
@@ -22,6 +27,7 @@ __all__ = [
     "read_cl",
     "read_cl_files",
     "statement_words",
-    "unknown_statement_problems",
+    "unknown_statement_errors",
+    "unknown_statement_remarks",
     "unknown_statements",
 ]

@@ -13,6 +13,7 @@ from trunnion.cl.scan import COMMENT, MAKES_ROW
 from trunnion.cl.state import MM_PER_INCH, ReaderState
 from trunnion.cl.statement import Statement, parse
 from trunnion.cl.statements.operations import LENGTH_UNITS
+from trunnion.cl.word_classes import acts_on_machine
 
 #: Statements no longer than this are likely to come again, and their parsed form is kept; at most so many.
 _CACHED_STATEMENT_BYTES = 64
@@ -158,9 +159,10 @@ class ClInterpreter:
             what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"
             self._diagnostics.remark(self._state.line, what, "nothing becomes of it: check that nothing should")
             return
-        if not self._dialect.in_sections:
-            _refuse_no_word(statement)
-        self._state.note_unknown(statement, f"{statement.major or 'a statement without a word'} is not known")
+        _refuse_no_word(statement)
+        why = acts_on_machine(statement.major)
+        what = f"{statement.major} {why if why.startswith('may') else 'is not known'}"
+        self._state.note_unknown(statement, what, acts=bool(why))
 
 
 def _refuse_no_word(statement: Statement) -> None:
@@ -172,5 +174,5 @@ def _refuse_no_word(statement: Statement) -> None:
     if name.isdigit() and "/" in statement.source:
         what = f"the word is the number {name}, and numbers of words differ from system to system"
         raise StatementError(what, "output the CL data as text with words")
-    if _NUMBER.match(name):
+    if not name or _NUMBER.match(name):
         raise StatementError("numbers without a word", "write GOTO/ before each point, and $ where a line goes on")

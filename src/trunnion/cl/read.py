@@ -19,7 +19,7 @@ from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
-from trunnion.cl.unknown import unknown_statement_problems
+from trunnion.cl.unknown import unknown_statement_remarks
 from trunnion.encoding import EncodingDetector
 from trunnion.model.toolpath import Toolpath
 
@@ -161,7 +161,7 @@ def read_source(
         reopen=source.open if source.packed else None,
         system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
     )  # fmt: skip
-    for problem in unknown_statement_problems(toolpath):
+    for problem in unknown_statement_remarks(toolpath):
         diagnostics.remark(problem.line, problem.what, problem.cure)
     return replace(toolpath, remarks=(*source.remarks, *diagnostics.remarks))
 

@@ -171,12 +171,15 @@ class ReaderState:
         else:
             self.first_inch_feed = self.first_inch_feed or self.line
 
-    def note_unknown(self, statement: Statement, what: str, *words: str) -> None:
-        """Note that a statement, or some ``words`` of it, are not known: one event a statement, which says why."""
+    def note_unknown(self, statement: Statement, what: str, *words: str, acts: bool = True) -> None:
+        """Note that a statement, or some ``words`` of it, are not known: one event a statement, which says why.
+
+        ``acts``: it may change the machine, as all known statements with unknown words do.
+        """
         events = self.builder.events
         if self.strict:
             self.diagnostics.error(self.line, what, "remove the statement, or read without strict=True")
-        found = UnknownStatement(self.operation_row, self.line, statement.source, words, what)
+        found = UnknownStatement(self.operation_row, self.line, statement.source, words, what, acts)
         for k in range(len(events) - 1, -1, -1):
             before = events[k]
             if before.line != self.line:

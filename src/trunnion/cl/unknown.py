@@ -1,11 +1,14 @@
 """Statements that the reader does not know: their words, and the problems that they are."""
 
+from collections.abc import Iterator
+
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.statement import parse
 from trunnion.errors import Problem, Severity, merge_repeated
 from trunnion.model.toolpath import Toolpath, UnknownStatement
 
 _CURE = "a program is refused unless the control's definition says what becomes of it ([control.statements])"
+_NO_EFFECT = "nothing becomes of it: check that nothing should, or say under [control.statements] or [cl.words] what"
 
 
 def statement_words(text: str) -> tuple[str, frozenset[str]]:
@@ -20,22 +23,28 @@ def statement_words(text: str) -> tuple[str, frozenset[str]]:
 def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
     """The statements of a toolpath that are not known, those alike together, by their first lines."""
     alike: dict[str, list[UnknownStatement]] = {}
-    for operation in toolpath.operations:
-        for event in operation.events:
-            if isinstance(event, UnknownStatement):
-                alike.setdefault(event.what, []).append(event)
+    for event in _unknown_events(toolpath):
+        alike.setdefault(event.what, []).append(event)
     return list(alike.values())
 
 
-def unknown_statement_problems(toolpath: Toolpath, cure: str = "") -> tuple[Problem, ...]:
-    """What is not known in a toolpath, one problem for all statements alike.
-
-    They are errors with the ``cure``, and the remarks of the reader without one.
-    """
-    severity = Severity.ERROR if cure else Severity.WARNING
+def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
+    """What is not known in a toolpath, as warnings: one for all statements alike."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, event.what, cure or _CURE, severity)
-        for operation in toolpath.operations
-        for event in operation.events
-        if isinstance(event, UnknownStatement)
+        Problem(toolpath.file, event.line, event.what, _CURE if event.acts else _NO_EFFECT, Severity.WARNING)
+        for event in _unknown_events(toolpath)
     )
+
+
+def unknown_statement_errors(toolpath: Toolpath, cure: str) -> tuple[Problem, ...]:
+    """Why no program is made of a toolpath: statements that are not known and may change the machine."""
+    return merge_repeated(
+        Problem(toolpath.file, event.line, event.what, cure) for event in _unknown_events(toolpath) if event.acts
+    )
+
+
+def _unknown_events(toolpath: Toolpath) -> Iterator[UnknownStatement]:
+    for operation in toolpath.operations:
+        for event in operation.events:
+            if isinstance(event, UnknownStatement):
+                yield event

@@ -97,8 +97,9 @@ def info_lines(found: ClDescription) -> Iterator[str]:
     if found.unknown:
         yield from ("", "Statements that are not known")
         for unknown in found.unknown:
-            times = counted(unknown.count, "time")
-            yield f"{_INDENT}{unknown.file}:{unknown.line}: {unknown.statement}  {times}: {unknown.what}"
+            becomes = "post refuses it" if unknown.acts else "nothing becomes of it"
+            what = f"{counted(unknown.count, 'time')}: {unknown.what}; {becomes}"
+            yield f"{_INDENT}{unknown.file}:{unknown.line}: {unknown.statement}  {what}"
 
 
 def _operation_lines(number: int, operation: OperationDescription, found: ClDescription) -> Iterator[str]:

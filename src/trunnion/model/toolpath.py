@@ -255,11 +255,13 @@ class UnknownStatement(Event):
     text   as it stands in the CL file
     words  those that are not known; none if all of the statement is not
     what   why, for messages
+    acts   it may move the machine, turn an axis, change a tool or switch something: no program is made without it
     """
 
     text: str
     words: tuple[str, ...] = field(default=(), compare=False)
     what: str = field(default="", compare=False)
+    acts: bool = field(default=True, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,74 @@
+"""Which statements that the reader does not follow may have changed the machine.
+
+A word that nobody knows is left out of a program with a warning. A word that is known to move the machine, to turn an
+axis, to change a tool or to switch something is not: its program would be another one. Nor is a word that looks like a
+damaged one of these.
+"""
+
+import re
+from typing import Final
+
+from trunnion.cl.dialects import DIALECTS
+
+#: Words of APT systems and post-processors (ISO 4343 and later ones) that act on the machine, and which no dialect here
+#: follows.
+_MACHINE_WORDS: Final = frozenset({
+    "ABSOL", "ADJUST", "ARCDAT", "ARCMOD", "ARCSLP", "AUXFUN", "BARFED", "CALL", "CALSUB", "CHUCK", "CLAMP", "CLEARP",
+    "CLRSRF", "COLLET", "COPY", "COUPLE", "CSYS", "DEFSUB", "DITTO", "DRESS", "DWELL", "ENDSUB", "FEDMOD", "FEEDMOD",
+    "FIXTUR", "GCODE", "GEAR", "HEAD", "HEADNO", "INCR", "INDEX", "LATHE", "LINEAR", "LINTOL", "LOCK", "MAGAZN",
+    "MAXIPM", "MAXRPM", "MCHTOL", "MCODE", "MIRROR", "MOVETO", "OFFSET", "OFSTNO", "ORIENT", "ORIGIN", "PALLET",
+    "PITCH", "PIVOTZ", "POD", "POSITN", "PPFUN", "PREFUN", "PROBE", "RANGE", "RESET", "RETRCT", "ROTABL", "ROTATE",
+    "ROTAXS", "ROTHED", "ROTREF", "SADDLE", "SAFPOS", "SCALE", "SLIDE", "SLOWDN", "SMOOTH", "STDYRST", "STEADY",
+    "SYNC", "SYNCTL", "TABLE", "TAILST", "THREAD", "TILT", "TILTTB", "TLAXIS", "TLVEC", "TOOLCHG", "TOOLNO", "TRACUT",
+    "TRANS", "TURRET", "UNCLAMP", "UNLDTL", "UNLOAD", "UNLOCK", "UNLODTL", "VTLAXS", "WAIT", "WCS", "ZERO", "ZEROPT",
+})  # fmt: skip
+
+#: Words of the dialects that say nothing about the machine: texts, names, listings.
+_SAY_NOTHING: Final = frozenset({
+    "AUTOPS", "CLPRNT", "DISPLAY", "DISPLY", "END", "FINI", "LEADER", "MACHIN", "PAINT", "PARTNO", "PPRINT", "PPWORD",
+    "PSIS", "REMARK", "REWIND", "SETUP", "TPRINT",
+})  # fmt: skip
+
+#: Words of motion: a statement that begins or ends with one has lost its slash or its line end.
+_MOTION_WORDS: Final = ("GOTO", "GODLTA", "GOHOME", "RAPID", "CIRCLE", "FEDRAT", "SPINDL", "LOADTL", "CYCLE")
+
+#: Words that a damaged one is compared with: those that most files have.
+_COMMON_WORDS: Final = (
+    *_MOTION_WORDS, "AUXFUN", "CLRSRF", "COOLNT", "CUTCOM", "CUTTER", "DELAY", "END-OF-PATH", "FROM", "GOFWD", "INDIRV",
+    "INSERT", "LOAD", "MOVARC", "MSYS", "MULTAX", "OPSTOP", "PREFUN", "RETRCT", "ROTABL", "ROTATE", "SELECT", "STOP",
+    "TLAXIS", "TLDATA", "TOOLPATH", "UNITS",
+)  # fmt: skip
+
+_LETTERS: Final = re.compile(r"[A-Z]+")
+
+ACTING_WORDS: Final = _MACHINE_WORDS | {
+    word
+    for dialect in DIALECTS.values()
+    for word in dialect.handlers
+    if _LETTERS.fullmatch(word.replace("-", "").replace(",", "")) and word not in _SAY_NOTHING
+}
+
+
+def acts_on_machine(major: str) -> str:
+    """Why a statement may have changed the machine, by its major word; empty if nothing suggests it."""
+    if major in ACTING_WORDS:
+        return "is not known"
+    if motion := next((word for word in _MOTION_WORDS if major.startswith(word) or major.endswith(word)), ""):
+        return f"may be a damaged {motion}"
+    letters = _LETTERS.match(major)
+    if letters and letters[0] != major and letters[0] in _COMMON_WORDS:
+        return f"may be a damaged {letters[0]}"
+    if meant := next((word for word in _COMMON_WORDS if _is_one_letter_off(major, word)), ""):
+        return f"may be a damaged {meant}"
+    return ""
+
+
+def _is_one_letter_off(one: str, other: str) -> bool:
+    """Whether a letter is wrong, missing or too many, or two neighbours are exchanged."""
+    if abs(len(one) - len(other)) > 1 or one == other:
+        return False
+    begin = 0
+    while begin < min(len(one), len(other)) and one[begin] == other[begin]:
+        begin += 1
+    a, b = one[begin:], other[begin:]
+    return a[1:] == b[1:] or a[1:] == b or a == b[1:] or (a[:2] == b[1::-1] and a[2:] == b[2:])
