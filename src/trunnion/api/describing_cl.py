@@ -63,6 +63,9 @@ class ToolDescription:
 
     number      with which it is loaded; None: it is never loaded
     register    of its length, 0 if none is named
+    holder      its name, empty if none is stated
+    extension   how far it stands out of the holder
+    set_length  its length in the spindle as the tool change states it
     operations  those that it works in, by their places from 0
     """
 
@@ -77,6 +80,9 @@ class ToolDescription:
     taper_angle: float
     tip_angle: float
     upper_radius: float
+    holder: str
+    extension: float
+    set_length: float
     operations: tuple[int, ...]
 
 
@@ -318,6 +324,7 @@ class _Description:
                 number=number, register=register, name=tool.name, kind=tool.kind, diameter=tool.diameter,
                 corner_radius=tool.corner_radius, length=tool.length, flute_length=tool.flute_length,
                 taper_angle=tool.taper_angle, tip_angle=tool.tip_angle, upper_radius=tool.upper_radius,
+                holder=tool.holder, extension=tool.extension, set_length=tool.set_length,
                 operations=tuple(operations),
             )
             for (number, register, tool), operations in self._tools.items()

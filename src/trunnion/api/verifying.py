@@ -87,7 +87,7 @@ def verify(
         Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
         needs them; without them a program of any length takes little memory.
     observer
-        Receives the progress of reading CL files.
+        Receives the progress of reading CL files, and warnings about them.
 
     Returns
     -------
@@ -125,6 +125,8 @@ def verify(
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
     toolpaths = replace_unknown_statements(toolpaths, control.statements if control else {}, loaded)
+    for toolpath in toolpaths:
+        observer.problems(toolpath.remarks)
     run = as_run(nc, loaded, subprograms)
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals

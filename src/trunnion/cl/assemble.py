@@ -180,6 +180,8 @@ def _tool_in_mm(tool: Tool, unit: float) -> Tool:
         length=tool.length * unit,
         flute_length=tool.flute_length * unit,
         upper_radius=tool.upper_radius * unit,
+        extension=tool.extension * unit,
+        set_length=tool.set_length * unit,
     )
 
 

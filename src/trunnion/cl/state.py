@@ -53,6 +53,7 @@ class ReaderState:
     tool             the last LoadTool of the file
     cutter_row       row before which a statement last told the form of a tool, -1 if none has
     name_row         the same of its name
+    length_row       the same of its length in the spindle
     no_axis          the tool axis of a point that gives none
     direction        the direction of INDIRV, for the arc that follows
     clearance        height of the clearance plane
@@ -86,6 +87,7 @@ class ReaderState:
     tool: LoadTool | None = None
     cutter_row: int = -1
     name_row: int = -1
+    length_row: int = -1
     no_axis: NoAxis = NoAxis.MODAL
     direction: tuple[float, ...] | None = None
     clearance: float | None = None

@@ -155,10 +155,14 @@ def _tool_line(tool: ToolDescription) -> str:
             ("flutes", tool.flute_length),
             ("taper", tool.taper_angle),
             ("tip angle", tool.tip_angle),
+            ("stands out", tool.extension),
+            ("length in the spindle", tool.set_length),
         )
         if value
     ]
     register = [f"length register {tool.register}"] if tool.register else []
+    if tool.holder:
+        register.append(f"holder {tool.holder}")
     where = "operations " + ", ".join(str(place + 1) for place in tool.operations)
     return "; ".join([f"{_tool_name(tool)}  {tool.kind} {' '.join(sizes)}".rstrip(), *register, where])
 

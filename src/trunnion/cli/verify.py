@@ -10,6 +10,7 @@ from trunnion.api.reports import check_report, write_report
 from trunnion.api.verifying import verify
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import print_result
+from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
@@ -42,6 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
         zero=arguments.zero or None,
         tool_length=arguments.tool_length or None,
         columns=arguments.report is not None,
+        observer=Terminal(),
     )
     if hint := _control_hint(verification):
         print(hint, file=sys.stderr)

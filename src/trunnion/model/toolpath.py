@@ -266,9 +266,16 @@ class UnknownStatement(Event):
 
 @dataclass(frozen=True, slots=True)
 class Tool:
-    """The cutter, mm and degrees.
+    """The cutter, mm and degrees; 0 is a size that nothing states.
 
-    kind  its form in TLDATA: MILL, TCUTTER, BARREL, DRILL or UNKNOWN
+    kind          its form in TLDATA: MILL, TCUTTER, BARREL, DRILL or UNKNOWN
+    length        of the cutter itself
+    taper_angle   of its side from the axis
+    tip_angle     whole angle of a drill's tip; of a mill, that of its bottom from the horizontal
+    upper_radius  second corner radius of a TCUTTER or a BARREL
+    holder        what the CL file calls its holder
+    extension     how far it stands out of the holder
+    set_length    its length in the spindle as the tool change states it
     """
 
     kind: str = "UNKNOWN"
@@ -280,6 +287,9 @@ class Tool:
     tip_angle: float = 0.0
     flute_length: float = 0.0
     upper_radius: float = 0.0
+    holder: str = ""
+    extension: float = 0.0
+    set_length: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

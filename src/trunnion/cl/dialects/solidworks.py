@@ -1,5 +1,6 @@
 """SolidWorks CAM and CAMWorks APT."""
 
+import re
 from typing import Final
 
 from trunnion.cl.builder import NoAxis
@@ -13,6 +14,9 @@ from trunnion.cl.statements.cycles import cycle
 
 _Z: Final = (0.0, 0.0, 1.0)
 
+#: A note that names a tool: ``[HOLDER=C40-M20EM3] 20MM CRB 2FL 38 LOC``.
+_NOTE: Final = re.compile(r"(?:\[HOLDER=([^\]]*)\]\s*)?(.*)", re.DOTALL)
+
 
 def _insert(state: ReaderState, statement: Statement) -> None:
     """A note: it begins an operation, and names the tool if CUTTER follows. It never goes into the program as it is."""
@@ -22,10 +26,11 @@ def _insert(state: ReaderState, statement: Statement) -> None:
 
 
 def _cutter(state: ReaderState, statement: Statement) -> None:
-    """The tool, under the name of the note before it."""
+    """The tool, under the name of the note before it, which may begin with its holder."""
     apt_tools.cutter(state, statement)
     if state.note and state.note[0] + 1 == state.line:
-        apt_tools.name_tool(state, state.note[1])
+        holder, name = _NOTE.findall(state.note[1])[0]
+        apt_tools.name_tool(state, name, holder)
 
 
 def _trntyp(state: ReaderState, statement: Statement) -> None:
@@ -63,7 +68,11 @@ def _cycle(state: ReaderState, statement: Statement) -> None:
 
 
 def _flute_length(state: ReaderState, statement: Statement) -> None:
-    apt_tools.set_flute_length(state, statement.numbers(1)[0])
+    apt_tools.set_length_of(state, "flute_length", statement)
+
+
+def _extension(state: ReaderState, statement: Statement) -> None:
+    apt_tools.set_length_of(state, "extension", statement)
 
 
 def _settle_cycle(found: CycleParts) -> None:
@@ -92,7 +101,7 @@ SOLIDWORKS: Final = Dialect(
         "CIRCLE": _circle,
         "CYCLE": _cycle,
         "CSI_SET_FLUTE_LENGTH": _flute_length,
-        "CSI_SET_EXTENSION_LENGTH": operations.ignore,
+        "CSI_SET_EXTENSION_LENGTH": _extension,
         "SETUP": operations.ignore,
     },
     cycles=CycleWords(

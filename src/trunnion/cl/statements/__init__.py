@@ -5,7 +5,7 @@ Out:    the state with what the statement says, in units of the file.
 """
 
 from trunnion.cl.dialect import Handler
-from trunnion.cl.statements import cycles, events, motion, operations
+from trunnion.cl.statements import apt_tools, cycles, events, motion, operations
 
 __all__ = ["HANDLERS"]
 
@@ -24,7 +24,7 @@ HANDLERS: dict[str, Handler] = {
     "REMARK": operations.ignore,
     "LEADER": operations.ignore,
     "CLPRNT": operations.ignore,
-    "CUTTER": operations.ignore,
+    "CUTTER": apt_tools.cutter_in_section,
     "END": operations.ignore,
     "FINI": operations.ignore,
     "RAPID": motion.rapid,

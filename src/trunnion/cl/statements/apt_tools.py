@@ -1,11 +1,11 @@
 """Tools of APT dialects: CUTTER with its seven parameters, LOADTL in its forms, names."""
 
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
-from trunnion.cl.statement import Statement, whole_number
+from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.cl.statements import events
 from trunnion.model.toolpath import SelectTool, Tool
 
@@ -14,6 +14,9 @@ _FLATTEST_DRILL: Final = 1.0
 
 #: How far the corner's centre of a drill may be off its edge, as a part of its diameter: numbers are rounded.
 _AT_EDGE: Final = 1e-3
+
+#: What CUTTER says of a tool; all else, other statements say.
+_OF_CUTTER: Final = ("kind", "diameter", "corner_radius", "length", "taper_angle", "tip_angle")
 
 #: Words of LOADTL with a number that is the register of the tool's length.
 _REGISTERS: Final = frozenset({"OSETNO", "OFFSET", "ADJUST"})
@@ -25,13 +28,35 @@ def cutter(state: ReaderState, statement: Statement) -> None:
     d diameter, r corner radius, e and f the centre of the corner's circle from the axis and above the tip, a the angle
     of the tip from the horizontal, b that of the side from the axis, h the height.
     """
+    tool = _form(statement)
+    now = state.builder.tool
+    form = Tool(**{field: getattr(now, field) for field in _OF_CUTTER})
+    if form != tool:
+        state.split_operation()
+        if state.name_row == state.row:
+            tool = replace(tool, name=now.name, holder=now.holder)
+        if state.length_row == state.row:
+            tool = replace(tool, set_length=now.set_length)
+        state.builder.tool = tool
+    state.cutter_row = state.row
+
+
+def cutter_in_section(state: ReaderState, statement: Statement) -> None:
+    """Set the form of the tool of an operation in a CLSF, unless its TLDATA has stated it."""
+    tool = _form(statement)
+    if state.builder.tool.kind == "UNKNOWN":
+        state.builder.tool = replace(tool, name=state.builder.tool.name)
+
+
+def _form(statement: Statement) -> Tool:
+    """The tool that a CUTTER describes."""
     values = statement.values[:-1] if statement.values[-1:] == ("",) else statement.values
     given = statement._replace(values=values).numbers(1, 2, 7)
     if any(number < 0 for number in given[:2]):
         raise StatementError("CUTTER has a negative size", "write the diameter of the tool")
     d, r, e, _, a, b, h = (*given, *(0.0,) * (7 - len(given)))
     is_drill = r == 0.0 and a > _FLATTEST_DRILL and abs(e - 0.5 * d) <= _AT_EDGE * d
-    tool = Tool(
+    return Tool(
         kind="DRILL" if is_drill else "MILL",
         diameter=d,
         corner_radius=r,
@@ -39,37 +64,36 @@ def cutter(state: ReaderState, statement: Statement) -> None:
         taper_angle=0.0 if is_drill else b,
         tip_angle=180.0 - 2.0 * a if is_drill else a,
     )
-    now = state.builder.tool
-    if replace(now, name="", flute_length=0.0) != tool:
-        state.split_operation()
-        state.builder.tool = replace(tool, name=now.name if state.name_row == state.row else "")
-    state.cutter_row = state.row
 
 
-def name_tool(state: ReaderState, name: str) -> None:
-    """Set the name of the tool."""
-    if name != state.builder.tool.name:
+def name_tool(state: ReaderState, name: str, holder: str = "") -> None:
+    """Set the name of the tool and that of its holder."""
+    tool = state.builder.tool
+    if (name, holder) != (tool.name, tool.holder):
         state.split_operation()
-        state.builder.tool = replace(state.builder.tool, name=name)
+        state.builder.tool = replace(state.builder.tool, name=name, holder=holder)
     state.name_row = state.row
 
 
-def set_flute_length(state: ReaderState, length: float) -> None:
-    """Set the length of the flutes, where a tool has just been described."""
+def set_length_of(state: ReaderState, field: str, statement: Statement) -> None:
+    """Set ``flute_length`` or ``extension`` where a tool has just been described."""
+    (length,) = statement.numbers(1)
     if state.cutter_row == state.row:
-        state.builder.tool = replace(state.builder.tool, flute_length=length)
+        sizes: dict[str, Any] = {field: length}
+        state.builder.tool = replace(state.builder.tool, **sizes)
 
 
 def tprint(state: ReaderState, statement: Statement) -> None:
     """Name the tool; names of its assembly and its holder may follow."""
-    name_tool(state, statement.text.partition(",")[0].strip())
+    name, *others = (part.strip() for part in statement.text.split(","))
+    name_tool(state, name, ", ".join(filter(None, dict.fromkeys(others))))
 
 
 def loadtl(state: ReaderState, statement: Statement) -> None:
     """Load a tool: LOADTL/n[,register], and couplets of a word and a number."""
     values = list(statement.values)
     number = whole_number("LOADTL", tuple(values[:1]))
-    adjust, unknown, at = 0, [], 1
+    adjust, length, unknown, at = 0, 0.0, [], 1
     if len(values) > 1 and not isinstance(values[1], str):
         # LOADTL/n,register, or LOADTL/n,0,length,register.
         plain = [value for value in values[1:] if not isinstance(value, str)]
@@ -78,17 +102,22 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
         if len(plain) == 2 and plain[0] != plain[1]:
             raise StatementError(f"LOADTL/{statement.listed()} is not known", "write LOADTL/number,ADJUST,register")
         adjust, at = whole_number("LOADTL", tuple(plain[-1:])), len(values)
+        length = plain[1] if len(plain) == 3 else 0.0
     while at < len(values):
         word = values[at]
         if word in _REGISTERS:
             adjust = whole_number(f"LOADTL {word}", tuple(values[at + 1 : at + 2]))
             at += 2
         elif word == "LENGTH" and at + 1 < len(values) and not isinstance(values[at + 1], str):
+            (length,) = numbers("LOADTL LENGTH", (values[at + 1],), 1)
             at += 2
         else:
             unknown.append(str(word) if isinstance(word, str) else f"{word:g}")
             at += 1
     _load(state, number, adjust)
+    if length:
+        state.builder.tool = replace(state.builder.tool, set_length=length)
+        state.length_row = state.row
     if unknown:
         state.note_unknown(statement, f"LOADTL with {','.join(unknown)} is not known", *unknown)
 
@@ -115,6 +144,6 @@ def _load(state: ReaderState, number: int, adjust: int) -> None:
     if before is None or before.number == number:
         return
     if state.cutter_row != state.row:
-        state.builder.tool = Tool(name=state.builder.tool.name)
+        state.builder.tool = Tool(name=state.builder.tool.name, holder=state.builder.tool.holder)
     if state.name_row != state.row:
-        state.builder.tool = replace(state.builder.tool, name="")
+        state.builder.tool = replace(state.builder.tool, name="", holder="")

@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from typing import Any
 
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import MM_PER_INCH, ReaderState
@@ -77,7 +78,8 @@ def tldata(state: ReaderState, statement: Statement) -> None:
         expected = f"{', '.join(others)} or {last}" if others else last
         what = f"TLDATA/{form} has {counted(len(given), 'number')}, expected {expected}"
         raise StatementError(what, "write TLDATA as NX does")
-    fields = {field: number for field, number in zip(layouts.get(len(given), ()), given, strict=False) if field}
+    sizes = zip(layouts.get(len(given), ()), given, strict=False)
+    fields: dict[str, Any] = {field: number for field, number in sizes if field}
     kind = form if form in _TLDATA_FIELDS else "UNKNOWN"
     state.builder.tool = Tool(kind=kind, name=state.builder.tool.name, **fields)
     if form not in _TLDATA_FIELDS:
