@@ -3,6 +3,7 @@
 import bz2
 import gzip
 import io
+import random
 import zipfile
 from pathlib import Path
 
@@ -81,6 +82,7 @@ def test_an_archive_is_one_job_in_the_order_of_its_names(tmp_path: Path) -> None
         (bz2.compress(CLSF.encode())[:-5], "cannot be unpacked"),
         (zipped({"a.cls": CLSF})[:-30], "cannot be unpacked"),
         (zipped({"a.cls": CLSF}, zipfile.ZIP_STORED).replace(b"GOTO", b"GOTP", 1), "Bad CRC-32"),
+        (zipped({"a.cls": CLSF}, zipfile.ZIP_LZMA), "packed in a way that is not read"),
         (zipped({"a.txt": "hello"}), "has no CL file in it"),
         (zipped({}), "is empty"),
         (zipped({"a.zip": zipped({"a.cls": CLSF})}), "an archive in an archive"),
@@ -91,8 +93,8 @@ def test_an_archive_is_one_job_in_the_order_of_its_names(tmp_path: Path) -> None
         (zipped({"a.cls": CLSF.encode("utf-16")}), "UTF-16"),
     ],
     ids=[
-        "gz cut", "gz damaged", "bz2 cut", "zip cut", "zip damaged", "no cl", "empty", "zip in zip", "gz in gz", "7z",
-        "tar", "gz of nothing", "utf-16",
+        "gz cut", "gz damaged", "bz2 cut", "zip cut", "zip damaged", "lzma", "no cl", "empty", "zip in zip", "gz in gz",
+        "7z", "tar", "gz of nothing", "utf-16",
     ],
 )  # fmt: skip
 def test_what_cannot_be_read_is_refused_with_its_name(tmp_path: Path, content: bytes, said: str) -> None:
@@ -102,6 +104,32 @@ def test_what_cannot_be_read_is_refused_with_its_name(tmp_path: Path, content: b
     assert said in text
     assert text.startswith(str(file))
     assert "; " in text
+
+
+def test_no_damage_ends_in_a_traceback(tmp_path: Path) -> None:
+    seeds = [
+        gzip.compress(CLSF.encode()),
+        bz2.compress(CLSF.encode()),
+        zipped({"1.cls": CLSF, "2.ncl": NCL, "x.txt": "hi"}),
+        zipped({"1.cls": CLSF}, zipfile.ZIP_BZIP2),
+    ]
+    rng, file, refused = random.Random(1), tmp_path / "part", 0
+    for k in range(200):
+        content = bytearray(seeds[k % len(seeds)])
+        for _ in range(rng.choice((1, 1, 2, 5, 20))):
+            at, what = rng.randrange(len(content)), rng.random()
+            if what < 0.7:
+                content[at] = rng.randrange(256)
+            elif what < 0.9:
+                del content[at : at + rng.randrange(1, 30)]
+            else:
+                content[at:at] = rng.randbytes(5)
+        file.write_bytes(content)
+        try:
+            read_cl_files(file)
+        except trunnion.InputError:
+            refused += 1
+    assert refused > 100
 
 
 def test_a_password_and_two_files_of_one_name_are_refused(tmp_path: Path) -> None:

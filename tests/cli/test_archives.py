@@ -6,9 +6,19 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.cl_dialects import WRITERS, Step
 from tests.support.locations import YL569
 from trunnion.cli import main
 
+PATH = [
+    Step("TOOL", (5.0, 0.5, 0.0)),
+    Step("SPINDLE", (900.0,), "CLW"),
+    Step("RAPID", point=(1.0, 0.0, 3.0)),
+    Step("FEED", (10.0,)),
+    Step("GOTO", point=(1.0, 0.0, 0.5)),
+    Step("GOTO", point=(10.0, 0.0, 0.5)),
+    Step("RAPID", point=(10.0, 0.0, 3.0)),
+]
 BLADE = (YL569 / "3_blade_finish.cls").read_bytes()
 
 
@@ -27,13 +37,13 @@ def test_an_archive_is_posted_as_one_program_and_proven(
     archive = tmp_path / "blade.zip"
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as out:
         out.writestr("1.cls", BLADE)
-        out.writestr("2.cls", BLADE.replace(b"TOOL PATH/", b"TOOL PATH/SECOND_"))
+        out.writestr("2.ncl", WRITERS["ncl"](True).write(PATH))  # another dialect, and inches
     monkeypatch.chdir(tmp_path)
     assert main(["post", str(archive), "--machine", "yl569"]) == 0
     err = capsys.readouterr().err
     assert f"{archive}/1.cls: read as NX CLSF" in err
-    program = (tmp_path / "blade.mpf").read_text(encoding="utf-8")
-    assert program.count("SECOND_") == 1
+    assert f"{archive}/2.ncl: read as Creo NCL" in err
+    assert "X254." in (tmp_path / "blade.mpf").read_text(encoding="utf-8")
     assert main(["verify", "blade.mpf", "--machine", "yl569", "--cl", str(archive)]) == 0
     stdin(monkeypatch, archive.read_bytes())
     assert main(["verify", "blade.mpf", "--machine", "yl569", "--cl", "-"]) == 0

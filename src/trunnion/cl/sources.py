@@ -11,6 +11,7 @@ import bz2
 import gzip
 import io
 import re
+import struct
 import tempfile
 import zipfile
 import zlib
@@ -61,6 +62,15 @@ _HEAD: Final = 1 << 16
 _MOTION: Final = re.compile(rb"^[ \t]*(?:GOTO|GODLTA|TLON)[ \t]*[/,]", re.MULTILINE | re.IGNORECASE)
 
 _CUT_OFF = "it is damaged or cut off: fetch or write it again"
+
+#: Ways of packing that are read in a ZIP archive.
+_METHODS: Final = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2})
+
+#: What Python raises for archives that are damaged.
+_DAMAGE: Final = (
+    OSError, EOFError, ValueError, KeyError, IndexError, RuntimeError, OverflowError, zlib.error, struct.error,
+    zipfile.BadZipFile,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +170,7 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
     try:
         with open_packed() as packed, zipfile.ZipFile(packed) as archive:
             infos = [info for info in archive.infolist() if not info.is_dir()]
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, UnicodeDecodeError) as error:
+    except _DAMAGE as error:
         raise InputError(Problem(name, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
     _check_infos(name, infos, size)
     sources, left_out = [], []
@@ -193,6 +203,9 @@ def _check_infos(name: str, infos: Iterable[zipfile.ZipInfo], size: int) -> None
         if info.flag_bits & 1:
             what, cure = f"{info.filename} in it has a password", "pack it without a password"
             raise InputError(Problem(name, 0, what, cure))
+        if info.compress_type not in _METHODS:
+            what = f"{info.filename} in it is packed in a way that is not read"
+            raise InputError(Problem(name, 0, what, "pack it as other ZIP archives (deflate)"))
     _check_size(name, sum(info.file_size for info in files), size)
 
 
@@ -218,7 +231,7 @@ def _member_opener(inside: str, open_packed: Callable[[], BinaryIO], member: str
         packed = open_packed()
         try:
             text = zipfile.ZipFile(packed).open(member)  # noqa: SIM115 - closed with what reads it
-        except (zipfile.BadZipFile, OSError, ValueError, KeyError, NotImplementedError, RuntimeError) as error:
+        except _DAMAGE as error:
             packed.close()
             raise InputError(Problem(inside, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
         return cast("BinaryIO", _Unpacked(cast("BinaryIO", text), inside, size, packed))
@@ -299,7 +312,7 @@ class _Unpacked(io.RawIOBase):
                 buffer[count : count + len(piece)] = piece
                 count += len(piece)
                 _check_size(self._name, self._done + count, self._packed_bytes)
-        except (OSError, EOFError, ValueError, zlib.error, zipfile.BadZipFile, NotImplementedError) as error:
+        except _DAMAGE as error:
             raise InputError(Problem(self._name, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
         self._done += count
         return count
