@@ -80,10 +80,11 @@ def line(draw: st.DrawFn, program: Program) -> None:
 def shift(draw: st.DrawFn, program: Program) -> None:
     """Cycle 7: the axes rest, and the numbers of their positions change."""
     program.lines.append("CYCL DEF 7.0 DATUM SHIFT")
-    for axis in draw(st.lists(st.sampled_from([0, 1, 2]), min_size=1, max_size=3, unique=True)):
+    axes = draw(st.lists(st.sampled_from([0, 1, 2]), min_size=1, max_size=3, unique=True))
+    for line, axis in enumerate(axes, start=1):
         value = draw(microns)
         incremental = draw(st.booleans())
-        program.lines.append(f"CYCL DEF 7.{axis + 1} {'I' if incremental else ''}{'XYZ'[axis]}{number(draw, value)}")
+        program.lines.append(f"CYCL DEF 7.{line} {'I' if incremental else ''}{'XYZ'[axis]}{number(draw, value)}")
         new = value + (program.shift[axis] if incremental else 0)
         program.place[axis] += program.shift[axis] - new
         program.shift[axis] = new

@@ -84,7 +84,7 @@ def test_one_plane_in_every_spelling_is_one_plane(
     wanted = matrix(a, b, c)
     for text in spellings(a, b, c):
         x, y, z = point
-        shift = "CYCL DEF 7.1 X+10\nCYCL DEF 7.2 Y-20\nCYCL DEF 7.3 Z+5"
+        shift = "CYCL DEF 7.0 SHIFT\nCYCL DEF 7.1 X+10\nCYCL DEF 7.2 Y-20\nCYCL DEF 7.3 Z+5"
         run = ran(f"{shift}\n{text} TURN FMAX SEQ-\nL X{x} Y{y} Z{z} F100", tmp_path_factory)
         assert run.diagnostics == ()
         close(run.axis[-1], wanted[:, 2], atol=1e-7)
@@ -176,6 +176,11 @@ NO_SHIFT = "CYCL DEF 7.0 SHIFT\nCYCL DEF 7.1 X+0\nCYCL DEF 7.2 Y+0\nCYCL DEF 7.3
 HERE = "L A+0 C+0 FMAX\nL X+10 Y+1 Z+2"
 
 
+def datum(cycle: int, words: str) -> str:
+    """The blocks of an older cycle with one line."""
+    return f"CYCL DEF {cycle}.0 DATUM\nCYCL DEF {cycle}.1 {words}\n"
+
+
 @pytest.mark.parametrize("reset", RESETS)
 def test_a_shift_that_is_reset_in_the_plane_ends_with_it(reset: str, run: Runner) -> None:
     found = run(SHIFT + TILT + "L X+1 Y+0 Z+0\n" + NO_SHIFT + reset + "\n" + HERE)
@@ -195,20 +200,20 @@ def test_a_shift_from_before_the_plane_outlives_it(reset: str, run: Runner) -> N
     ("text", "line"),
     [
         # Which of two shifts counts, or whether both do.
-        (SHIFT + TILT + "CYCL DEF 7.1 X+5\nL X+1", 7),
-        (SHIFT + TILT + "CYCL DEF 7.1 X+0\nL X+1", 7),
-        (SHIFT + TILT + "CYCL DEF 7.2 IY+5\nL X+1", 7),
+        (SHIFT + TILT + datum(7, "X+5") + "L X+1", 8),
+        (SHIFT + TILT + datum(7, "X+0") + "L X+1", 8),
+        (SHIFT + TILT + datum(7, "IY+5") + "L X+1", 8),
         (SHIFT + TILT + NO_SHIFT + TILT + "L X+1", 11),
         # A part of a shift that is not reset, and shifts that are not reset at all.
-        (SHIFT + TILT + "CYCL DEF 7.1 X+0\nPLANE RESET STAY\nL X+100", 8),
-        (TILT + "CYCL DEF 7.1 X+5\nL X+1\nPLANE RESET STAY\nL X+1", 5),
-        (TILT + "CYCL DEF 7.1 X+5\nL X+1\n" + TILT + "L X+1", 5),
-        (TILT + "CYCL DEF 7.1 X+5\nPLANE RELATIV SPA+5 STAY\nCYCL DEF 7.1 X+0\nPLANE RESET STAY\nL X+1", 6),
+        (SHIFT + TILT + datum(7, "X+0") + "PLANE RESET STAY\nL X+100", 9),
+        (TILT + datum(7, "X+5") + "L X+1\nPLANE RESET STAY\nL X+1", 6),
+        (TILT + datum(7, "X+5") + "L X+1\n" + TILT + "L X+1", 6),
+        (TILT + datum(7, "X+5") + "PLANE RELATIV SPA+5 STAY\n" + datum(7, "X+0") + "PLANE RESET STAY\nL X+1", 8),
         # The same with rotation, mirror and scale, with holes and with words of plain blocks.
-        (TILT + "CYCL DEF 10.1 ROT+5\nPLANE RESET STAY\nL X+1", 4),
-        ("CYCL DEF 8.1 X\n" + TILT + "CYCL DEF 8.1\nL X+1", 4),
-        ("CYCL DEF 11.1 SCL2\n" + TILT + "CYCL DEF 11.1 SCL1\nPLANE RESET STAY\nL X+1", 5),
-        (TILT + "CYCL DEF 7.1 X+5\nPLANE RESET STAY\nCYCL DEF 7.1 IX+5\nL X+1", 5),
+        (TILT + datum(10, "ROT+5") + "PLANE RESET STAY\nL X+1", 5),
+        (datum(8, "X") + TILT + datum(8, "") + "L X+1", 6),
+        (datum(11, "SCL2") + TILT + datum(11, "SCL1") + "PLANE RESET STAY\nL X+1", 7),
+        (TILT + datum(7, "X+5") + "PLANE RESET STAY\n" + datum(7, "IX+5") + "L X+1", 7),
     ],
 )
 def test_what_no_source_settles_is_an_error_at_the_first_motion(text: str, line: int, run: Runner) -> None:
@@ -218,13 +223,15 @@ def test_what_no_source_settles_is_an_error_at_the_first_motion(text: str, line:
 
 
 def test_motions_in_machine_coordinates_and_what_is_set_anew_are_not_in_doubt(run: Runner) -> None:
-    found = run(TILT + "CYCL DEF 7.1 X+5\nPLANE RESET STAY\nL Z+0 R0 FMAX M91\n" + SHIFT + HERE)
+    found = run(TILT + datum(7, "X+5") + "PLANE RESET STAY\nL Z+0 R0 FMAX M91\n" + SHIFT + HERE)
     assert found.diagnostics == ()
     close(found.tip[-1], [258, 1, -46], atol=1e-9)
 
 
 def test_a_rotation_in_a_plane_with_a_shift_from_before_is_the_order_of_the_manuals(run: Runner) -> None:
-    found = run(SHIFT + TILT + "CYCL DEF 10.1 ROT+90\nL X+1 Y+0 Z+0\nCYCL DEF 10.1 ROT+0\nPLANE RESET STAY\n" + HERE)
+    found = run(
+        SHIFT + TILT + datum(10, "ROT+90") + "L X+1 Y+0 Z+0\n" + datum(10, "ROT+0") + "PLANE RESET STAY\n" + HERE
+    )
     assert found.diagnostics == ()
     close(found.tip[1], matrix(-45, 0, 0) @ [0, 1, 0] + [248, 0, -48], atol=1e-9)
     close(found.tip[-1], [258, 1, -46], atol=1e-9)
@@ -240,12 +247,12 @@ def test_cycle_19_is_a_plane_without_a_motion(run: Runner) -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 X", lambda p: p * [-1, 1, 1]),
-        ("CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+90", lambda p: np.array([-p[1], p[0], p[2]])),
-        ("CYCL DEF 10.1 ROT+60\nCYCL DEF 10.1 IROT+30", lambda p: np.array([-p[1], p[0], p[2]])),
-        ("CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL0.5", lambda p: 0.5 * p),
-        ("CYCL DEF 26.0 SCALING\nCYCL DEF 26.1 X2 Y1 CCX+10", lambda p: p * [2, 1, 1] - [10, 0, 0]),
-        ("CYCL DEF 7.1 X+1\nCYCL DEF 7.1 IX+2\nCYCL DEF 8.1 Y", lambda p: p * [1, -1, 1] + [3, 0, 0]),
+        (datum(8, "X"), lambda p: p * [-1, 1, 1]),
+        (datum(10, "ROT+90"), lambda p: np.array([-p[1], p[0], p[2]])),
+        (datum(10, "ROT+60") + datum(10, "IROT+30"), lambda p: np.array([-p[1], p[0], p[2]])),
+        (datum(11, "SCL0.5"), lambda p: 0.5 * p),
+        (datum(26, "X2 Y1 CCX+10"), lambda p: p * [2, 1, 1] - [10, 0, 0]),
+        (datum(7, "X+1") + datum(7, "IX+2") + datum(8, "Y"), lambda p: p * [1, -1, 1] + [3, 0, 0]),
     ],
 )
 def test_datums_are_mirrored_turned_and_scaled(text: str, expected: object, run: Runner) -> None:

@@ -151,8 +151,8 @@ def test_circles_that_are_none_are_named(block: str, run: Runner) -> None:
 
 
 def test_machine_positions(run: Runner) -> None:
-    found = run("CYCL DEF 7.1 X+10\nL X+1 Y+2 Z+3 F100\nL Z+0 R0 FMAX M91\nL X+1\nL Z-5 FMAX M92")
-    assert [(f.line, f.severity) for f in found.diagnostics] == [(5, Severity.WARNING)]
+    found = run("CYCL DEF 7.0\nCYCL DEF 7.1 X+10\nL X+1 Y+2 Z+3 F100\nL Z+0 R0 FMAX M91\nL X+1\nL Z-5 FMAX M92")
+    assert [(f.line, f.severity) for f in found.diagnostics] == [(6, Severity.WARNING)]
     close(slides(found), [[11, 2, 3], [11, 2, 0], [11, 2, 0], [11, 2, -5]])
     assert found.machine_frame.tolist() == [False, True, False, True]
     assert (found.kind[1], found.kind[2]) == (Kind.RAPID, Kind.LINEAR)
@@ -242,8 +242,10 @@ def test_tolerance_and_dwell(run: Runner) -> None:
         "QUX 5", "L X+", "L XNAN YNAN", "L X+1 W7", "L X+1 X+2", "L 5", "LX+1", "L X+1 S500", "L B+5", "L U+5",
         "RND R5", "CHF 2", "APPR LCT X+1 Y+2 R5", "DEP LT LEN20", "FC DR+ R10", "M114", "CYCL DEF 999 NAME Q200=1",
         "CYCL DEF 4.0 POCKET\nCYCL CALL", "CYCL CALL", "CYCL CALL PAT", "CALL PGM NOBODY", "TOOL CALL 5 Z Q7",
-        "FUNCTION TURNDATA CORR", "FN 26: TABOPEN TNC:A", "TRANS DATUM AXIS X+10", "CYCL DEF 7.1 #5", "PATTERN DEF",
-        "DECLARE STRING QS1 = \"A\"", "QS1 = 5", "CYCL DEF 8.1 Q", "CYCL DEF 11.1 SCL0", "L M99", "BEGIN", "L ~X+1",
+        "FUNCTION TURNDATA CORR", "FN 26: TABOPEN TNC:A", "TRANS DATUM AXIS X+10", "PATTERN DEF",
+        "CYCL DEF 7.0\nCYCL DEF 7.1 #5",
+        "DECLARE STRING QS1 = \"A\"", "QS1 = 5", "CYCL DEF 8.0\nCYCL DEF 8.1 Q", "CYCL DEF 11.0\nCYCL DEF 11.1 SCL0",
+        "L M99", "BEGIN", "L ~X+1",
         "CYCL DEF 200 X Q200=2 Q253=PREDEF", "L X1EX5", "M99999",
     ],
 )  # fmt: skip

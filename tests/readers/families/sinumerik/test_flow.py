@@ -271,3 +271,25 @@ def test_comments_and_events_of_loops_are_bounded(run: Runner) -> None:
     with pytest.raises(InputError, match="makes more than 1000 comments and events") as caught:
         run("LOOP\n" + "M1" * 200 + "\nENDLOOP", step_limit=1000)
     assert caught.value.problems[0].line == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("_T=5\nX=_T", 1),
+        ("DEF REAL _T\nX1\nDEF REAL _T=2", 3),
+        ("DEF REAL _A, _A", 1),
+        # Smoothing within nothing, as when the line with the tolerance is lost.
+        ("DEF REAL _T\nCYCLE832(_T,_ORI_ROUGH,1)\nX1", 2),
+        ("CYCLE832(,3)\nX1", 1),
+        ("CYCLE832(-.1,1,1)\nX1", 1),
+    ],
+)
+def test_variables_without_def_with_two_and_without_their_value_are_named(run: Runner, text: str, line: int) -> None:
+    assert [each.line for each in run(text).errors] == [line]
+
+
+def test_a_def_that_a_jump_leads_to_again_and_smoothing_that_is_off_are_no_mistakes(run: Runner) -> None:
+    text = "R1=0\nBACK: DEF INT _N\n_N=_N+1 R1=R1+1\nX=_N\nIF R1<3 GOTOB BACK\n"
+    found = run(text + "CYCLE832()\nCYCLE832(0,_OFF,1)\nCYCLE832(0,0,1)\nCYCLE832(0)\nX5")
+    assert found.errors == ()

@@ -29,6 +29,9 @@ class HeidenhainControl(PlaneControl):
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         self.shortest_path = False
+        # Lines that end an operation with M126 on, with what they do; and whether the program ever writes M127.
+        self._shortest_path_left_on: list[tuple[int, str]] = []
+        self._cancels_shortest_path = False
         self.spatial_angles_active = False
         self.angles = [0.0, 0.0, 0.0]
         self.pole: Floats | None = None
@@ -52,6 +55,33 @@ class HeidenhainControl(PlaneControl):
     def takes_shortest_path(self, axis: Axis) -> bool:
         """With M126."""
         return self.shortest_path
+
+    def set_shortest_path(self, on: bool) -> None:
+        """M126, M127."""
+        self._cancels_shortest_path |= not on
+        self.shortest_path = on
+
+    def end_operation(self, what: str) -> None:
+        """Remember M126 that is still on where an operation is over."""
+        if self.shortest_path:
+            self._shortest_path_left_on.append((self.line, what))
+
+    def end_program(self) -> None:
+        """Note every M126 that was left on.
+
+        The manuals say that the end of a program cancels it, so that programs without any M127 are sound; one
+        that cancels it elsewhere has lost a block.
+        """
+        if self.shortest_path and not self._cancels_shortest_path:
+            self.note("ends with M126 on: taken to end with the program; M127 says so", Severity.WARNING)
+        elif self._cancels_shortest_path:
+            self.end_operation("ends")
+            end = self.line
+            for line, what in self._shortest_path_left_on:
+                self.line = line
+                text = f"{what} with M126 on, which the program cancels elsewhere: write M127 before it"
+                self.note(text, Severity.ERROR)
+            self.line = end
 
     def feed_at_tip(self, on: bool) -> None:
         """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""
@@ -82,6 +112,7 @@ class HeidenhainControl(PlaneControl):
         else:
             self._length_active, self.plane_axis = active, along
         if name is not None:
+            self.end_operation("changes the tool")
             self.change_tool()
 
     # Directions

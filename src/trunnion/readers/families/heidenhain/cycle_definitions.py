@@ -80,6 +80,20 @@ class Definitions:
         self._control = control
         self._note = note
         self.defined_cycle: Cycle | None = None
+        # Number of the older cycle whose lines are being read, and the last of them.
+        self._open: tuple[int, int] | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the last block was a line of an older cycle, on which another may follow."""
+        return self._open is not None
+
+    def end_lines(self) -> None:
+        """Another block follows: no line can follow on those of an older cycle; its title alone defines nothing."""
+        if self._open is not None and self._open[1] == 0:
+            number = self._open[0]
+            self._note(f"cycle {number} has a title ({number}.0) and no line {number}.1 after it", Severity.ERROR)
+        self._open = None
 
     def define(self, text: str, parameters: Parameters) -> None:
         """Execute a block; ``text`` is what follows CYCL DEF."""
@@ -88,11 +102,19 @@ class Definitions:
             raise KlartextError("a cycle has a number")
         number, rest = int(match[1]), text[match.end() :].strip()
         if match[2] is None:
+            self.end_lines()
             self._define_with_parameters(number, rest, parameters)
-        elif int(match[2]) == 0:
+            return
+        line = int(match[2])
+        if line == 0:
+            self.end_lines()
+            self._open = number, 0
             self._begin_definition(number, rest)
-        else:
-            self._continue_definition(number, int(match[2]), rest, parameters)
+            return
+        before, self._open = self._open, (number, line)
+        if before != (number, line - 1):
+            raise KlartextError(f"line {line} of cycle {number} does not follow its line {line - 1}")
+        self._continue_definition(number, line, rest, parameters)
 
     def _begin_definition(self, number: int, title: str) -> None:
         """Execute the first line of an older cycle: its title."""

@@ -36,6 +36,7 @@ _PREFIX_LENGTH: Final = 32
 #: Cutter radius compensation: left of the path, right of it, off.
 _RADIUS_COMPENSATION: Final = {"R0": 0, "RL": 1, "RR": -1}
 
+_CYCLE_DEFINITION = re.compile(r"CYCLE?[ \t]*DEF(?![A-Z])")
 _CYCLE = re.compile(r"[ \t]*(DEF|CALL)(?![A-Z])")
 _CORNER = re.compile(r"[ \t]*FORM[ \t]+0\.([12])(?![0-9])[ \t]*[XYZ]?(?=[ \t])")
 _COORDINATE = re.compile(r"(I?)([XYZ])[ \t]*([+-]?[ \t]*(?:[0-9]{1,9}[.,]?[0-9]{0,9}|[.,][0-9]{1,9}))")
@@ -58,6 +59,8 @@ class HeidenhainInterpreter(FlowInterpreter):
         self._block_start = 0, -1
         # The first corner of the stock (BLK FORM 0.1).
         self._stock_corner: dict[str, float] = {}
+        # The last block that was split into words: of which program, and its number.
+        self._last_block: tuple[ActiveProgram | None, int] = None, -1
         self._handlers: dict[str, Callable[[ActiveProgram, str], None]] = {
             "BEGIN": self._begin_program,
             "END": self._end_program,
@@ -82,7 +85,12 @@ class HeidenhainInterpreter(FlowInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        if self._block_parts or self._m_functions.modal_call or self.control.modal.compensation.current:
+        if (
+            self._block_parts
+            or self._definitions.is_open
+            or self._m_functions.modal_call
+            or self.control.modal.compensation.current
+        ):
             return False
         beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH]
         return _PLAIN_START.match(beginning.tobytes()) is not None
@@ -143,6 +151,11 @@ class HeidenhainInterpreter(FlowInterpreter):
 
     def _statement(self, active: ActiveProgram, statement: str) -> None:
         path, assigned = _PATH.match(statement), ASSIGNED.match(statement)
+        if not _CYCLE_DEFINITION.match(statement):
+            self._definitions.end_lines()
+        (program, before), self._last_block = self._last_block, (active, self._block_start[1])
+        if assigned is not None and program is active and self._block_start[1] < 0 <= before:
+            raise KlartextError("a line of a cycle whose CYCL DEF is missing: only such lines have no number")
         if path is not None:
             self._path_block(active, path[0], statement[path.end() :])
             return
@@ -187,6 +200,8 @@ class HeidenhainInterpreter(FlowInterpreter):
 
     def _end_program(self, active: ActiveProgram, rest: str) -> None:
         self._block_parts.clear()
+        if len(self._stack) == 1:
+            self.control.end_program()
         self._leave_program()
 
     def _stop(self, active: ActiveProgram, rest: str) -> None:

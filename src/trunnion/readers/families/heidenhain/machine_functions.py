@@ -72,7 +72,7 @@ class MFunctions:
         for kind, value in M_EVENTS.get(code, ()):
             control.add_event(kind, value)
         if code in (M_SHORTEST, M_NOT_SHORTEST):
-            control.shortest_path = code == M_SHORTEST
+            control.set_shortest_path(code == M_SHORTEST)
         elif code in (M_TCP, M_TCP_OFF):
             control.spatial_angles_active = False
             control.set_tcp(code == M_TCP)
@@ -87,6 +87,7 @@ class MFunctions:
         elif code == M_CALL_MODAL:
             self.modal_call = True
         elif code in M_PROGRAM_ENDS:
+            control.end_program()
             control.add_event("end", f"M{code}")
             raise ProgramEnd
         elif code in M_NOT_SIMULATED:

@@ -167,7 +167,8 @@ class LinuxcncInterpreter(CycleInterpreter):
         elif code == words.CONTINUOUS:
             tolerance = block.take("P")
             block.take("Q")
-            control.add_tolerance(np.inf if tolerance is None else tolerance * control.length_unit)
+            # P0 is no tolerance: the control keeps its speed, as without P.
+            control.add_tolerance(tolerance * control.length_unit if tolerance else np.inf)
         elif code in (610, 611):
             control.add_tolerance(0.0)
         elif code in (980, 990):

@@ -310,7 +310,7 @@ class BlockReader:
         index = reader.index()
         reader.expect("=")
         if not variables.assign(name, index, reader.value()):
-            self._note(f"{name} is not defined in the program: taken as a global variable", Severity.WARNING)
+            self._note(f"{name} has no DEF in the program; write DEF REAL {name}", Severity.ERROR)
 
 
 def read_call(reader: ExpressionReader, name: str) -> Call:

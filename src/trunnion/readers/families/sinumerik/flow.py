@@ -174,7 +174,7 @@ class Flow:
         if name == "R":
             active.variables.set_parameter(index[0], value)
         elif not active.variables.assign(name, index, value):
-            self._note(f"{name} is not defined in the program: taken as a global variable", Severity.WARNING)
+            self._note(f"{name} has no DEF in the program; write DEF REAL {name}", Severity.ERROR)
 
     def _goto(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         reader.at -= 1
@@ -243,12 +243,12 @@ class Flow:
         if kind == "STRING":
             reader.index()
         while True:
-            self._define(reader, active, kind)
+            self._define(reader, active, kind, line)
             if reader.token is None:
                 return
             reader.expect(",")
 
-    def _define(self, reader: ExpressionReader, active: ActiveProgram, kind: str) -> None:
+    def _define(self, reader: ExpressionReader, active: ActiveProgram, kind: str, line: int) -> None:
         name = reader.peek()
         token = reader.token
         if token is None or token.kind not in (TokenKind.NAME, TokenKind.LETTER):
@@ -264,7 +264,7 @@ class Flow:
         if token.kind is not TokenKind.NAME:
             raise ExpressionError(f"{name} is not a name for a variable")
         size = reader.index()
-        active.variables.define(kind, name)
+        active.variables.define(kind, name, line=line)
         if not reader.accept("="):
             return
         if reader.accept("SET"):

@@ -328,13 +328,7 @@ class SinumerikInterpreter(CallInterpreter):
         if name in cycles.CYCLES:
             self._drill(call)
         elif name == "CYCLE832":
-            values = tuple(
-                text if text in CONSTANTS else value
-                for text, value in zip(call.argument_texts, call.arguments, strict=True)
-            )
-            control.add_event("cycle832", values)
-            first = call.arguments[0] if call.arguments else None
-            control.add_tolerance(first * control.length_unit if isinstance(first, float) else 0.0)
+            self._smooth(call)
         elif name == "CYCLE800":
             swivel(control, call)
         elif name == "MSG":
@@ -343,6 +337,18 @@ class SinumerikInterpreter(CallInterpreter):
         else:
             assert name == "SETAL"
             control.add_event("message", f"SETAL({', '.join(call.argument_texts)})")
+
+    def _smooth(self, call: Call) -> None:
+        """CYCLE832: within the first value; the ones of the second are the machining type, 0 for off."""
+        control = self.control
+        values = zip(call.argument_texts, call.arguments, strict=True)
+        control.add_event("cycle832", tuple(text if text in CONSTANTS else value for text, value in values))
+        tolerance, mode = (*call.arguments, None, None)[:2]
+        given = tolerance if isinstance(tolerance, float) else 0.0
+        if given < 0.0 or (given == 0.0 and isinstance(mode, float) and int(mode) % 10):
+            text = f"CYCLE832 smooths within {given:g}: give its first value, such as 0.02, or _OFF"
+            self._note(text, Severity.ERROR)
+        control.add_tolerance(given * control.length_unit)
 
     def _drill(self, call: Call) -> None:
         try:

@@ -25,6 +25,7 @@ class Variables:
     def __init__(self, shared: "Variables | None" = None) -> None:
         self._local: dict[str, Elements] = {}
         self._types: dict[str, str] = {}
+        self._lines: dict[str, int] = {}
         self._parameters: dict[int, float] = {} if shared is None else shared._parameters
         self._global: dict[str, Elements] = {} if shared is None else shared._global
         self._assignment_count: list[int] = [0] if shared is None else shared._assignment_count
@@ -44,8 +45,10 @@ class Variables:
         self._check_index(number)
         self._parameters[number] = value
 
-    def define(self, kind: str, name: str, value: Value | None = None) -> None:
-        """DEF: define a variable of this program."""
+    def define(self, kind: str, name: str, value: Value | None = None, line: int = 0) -> None:
+        """DEF: define a variable of this program, once; a jump may lead to the same line again."""
+        if self._lines.setdefault(name, line) != line:
+            raise ExpressionError(f"{name} is defined twice")
         self._types[name] = kind
         self._local[name] = {}
         self.assign(name, (), value if value is not None else ("" if kind in ("STRING", "AXIS") else 0.0))
@@ -88,7 +91,7 @@ class Variables:
         self._assignment_count[0] = count
 
     def variable(self, name: str, index: tuple[int, ...]) -> Value:
-        """Return the value of a variable or predefined name."""
+        """Return the value of a variable or predefined name; DEF alone makes it 0."""
         for table in (self._local, self._global):
             elements = table.get(name)
             if elements is not None and index in elements:
