@@ -1,6 +1,6 @@
 """Verification of any NC program, with or without the CL files that it was made from."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Final, Literal
 
 from trunnion import readers, verification
@@ -17,7 +17,8 @@ from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import Run
-from trunnion.verification import ExpectedValues, Tolerances, Verification
+from trunnion.model.toolpath import Operation
+from trunnion.verification import ExpectedValues, PrintedDigits, Tolerances, Verification, tolerances_in_planes
 
 #: How far the tip may be off its CL point, mm; and in a program in inches, half of 0.0001 inch.
 _DEFAULT_TOLERANCE: Final = 0.001
@@ -62,7 +63,7 @@ def verify(
         Files of the subprograms that it calls. No others are opened.
     tolerance
         How far coordinates may be off, mm, and rotary axes, degrees. The default is 0.0013 mm for a program in inches,
-        half of 0.0001 inch.
+        half of 0.0001 inch, and wider in tilted planes, by what their origins and angles are rounded.
     span
         How far the tool axis may be off its way between points, degrees; by default as the control's definition says.
     span_tip
@@ -137,7 +138,7 @@ def verify(
     return verification.verify(
         run,
         toolpaths,
-        tolerances=Tolerances(tip=_tip_tolerance(run, tolerance), angle=tolerance, chord=max(_LEAST_CHORD, tolerance)),
+        tolerances=_tolerances(run, tolerance, control),
         settings=ExpectedValues(
             tool=tool,
             work_offset=_work_offset(work_offset, loaded, defaults.get("work_offset", "G54"), bool(toolpaths)),
@@ -153,10 +154,19 @@ def verify(
     )
 
 
-def _tip_tolerance(run: Run, tolerance: float) -> float:
-    """How far coordinates may be off, mm."""
-    in_inches = tolerance == _DEFAULT_TOLERANCE and bool(run.state.inches.values.any())
-    return _DEFAULT_INCH_TOLERANCE if in_inches else tolerance
+def _tolerances(run: Run, tolerance: float, control: Control | None) -> Tolerances | Callable[[Operation], Tolerances]:
+    """How far coordinates and angles may be off; by default as much more in tilted planes as is rounded there."""
+    chord = max(_LEAST_CHORD, tolerance)
+    if tolerance != _DEFAULT_TOLERANCE:
+        return Tolerances(tip=tolerance, angle=tolerance, chord=chord)
+    in_inches = bool(run.state.inches.values.any())
+    tip = _DEFAULT_INCH_TOLERANCE if in_inches else tolerance
+    formats = control.formats if control else {}
+    pair = formats.get("plane_angle") or formats.get("angle")
+    angle = pair.five_axis.digit if pair else tolerance
+    # The default is half a digit of inches, and a whole one of millimetres, which most controls have.
+    digits = PrintedDigits(2.0 * tip if in_inches else tip, angle)
+    return tolerances_in_planes(run, Tolerances(tip=tip, angle=tolerance, chord=chord), digits)
 
 
 def _tool(tool: object) -> str:

@@ -243,6 +243,8 @@ class Run:
     uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
     work_offset_name               what programs of this control call a value of the column ``work_offset``
     compensation_planes  (k, 3)    unit normals of the planes in which radius compensation works, workpiece frame
+    planes         (k, 3, 4)       tilted planes and rotated frames in which positions are tips: maps from programmed
+                                   positions to the workpiece frame
     spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
 
     Computed on first access:
@@ -288,6 +290,7 @@ class Run:
     work_offset_name: Callable[[int], str] = field(default=_plain_offset_name)
     spindle_holes: tuple[SpindleHole, ...] = ()
     compensation_planes: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    planes: Floats = field(default_factory=lambda: np.zeros((0, 3, 4)))
 
     def __post_init__(self) -> None:
         for each in fields(self):

@@ -6,6 +6,7 @@ from trunnion.verification.comparison.result import Comparison, Difference
 from trunnion.verification.context import ExpectedValues
 from trunnion.verification.deviations.point_deviations import compare_rows
 from trunnion.verification.expected.path import OperationSettings
+from trunnion.verification.expected.printed_planes import PrintedDigits, tolerances_in_planes
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
@@ -25,6 +26,7 @@ __all__ = [
     "OperationRows",
     "OperationSettings",
     "Place",
+    "PrintedDigits",
     "Tolerances",
     "Verification",
     "check_lines",
@@ -34,6 +36,7 @@ __all__ = [
     "place_lines",
     "restore_rapids",
     "time_lines",
+    "tolerances_in_planes",
     "verify",
     "without_columns",
 ]

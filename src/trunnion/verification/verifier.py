@@ -1,14 +1,14 @@
 """One program, all checks."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Lines
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification.checks.compensation_checks import check_compensation
 from trunnion.verification.checks.coolant_checks import check_coolant
 from trunnion.verification.checks.feed_checks import check_feed
@@ -45,7 +45,7 @@ def verify(
     run: Run,
     toolpaths: Sequence[Toolpath] = (),
     *,
-    tolerances: Tolerances | Sequence[Tolerances] | None = None,
+    tolerances: Tolerances | Sequence[Tolerances] | Callable[[Operation], Tolerances] | None = None,
     settings: ExpectedValues | None = None,
     columns: bool = True,
 ) -> Verification:
@@ -58,7 +58,8 @@ def verify(
     toolpaths
         The CL files that it was made from, in that order; without them, the program is checked by itself.
     tolerances
-        How far it may be from its CL points: for all operations, or one for each operation that moves.
+        How far it may be from its CL points: for all operations, one for each operation that moves, or a function of
+        the operation, in the program's frame.
     settings
         What the CL files leave open.
     columns

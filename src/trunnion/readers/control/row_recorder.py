@@ -110,6 +110,7 @@ class RowRecorder:
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
         self._spindle_holes: list[SpindleHole] = []
         self._compensation_planes: list[Floats] = []
+        self._planes: dict[bytes, Floats] = {}
         self._normals: list[tuple[Ints, Floats]] = []
         self._kinematics = kinematic_parameters(machine)
         self._slides = slide_columns(machine)
@@ -242,6 +243,10 @@ class RowRecorder:
         """Record the programmed surface normal (3,) of the last row."""
         self._normals.append((np.array([self.row - 1]), (self.vector_map @ normal)[None]))
 
+    def record_plane(self, plane: Floats) -> None:
+        """Record a tilted plane, the map (3, 4) from programmed positions to the workpiece frame."""
+        self._planes.setdefault(plane.tobytes(), plane)
+
     # Scans
 
     def scan_limit(self) -> int:
@@ -347,6 +352,7 @@ class RowRecorder:
             units_from=self.units_from,
             spindle_holes=tuple(self._spindle_holes),
             compensation_planes=np.array(self._compensation_planes).reshape(-1, 3),
+            planes=np.array(list(self._planes.values())).reshape(-1, 3, 4),
         )
 
     def _normal_columns(self) -> SurfaceNormals:

@@ -85,7 +85,7 @@ class ExpectedPath:
     def __init__(
         self,
         toolpaths: Sequence[Toolpath],
-        tolerances: Tolerances | Sequence[Tolerances],
+        tolerances: Tolerances | Sequence[Tolerances] | Callable[[Operation], Tolerances],
         absolute: bool = False,
         settings_of: Callable[[str], OperationSettings] = lambda name: OperationSettings(),
     ) -> None:
@@ -93,10 +93,8 @@ class ExpectedPath:
         if not moving:
             file = toolpaths[0].file if toolpaths else "CL file"
             raise InputError(Problem(file, 0, "there is no motion in it to compare with", "output the toolpath again"))
-        limits = [tolerances] * len(moving) if isinstance(tolerances, Tolerances) else list(tolerances)
-        if len(limits) != len(moving):
-            raise ValueError(f"{len(limits)} tolerances for {len(moving)} operations")
         frame = Frame() if absolute else moving[0][1].frame
+        limits = _by_operation(tolerances, [transform_to_frame(frame, whole) for _, whole in moving])
         sections: list[Section] = []
         found: list[Hole] = []
         hole_ends: list[int] = []
@@ -239,3 +237,16 @@ class ExpectedPath:
             for section in self.sections
             for event in section.operation.events
         )
+
+
+def _by_operation(
+    tolerances: Tolerances | Sequence[Tolerances] | Callable[[Operation], Tolerances], operations: list[Operation]
+) -> list[Tolerances]:
+    """Return the tolerances of each operation."""
+    if isinstance(tolerances, Tolerances):
+        return [tolerances] * len(operations)
+    if callable(tolerances):
+        return [tolerances(operation) for operation in operations]
+    if len(tolerances) != len(operations):
+        raise ValueError(f"{len(tolerances)} tolerances for {len(operations)} operations")
+    return list(tolerances)
