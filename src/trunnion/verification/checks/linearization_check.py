@@ -1,11 +1,22 @@
 """How far the tool leaves its path between the points."""
 
+from typing import Final
+
 import numpy as np
 
+from trunnion.arrays import Floats
 from trunnion.verification.context import ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.linearization import LinearizationErrors
+from trunnion.verification.expected.arcs import circle_of
 from trunnion.verification.kinematics.axis_motion import AxisMotion
+from trunnion.verification.matching.pairs import ArcSegments
 from trunnion.verification.results import Check
+
+#: What comes of arithmetic only, mm.
+_NOISE: Final = 1e-9
+
+#: Fractions of a circle at which it is compared with the arc that it is a piece of.
+_WAY: Final = np.linspace(0.125, 0.875, 7)
 
 
 def check_between_points(context: Context, motion: AxisMotion, errors: LinearizationErrors) -> Check:
@@ -18,8 +29,8 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     axis = errors.axis if settings.span is not None or errors.axis.count else motion.axis_deviation
     tip = errors.tip if asked else motion.tip_deviation
     where = "on the way" if axis is errors.axis else "half-way"
-    sagitta, sagitta_row = _largest_sagitta(context)
-    off_tip, row = (tip.value, tip.row) if tip.value > sagitta else (sagitta, sagitta_row)
+    deviation, deviation_row = _largest_deviation(context)
+    off_tip, row = (tip.value, tip.row) if tip.value > deviation else (deviation, deviation_row)
     places = []
     if axis.row >= 0:
         rows = axis.rows or [(axis.row, axis.value)]
@@ -48,14 +59,32 @@ def _allowed(settings: ExpectedValues) -> str:
     return " and ".join([*tip, axis])
 
 
-def _largest_sagitta(context: Context) -> tuple[float, int]:
-    """How far the lines that replace an arc leave it at most, mm, and the row of that line; 0 and -1 without any."""
-    largest, row = 0.0, -1
+def _largest_deviation(context: Context) -> tuple[float, int]:
+    """How far lines and circles that replace an arc leave it at most, mm, and the row; 0 and -1 without any."""
+    largest, row = _NOISE, -1
     if isinstance(context, ComparedContext):
         for segments in context.matching.arc_segments:
-            arc, nc = segments.arc, segments.nc
-            fractions = np.concatenate(([0.0], arc.fractions(context.run.positions(nc).tip), [1.0]))
-            sagitta = arc.radius * (1.0 - np.cos(0.5 * np.abs(np.diff(fractions)) * arc.sweep))
-            if len(sagitta) and sagitta.max() > largest:
-                largest, row = float(sagitta.max()), int(nc[min(int(np.argmax(sagitta)), len(nc) - 1)])
-    return largest, row
+            nc = segments.nc
+            off = _heights(context, segments) if segments.pieces is None else _off_helix(context, segments)
+            if len(off) and off.max() > largest:
+                largest, row = float(off.max()), int(nc[min(int(np.argmax(off)), len(nc) - 1)])
+    return (0.0, -1) if row < 0 else (largest, row)
+
+
+def _heights(context: ComparedContext, segments: ArcSegments) -> Floats:
+    """Heights of the chords, (k + 1,) mm."""
+    arc = segments.arc
+    fractions = np.concatenate(([0.0], arc.fractions(context.run.positions(segments.nc).tip), [1.0]))
+    return np.asarray(arc.radius * (1.0 - np.cos(0.5 * np.abs(np.diff(fractions)) * arc.sweep)))
+
+
+def _off_helix(context: ComparedContext, segments: ArcSegments) -> Floats:
+    """How far the pieces of an arc are off it on their way, in their order, (k + 1,) mm."""
+    assert segments.pieces is not None
+    rows = [*segments.nc.tolist(), context.matching.nc[context.matching.cl.count_before(segments.cl)]]
+    ends = [0.0, *segments.pieces.tolist(), 1.0]
+    off = []
+    for row, begin, end in zip(rows, ends, ends[1:], strict=False):
+        away = circle_of(context.run, row).at(_WAY) - segments.arc.at(begin + (end - begin) * _WAY)
+        off.append(float(np.linalg.norm(away, axis=1).max()))
+    return np.array(off)

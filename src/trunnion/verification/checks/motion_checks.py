@@ -100,7 +100,7 @@ def _stands_still(run: Run, row: int) -> bool:
 def check_kind(context: ComparedContext) -> Check:
     """Rapid, line or circle; and for circles centre, direction and turns."""
     run, expected, matching = context.run, context.expected, context.matching
-    by_lines = {segments.cl for segments in matching.arc_segments if not segments.are_turns}
+    by_lines = {segments.cl for segments in matching.arc_segments if segments.pieces is None}
     places: list[Place] = []
     count = 0
     for nc, cl in matching.all_pair_chunks():
@@ -135,7 +135,7 @@ def _is_flat(context: ComparedContext, cl: int) -> bool:
 def _rapids_on_arcs(context: ComparedContext) -> Iterator[Place]:
     """Motions that replace an arc and are no lines."""
     for segments in context.matching.arc_segments:
-        if segments.are_turns:
+        if segments.pieces is not None:
             continue
         for row in segments.nc[context.run.kind[segments.nc] != Kind.LINEAR].tolist():
             text = "moves at rapid along an arc that is to be cut"
@@ -147,19 +147,20 @@ def _wrong_circles(context: ComparedContext) -> Iterator[Place]:
     run, expected, matching = context.run, context.expected, context.matching
     if not len(run.arcs.row) or not len(expected.arcs.row):
         return
-    turn_rows = {segments.cl: segments.nc.tolist() for segments in matching.arc_segments if segments.are_turns}
+    pieces = {segments.cl: segments.nc.tolist() for segments in matching.arc_segments if segments.pieces is not None}
     for k, row in enumerate(expected.arcs.row.tolist()):
         if row not in matching.cl:
             continue
         motion = matching.nc[matching.cl.count_before(row)]
         if run.kind[motion] != Kind.ARC or motion == 0:
             continue
-        before = turn_rows.get(row, [])
+        before = pieces.get(row, [])
         for circle in (*before, motion):
             yield from _circle_faults(context, k, circle)
-        turns = len(before) + int(run.arcs.full_turns[np.searchsorted(run.arcs.row, motion)])
+        turns = int(run.arcs.full_turns[np.searchsorted(run.arcs.row, motion)])
         wanted = int(expected.arcs.full_turns[k])
-        if turns != wanted:
+        # Pieces have been matched by how far they go round, so that together they make the turns.
+        if not before and turns != wanted:
             text = f"makes {turns} full turns before its end; the CL file wants {wanted}"
             yield context.place_with_cl(motion, 0.0, text, row)
 

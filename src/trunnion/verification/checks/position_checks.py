@@ -51,7 +51,7 @@ def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[P
     """Ends of lines that are off the arc that they replace."""
     arc, tolerances = segments.arc, context.expected.section_at(segments.cl).tolerances
     tips = context.run.positions(segments.nc).tip
-    off = tips - arc.after_turns(len(tips)) if segments.are_turns else arc.deviation(tips)
+    off = arc.deviation(tips) if segments.pieces is None else tips - arc.at(segments.pieces)
     away = np.sqrt((off**2).sum(axis=1))
     # A point that is off along the arc is off in height too, because the height is that at its own angle.
     limit = _DIAGONAL * tolerances.tip * math.hypot(1.0, arc.slope)

@@ -9,6 +9,8 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.arcs import CLOSED_ARC
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Arcs
 from trunnion.verification.expected.path import ExpectedPath
 
 
@@ -68,10 +70,6 @@ class Arc:
         last = self.centre + height + np.cos(self.sweep) * radial + np.sin(self.sweep) * across
         return np.asarray(circle + fraction[:, None] * (self.end - last))
 
-    def after_turns(self, count: int) -> Floats:
-        """Points after each of the first whole turns, (count, 3)."""
-        return self.at(np.asarray(2.0 * np.pi * np.arange(1, count + 1) / self.sweep, np.float64))
-
     def deviation(self, points: Floats) -> Floats:
         """From where points should be to where they are, (k, 3)."""
         return np.asarray(points - self.at(self.fractions(points)))
@@ -80,8 +78,16 @@ class Arc:
 def arc_of(expected: ExpectedPath, row: int) -> Arc:
     """The arc that ends at a row."""
     arcs = expected.arcs
-    k = int(np.searchsorted(arcs.row, row))
-    start, end = expected.point(row - 1).tip, expected.point(row).tip
+    return _arc(arcs, int(np.searchsorted(arcs.row, row)), expected.point(row - 1).tip, expected.point(row).tip)
+
+
+def circle_of(run: Run, row: int) -> Arc:
+    """The circle or helix that a block of the program goes along; ``row`` is not the first."""
+    start, end = run.positions(np.array([row - 1, row])).tip
+    return _arc(run.arcs, int(np.searchsorted(run.arcs.row, row)), start, end)
+
+
+def _arc(arcs: Arcs, k: int, start: Floats, end: Floats) -> Arc:
     centre, normal = arcs.centre[k], arcs.normal[k]
     a, b = start - centre, end - centre
     angle = float(np.arctan2(np.cross(a, b) @ normal, a @ b - (a @ normal) * (b @ normal))) % (2.0 * np.pi)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Floats, Ints
 from trunnion.verification.expected.arcs import Arc
 from trunnion.verification.row_ranges import CHUNK, RowRanges
 
@@ -17,17 +17,17 @@ _NONE = np.zeros(0, np.int64), np.zeros(0, np.int64)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ArcSegments:
-    """Lines of a program that together replace an arc, or circles of one turn that replace one of several.
+    """Lines of a program that together replace an arc, or circles that are its pieces, in their order.
 
-    nc         their rows, without the one to the end of the arc
-    cl         the CL row of the arc
-    are_turns  they are circles
+    nc      their rows, without the one to the end of the arc
+    cl      the CL row of the arc
+    pieces  of circles: the fractions of the arc (k,) at which they end, by how far they go round; None for lines
     """
 
     nc: Ints
     cl: int
     arc: Arc
-    are_turns: bool = False
+    pieces: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,7 +15,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.expected.arcs import arc_of
+from trunnion.verification.expected.arcs import arc_of, circle_of
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.axis_difference import RotaryGeometry
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
@@ -35,6 +35,12 @@ _WINDOWS = (8, 48, 384)
 
 #: How far ahead the end of an arc is searched.
 _ARC_WINDOWS = (64, 1024, 16384)
+
+#: Circles that make up one of the CL file, at most.
+_MAX_PIECES = 1000
+
+#: Cosine between the axes of a circle and of the one that it is a piece of, at least.
+_SAME_SENSE = 1.0 - 1e-6
 
 #: Mismatches that are looked into; beyond them the two sides are taken to be different programs.
 _MAX_MISMATCHES = 2000
@@ -139,7 +145,7 @@ class _PathMatcher:
         if self._rows[i] in self._approaches:
             self._extra.append(self._rows[i])
             return 1, 0
-        segments = self._match_arc_segments(i, j)
+        segments = self._match_arc_segments(i, j) or self._match_circles(i, j)
         if segments:
             return segments, 0
         back = rewind_retract_length(self._run, self._rows[i], self._expected.section_at(j).tolerances.tip)
@@ -204,22 +210,38 @@ class _PathMatcher:
         return 0
 
     def _match_turns(self, i: int, j: int) -> int:
-        """How many circles of one turn from the i-th on are whole turns of the arc of CL row j before its last."""
+        """How many circles from the i-th on come before the last of those that make up the turns of CL row j."""
         k = int(np.searchsorted(self._turn_rows, j))
-        if j == 0 or k == len(self._turn_rows) or self._turn_rows[k] != j:
-            return 0
-        turns = int(self._expected.arcs.full_turns[np.searchsorted(self._expected.arcs.row, j)])
-        if i + turns >= self._n:
-            return 0
-        rows, circles = self._rows.rows(i, i + turns + 1), self._run.arcs
-        if (self._run.kind[rows] != Kind.ARC).any() or circles.full_turns[np.searchsorted(circles.row, rows)].any():
+        return self._match_circles(i, j) if k < len(self._turn_rows) and self._turn_rows[k] == j else 0
+
+    def _match_circles(self, i: int, j: int) -> int:
+        """How many circles from the i-th on are pieces of the arc of CL row j before its last.
+
+        How far each of them goes round says where on the arc it must end: a helix passes the same place in every turn.
+        """
+        if j == 0 or self._expected.point(j).kind is not Kind.ARC:
             return 0
         arc, (tip, _) = arc_of(self._expected, j), self._limits_at(j)
-        off = np.abs(self._run.positions(rows[:-1]).tip - arc.after_turns(turns))
-        if (off > tip).any() or not self._fits(i + turns, j, 1)[0]:
+        # An end that is off by the tolerance is off by this angle, and no piece is as short as that.
+        slack = 4.0 * tip / max(arc.radius, tip)
+        done, pieces = 0.0, []
+        while i + len(pieces) < self._n and len(pieces) <= _MAX_PIECES:
+            row = self._rows[i + len(pieces)]
+            if row == 0 or self._run.kind[row] != Kind.ARC:
+                return 0
+            circle = circle_of(self._run, row)
+            done += circle.sweep
+            if done >= arc.sweep - slack or circle.sweep <= slack or float(circle.normal @ arc.normal) < _SAME_SENSE:
+                break
+            fraction = done / arc.sweep
+            if (np.abs(circle.end - arc.at(np.array([fraction]))[0]) > tip * (1.0 + arc.slope)).any():
+                return 0
+            pieces.append(fraction)
+        count = len(pieces)
+        if not count or i + count >= self._n or abs(done - arc.sweep) > slack or not self._fits(i + count, j, 1)[0]:
             return 0
-        self._arc_segments.append(ArcSegments(rows[:-1], j, arc, are_turns=True))
-        return turns
+        self._arc_segments.append(ArcSegments(self._rows.rows(i, i + count), j, arc, np.array(pieces)))
+        return count
 
     def _match_arc_segments(self, i: int, j: int) -> int:
         """How many lines from the i-th on lie on the arc of CL row j and lead to its end."""
