@@ -77,3 +77,12 @@ def test_the_same_number_in_other_coordinates_is_a_difference(machine: str, post
     changed.write_text("\n".join([*lines[:k], lines[k].replace(WORDS[machine], ""), *lines[k + 1 :]]) + "\n")
     assert diff(good, good, machine=machine).same
     assert not diff(good, changed, machine=machine).same
+
+
+def test_a_retract_by_its_word_stands_before_every_tool_change(tmp_path: Path) -> None:
+    lines = "G71\nM242\nT.1 M306\nG55 O1\nS500 M3\nG1 X0 Y0 Z5. F500\nX50.\nM5\nM242\nT.2 M306\nG55 O1\nM242\nM02\n"
+    nc, cl = tmp_path / "words.nc", tmp_path / "words.cls"
+    cl.write_text("UNITS/MM\nTOOL PATH/A,TOOL,T\nLOAD/TOOL,1\nFEDRAT/MMPM,500\nGOTO/0,0,5\nGOTO/50,0,5\nEND-OF-PATH\n")
+    for text, passed in ((lines, True), (lines.replace("M5\nM242", "M5"), False)):
+        nc.write_text(text)
+        assert check(verify(nc, machine="hs664rt", cl=cl), "home").passed is passed

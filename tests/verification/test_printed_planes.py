@@ -46,7 +46,7 @@ def test_a_program_that_was_proven_is_verified_and_a_digit_more_is_found(
     assert not failed
     # The last coordinate of a cut in the plane, by some digits.
     text = nc.read_text()
-    k = [match.start() for match in re.finditer(r"-?33\.3353|-?33\.335(?!\d)|-?1\.3124\d?", text)][0]
+    k = next(match.start() for match in re.finditer(r"-?33\.3353|-?33\.335(?!\d)|-?1\.3124\d?", text))
     number = re.match(r"-?[0-9.]+", text[k:])[0]  # type: ignore[index]
     changed = f"{float(number) - (0.01 if units == 'mm' else 0.0005):.{len(number.split('.')[1])}f}"
     nc.write_text(text[:k] + changed + text[k + len(number) :])

@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
-from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import Context, check_from_places
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -80,7 +80,7 @@ def check_home(context: Context) -> Check:
     """
     motions = _HomeMotions.of(context.run)
     if not len(motions.rows):
-        return Check("home", _TITLE, True, "not checked: no home moves")
+        return _check_retracts_by_word(context)
     if not motions.at_home.any():
         return Check("home", _TITLE, True, "not checked: machine positions other than the home of the definition")
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
@@ -129,3 +129,26 @@ def _slides_stay_home(run: Run, first: int, end: int) -> bool:
     rows = np.arange(first, end)
     off = run.positions(rows).joints[:, slides] - run.machine.home[slides]
     return bool((np.abs(off) <= home_tolerance(run, rows)[:, slides]).all())
+
+
+def _check_retracts_by_word(context: Context) -> Check:
+    """A program without machine positions that retracts by a word (M242) before a tool change does so before all."""
+    run = context.run
+    retracted_at: int | None = None
+    changes = 0
+    lost: list[RunEvent] = []
+    for event in run.events:
+        if event.kind == "retract":
+            # The motion that the word makes, if the travel is known, is none of the program.
+            makes_motion = event.before_row < len(run) and bool(run.state.machine_frame[event.before_row])
+            retracted_at = event.before_row + makes_motion
+        elif event.kind == "tool_change":
+            changes += 1
+            since = run.programmed[retracted_at : event.before_row] if retracted_at is not None else None
+            if since is None or (since & int(_SLIDE_WORDS)).any():
+                lost.append(event)
+    if len(lost) == changes:
+        return Check("home", _TITLE, True, "not checked: no home moves")
+    text = "changes the tool without the retract that stands before other tool changes"
+    places = [context.place_of_event(event, 0.0, text) for event in lost]
+    return check_from_places("home", _TITLE, places, "a retract by its word before every tool change")

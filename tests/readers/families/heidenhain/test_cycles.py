@@ -174,6 +174,7 @@ def test_other_cycles_from_where_the_tool_stands(run: Runner) -> None:
     [
         define(200, Q200=2, Q201=0, Q206=1, Q202=1, Q203=0), define(200, Q200=2, Q201=-5),
         define(207, **{**DRILL, "Q239": 0}), define(202, **{**DRILL, "Q214": 7}), define(251, **DRILL),
+        define(209, **DRILL, Q239=1),
         define(240, **{**DRILL, "Q343": 1}), define(205, **{**DRILL, "Q379": 20, "Q253": 1}),
         "CYCL DEF 1.0 PECKING\n", PECK.format(2, 0, 1), define(256, **DRILL),
     ],

@@ -185,3 +185,9 @@ def test_what_the_tool_has_turned_is_turned_back(run: Runner) -> None:
 )
 def test_what_settings_of_the_control_decide_is_not_guessed(text: str, says: str, run: Runner) -> None:
     assert any(says in finding.text for finding in run(text + "\n").errors)
+
+
+def test_a_plane_is_swivelled_with_the_tool_length(run: Runner) -> None:
+    tilt = 'CYCLE800(0,"",0,57,0,0,0,0,30,0,0,0,0,1)'
+    assert [each.line for each in run(f"SUPA G0 Z0 D0\nCYCLE800()\n{tilt}\nX1 D1").errors] == [3]
+    assert run(f"SUPA G0 Z0 D0\nCYCLE800()\nG0 B0 D1\n{tilt}\nX1").errors == ()

@@ -267,8 +267,8 @@ def _tap_break(hole: Hole) -> list[HoleMotion]:
     """Cycle 209: tapping with chip breaks every Q257, back by Q256 pitches, or all the way out if it is 0."""
     feed = _pitch(hole)
     motions: list[HoleMotion] = []
-    depths = peck_depths(hole.total, hole.get(257), 0.0, hole.get(257))
-    back = hole.get(256) * abs(hole.need(239))
+    depths = peck_depths(hole.total, hole.need(257), 0.0, hole.need(257))
+    back = hole.need(256) * abs(hole.need(239))
     for before, depth in zip([0.0, *depths], depths, strict=False):
         if before:
             motions.append(HoleMotion(False, hole.at(before - back) if back else hole.start, feed))

@@ -41,6 +41,8 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     if any(abs(value) > MAX_ARGUMENT for value in numbers):
         note("CYCLE800 with numbers that no machine has: it is not executed", Severity.ERROR)
         return
+    if control.modal.edge.current == 0:
+        note("CYCLE800 works with the tool length, and D0 is in force: write D1 before it", Severity.ERROR)
     if retract:
         note(f"CYCLE800 retracts first (_FR {retract:g}): where to is not simulated", Severity.WARNING)
     origin = control.length_unit * np.array(before)
