@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import trunnion
+from trunnion.verification import Check
 
 #: Machine, first line, and the words of the working planes about X, Y and Z.
 ISO = {
@@ -59,7 +60,9 @@ def words(letters: str, values: np.ndarray, leave_out: int = -1) -> str:
     return " ".join(f"{a}{v + 0.0:.4f}" for k, (a, v) in enumerate(zip(letters, values, strict=True)) if k != leave_out)
 
 
-def judge(folder: Path, machine: str, about: int, turns: int, ends: list[float], pitch: float = PITCH) -> dict:
+def judge(
+    folder: Path, machine: str, about: int, turns: int, ends: list[float], pitch: float = PITCH
+) -> dict[str, Check]:
     cl, nc = cl_file(folder, about, turns), program(folder, machine, about, ends, pitch)
     found = trunnion.verify(nc, machine=machine, cl=cl, columns=False, zero=(0.0, 0.0, 0.0), tool_length=0.0)
     return {check.key: check for check in found.checks if check.key in JUDGED}

@@ -149,6 +149,8 @@ class EventWriter:
         if self._joins_motion(event):
             if any(type(joining) is type(event) and joining.row == event.row for joining in self._joining_events):
                 self._finish_rows(event.row)  # what is switched twice before a row is switched in order
+            same = [e for e in self._joining_events if type(e) is type(event) and e.row == event.row]
+            self._joining_events = [e for e in self._joining_events if e not in same]  # or only the last time
             self._joining_events.append(event)
             return
         self._finish_rows(event.row)
@@ -219,12 +221,15 @@ class EventWriter:
     # Rows
 
     def _finish_rows(self, row: int) -> None:
-        """Write all rows before ``row``, and the events that were to join it."""
+        """Write all rows before ``row``, and the events that were to join it, as far as they make a block alone."""
         self._write_rows(row)
+        waiting = []
         for event in self._joining_events:
-            if event.row == row:
+            if event.row > row or (event.row == row and self._blocks.needs_motion(event)):
+                waiting.append(event)
+            elif event.row == row:
                 self._blocks.write_event(event)
-        self._joining_events = [event for event in self._joining_events if event.row > row]
+        self._joining_events = waiting
 
     def _write_rows(self, last: int) -> None:
         """Write the rows up to ``last`` (excluded): motion, or the holes of the present cycle."""

@@ -181,6 +181,13 @@ class MotionBlockWriter:
         except WordRangeError as error:
             raise error.at(self.program.file, event.line) from None
 
+    def needs_motion(self, event: WordEvent) -> bool:
+        """Whether the words of an event make no block alone, as ``RL`` does not."""
+        if not isinstance(event, CutterComp):
+            return False
+        words = self.event_words(event)
+        return bool(words) and all(self.writer.word(key).bare for key in words)
+
     def event_words(self, event: WordEvent) -> dict[str, int]:
         """Return the words of an event that joins a motion block, as counts."""
         if isinstance(event, SpindleOn):

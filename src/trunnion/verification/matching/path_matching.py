@@ -224,7 +224,8 @@ class _PathMatcher:
         arc, (tip, _) = arc_of(self._expected, j), self._limits_at(j)
         # An end that is off by the tolerance is off by this angle, and no piece is as short as that.
         slack = 4.0 * tip / max(arc.radius, tip)
-        done, pieces = 0.0, []
+        done = 0.0
+        pieces: list[float] = []
         while i + len(pieces) < self._n and len(pieces) <= _MAX_PIECES:
             row = self._rows[i + len(pieces)]
             if row == 0 or self._run.kind[row] != Kind.ARC:

@@ -264,7 +264,7 @@ class Flow:
         if token.kind is not TokenKind.NAME:
             raise ExpressionError(f"{name} is not a name for a variable")
         size = reader.index()
-        active.variables.define(kind, name, line=line)
+        active.variables.define(kind, name, place=(line, reader.at))
         if not reader.accept("="):
             return
         if reader.accept("SET"):

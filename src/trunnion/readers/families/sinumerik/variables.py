@@ -25,7 +25,7 @@ class Variables:
     def __init__(self, shared: "Variables | None" = None) -> None:
         self._local: dict[str, Elements] = {}
         self._types: dict[str, str] = {}
-        self._lines: dict[str, int] = {}
+        self._places: dict[str, tuple[int, int]] = {}
         self._parameters: dict[int, float] = {} if shared is None else shared._parameters
         self._global: dict[str, Elements] = {} if shared is None else shared._global
         self._assignment_count: list[int] = [0] if shared is None else shared._assignment_count
@@ -45,9 +45,9 @@ class Variables:
         self._check_index(number)
         self._parameters[number] = value
 
-    def define(self, kind: str, name: str, value: Value | None = None, line: int = 0) -> None:
-        """DEF: define a variable of this program, once; a jump may lead to the same line again."""
-        if self._lines.setdefault(name, line) != line:
+    def define(self, kind: str, name: str, value: Value | None = None, *, place: tuple[int, int] = (0, 0)) -> None:
+        """DEF: define a variable of this program, once; a jump may lead to the same place, line and word, again."""
+        if self._places.setdefault(name, place) != place:
             raise ExpressionError(f"{name} is defined twice")
         self._types[name] = kind
         self._local[name] = {}
