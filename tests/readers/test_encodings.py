@@ -43,6 +43,12 @@ def test_text_of_two_bytes_is_refused(machine: str, encoding: str, tmp_path: Pat
 
 
 @pytest.mark.parametrize("machine", PROGRAMS)
+def test_lines_that_end_in_cr_alone_are_refused(machine: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="line ends of CR alone"):
+        ran(PROGRAMS[machine].format("Nut").replace("\n", "\r").encode(), machine, tmp_path)
+
+
+@pytest.mark.parametrize("machine", PROGRAMS)
 def test_comments_in_gbk_and_latin_1_are_read(machine: str, tmp_path: Path) -> None:
     for name, encoding in (("轮廓粗加工", "gb18030"), ("Bohrung für Größe", "latin-1"), ("轮廓", "utf-8")):
         run = ran(PROGRAMS[machine].format(name).encode(encoding), machine, tmp_path)

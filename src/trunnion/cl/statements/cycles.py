@@ -14,6 +14,8 @@ from trunnion.model.toolpath import CycleOff, CycleOn
 _NUMBER_WORDS = CYCLE_LENGTHS | {"DWELL", "TLANGL", "NODRAG"}
 #: Words that may stand without a number.
 _BARE_WORDS = frozenset({"AUTO", "MANUAL", "REV", "OPTION"})
+#: Controls and their cycles are for fewer pecks than this.
+_MOST_PECKS = 1000
 #: Stands for the unit of a feed until that follows.
 _BARE_FEED = "FEED"
 
@@ -75,6 +77,7 @@ def _parse(state: ReaderState, statement: Statement) -> CycleParts:
     if dialect.settle is not None:
         dialect.settle(found)
     _refuse_repetitions(found)
+    _refuse_impossible(found)
     return found
 
 
@@ -83,6 +86,19 @@ def _refuse_repetitions(found: CycleParts) -> None:
     names = ["a feed" if word in ("MMPM", "MMPR") else word for word, _ in found.couplets]
     if twice := next((name for n, name in enumerate(names) if name in names[:n]), ""):
         raise StatementError(f"CYCLE has {twice} twice", "write the one that is meant")
+
+
+def _refuse_impossible(found: CycleParts) -> None:
+    """Refuse a dwell below 0, and pecks of which no control makes so many."""
+    couplets = dict(found.couplets)
+    if any(value < 0.0 for value in couplets.get("DWELL", ())):
+        raise StatementError(f"CYCLE has the dwell {couplets['DWELL'][0]:g}, below 0", "write DWELL,seconds, or none")
+    first, *others = couplets.get("STEP", ()) or (0.0,)
+    shortest = first if not others or not others[0] else others[1] if len(others) > 1 else 0.0
+    depth = abs(couplets.get("FEDTO", (0.0,))[0])
+    if shortest > 0.0 and depth > _MOST_PECKS * shortest:
+        what = f"CYCLE would peck more than {_MOST_PECKS} times: STEP {shortest:g} for a depth of {depth:g}"
+        raise StatementError(what, "write longer pecks")
 
 
 def _positions(state: ReaderState, found: CycleParts, word: str, given: tuple[float, ...]) -> None:

@@ -90,6 +90,8 @@ def spindl(state: ReaderState, statement: Statement) -> None:
         state.spindle = replace(state.spindle, row=row, line=line, sense=sense)
     elif speed < 0:
         raise StatementError(f"SPINDL has a negative speed: {speed:g}", "write CLW or CCLW for the sense")
+    elif speed == 0:
+        raise StatementError("SPINDL has the speed 0: the tool would cut standing", "write the speed, or SPINDL/OFF")
     elif surface:
         state.spindle = SurfaceSpeed(row, line, speed * _SURFACE_SPEEDS[surface.pop()], sense, diameter)
     else:

@@ -198,6 +198,9 @@ class SourceText:
         """Return the beginning of the file with blanks in place of a byte order mark; text of two bytes is refused."""
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\0" in data[:_PROBED]:
             raise self.problem(0, "is UTF-16 or no text", "save it as UTF-8 or plain ASCII: no control reads this")
+        if b"\r" in data[:_PROBED] and b"\n" not in data:
+            cure = "save it with line feeds, with or without CR: no control reads it so"
+            raise self.problem(0, "has line ends of CR alone: it is one single line", cure)
         return data.replace(codecs.BOM_UTF8, b"   ", 1) if data.startswith(codecs.BOM_UTF8) else data
 
     def whole_bytes(self) -> bytes:

@@ -410,3 +410,8 @@ def test_the_length_of_the_tool_counts_from_g43_to_g49(run: Runner) -> None:
 def test_a_length_is_in_force_from_g43_to_g49_and_its_number_is_kept(run: Runner) -> None:
     heights = "G0 X1.\nG43 H7 Z9.\nX2.\nG49 G53 G0 Z0.\nX3.\nG43 Z8.\nH8\nX4.\nG43.4 H9 X5.\nG49 X6.\n"
     assert fanuc(run, heights).edge.tolist() == [-1, 7, 7, -1, -1, 7, 8, 9, -1]
+
+
+def test_contour_control_says_on_or_off(run: Runner) -> None:
+    assert fanuc(run, "G21\nG5.1 Q1\nG5.1 Q0\n").diagnostics == ()
+    assert [each.line for each in fanuc(run, "G21\nG5.1\nG5.1 Q-1\n").errors] == [2, 3]

@@ -157,6 +157,8 @@ class FanucInterpreter(CycleInterpreter):
 
     def _g_code(self, code: int, block: Block) -> None:
         control = self.control
+        if code == words.CONTOUR and ((mode := block.take("Q")) is None or mode < 0.0):
+            self._note("G5.1 needs Q1 for on, or Q0 for off", Severity.ERROR)
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in words.OFFSETS or code == words.MORE_OFFSETS:

@@ -24,6 +24,9 @@ TCP: Final = 434
 TCP_VECTOR: Final = 435
 LENGTH_OFF: Final = 490
 
+#: AI contour control.
+CONTOUR: Final = 51
+
 #: Meanings for which the family has no words, only some of its controls: codes that no program can write.
 PLANE_OF_POSE: Final = -1
 NO_PLANE_OF_POSE: Final = -2
