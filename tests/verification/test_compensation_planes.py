@@ -64,9 +64,21 @@ def test_the_plane_across_the_tool_is_taken(post: Post) -> None:
     assert code == 0, said
 
 
-def test_klartext_compensates_across_the_tool(post: Post) -> None:
+def test_klartext_offsets_by_delta_values_under_m128(
+    post: Post, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     code, said, _ = post("dmu65", "LEFT", "mode=tcp")
-    assert code == 0, said
+    assert code != 0
+    assert "wall.cls:12: error: CUTCOM with TCP" in said
+    assert "mode=tilted" in said
+    code, _, program = post("dmu65", "OFF", "mode=tcp")
+    assert code == 0
+    text = program.read_text(encoding="utf-8")
+    for old, new in ((" F300", " RL F300"), (" M128", " M128\nRR")):
+        changed = tmp_path / "changed.h"
+        changed.write_text(text.replace(old, new, 1), encoding="utf-8")
+        main(["verify", str(changed), "--machine", "dmu65"])
+        assert "by the delta values DR" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

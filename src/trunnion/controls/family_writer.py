@@ -58,7 +58,7 @@ class FamilyWriter(Protocol):
     """The writer of a control family: a module of functions without state.
 
     WORDS             words of its motion blocks besides the axes; a definition must define all of them
-    COMPENSATES_ACROSS_TOOL  with TCP radius compensation is across the tool; else it is in the working plane
+    COMPENSATES_WITH_TCP  radius compensation is by the radius of the tool with TCP too, in the working plane
     CODES             codes that its definitions must give
     PLANE_COMMANDS    its commands for tilted planes, the default first; template names end with them
     SETTING_CHOICES   settings of its definitions with a fixed set of values, the default first
@@ -69,7 +69,7 @@ class FamilyWriter(Protocol):
     """
 
     WORDS: tuple[str, ...]
-    COMPENSATES_ACROSS_TOOL: bool
+    COMPENSATES_WITH_TCP: bool
     CODES: tuple[str, ...]
     PLANE_COMMANDS: tuple[str, ...]
     SETTING_CHOICES: Mapping[str, tuple[str, ...]]

@@ -18,7 +18,7 @@ WORDS: tuple[str, ...] = (
 CODES: tuple[str, ...] = ("spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop", "optional_stop")
 PLANE_COMMANDS: tuple[str, ...] = ()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
-COMPENSATES_ACROSS_TOOL = False
+COMPENSATES_WITH_TCP = True
 SETTING_MEANINGS: Mapping[str, str] = {}
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 

@@ -17,9 +17,8 @@ _ASKEW: Final = 1e-4
 
 
 def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
-    """Refuse CUTCOM where the plane of compensation is not perpendicular to the tool: it would offset along it."""
-    if motion.mode is MachiningMode.TCP and program.control.family.COMPENSATES_ACROSS_TOOL:
-        return []
+    """Refuse CUTCOM that would offset along the tool, or not by the tool's radius."""
+    by_deltas = motion.mode is MachiningMode.TCP and not program.control.family.COMPENSATES_WITH_TCP
     if motion.mode is MachiningMode.WITHOUT_TCP:
         return []  # refused altogether
     operation = motion.as_written()
@@ -31,12 +30,18 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
         if event.side == "OFF" or not len(axes):
             continue
         in_plane = np.delete(axes, _NORMALS.get(event.plane, 2), axis=1)
-        if float(np.abs(in_plane).max()) <= _ASKEW:
+        if float(np.abs(in_plane).max()) <= _ASKEW and not by_deltas:
             continue
         plane = event.plane or "XYPLAN"
         what = f"CUTCOM in {plane} with {motion.mode}, where the tool is not perpendicular to that plane"
+        why = "it would offset along the tool"
+        if by_deltas:
+            what = (
+                f"CUTCOM with {motion.mode}, where this control takes the delta values of the tool and not its radius"
+            )
+            why = "the tool would cut into the part by its radius"
         in_tilted_plane = "setting mode=tilted makes the operation in a tilted plane, or "
         has_planes = MachiningMode.TILTED in program.control.modes({})
         cure = (in_tilted_plane if has_planes else "") + "output the path without CUTCOM"
-        problems.append(Problem(program.file, event.line, f"{what}: it would offset along the tool", cure))
+        problems.append(Problem(program.file, event.line, f"{what}: {why}", cure))
     return problems

@@ -27,7 +27,7 @@ from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 #: Circles have no word for whole turns. Tool length and radius are data of the control, called by number.
 #: Radius compensation works in the working plane, wherever the tool points.
-COMPENSATES_ACROSS_TOOL = False
+COMPENSATES_WITH_TCP = True
 
 WORDS: tuple[str, ...] = (
     *(word for word in iso.WORDS if word != "turns"),

@@ -22,7 +22,7 @@ from trunnion.output.shared.spindle import cycle_dwell_seconds, dwell_seconds, d
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 
 #: Radius compensation works in the working plane, wherever the tool points.
-COMPENSATES_ACROSS_TOOL = False
+COMPENSATES_WITH_TCP = True
 
 WORDS: tuple[str, ...] = (
     "cutter_comp", "plane", "motion", "I", "J", "K", "speed", "spindle", "coolant", "feed",

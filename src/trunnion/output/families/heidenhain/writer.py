@@ -23,8 +23,8 @@ from trunnion.output.shared.lines import program_stop, split_text
 from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
-#: With TCP radius compensation is across the tool, wherever that points.
-COMPENSATES_ACROSS_TOOL = True
+#: With M128 the control offsets by delta values (DR) alone, not by the radius.
+COMPENSATES_WITH_TCP = False
 
 WORDS: tuple[str, ...] = (
     "line", "vector_line", "surface_x", "surface_y", "surface_z", "axis_x", "axis_y", "axis_z", "arc",

@@ -23,7 +23,7 @@ from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 #: Radius compensation works in the working plane, wherever the tool points.
-COMPENSATES_ACROSS_TOOL = False
+COMPENSATES_WITH_TCP = True
 
 WORDS: tuple[str, ...] = iso.WORDS
 CODES: tuple[str, ...] = iso.CODES

@@ -24,7 +24,7 @@ from trunnion.output.shared.spindle import dwell_text
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
 
 #: Radius compensation works in the working plane, wherever the tool points.
-COMPENSATES_ACROSS_TOOL = False
+COMPENSATES_WITH_TCP = True
 
 WORDS: tuple[str, ...] = (
     *iso.WORDS, "edge", "primary_shortest", "secondary_shortest", "axis_x", "axis_y", "axis_z", "by_vector", "by_axes",

@@ -48,9 +48,16 @@ class HeidenhainControl(PlaneControl):
         """The letter table for the present modes: rotary words are plain only if they are positions of one axis."""
         return self._letter_tables[self.spatial_angles_active or (self.tilted and not self.tcp)]
 
-    def compensates_across_tool(self) -> bool:
-        """With M128, across the tool wherever it points."""
-        return self.tcp
+    def set_tcp(self, on: bool) -> None:
+        """M128, M129 and the like."""
+        super().set_tcp(on)
+        self.judge_compensation()
+
+    def judge_compensation(self) -> None:
+        """Note radius compensation with M128, which takes the delta values (DR) and not the radius (TNC 640 manual)."""
+        if self.tcp and self.modal.compensation.current:
+            text = "radius compensation with M128 is by the delta values DR, and not by the radius of the tool"
+            self.note(f"{text}: write M129 before it, or the path of the tool centre", Severity.ERROR)
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """With M126."""

@@ -253,6 +253,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         if block.side in ("RL", "RR"):
             text = "radius compensation is not simulated: the path is that of the tool centre as programmed"
             self._note(f"{block.side}: {text}", Severity.WARNING)
+            self.control.judge_compensation()
 
     def _moves_in_machine(self, block: Block) -> bool:
         """Whether a block programs positions of the machine axes (M91, M92)."""
