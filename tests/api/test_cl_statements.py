@@ -9,6 +9,7 @@ import pytest
 
 import trunnion
 from tests.support.posting import FOOT, HEAD
+from trunnion.cli import main
 
 #: One machine of each family of controls.
 MACHINES = ("yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt")
@@ -146,13 +147,15 @@ def test_words_that_no_entry_names_stay_errors(tmp_path: Path) -> None:
     assert [problem.line for problem in caught.value.problems] == [12, 13]
 
 
-def test_verify_refuses_them_too(tmp_path: Path) -> None:
+def test_verify_refuses_and_warns_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "part.mpf"
     text = trunnion.post(part(tmp_path), machine="yl569").text
     assert text is not None
     file.write_text(text)
     with pytest.raises(trunnion.InputError, match="ROTABL is not known"):
         trunnion.verify(file, machine="yl569", cl=part(tmp_path, "ROTABL/ATANGL,90"))
+    assert main(["verify", str(file), "--machine", "yl569", "--cl", str(part(tmp_path, "SHOPEV/1"))]) == 0
+    assert "part.cls:12: warning: SHOPEV is not known; nothing becomes of it" in capsys.readouterr().err
 
 
 def test_a_line_of_a_definition_is_one_line(tmp_path: Path) -> None:
