@@ -155,6 +155,15 @@ def test_bombs_are_refused_before_they_fill_the_memory(tmp_path: Path, monkeypat
         read_cl_files(io.BytesIO(CLSF.encode() * 20))
 
 
+def test_a_long_stream_is_kept_in_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sources, "_IN_MEMORY", 100)
+    monkeypatch.setattr(sources, "_PIECE", 30)
+    (found,) = sources.cl_sources(io.BytesIO(CLSF.encode()))
+    for _ in range(2):
+        with found.open() as text:
+            assert text.read() == CLSF.encode()
+
+
 def test_contact_points_of_a_packed_file_are_found(tmp_path: Path) -> None:
     text = CLSF.replace("TLDATA", "$$ centerline and contact point\nTLDATA")
     lines = [f"{line} $$ 1.0,1.0,0.0" if line.startswith("GOTO") else line for line in text.splitlines()]

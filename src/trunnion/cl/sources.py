@@ -131,12 +131,17 @@ def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
     if head.startswith(_ZIP):
         return _zip_sources(name, open_packed, size)
     if unpack := _unpacker(head):
-        source = ClSource(name, lambda: cast("BinaryIO", _Unpacked(unpack(open_packed()), name, size)))
+        source = ClSource(name, lambda: _unpacked(name, open_packed(), unpack, size))
         with source.open() as text:
             _refuse_archive(name, text.read(1024), "an archive in an archive")
         return [source]
     _refuse_archive(name, head, "")
     return [ClSource(name, open_packed, packed=not isinstance(file, Path))]
+
+
+def _unpacked(name: str, packed: BinaryIO, unpack: Callable[[BinaryIO], BinaryIO], size: int) -> BinaryIO:
+    """The text of a packed file; to close it closes the file too."""
+    return cast("BinaryIO", _Unpacked(unpack(packed), name, size, packed))
 
 
 def not_one_file(first: str, count: int) -> InputError:
@@ -254,7 +259,7 @@ def _why_no_cl_file(inside: str, info: zipfile.ZipInfo, opened: Callable[[], Bin
 
 def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
     """The content of a stream, so that it can be read twice."""
-    spool = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115 - it lives as long as its sources
+    spool: BinaryIO = io.BytesIO()
     done = 0
     try:
         while piece := stream.read(_PIECE):
@@ -262,10 +267,18 @@ def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
                 raise InputError(Problem(name, 0, "is a stream of text", "give a binary stream"))
             done += len(piece)
             _check_size(name, done, done)
+            if done > _IN_MEMORY and isinstance(spool, io.BytesIO):
+                memory, spool = spool, _temporary_file()
+                spool.write(memory.getbuffer())
             spool.write(piece)
     except OSError as error:
         raise InputError(Problem(name, 0, f"cannot be read: {error.strerror or error}", "")) from error
-    return cast("BinaryIO", spool)
+    return spool
+
+
+def _temporary_file() -> BinaryIO:
+    """A file without a name, which goes when nothing reads it any more."""
+    return cast("BinaryIO", tempfile.TemporaryFile())
 
 
 class _Shared(io.RawIOBase):
@@ -295,7 +308,7 @@ class _Shared(io.RawIOBase):
 class _Unpacked(io.RawIOBase):
     """A text while it is unpacked: damage and unreasonable growth are ``InputError``; reads are full up to the end."""
 
-    def __init__(self, text: BinaryIO, name: str, packed_bytes: int, packed: BinaryIO | None = None) -> None:
+    def __init__(self, text: BinaryIO, name: str, packed_bytes: int, packed: BinaryIO) -> None:
         self._text = text
         self._name = name
         self._packed_bytes = packed_bytes
@@ -319,6 +332,5 @@ class _Unpacked(io.RawIOBase):
 
     def close(self) -> None:
         self._text.close()
-        if self._packed is not None:
-            self._packed.close()
+        self._packed.close()
         super().close()
