@@ -111,6 +111,16 @@ def test_lengths_and_times_are_those_of_the_programmed_feeds(clsf: Path, capsys:
     assert found["cutting_seconds"] == pytest.approx(face["cutting_seconds"] + side["cutting_seconds"])
 
 
+def test_times_that_nobody_waits_for_are_not_known(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    slow = CLSF.replace("RPM,1000", "RPM,1e-300").replace("MMPM,600", "MMPM,1e-300").replace("MMPM,60,", "MMPM,1e-300,")
+    file = tmp_path / "slow.cls"
+    file.write_text(slow.replace("DELAY/2", "DELAY/2,REV").replace(",DWELL,1.5", ""), encoding="utf-8")
+    found = data_of([file], capsys)
+    assert found["cutting_seconds"] == 0.0
+    assert [operation["moves_without_time"] for operation in found["operations"]] == [3, 3]
+    assert main(["info", str(file)]) == 0
+
+
 def test_systems_tools_and_unknown_statements_are_listed(clsf: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found = data_of([clsf], capsys)
     assert [system["z"] for system in found["systems"]] == [[0, 0, 1], [0, -1, 0]]

@@ -26,6 +26,9 @@ _OUT_AT_FEED: Final = frozenset({
     HoleMethod.TAP, HoleMethod.FLOATING_TAP, HoleMethod.DEEP_TAP, HoleMethod.CHIP_BREAKING_TAP, HoleMethod.REAM,
 })  # fmt: skip
 
+#: No move and no dwell takes longer, seconds.
+_LONGEST_TIME: Final = 1e9
+
 THREE_AXIS: Final = "three-axis"
 TILTED: Final = "3+2"
 SIMULTANEOUS: Final = "simultaneous"
@@ -117,7 +120,7 @@ def measure(operation: Operation, before: Floats | None, spindle: SpindleState |
     per_minute = np.where(moves.per_rev, moves.feed * rpm, moves.feed)[cut]
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = np.where(length[cut] > 0.0, 60.0 * length[cut] / per_minute, 0.0)
-    known = np.isfinite(seconds)
+    known = seconds <= _LONGEST_TIME
     found.cutting_length = float(length[cut].sum())
     found.cutting_seconds = float(seconds[known].sum())
     found.moves_without_time = int((~known).sum())
@@ -179,7 +182,7 @@ def _add_holes(found: Measures, operation: Operation, holes: Flags, rpm: Floats)
         per_minute = feed * float(rpm[row]) if per_rev else feed
         found.cutting_length += way * len(rows)
         if per_minute > 0.0:
-            found.cutting_seconds += 60.0 * way / per_minute * len(rows)
+            _add_time(found, 60.0 * way / per_minute, len(rows))
             _add_dwell(found, cycle.dwell, cycle.dwell_in_revolutions, float(rpm[row]), len(rows))
         else:
             found.moves_without_time += len(rows)
@@ -187,9 +190,15 @@ def _add_holes(found: Measures, operation: Operation, holes: Flags, rpm: Floats)
 
 def _add_dwell(found: Measures, amount: float, in_revolutions: bool, rpm: float, times: int) -> None:
     """Add a dwell; one in revolutions of a spindle that stands takes no time that is known."""
-    if not in_revolutions:
-        found.cutting_seconds += amount * times
-    elif rpm > 0.0:
-        found.cutting_seconds += 60.0 * amount / rpm * times
+    if not in_revolutions or rpm > 0.0:
+        _add_time(found, 60.0 * amount / rpm if in_revolutions else amount, times)
     elif amount:
+        found.moves_without_time += times
+
+
+def _add_time(found: Measures, seconds: float, times: int) -> None:
+    """Add a time so many times; one that nobody waits for is a mistake in the file, and not known."""
+    if seconds <= _LONGEST_TIME:
+        found.cutting_seconds += seconds * times
+    else:
         found.moves_without_time += times
