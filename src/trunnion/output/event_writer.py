@@ -55,7 +55,9 @@ class EventWriter:
         self._phase = -1
         self._cycle: CycleOn | None = None
         self._joining_events: list[WordEvent] = []
+        self._last_in_rows = _LastInRows(())
         self._spindle_turns = False
+        self._resumes = False  # the spindle stands at a stop, and turns again before the row
 
     def write(self, motion: Motion, first: int, end_lines: Sequence[str], *, restart_spindle: bool) -> None:
         """Write the rows of a motion from ``first`` on, with its events.
@@ -77,12 +79,12 @@ class EventWriter:
             if not any(isinstance(event, SpindleOn) and event.row == 0 for event in motion.operation.events):
                 self._restart_spindle(0)
         events = motion.operation.events
-        last_stop = max((k for k, event in enumerate(events) if isinstance(event, Stop)), default=-1)
+        self._last_in_rows = _LastInRows(events)
         for k, event in enumerate(events):
             if not _is_said_again(events, k):
                 # What is switched off before a stop is off while the machine stands.
-                at_end = event.row == rows and k > last_stop
-                self._write_event(event, end_lines if at_end else ())
+                at_end = event.row == rows and not self._last_in_rows.comes_after(k, event, Stop)
+                self._write_event(k, event, end_lines if at_end else ())
         self._write_rows(rows)
         for event in self._joining_events:
             if event.row == rows:
@@ -130,7 +132,7 @@ class EventWriter:
             return not self._starts_spindle_by_template
         return not (isinstance(event, Coolant) and event.kind == "OFF")
 
-    def _write_event(self, event: Event, end_lines: Sequence[str]) -> None:
+    def _write_event(self, index: int, event: Event, end_lines: Sequence[str]) -> None:
         if isinstance(event, CycleOn | CycleOff):
             self._write_rows(event.row)
             self._joining_events = [joining for joining in self._joining_events if joining.row >= event.row]
@@ -143,11 +145,15 @@ class EventWriter:
                 self._spindle_turns = isinstance(event, SpindleOn)
         elif isinstance(event, Dwell | Stop | Message | Insert | BlockSkip | SelectTool):
             self._finish_rows(event.row)
-            self._write_line_event(event)
+            if isinstance(event, Stop):
+                self._write_stop(index, event)
+            else:
+                self._write_line_event(event)
 
     def _write_word_event(self, event: WordEvent, end_lines: Sequence[str]) -> None:
         if self._joins_motion(event):
-            if any(type(joining) is type(event) and joining.row == event.row for joining in self._joining_events):
+            here = takewhile(lambda joining: joining.row == event.row, reversed(self._joining_events))
+            if any(type(joining) is type(event) for joining in here):
                 self._finish_rows(event.row)  # what is switched twice before a row is switched in order
             same = [e for e in self._joining_events if type(e) is type(event) and e.row == event.row]
             self._joining_events = [e for e in self._joining_events if e not in same]  # or only the last time
@@ -159,14 +165,12 @@ class EventWriter:
         elif not self._is_switched_in(end_lines, event):
             self._blocks.write_event(event)
 
-    def _write_line_event(self, event: Dwell | Stop | Message | Insert | BlockSkip | SelectTool) -> None:
+    def _write_line_event(self, event: Dwell | Message | Insert | BlockSkip | SelectTool) -> None:
         blocks = self._blocks
         if isinstance(event, Dwell):
             rpm = None if blocks.spindle is None else blocks.spindle.rpm
             formats = self._control.number_formats(self._motion.three_axis)
             blocks.write_lines(self._family.dwell(event, rpm, formats))
-        elif isinstance(event, Stop):
-            self._write_stop(event)
         elif isinstance(event, Message):
             blocks.write_lines(self._family.message(event))
         elif isinstance(event, Insert):
@@ -179,18 +183,28 @@ class EventWriter:
         else:
             self.set_block_skip(event.on, event.row)
 
-    def _write_stop(self, event: Stop) -> None:
-        """Write a stop, at which the spindle stands; it turns again before the next row, as it did."""
-        stops = self._spindle_turns and not event.optional
-        if stops:
+    def _write_stop(self, index: int, event: Stop) -> None:
+        """Write a stop, at which the spindle stands; what ran before it is said again before the next row.
+
+        Machines switch coolant off at a stop, and with it the spindle at an optional one, as their builder has decided:
+        they stay off until the program says otherwise.
+        """
+        resumes = self._spindle_turns or self._resumes
+        if self._spindle_turns and not event.optional:
             self._blocks.write_event(SpindleOff(event.row, event.line))
-        self._blocks.write_lines(self._family.stop(event, self._control.codes))
-        later = [e for e in self._motion.operation.events if e.row == event.row and e.line > event.line]
-        switched = any(isinstance(each, SpindleOn | SpindleOff) for each in later)
-        if stops and not switched and event.row < len(self._motion.operation.moves):
-            self._restart_spindle(event.row)
-        elif stops:
             self._spindle_turns = False
+        self._blocks.write_lines(self._family.stop(event, self._control.codes))
+        self._blocks.writer.forget("coolant", *(("spindle",) if event.optional else ()))
+        if event.row == len(self._motion.operation.moves):
+            return
+        comes_after = self._last_in_rows.comes_after
+        is_last = not comes_after(index, event, Stop)
+        self._resumes = resumes and not comes_after(index, event, SpindleOn, SpindleOff)
+        if self._resumes and is_last:
+            self._resumes = False
+            self._restart_spindle(event.row)
+        if is_last and self._blocks.coolant != "OFF" and not comes_after(index, event, Coolant):
+            self._write_word_event(Coolant(event.row, event.line, self._blocks.coolant), ())
 
     def _turn_again_after_thread(self, cycle: CycleOn, event: CycleOn | CycleOff) -> None:
         """Start the spindle after a thread at which the control stops it, unless no cut follows, or it is switched."""
@@ -241,6 +255,17 @@ class EventWriter:
                 self._blocks, self._motion, first, last, self._joining_events, self._phase, self._cycle
             )
         self._next_row = max(first, last)
+
+
+class _LastInRows:
+    """Which events come last before their row, by type."""
+
+    def __init__(self, events: Sequence[Event]) -> None:
+        self._last = {(event.row, type(event)): k for k, event in enumerate(events)}
+
+    def comes_after(self, index: int, event: Event, *types: type[Event]) -> bool:
+        """Whether an event of one of the types comes after the event with this index, before the same row."""
+        return any(self._last.get((event.row, each), -1) > index for each in types)
 
 
 def _is_said_again(events: Sequence[Event], index: int) -> bool:

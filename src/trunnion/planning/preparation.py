@@ -14,7 +14,7 @@ from trunnion.errors import Problem, RefusedError, Severity
 from trunnion.model.frames import into_frame, into_plane, relative_frame
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
 from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation
-from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, spindle_state_at
+from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, SpindleStates
 from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
 from trunnion.planning.linearization.arc_chords import (
     arcs_a_control_takes,
@@ -60,7 +60,7 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
             prepared.append(_with_holes(_with_lines_for_arcs(operation), spindle))
         except HoleCycleError as error:
             errors.append(Problem(file, error.line, error.what, error.cure))
-        spindle = spindle_state_at(original.events, len(original.moves), spindle)
+        spindle = SpindleStates(original.events, spindle).at(len(original.moves))
     if errors:
         raise RefusedError(errors)
     return prepared

@@ -38,9 +38,10 @@ def _cut_points(motion: Motion) -> list[Floats]:
     points = [moves.tip[cuts], moves.tip[np.maximum(cuts - 1, 0)]]
     half_sides = arcs.radius[:, None] * np.sqrt(np.maximum(1.0 - arcs.normal**2, 0.0))
     points += [arcs.centre - half_sides, arcs.centre + half_sides]
-    ends = [e.row for e in motion.operation.events if isinstance(e, CycleOn | CycleOff)] + [len(moves)]
-    for event in motion.operation.events:
+    cycles = [event for event in motion.operation.events if isinstance(event, CycleOn | CycleOff)]
+    ends = [*(event.row for event in cycles[1:]), len(moves)]
+    for event, end in zip(cycles, ends, strict=True) if cycles else ():
         if isinstance(event, CycleOn):
-            holes = slice(event.row, min(row for row in ends if row > event.row or row == len(moves)))
+            holes = slice(event.row, end)
             points += [moves.tip[holes], moves.tip[holes] - cycle_from_event(event).depth * moves.axis[holes]]
     return points

@@ -1,12 +1,12 @@
 """Hole-making cycles that a control does not have, or not so."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from trunnion.controls.definition import Control
 from trunnion.controls.vocabulary import CYCLE_CALL_WORD, HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.errors import Problem
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOff, SpindleOn
+from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
 from trunnion.output.holes.holes_under_tcp import check_holes_under_tcp
 from trunnion.output.program import Program
 from trunnion.output.validation.feeds import rounding_problem
@@ -14,10 +14,10 @@ from trunnion.planning.holes.cycles import (
     Cycle,
     HoleCycleError,
     SpindleState,
+    SpindleStates,
     UnsupportedCycleError,
     cycle_feed,
     cycle_from_event,
-    spindle_state_at,
 )
 
 
@@ -52,11 +52,15 @@ def cycle_problems(program: Program, motion: Motion, spindle: SpindleState) -> l
         return []
     along_tool = motion.mode is MachiningMode.TCP and program.control.turns_between_holes(program.effective_settings())
     problems, warnings = list[Problem](), list[Problem]()
-    for event in operation.events:
+    spindles = SpindleStates(operation.events, spindle)
+    switches = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
+    ends = [*(event.row for event in switches[1:]), len(operation.moves)]
+    for event, end in zip(switches, ends, strict=True):
         if not isinstance(event, CycleOn):
             continue
+        states = [spindles.at(row) for row in (event.row, *spindles.changes_between(event.row, end))]
         try:
-            warning = _check_cycle(program, motion, operation, event, spindle, along_tool)
+            warning = _check_cycle(program, motion, operation, event, states, along_tool)
             warnings += [warning] if warning else []
         except HoleCycleError as error:
             problems.append(Problem(program.file, event.line, error.what, error.cure))
@@ -66,7 +70,12 @@ def cycle_problems(program: Program, motion: Motion, spindle: SpindleState) -> l
 
 
 def _check_cycle(
-    program: Program, motion: Motion, operation: Operation, event: CycleOn, spindle: SpindleState, along_tool: bool
+    program: Program,
+    motion: Motion,
+    operation: Operation,
+    event: CycleOn,
+    spindles: Sequence[SpindleState | None],
+    along_tool: bool,
 ) -> Problem | None:
     """Raise ``HoleCycleError`` if the control cannot make the holes of a cycle; returns what it does to the feed.
 
@@ -74,18 +83,18 @@ def _check_cycle(
     ----------
     operation
         Of the motion, in the coordinates of its blocks.
-    spindle
-        Before the motion.
+    spindles
+        At the first hole of the cycle, and wherever the spindle changes among its holes.
     along_tool
         The tool turns from hole to hole under TCP.
     """
     moves, row, cycle = operation.moves, event.row, cycle_from_event(event)
     if motion.mode in (MachiningMode.TCP, MachiningMode.WITHOUT_TCP) and not along_tool:
         raise _no_tilted_cycle(program, motion, cycle)
-    spindle_here = spindle_state_at(operation.events, row, spindle)
+    spindle_here = spindles[0]
     formats = program.control.number_formats(motion.three_axis)
     settings = program.effective_settings() | ({} if along_tool else {HOLES_SETTING: HOLES_IN_PLANES})
-    for state in _spindle_states(operation, event, spindle):
+    for state in spindles:
         program.control.family.cycle_call(cycle, 0.0, state, settings, formats)
     feed, per_rev = cycle_feed(cycle, spindle_here, float(moves.feed[row]), bool(moves.per_rev[row]))
     if not feed > 0.0:
@@ -101,16 +110,6 @@ def _check_cycle(
     if per_rev and spindle_here is not None and CYCLE_CALL_WORD in words:
         feed, per_rev = feed * spindle_here.rpm, False  # a cycle that is called hole by hole has mm/min
     return rounding_problem(program.file, event.line, formats, feed, per_rev)
-
-
-def _spindle_states(operation: Operation, event: CycleOn, spindle: SpindleState) -> Iterator[SpindleState | None]:
-    """The spindle at the first hole of a cycle, and wherever it changes among its holes; ``spindle``: before all."""
-    events = operation.events
-    ends = [each.row for each in events if isinstance(each, CycleOn | CycleOff) and each.row > event.row]
-    end = min(ends, default=len(operation.moves))
-    changes = [each.row for each in events if isinstance(each, SpindleOn | SpindleOff)]
-    for row in dict.fromkeys([event.row, *(row for row in changes if event.row < row < end)]):
-        yield spindle_state_at(events, row, spindle)
 
 
 def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycleError:

@@ -1,5 +1,8 @@
 """Events that a control cannot carry out, or not where they are."""
 
+from collections.abc import Collection
+from typing import TypeGuard
+
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.controls.inches import literal_length
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
@@ -9,8 +12,18 @@ from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event
 from trunnion.output.program import Program
 
 
-def event_problems(program: Program, motion: Motion, event: Event, rpm: float | None) -> list[Problem]:
-    """Return what is wrong with an event; ``rpm`` is the spindle speed, None while it is stopped."""
+def event_problems(
+    program: Program, motion: Motion, event: Event, rpm: float | None, registers: Collection[int]
+) -> list[Problem]:
+    """Return what is wrong with an event.
+
+    Parameters
+    ----------
+    rpm
+        The spindle speed; None while it is stopped.
+    registers
+        Numbers of the tools that the motion loads, and of the registers that LOAD/TOOL names.
+    """
     control, location = program.control, (program.file, event.line)
     if isinstance(event, Dwell):
         if event.revolutions and not rpm:
@@ -24,13 +37,10 @@ def event_problems(program: Program, motion: Motion, event: Event, rpm: float | 
         return [Problem(*location, "tool change within an operation", "begin a new operation with the new tool")]
     if isinstance(event, CutterComp) and event.side == "ON":
         return [Problem(*location, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
-    if isinstance(event, CutterComp) and event.register and RADIUS_NUMBER_WORD not in control.family.WORDS:
-        numbers = {
-            n for load in motion.operation.events if isinstance(load, LoadTool) for n in (load.number, load.adjust)
-        }
-        if event.side != "OFF" and event.register not in numbers:
-            what = f"CUTCOM names the register {event.register}, and {control.name} takes the radius of the tool"
-            return [Problem(*location, what, "write CUTCOM without a register, or with the number of the tool")]
+    takes_tool_radius = RADIUS_NUMBER_WORD not in control.family.WORDS
+    if takes_tool_radius and _compensates_by_register(event) and event.register not in registers:
+        what = f"CUTCOM names the register {event.register}, and {control.name} takes the radius of the tool"
+        return [Problem(*location, what, "write CUTCOM without a register, or with the number of the tool")]
     if isinstance(event, GoHome) and event.row < len(motion.operation.moves):
         return [Problem(*location, "GOHOME before the operation's end", "begin a new operation after it")]
     if isinstance(event, SelectTool) and not control.family.tool_preselection("1"):
@@ -48,6 +58,11 @@ def event_problems(program: Program, motion: Motion, event: Event, rpm: float | 
         )
         return [Problem(*location, f"{control.name} has no coolant {event.kind}", cure)]
     return []
+
+
+def _compensates_by_register(event: Event) -> TypeGuard[CutterComp]:
+    """Whether an event switches radius compensation on and names the register of the radius."""
+    return isinstance(event, CutterComp) and event.side != "OFF" and event.register != 0
 
 
 def block_skip_problems(program: Program) -> list[Problem]:

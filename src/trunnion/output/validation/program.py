@@ -2,7 +2,7 @@
 
 from trunnion.errors import Problem
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import Sense, SpindleOff, SpindleOn, Stop
+from trunnion.model.toolpath import LoadTool, Sense, SpindleOff, SpindleOn, Stop
 from trunnion.output.program import Program
 from trunnion.output.validation.compensation import compensation_problems
 from trunnion.output.validation.cycles import cycle_problems
@@ -19,7 +19,7 @@ from trunnion.output.validation.operations import (
 )
 from trunnion.output.validation.orientation import normal_problems, tool_vector_problems
 from trunnion.output.validation.without_tcp import problems_without_tcp
-from trunnion.planning.holes.cycles import SpindleState, spindle_state_at
+from trunnion.planning.holes.cycles import SpindleState, SpindleStates
 
 
 def check_program(program: Program) -> list[Problem]:
@@ -31,15 +31,18 @@ def check_program(program: Program) -> list[Problem]:
     for motion in program.motions:
         operation = motion.operation
         problems += cycle_problems(program, motion, spindle)
-        spindle = spindle_state_at(operation.events, len(operation.moves), spindle) or spindle
+        spindle = SpindleStates(operation.events, spindle).at(len(operation.moves)) or spindle
         stands_at = -1  # row before which a STOP has stopped the spindle: it turns again with the motion
+        loads = [event for event in operation.events if isinstance(event, LoadTool)]
+        registers = {number for load in loads for number in (load.number, load.adjust)}
         for event in operation.events:
             if isinstance(event, SpindleOn):
                 stands_at = -1
             elif isinstance(event, Stop) and not event.optional:
                 stands_at = event.row
             rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
-            problems += event_problems(program, motion, event, None if event.row == stands_at else rpm)
+            turning = None if event.row == stands_at else rpm
+            problems += event_problems(program, motion, event, turning, registers)
         problems += _motion_problems(program, motion)
         rejected = program.control.family.validate_operation(operation, spindle_known)
         problems += [Problem(program.file, line, why.what, why.cure) for line, why in rejected]

@@ -5,6 +5,7 @@ word means.
 """
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -114,17 +115,25 @@ class SpindleState:
     sense: Sense
 
 
-def spindle_state_at(events: Sequence[Event], row: int, before: SpindleState | None) -> SpindleState | None:
-    """The spindle at a row of an operation; None: it stands still. ``before``: at the start of the operation."""
-    state = before
-    for event in events:
-        if event.row > row:
-            break
-        if isinstance(event, SpindleOn):
-            state = SpindleState(event.rpm, event.sense)
-        elif isinstance(event, SpindleOff):
-            state = None
-    return state
+class SpindleStates:
+    """The spindle along an operation; ``before``: at its start."""
+
+    def __init__(self, events: Sequence[Event], before: SpindleState | None) -> None:
+        self._rows: list[int] = []
+        self._states = [before]
+        for event in events:
+            if isinstance(event, SpindleOn | SpindleOff):
+                self._rows.append(event.row)
+                self._states.append(SpindleState(event.rpm, event.sense) if isinstance(event, SpindleOn) else None)
+
+    def at(self, row: int) -> SpindleState | None:
+        """The spindle at a row; None: it stands still."""
+        return self._states[bisect_right(self._rows, row)]
+
+    def changes_between(self, first: int, end: int) -> list[int]:
+        """Rows after ``first`` and before ``end`` at which the spindle is switched, increasing."""
+        low, high = bisect_right(self._rows, first), bisect_left(self._rows, end)
+        return list(dict.fromkeys(self._rows[low:high]))
 
 
 def cycle_from_event(event: CycleOn) -> Cycle:

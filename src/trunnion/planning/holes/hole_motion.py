@@ -22,9 +22,9 @@ from trunnion.planning.holes.cycles import (
     HoleCycleError,
     HoleMethod,
     SpindleState,
+    SpindleStates,
     cycle_feed,
     cycle_from_event,
-    spindle_state_at,
 )
 from trunnion.planning.holes.operations import cycle_row_ranges
 from trunnion.planning.holes.pecks import SAME_HEIGHT, HoleMotions, hole_motions
@@ -156,17 +156,15 @@ def convert_holes_to_motion(operation: Operation, conditions: HoleConditions) ->
 
 def _holes(operation: Operation, conditions: HoleConditions) -> Iterator[_Holes]:
     """The holes of an operation, cycle by cycle. Cycles that cannot be read are left to the writer's checks."""
-    changes = [event.row for event in operation.events if isinstance(event, SpindleOn | SpindleOff)]
+    spindles = SpindleStates(operation.events, conditions.spindle)
     for event, end in cycle_row_ranges(operation):
         try:
             cycle = cycle_from_event(event)
         except HoleCycleError:
             continue
-        reason = conditions.reason(cycle, spindle_state_at(operation.events, event.row, conditions.spindle))
-        starts = sorted({event.row, *(row for row in changes if event.row < row < end), end})
-        for first, last in pairwise(starts):
-            spindle = spindle_state_at(operation.events, first, conditions.spindle)
-            yield _Holes(first, last, event, cycle, reason, spindle)
+        reason = conditions.reason(cycle, spindles.at(event.row))
+        for first, last in pairwise([event.row, *spindles.changes_between(event.row, end), end]):
+            yield _Holes(first, last, event, cycle, reason, spindles.at(first))
 
 
 def _positions_before(operation: Operation, every: Sequence[_Holes]) -> Floats:

@@ -1,5 +1,6 @@
 """Operations with hole-making cycles: which rows are holes, and where the tool axis changes between them."""
 
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
@@ -26,11 +27,16 @@ def normalize_cycles(operation: Operation) -> Operation:
     if not any(isinstance(event, CycleOn) for event in operation.events):
         return operation
     holes, moves = hole_rows(operation), operation.moves
+    here_by_row: defaultdict[int, list[Event]] = defaultdict(list)
+    for event in operation.events:
+        here_by_row[event.row].append(event)
+    in_force: CycleOn | None = None
     events: list[Event] = []
     cycle: CycleOn | None = None
     edges = np.flatnonzero(np.diff(holes, prepend=False, append=False)).tolist()
-    for row in sorted({*edges, *(event.row for event in operation.events)}):
-        here = [event for event in operation.events if event.row == row]
+    for row in sorted({*edges, *here_by_row}):
+        here = here_by_row[row]
+        in_force = next((event for event in reversed(here) if isinstance(event, CycleOn)), in_force)
         is_hole = row < len(moves) and bool(holes[row])
         changes = any(isinstance(event, CycleOn | CycleOff) for event in here)
         if cycle is not None and (changes or not is_hole):
@@ -38,7 +44,8 @@ def normalize_cycles(operation: Operation) -> Operation:
             cycle = None
         events += [event for event in here if not isinstance(event, CycleOn | CycleOff)]
         if is_hole and cycle is None:
-            cycle = replace(_with_retract_distance(operation, _cycle_at(operation, row)), row=row)
+            assert in_force is not None
+            cycle = replace(_with_retract_distance(operation, in_force), row=row)
             events.append(cycle)
     kind = np.where(holes, np.uint8(Kind.RAPID), moves.kind)
     return replace(operation, moves=replace(moves, kind=kind), events=tuple(events))
@@ -46,16 +53,11 @@ def normalize_cycles(operation: Operation) -> Operation:
 
 def hole_rows(operation: Operation) -> Flags:
     """(n,) bool: the row is a hole: a cycle is on there, and it is no rapid."""
-    is_on = np.zeros(len(operation.moves), bool)
-    for event in operation.events:
-        if isinstance(event, CycleOn | CycleOff):
-            is_on[event.row :] = isinstance(event, CycleOn)
+    switches = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
+    rows = np.array([event.row for event in switches], np.int64)
+    on = np.array([False, *(isinstance(event, CycleOn) for event in switches)])
+    is_on = on[np.searchsorted(rows, np.arange(len(operation.moves)), "right")]
     return np.asarray(is_on & (operation.moves.kind != Kind.RAPID))
-
-
-def _cycle_at(operation: Operation, row: int) -> CycleOn:
-    """The cycle in force at a row that is a hole."""
-    return next(e for e in reversed(operation.events) if isinstance(e, CycleOn) and e.row <= row)
 
 
 def _with_retract_distance(operation: Operation, event: CycleOn) -> CycleOn:

@@ -17,6 +17,11 @@ from trunnion.verification.results import Check, Place
 _COOLANT: Final = {"OFF": "off", "ON": "flood", "FLOOD": "flood", "TAP": "flood", "MIST": "mist"}
 
 
+def is_builder_coolant(word: str) -> bool:
+    """Whether only the machine builder may have a word for coolant that a CL file asks for."""
+    return word not in _COOLANT or word == "MIST"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _CoolantWords:
     """Coolant words of a program, and rows before which words of the machine builder stand.
@@ -51,19 +56,14 @@ class _CoolantWords:
 
     def between(self, row: int, last: int) -> Iterator[tuple[int, str]]:
         """Rows and states of the changes after a row, up to the row ``last``."""
-        k = int(np.searchsorted(self.rows, row, "right"))
-        return ((at, state) for at, state, _ in self.changes[k:] if at <= last)
+        first, end = np.searchsorted(self.rows, [row, last], "right").tolist()
+        return ((at, state) for at, state, _ in self.changes[first:end])
 
     def is_off_before(self, row: int) -> bool:
         """Whether coolant is off right before a row, or was at any time between the row before it and it."""
-        now = "off"
-        for at, state, _ in self.changes:
-            if at > row:
-                break
-            if at == row and now == "off":
-                return True
-            now = state
-        return now == "off"
+        first, end = int(np.searchsorted(self.rows, row)), int(np.searchsorted(self.rows, row, "right"))
+        before = ["off"] if first == 0 else []
+        return "off" in [*before, *(state for _, state, _ in self.changes[max(first - 1, 0) : end])]
 
 
 def check_coolant(context: ComparedContext) -> Check:

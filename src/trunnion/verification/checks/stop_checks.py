@@ -1,13 +1,18 @@
 """Dwells and stops of a program against DELAY, STOP and OPSTOP in the CL files."""
 
+from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Final
 
+import numpy as np
+
 from trunnion.model.run import Run, RunEvent
-from trunnion.model.toolpath import Dwell, Stop
+from trunnion.model.toolpath import Coolant, Dwell, Stop
+from trunnion.verification.checks.coolant_checks import is_builder_coolant
+from trunnion.verification.checks.restarts import Restarts
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
@@ -19,14 +24,26 @@ _TOLERANCE: Final = 5.1e-4
 
 
 @dataclass(frozen=True, slots=True)
+class _FoundStop:
+    """A dwell or stop of the program, and its place among the events of the run."""
+
+    place: int
+    event: RunEvent
+
+
+@dataclass(frozen=True, slots=True)
 class _ExpectedStop:
-    """A DELAY, STOP or OPSTOP before CL row ``row``; ``amount`` in seconds, or spindle revolutions if negative."""
+    """A DELAY, STOP or OPSTOP before CL row ``row``; ``amount`` in seconds, or spindle revolutions if negative.
+
+    coolant  what the CL file says about coolant after it
+    """
 
     row: int
     kind: str
     amount: float
     file: str
     line: int
+    coolant: str
 
     def __str__(self) -> str:
         return _words(self.kind, self.amount)
@@ -39,12 +56,13 @@ def check_stops(context: ComparedContext) -> Check:
     check of holes.
     """
     expected = _expected_stops(context)
-    found: defaultdict[int, list[RunEvent]] = defaultdict(list)
-    for event in _events_outside_holes(context):
-        found[context.matching.nc.count_before(event.before_row)].append(event)
+    found: defaultdict[int, list[_FoundStop]] = defaultdict(list)
+    for stop in _stops_outside_holes(context):
+        found[context.matching.nc.count_before(stop.event.before_row)].append(stop)
+    restarts = Restarts(context.run)
     places: list[Place] = []
     for pair in sorted(expected.keys() | found.keys()):
-        places += _compare(context, pair, expected[pair], found[pair])
+        places += _compare(context, restarts, pair, expected[pair], found[pair])
     count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _NAMES}
     good = ", ".join(f"{count[kind]} {name}" for kind, name in _NAMES.items() if count[kind])
     title = "stops and dwells as the CL file says"
@@ -55,7 +73,10 @@ def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_Expected
     """By the pair before which they stand."""
     expected: defaultdict[int, list[_ExpectedStop]] = defaultdict(list)
     for section in context.expected.sections:
+        coolant = "OFF"
         for event in section.operation.events:
+            if isinstance(event, Coolant):
+                coolant = event.kind
             if not isinstance(event, Dwell | Stop):
                 continue
             row, amount = section.first + event.row, 0.0
@@ -63,42 +84,78 @@ def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_Expected
                 kind, amount = "dwell", -event.amount if event.revolutions else event.amount
             else:
                 kind = "optional_stop" if event.optional else "stop"
-            stop = _ExpectedStop(row, kind, amount, section.file, event.line)
+            stop = _ExpectedStop(row, kind, amount, section.file, event.line, coolant)
             expected[context.matching.cl.count_before(row)].append(stop)
     return expected
 
 
-def _events_outside_holes(context: ComparedContext) -> list[RunEvent]:
+def _stops_outside_holes(context: ComparedContext) -> list[_FoundStop]:
     """Dwells and stops of the program itself, without those that belong to a hole."""
-    events = [event for event in context.run.events if event.kind in _NAMES]
-    if not events:
+    stops = [_FoundStop(place, event) for place, event in enumerate(context.run.events) if event.kind in _NAMES]
+    if not stops:
         return []
     holes = match_holes(context.run, context.expected)
-    return [event for event in events if not any(hole.first < event.before_row < hole.end for hole in holes)]
+    first, end = np.array([hole.first for hole in holes]), np.array([hole.end for hole in holes])
+    rows = np.array([stop.event.before_row for stop in stops])
+    hole = np.searchsorted(first, rows) - 1  # the last one that begins before the row
+    inside = (hole >= 0) & (rows < end[hole]) if holes else np.zeros(len(rows), np.bool_)
+    return [stop for stop, in_hole in zip(stops, inside.tolist(), strict=True) if not in_hole]
 
 
 def _compare(
-    context: ComparedContext, pair: int, expected: list[_ExpectedStop], events: list[RunEvent]
+    context: ComparedContext, restarts: Restarts, pair: int, expected: list[_ExpectedStop], stops: list[_FoundStop]
 ) -> Iterator[Place]:
     """What is wrong before one pair."""
     run = context.run
     if not _is_within_operation(context, pair):
-        events = [event for event in events if any(_same(run, event, each) for each in expected)]
-    for wanted, event in zip_longest(expected, events):
+        stops = _asked_for(run, stops, expected)
+    for wanted, stop in zip_longest(expected, stops):
         if wanted is None:
             if not _follows_insert(context, pair):
-                text = f"{_words(event.kind, _amount(event))}, which the CL file does not ask for"
-                yield context.place_of_event(event, 0.0, text)
-        elif event is None:
+                text = f"{_words(stop.event.kind, _amount(stop.event))}, which the CL file does not ask for"
+                yield context.place_of_event(stop.event, 0.0, text)
+        elif stop is None:
             row = min(wanted.row, len(context.expected) - 1)
             place = context.place_of_missing(row, f"the CL file wants {wanted} before this")
             yield replace(place, cl_file=wanted.file, cl_line=wanted.line)
-        elif event.kind == "stop" and _spindle_turns(run, event):
-            text = "stops while the spindle turns: at a STOP of the CL file it stands (M5 before it)"
-            yield replace(context.place_of_event(event, 0.0, text), cl_file=wanted.file, cl_line=wanted.line)
-        elif not _same(run, event, wanted):
-            text = f"{_words(event.kind, _amount(event))}; the CL file wants {wanted}"
-            yield replace(context.place_of_event(event, 0.0, text), cl_file=wanted.file, cl_line=wanted.line)
+        else:
+            text = _fault(run, restarts, wanted, stop)
+            if text:
+                place = context.place_of_event(stop.event, 0.0, text)
+                yield replace(place, cl_file=wanted.file, cl_line=wanted.line)
+
+
+def _asked_for(run: Run, stops: list[_FoundStop], expected: list[_ExpectedStop]) -> list[_FoundStop]:
+    """The stops that are the same as one that the CL file wants."""
+    seconds = {stop.place: _seconds(_amount(stop.event), _rpm(run, stop.event)) for stop in stops}
+    wanted: dict[tuple[str, float], list[float]] = {}
+    for stop in stops:
+        rpm = _rpm(run, stop.event)
+        if (stop.event.kind, rpm) not in wanted:
+            same_kind = (_seconds(each.amount, rpm) for each in expected if each.kind == stop.event.kind)
+            wanted[stop.event.kind, rpm] = sorted(same_kind)
+    return [stop for stop in stops if _is_in(wanted[stop.event.kind, _rpm(run, stop.event)], seconds[stop.place])]
+
+
+def _is_in(values: list[float], value: float) -> bool:
+    """Whether one of increasing values is the same."""
+    k = bisect_left(values, value - _TOLERANCE)
+    return k < len(values) and values[k] <= value + _TOLERANCE
+
+
+def _fault(run: Run, restarts: Restarts, wanted: _ExpectedStop, stop: _FoundStop) -> str:
+    """What is wrong with a stop or dwell in the place of one that the CL file wants; empty if it is right."""
+    event = stop.event
+    if event.kind == "stop" and restarts.spindle_turns(stop.place):
+        return "stops while the spindle turns: at a STOP of the CL file it stands (M5 before it)"
+    if not _same(run, event, wanted):
+        return f"{_words(event.kind, _amount(event))}; the CL file wants {wanted}"
+    if event.kind != "dwell":
+        builder = is_builder_coolant(wanted.coolant)
+        unsaid = restarts.unsaid(stop.place, event.before_row, builder_coolant=builder)
+        if unsaid:
+            return f"the machine may switch {unsaid} off here, and it is not switched on again before the next cut"
+    return ""
 
 
 def _is_within_operation(context: ComparedContext, pair: int) -> bool:
@@ -121,19 +178,12 @@ def _amount(event: RunEvent) -> float:
 def _same(run: Run, event: RunEvent, wanted: _ExpectedStop) -> bool:
     if event.kind != wanted.kind:
         return False
-    rpm = float(run.state.rpm[min(event.before_row, len(run) - 1)]) if len(run) else 0.0
+    rpm = _rpm(run, event)
     return abs(_seconds(_amount(event), rpm) - _seconds(wanted.amount, rpm)) <= _TOLERANCE
 
 
-def _spindle_turns(run: Run, stop: RunEvent) -> bool:
-    """Whether the spindle turns at a stop: what the last word for it before the stop said."""
-    turns = False
-    for event in run.events:
-        if event is stop:
-            return turns
-        if event.kind == "spindle":
-            turns = event.value in ("clockwise", "counter-clockwise")
-    return turns
+def _rpm(run: Run, event: RunEvent) -> float:
+    return float(run.state.rpm[min(event.before_row, len(run) - 1)]) if len(run) else 0.0
 
 
 def _seconds(amount: float, rpm: float) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Kind, Operation
-from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedTool, spindle_at
+from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedSpindles, ExpectedTool
 from trunnion.verification.expected.tolerances import Tolerances
 
 
@@ -135,6 +135,7 @@ def holes_of_operation(
     cycles = [event for event in operation.events if isinstance(event, CycleOn)]
     cycle_rows = [cycle.row for cycle in cycles]
     found: list[Hole] = []
+    spindles = ExpectedSpindles(operation, spindle)
     cycle_first = -1
     for row, cl_row in zip(rows.tolist(), cl_rows.tolist(), strict=True):
         cycle = cycles[bisect_right(cycle_rows, row) - 1]
@@ -147,7 +148,7 @@ def holes_of_operation(
                 line=int(operation.moves.line[row]),
                 file=file,
                 cycle=_hole_cycle(operation, cycle, cycle_first, row),
-                spindle=spindle_at(operation, row, spindle),
+                spindle=spindles.at(row),
                 tip_tolerance=tolerances.tip,
                 feed_tolerance=tolerances.feed,
                 tool_names=tool.names if tool.is_known else (),

@@ -1,5 +1,6 @@
 """Spindle and tool as a CL file asks for them."""
 
+from bisect import bisect_right
 from dataclasses import dataclass
 
 from trunnion.model.toolpath import Operation, Sense, SpindleOff, SpindleOn
@@ -58,13 +59,21 @@ def spindle_on(event: SpindleOn) -> ExpectedSpindle:
     return ExpectedSpindle(event.rpm, 1 if event.sense is Sense.CLW else -1)
 
 
-def spindle_at(operation: Operation, row: int, before: ExpectedSpindle | None) -> ExpectedSpindle | None:
-    """The spindle at a row; ``before`` is its state when the operation begins, None if no SPINDL came yet."""
-    for event in operation.events:
-        if event.row > row:
-            break
-        if isinstance(event, SpindleOn):
-            before = spindle_on(event)
-        elif isinstance(event, SpindleOff):
-            before = ExpectedSpindle(before.rpm if before else 0.0, 0)
-    return before
+class ExpectedSpindles:
+    """The spindle along an operation; ``before`` is its state when that begins, None if no SPINDL came yet."""
+
+    def __init__(self, operation: Operation, before: ExpectedSpindle | None) -> None:
+        self._rows: list[int] = []
+        self._states = [before]
+        for event in operation.events:
+            last = self._states[-1]
+            if isinstance(event, SpindleOn):
+                self._rows.append(event.row)
+                self._states.append(spindle_on(event))
+            elif isinstance(event, SpindleOff):
+                self._rows.append(event.row)
+                self._states.append(ExpectedSpindle(last.rpm if last else 0.0, 0))
+
+    def at(self, row: int) -> ExpectedSpindle | None:
+        """The spindle at a row."""
+        return self._states[bisect_right(self._rows, row)]
