@@ -69,7 +69,7 @@ def lines_of(work: Callable[[], object]) -> int:
         work()
     finally:
         sys.settrace(None)
-        threading.settrace(None)  # type: ignore[arg-type]
+        threading.settrace(None)
     return count
 
 

@@ -77,7 +77,8 @@ def test_what_is_not_said_again_is_found(posted: tuple[str, Path, str], tmp_path
             head, found, rest = re.split(rf"(\bM0*{stop}\b)", text, maxsplit=1)
             program.write_text(head + found + re.sub(rf" ?\bM0*{word}\b", "", rest, count=1))
             checks = trunnion.verify(program, cl=cl, machine=machine).checks
-            assert "stops" in [check.key for check in checks if not check.passed], (word, stop)
+            finder = "spindle" if word + stop == "30" else "stops"
+            assert finder in [check.key for check in checks if not check.passed], (word, stop)
 
 
 def test_stops_come_back_from_a_conversion(posted: tuple[str, Path, str], tmp_path: Path) -> None:

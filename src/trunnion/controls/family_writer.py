@@ -203,7 +203,8 @@ class FamilyWriter(Protocol):
         Parameters
         ----------
         settings
-            Those of the run over those of the definition.
+            Those of the run over those of the definition; and ``PLANES_USED`` and ``TCP_USED`` of the vocabulary,
+            absent or None where no operation of the program uses any.
         plane : (3, 3) float64
             X, Y and Z of the operation's tilted plane as columns, in program coordinates; None without one.
         """

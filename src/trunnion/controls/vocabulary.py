@@ -166,3 +166,13 @@ PHASES: Final = ("rapid", "approach", "engage", "cut", "stepover", "retract", "d
 DRAW_BACK: Final = "draw_back"
 COOLANTS: Final = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
 TOOL_TYPES: Final = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")
+
+#: The setting for what operations switch off at their start, and its values: what the program itself uses, or all that
+#: an aborted run of another program may have left on.
+SAFE_START_SETTING: Final = "safe_start"
+ALL_LEFT_ON: Final = "all"
+SAFE_START_CHOICES: Final = ("own", ALL_LEFT_ON)
+
+#: Among the settings that a family gets for its templates: an operation of the program is in a tilted plane, under TCP.
+PLANES_USED: Final = "planes_used"
+TCP_USED: Final = "tcp_used"

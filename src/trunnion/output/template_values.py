@@ -12,10 +12,11 @@ import numpy as np
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.setting_rules import tool_number
 from trunnion.controls.template import Value
+from trunnion.controls.vocabulary import PLANES_USED, TCP_USED
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Axis, inverse
 from trunnion.machines.motion_time import format_duration
-from trunnion.model.motion import Motion
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn, Tool
 from trunnion.output.coordinates.extents import cut_extents
 from trunnion.output.coordinates.rotary_angles import rotary_counts
@@ -54,6 +55,11 @@ class TemplateValues:
         self._program = program
         self._family: FamilyWriter = program.control.family
         self._seconds: list[float] = []
+        modes = {motion.mode for motion in program.motions}
+        self._used = {
+            PLANES_USED: "on" if MachiningMode.TILTED in modes else None,
+            TCP_USED: "on" if MachiningMode.TCP in modes else None,
+        }
 
     def values(self, motion: Motion, number: int, loaded: LoadedTool, spindle: SpindleOn | None) -> dict[str, Value]:
         """Return the values for an operation, or for the part of it that is one motion.
@@ -106,6 +112,7 @@ class TemplateValues:
         if values.get("blank") == EXTENTS:
             values["blank"] = self._extents()
         plane = None if motion.plane is None else motion.plane.matrix()
+        values |= self._used
         values |= self._family.template_values(self._in_program_unit(values), plane)
         if not values.get("tolerance"):
             given = operation.intol is not None and operation.outtol is not None

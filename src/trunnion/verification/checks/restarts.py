@@ -12,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.model.run import EventValue, Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.coolant_checks import is_builder_coolant
 
 #: Values with which something runs; those of the machine builder's words are numbers.
 _ON = frozenset({"clockwise", "counter-clockwise", "flood", "mist"})
@@ -55,15 +56,15 @@ class Restarts:
         """Whether the spindle turns at a place among the events: what the last word for it said."""
         return self._words["spindle"].runs_at(place)
 
-    def unsaid(self, place: int, row: int, *, builder_coolant: bool) -> str:
+    def unsaid(self, place: int, row: int, wanted_coolant: str) -> str:
         """What runs in the first cut after a stop, and was switched on before it; empty if all was said again.
 
         Parameters
         ----------
         place, row
             The stop's place among the events, and the row before which it stands.
-        builder_coolant
-            The CL file asks for coolant after the stop for which only the machine builder may have a word.
+        wanted_coolant
+            The CL file's word for coolant in that cut.
         """
         cut = int(np.searchsorted(self._cuts, row))
         if cut == len(self._cuts):
@@ -71,7 +72,9 @@ class Restarts:
         first = int(self._cuts[cut])
         if 0 <= self._words["spindle"].last_before(first) < place:
             return "the spindle"
+        if wanted_coolant == "OFF":
+            return ""
         coolant = self._words["coolant"].last_before(first)
-        if builder_coolant and coolant < 0:
-            coolant = self._words["m"].last_before(first)
+        if is_builder_coolant(wanted_coolant):
+            coolant = max(coolant, self._words["m"].last_before(first))
         return "coolant" if 0 <= coolant < place else ""

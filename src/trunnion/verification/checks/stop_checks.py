@@ -1,6 +1,6 @@
 """Dwells and stops of a program against DELAY, STOP and OPSTOP in the CL files."""
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -11,7 +11,6 @@ import numpy as np
 
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Stop
-from trunnion.verification.checks.coolant_checks import is_builder_coolant
 from trunnion.verification.checks.restarts import Restarts
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
@@ -35,7 +34,7 @@ class _FoundStop:
 class _ExpectedStop:
     """A DELAY, STOP or OPSTOP before CL row ``row``; ``amount`` in seconds, or spindle revolutions if negative.
 
-    coolant  what the CL file says about coolant after it
+    coolant  what the CL file says about coolant in the next cut
     """
 
     row: int
@@ -73,10 +72,9 @@ def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_Expected
     """By the pair before which they stand."""
     expected: defaultdict[int, list[_ExpectedStop]] = defaultdict(list)
     for section in context.expected.sections:
-        coolant = "OFF"
+        coolants = [event for event in section.operation.events if isinstance(event, Coolant)]
+        changes = [event.row for event in coolants]
         for event in section.operation.events:
-            if isinstance(event, Coolant):
-                coolant = event.kind
             if not isinstance(event, Dwell | Stop):
                 continue
             row, amount = section.first + event.row, 0.0
@@ -84,6 +82,8 @@ def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_Expected
                 kind, amount = "dwell", -event.amount if event.revolutions else event.amount
             else:
                 kind = "optional_stop" if event.optional else "stop"
+            before = bisect_right(changes, event.row)
+            coolant = coolants[before - 1].kind if before else "OFF"
             stop = _ExpectedStop(row, kind, amount, section.file, event.line, coolant)
             expected[context.matching.cl.count_before(row)].append(stop)
     return expected
@@ -151,8 +151,7 @@ def _fault(run: Run, restarts: Restarts, wanted: _ExpectedStop, stop: _FoundStop
     if not _same(run, event, wanted):
         return f"{_words(event.kind, _amount(event))}; the CL file wants {wanted}"
     if event.kind != "dwell":
-        builder = is_builder_coolant(wanted.coolant)
-        unsaid = restarts.unsaid(stop.place, event.before_row, builder_coolant=builder)
+        unsaid = restarts.unsaid(stop.place, event.before_row, wanted.coolant)
         if unsaid:
             return f"the machine may switch {unsaid} off here, and it is not switched on again before the next cut"
     return ""

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.model.run import Run
+from trunnion.model.run import EventValue, ProgrammedWord, Run, RunEvent
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.results import Check, Place
@@ -14,7 +14,48 @@ from trunnion.verification.row_ranges import CHUNK, RowRanges, chunk_bounds
 _TITLE: Final = "work offsets"
 
 
+#: A block with one of these words works at the workpiece.
+_POSITION: Final = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.VECTOR)
+
+
 def check_work_offset(context: Context) -> Check:
+    """One work offset for each operation, and none that the control has cleared before the tool works."""
+    check, lost = _check_selected(context), list(_lost_offsets(context))
+    if not lost:
+        return check
+    places = [*([] if check.passed else check.places), *lost]
+    return check_from_places("offset", _TITLE, places, "")
+
+
+def _lost_offsets(context: Context) -> Iterator[Place]:
+    """Where the control clears the work offset, and the tool works before it is selected again."""
+    run = context.run
+    selected: EventValue = None
+    lost: RunEvent | None = None
+    ends = RunEvent(0, len(run), "offset", 0.0)
+    for event in (*(event for event in run.events if event.kind == "offset"), ends):
+        if event.value == "lost":
+            lost, selected = (lost if selected is None else event), None
+        else:
+            row = None if lost is None else _first_working_row(run, lost.before_row, event.before_row)
+            if lost is not None and row is not None:
+                name = _name(context, int(run.state.work_offset[row]))
+                what = f"clears {name}, and {context.block_name(row)} works before it is selected again"
+                yield context.place_of_event(lost, 0.0, f"TRAORI {what}: write {name} after it")
+            selected, lost = event.value, None
+
+
+def _first_working_row(run: Run, first: int, end: int) -> int | None:
+    """The first of some rows that goes to a position in workpiece coordinates."""
+    for start, stop in chunk_bounds(end - first):
+        rows = slice(first + start, first + stop)
+        works = ((run.programmed[rows] & _POSITION) != 0) & ~run.state.machine_frame.part(rows.start, rows.stop)
+        if works.any():
+            return rows.start + int(np.argmax(works))
+    return None
+
+
+def _check_selected(context: Context) -> Check:
     """With a CL file the work offset of the settings wherever the tool works, or the same one if they name none.
 
     Without a CL file, rows with no work offset and TCP off may lead to or from the work. A program of which nothing is

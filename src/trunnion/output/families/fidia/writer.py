@@ -12,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import FIRST_HOLE, ArcWords, Codes, Formats, UnsupportedFeatureError
 from trunnion.controls.template import Value
+from trunnion.controls.vocabulary import ALL_LEFT_ON, SAFE_START_CHOICES, SAFE_START_SETTING, TCP_USED
 from trunnion.controls.words import ABSENT
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense, Stop
@@ -29,10 +30,14 @@ WORDS: tuple[str, ...] = (
 )  # fmt: skip
 CODES: tuple[str, ...] = tuple(code for code in iso.CODES if not code.startswith("feed_"))
 PLANE_COMMANDS: tuple[str, ...] = ("g154",)
-SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
-SETTING_MEANINGS: Mapping[str, str] = {}
-SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {}
-TEMPLATE_FIELDS: frozenset[str] = frozenset()
+SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: SAFE_START_CHOICES}
+SETTING_MEANINGS: Mapping[str, str] = {
+    SAFE_START_SETTING: "What an aborted run may have left on the start of every operation cancels: own cancels TCP "
+    "(G197) where the program uses it itself; all writes G197 and G69 in every program.",
+}
+_CANCELLING_FIELDS: Final = ("cancel_tcp", "cancel_plane")
+SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: _CANCELLING_FIELDS}
+TEMPLATE_FIELDS: frozenset[str] = frozenset(_CANCELLING_FIELDS)
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.
 _TCP_PAIRS: Final = (("G196", "G197"), ("G96", "G97"))
@@ -74,8 +79,10 @@ def tool_call(number: int, name: str, by_name: bool) -> str:
 
 
 def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """Return nothing: a plane has no angles."""
-    return {}
+    """Return what cancels TCP and a plane that an aborted run may have left on; a plane has no angles."""
+    everything = settings[SAFE_START_SETTING] == ALL_LEFT_ON
+    tcp_off = settings["tcp_off"] if everything or settings.get(TCP_USED) else None
+    return {"cancel_tcp": tcp_off, "cancel_plane": "G69" if everything else None}
 
 
 def tool_preselection(call: str) -> list[str]:

@@ -10,7 +10,15 @@ from typing import Final
 from trunnion.arrays import Floats
 from trunnion.controls.family_writer import EACH_HOLE, Codes, Formats, UnsupportedFeatureError
 from trunnion.controls.template import Value
-from trunnion.controls.vocabulary import HOLES_IN_PLANES, HOLES_SETTING
+from trunnion.controls.vocabulary import (
+    ALL_LEFT_ON,
+    HOLES_IN_PLANES,
+    HOLES_SETTING,
+    PLANES_USED,
+    SAFE_START_CHOICES,
+    SAFE_START_SETTING,
+    TCP_USED,
+)
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
@@ -36,6 +44,7 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "swivel_mode": ("57", "27", "39", "45", "30", "54"),
     "orientation": ("angles", "vector"),
     HOLES_SETTING: (HOLES_IN_PLANES, "torot", "positions"),
+    SAFE_START_SETTING: SAFE_START_CHOICES,
 }
 SETTING_MEANINGS: Mapping[str, str] = {
     "plane": "The command for a tilted plane: CYCLE800, or frames (TRAORI, TRANS, AROT).",
@@ -46,10 +55,17 @@ SETTING_MEANINGS: Mapping[str, str] = {
     HOLES_SETTING: "Holes between which the tool axis changes: planes gives each tool axis a plane; torot (a frame by "
     "TOROT at each hole) and positions (MCALL and position blocks) stay under TCP. positions is for cycles that drill "
     "along the tool, which cycles_along_tool = true under [control.reading] declares.",
+    SAFE_START_SETTING: "Which planes that an aborted run may have left on the start of every operation cancels: own "
+    "cancels those that the program uses itself; all writes CYCLE800(), TOROTOF and TRANS in every program, for "
+    "machines that have swivel data.",
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
-SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {"swivel_mode": ("plane_mode",)}
-TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, "interpolation"})
+_CANCELLING_FIELDS = ("cancel_swivel", "cancel_tool_frame", "cancel_frames")
+SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
+    "swivel_mode": ("plane_mode",),
+    SAFE_START_SETTING: _CANCELLING_FIELDS,
+}
+TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, *_CANCELLING_FIELDS, "interpolation"})
 
 #: _ST of CYCLE800 with 0 as its ones digit: a new plane, not one that is added.
 _NEW_SWIVEL: Final = re.compile(r"[0-9]{0,7}0")
@@ -84,13 +100,30 @@ def swivel_axes(mode: int) -> tuple[int, int, int]:
 
 
 def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """Return how orientations are interpolated, and the three rotations of a plane in the order of ``plane_mode``."""
-    interpolation: dict[str, Value] = {"interpolation": "VECT" if settings["orientation"] == "vector" else "AXES"}
+    """Return how orientations are interpolated, the three rotations of a plane in the order of ``plane_mode``, and
+    what cancels planes that an aborted run may have left on.
+    """
+    found: dict[str, Value] = {
+        "interpolation": "VECT" if settings["orientation"] == "vector" else "AXES",
+        **_cancelled_planes(settings),
+    }
     if plane is None:
-        return interpolation | dict.fromkeys(_PLANE_FIELDS)
+        return found | dict.fromkeys(_PLANE_FIELDS)
     mode = str(settings["swivel_mode"]) if settings["plane"] == "cycle800" else _FRAME_MODE
     angles = tait_bryan_angles(plane, swivel_axes(int(mode)))
-    return interpolation | dict(zip(_PLANE_FIELDS, (*angles, mode), strict=True))
+    return found | dict(zip(_PLANE_FIELDS, (*angles, mode), strict=True))
+
+
+def _cancelled_planes(settings: Mapping[str, Value]) -> dict[str, Value]:
+    """What cancels planes that an aborted run may have left on, by ``SAFE_START_SETTING``; None: nothing does."""
+    everything = settings[SAFE_START_SETTING] == ALL_LEFT_ON
+    plane = settings["plane"] if settings.get(PLANES_USED) else None
+    turns_frame = bool(settings.get(TCP_USED)) and settings[HOLES_SETTING] == "torot"
+    return {
+        "cancel_swivel": "CYCLE800()" if everything or plane == "cycle800" else None,
+        "cancel_tool_frame": "TOROTOF" if everything or turns_frame else None,
+        "cancel_frames": "TRANS" if everything or turns_frame or plane == "frames" else None,
+    }
 
 
 def tool_preselection(call: str) -> list[str]:

@@ -1,0 +1,95 @@
+"""What an aborted run may have left on is off before an operation moves at the workpiece."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from trunnion.controls import load_control
+from trunnion.machines import load_machine
+from trunnion.output.families.sinumerik import writer as sinumerik
+
+OPERATION = """TOOL PATH/{name},TOOL,EM
+TLDATA/MILL,10,0,80,0,0
+LOAD/TOOL,1
+SPINDL/RPM,3000,CLW
+RAPID
+GOTO/20,0,60,{axis}
+{cycle}FEDRAT/MMPM,500
+GOTO/20,0,50,{axis}
+CYCLE/OFF
+RAPID
+GOTO/20,0,90,{axis}
+END-OF-PATH
+"""
+
+CYCLE = "CYCLE/DRILL,RAPTO,3,FEDTO,-5,MMPM,100\n"
+
+
+def operation(name: str, axis: str, cycle: str = "") -> str:
+    return OPERATION.format(name=name, axis=axis, cycle=cycle).replace("" if cycle else "CYCLE/OFF\n", "")
+
+
+FLAT, TILTED = operation("FLAT", "0,0,1"), operation("TILTED", "0,-0.5,0.8660254", CYCLE)
+TURNING = operation("TURNING", "0,0,1").replace("GOTO/20,0,90,0,0,1", "GOTO/20,0,90,0,-0.1,0.9949874")
+TURNING = TURNING.replace("RAPID\nGOTO/20,0,90", "GOTO/20,0,90")
+
+
+def posted(folder: Path, machine: str, operations: str, **settings: str) -> list[str]:
+    cl = folder / "part.cls"
+    cl.write_text("UNITS/MM\n" + operations)
+    result = trunnion.post(cl, machine=machine, settings={"numbers": "off", **settings})
+    assert result.passed
+    return (result.text or "").splitlines()
+
+
+@pytest.mark.parametrize(("settings", "tcp_off"), [({}, "M129"), ({"tcpm": "function"}, "FUNCTION RESET TCPM")])
+def test_a_heidenhain_switches_everything_off_at_every_operation(
+    settings: dict[str, str], tcp_off: str, tmp_path: Path
+) -> None:
+    lines = posted(tmp_path, "dmu65", FLAT + TILTED, **settings)
+    for begin in (lines.index("* - FLAT"), lines.index("* - TILTED")):
+        first = next(k for k in range(begin, len(lines)) if lines[k].startswith("L "))
+        assert lines[first - 3 : first] == [tcp_off, "PLANE RESET STAY", "M137"]
+
+
+@pytest.mark.parametrize(
+    ("operations", "settings", "off"),
+    [
+        (FLAT, {}, []),
+        (FLAT + TILTED, {}, ["CYCLE800()"]),
+        (FLAT + TILTED, {"plane": "frames"}, ["TRANS"]),
+        (FLAT, {"safe_start": "all"}, ["CYCLE800()", "TOROTOF", "TRANS"]),
+    ],
+    ids=["no plane", "swivel", "frames", "all"],
+)
+def test_a_sinumerik_cancels_planes_at_every_operation(
+    operations: str, settings: dict[str, str], off: list[str], tmp_path: Path
+) -> None:
+    lines = posted(tmp_path, "yl569", operations, **settings)
+    begins = [k for k, line in enumerate(lines) if line.startswith(";Operation")]
+    for begin in begins:
+        home = lines.index("SUPA G0 Z=_Z_HOME D0", begin)
+        assert lines[home + 1 : home + 1 + len(off)] == off
+        assert lines[home + 1 + len(off)].startswith("SUPA G0 X=_X_HOME")
+
+
+@pytest.mark.parametrize(
+    ("operations", "settings", "off"),
+    [(FLAT, {}, []), (FLAT + TURNING, {}, ["G197"]), (FLAT, {"safe_start": "all"}, ["G197", "G69"])],
+    ids=["no TCP", "TCP", "all"],
+)
+def test_a_fidia_switches_tcp_off_at_every_operation(
+    operations: str, settings: dict[str, str], off: list[str], tmp_path: Path
+) -> None:
+    lines = posted(tmp_path, "hs664rt", operations, **settings)
+    begins = [k for k, line in enumerate(lines) if line == "M242" and lines[k + 1].startswith("G01 A0. C0.")]
+    assert begins
+    for begin in begins:
+        assert [line for line in lines[begin - 2 : begin] if line in ("G197", "G69")] == off
+
+
+def test_a_tool_frame_of_holes_is_cancelled() -> None:
+    settings = dict(load_control(load_machine("yl569").control.unread_copy()).settings)
+    values = sinumerik.template_values({**settings, "holes": "torot", "tcp_used": "on"}, None)
+    assert [values["cancel_swivel"], values["cancel_tool_frame"], values["cancel_frames"]] == [None, "TOROTOF", "TRANS"]
