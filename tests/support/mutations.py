@@ -166,7 +166,7 @@ def _actions(run: Run, only_part: bool) -> list[np.ndarray]:
         run.line, run.kind, run.tip, run.axis, run.joints, np.where(rapid, 0.0, run.feed),
         np.where(rapid, 0, run.feed_mode), np.where(home, 0.0, run.rpm), np.where(home, 0, run.spindle),
         np.where(home, 0, tools), np.where(lengthless, 0, run.edge),
-        np.where(lengthless, 0, run.work_offset),
+        np.where(lengthless, 0, np.where(_offset_is_lost(run), -1, run.work_offset)),
         run.tcp, run.machine_frame, run.orientation, np.where(home, 0.0, coolant), circle,
     ]  # fmt: skip
     return [np.asarray(column, np.float64)[keep] for column in columns]
@@ -185,6 +185,15 @@ def _moves(run: Run) -> Flags:
     before = np.vstack((run.start[None], run.joints[:-1])) if len(run) else run.joints
     moved: Flags = (np.abs(run.joints - before).max(axis=1, initial=0.0) > 0.0) | (run.kind == Kind.ARC)
     return moved
+
+
+def _offset_is_lost(run: Run) -> Flags:
+    """Rows after a TRAORI that cleared the work offset, until it is selected again."""
+    found = np.zeros(len(run), np.bool_)
+    for event in run.events:
+        if event.kind == "offset":
+            found[event.before_row :] = event.value == "lost"
+    return found
 
 
 def _coolant(run: Run) -> Floats:
@@ -239,7 +248,7 @@ def outside_work(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
     changes = [event.before_row for event in run.events if event.kind == "tool_change"]
     found = [(bits, sum(k <= row for k in changes), int(run.kind[row])) for row, bits in enumerate(firsts) if bits]
     cycles = [(int(rows[e.before_row]), e.value) for e in run.events if e.kind == "cycle832"]
-    silent = {"tool", "tool_change", "spindle", "speed", "coolant", "message", "cycle832", "tolerance", "end"}
+    silent = {"tool", "tool_change", "spindle", "speed", "coolant", "message", "cycle832", "tolerance", "end", "offset"}
     return {
         START: found,
         HOME: state.tolist(),

@@ -124,9 +124,9 @@ def test_texts_that_the_cl_file_inserts_are_not_checked(verified: Verifier) -> N
     [
         ("G0 X0 Y0 Z50\nG1 X10 Z5\n", "no feed is programmed", "G1 X10 Z5"),
         ("M5\nG0 X0 Y0 Z50\nG1 X10 Z5 F500\n", "spindle off", "G1 X10 Z5 F500"),
-        ("TRAORI\nG0 X0 Y0 Z50\nM6\nTRAFOOF\n", "changes the tool with TCP on", "M6"),
-        ("TRAORI\nG0 X0 Y0 Z50\nSUPA G0 Z100\n", "machine's frame with TCP on", "SUPA G0 Z100"),
-        ("TRAORI\nG0 X0 Y0 Z50 B30\nTRAFOOF\n", "swings a rotary axis by 30.000", "G0 X0 Y0 Z50 B30"),
+        ("TRAORI\nG54\nG0 X0 Y0 Z50\nM6\nTRAFOOF\n", "changes the tool with TCP on", "M6"),
+        ("TRAORI\nG54\nG0 X0 Y0 Z50\nSUPA G0 Z100\n", "machine's frame with TCP on", "SUPA G0 Z100"),
+        ("TRAORI\nG54\nG0 X0 Y0 Z50 B30\nTRAFOOF\n", "swings a rotary axis by 30.000", "G0 X0 Y0 Z50 B30"),
         ("G0 X0 Y0 Z50\nG1 Z5 F500\nG0 Z50\nX20\nZ6\nX30\n", "sideways 44.000 mm below", "X30"),
     ],
 )
@@ -139,7 +139,7 @@ def test_modal_faults_are_named_at_their_block(text: str, says: str, block: str,
 
 
 def test_a_proper_end_is_missed_and_tcp_left_on_at_it_is_seen(verified: Verifier) -> None:
-    body = HEAD + "TRAORI\nG0 X0 Y0 Z50\nG1 X10 F500\n"
+    body = HEAD + "TRAORI\nG54\nG0 X0 Y0 Z50\nG1 X10 F500\n"
     assert "no end" in check(verified(body + "TRAFOOF\n"), "modal").summary
     assert "ends the program with TCP on" in check(verified(body + "M30\n"), "modal").summary
     assert check(verified(body + "TRAFOOF\nM30\n"), "modal").passed
@@ -175,7 +175,7 @@ def test_slides_have_limits_where_the_zero_is_known_and_total_travel_where_not(
 
 
 def test_feeds_that_an_axis_cannot_follow_are_reported_and_pass(verified: Verifier) -> None:
-    program = HEAD + "TRAORI\nG0 X0 Y0 Z50\nG1 X0.1 C90 F500\n" + FOOT.replace("SUPA", "TRAFOOF\nSUPA", 1)
+    program = HEAD + "TRAORI\nG54\nG0 X0 Y0 Z50\nG1 X0.1 C90 F500\n" + FOOT.replace("SUPA", "TRAFOOF\nSUPA", 1)
     found = verified(program)
     told = check(found, "speed")
     assert told.passed
@@ -198,7 +198,7 @@ def test_acceleration_is_checked_where_the_machine_states_it(verified: Verifier,
 
 
 def test_the_tool_axis_between_the_points_is_reported_and_checked_on_request(verified: Verifier) -> None:
-    cut = "G0 B60 C0\nTRAORI\nORIAXES\nG0 X50 Y0 Z50\nG1 X50.1 C90 F500\n"
+    cut = "G0 B60 C0\nTRAORI\nG54\nORIAXES\nG0 X50 Y0 Z50\nG1 X50.1 C90 F500\n"
     program = HEAD + cut + FOOT.replace("SUPA", "TRAFOOF\nSUPA", 1)
     # Half-way the angles give (60, 45); the great circle from (60, 0) to (60, 90) leans less.
     ends = np.array([[np.sin(np.pi / 3), 0.0, 0.5], [0.0, np.sin(np.pi / 3), 0.5]])
@@ -224,6 +224,26 @@ def test_work_offsets_that_change_are_found_without_a_cl_file(verified: Verifier
     found = check(verified(program), "offset")
     assert not found.passed
     assert "G55" in found.summary
+
+
+@pytest.mark.parametrize(
+    ("body", "passes"),
+    [
+        ("TRAORI\nG0 X0 Y0 Z50\n", False),
+        ("TRAORI\nG0 B30\nX0 Y0 Z50\nG54\n", False),
+        ("TRAORI\nG0 B30\nG54\nX0 Y0 Z50\nTRAFOOF\nSUPA G0 Z0 D0\nTRAORI\nTRAFOOF\nX0\n", False),
+        ("TRAORI\nG54\nG0 X0 Y0 Z50\n", True),
+        ("TRAORI\nG0 B30\nG54\nX0 Y0 Z50\n", True),
+    ],
+)
+def test_a_work_offset_that_traori_has_cleared_is_selected_again(body: str, passes: bool, verified: Verifier) -> None:
+    program = HEAD + body + "TRAFOOF\n" + FOOT
+    found = check(verified(program), "offset")
+    assert found.passed == passes
+    if not passes:
+        lost = [k + 1 for k, line in enumerate(program.splitlines()) if line == "TRAORI"]
+        assert [place.nc_line for place in found.places] == lost[-1:]
+    assert check(verified(program.replace("G54\n", "", 1)), "offset").passed or "G54" in body
 
 
 def test_a_program_may_use_several_work_offsets(verified: Verifier) -> None:

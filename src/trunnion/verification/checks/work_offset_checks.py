@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.model.run import EventValue, ProgrammedWord, Run, RunEvent
+from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.results import Check, Place
@@ -30,19 +30,14 @@ def check_work_offset(context: Context) -> Check:
 def _lost_offsets(context: Context) -> Iterator[Place]:
     """Where the control clears the work offset, and the tool works before it is selected again."""
     run = context.run
-    selected: EventValue = None
-    lost: RunEvent | None = None
-    ends = RunEvent(0, len(run), "offset", 0.0)
-    for event in (*(event for event in run.events if event.kind == "offset"), ends):
-        if event.value == "lost":
-            lost, selected = (lost if selected is None else event), None
-        else:
-            row = None if lost is None else _first_working_row(run, lost.before_row, event.before_row)
-            if lost is not None and row is not None:
-                name = _name(context, int(run.state.work_offset[row]))
-                what = f"clears {name}, and {context.block_name(row)} works before it is selected again"
-                yield context.place_of_event(lost, 0.0, f"TRAORI {what}: write {name} after it")
-            selected, lost = event.value, None
+    events = [event for event in run.events if event.kind == "offset"]
+    ends = [*(event.before_row for event in events[1:]), len(run)]
+    for event, end in zip(events, ends, strict=True) if events else ():
+        row = _first_working_row(run, event.before_row, end) if event.value == "lost" else None
+        if row is not None:
+            name = _name(context, int(run.state.work_offset[row]))
+            what = f"clears {name}, and {context.block_name(row)} works before it is selected again"
+            yield context.place_of_event(event, 0.0, f"TRAORI {what}: write {name} after it")
 
 
 def _first_working_row(run: Run, first: int, end: int) -> int | None:

@@ -43,8 +43,21 @@ class SinumerikControl(VirtualControl):
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         self._machine_vectors = False
         self.tool_frame = False
+        self._offset_is_lost = False
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
+
+    def lose_offset(self) -> None:
+        """Record that TRAORI clears the work offset that is selected; the coordinates stay those of the program."""
+        if self.modal.work_offset.current not in (0, NO_OFFSET) and not self._offset_is_lost:
+            self._offset_is_lost = True
+            self.add_event("offset", "lost")
+
+    def regain_offset(self, code: int) -> None:
+        """Record that the program selects a work offset again after ``lose_offset``."""
+        if self._offset_is_lost:
+            self._offset_is_lost = False
+            self.add_event("offset", float(code))
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """With TRAORI, except for axes whose output has all turns."""

@@ -234,7 +234,7 @@ class SinumerikInterpreter(CallInterpreter):
                 self._note(f"G{code}: constant surface speed: only the kind of feed is followed", Severity.WARNING)
         elif code in G_OFFSETS:
             control.set_offset(code, f"G{code}")
-            control.add_event("offset", float(code))
+            control.regain_offset(code)
         elif code in G_NOT_SIMULATED:
             text, changes_path = G_NOT_SIMULATED[code]
             self._note(f"G{code}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
@@ -252,7 +252,7 @@ class SinumerikInterpreter(CallInterpreter):
                 if block.traori not in (1.0, 2.0):
                     self._note(f"TRAORI({block.traori:g}): taken as TRAORI", Severity.WARNING)
                 control.set_tcp(True)
-                control.add_event("offset", "lost")
+                control.lose_offset()
             case "TRAFOOF":
                 control.set_tcp(False)
             case "CIP":
