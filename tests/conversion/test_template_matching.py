@@ -46,6 +46,22 @@ def test_a_block_that_no_template_says_is_none_of_a_template(way: tuple[str, ...
         assert 0 not in match_lines(changed, expected, {})
 
 
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("; tool EM, mill, diameter 10, corner 0.5", {"tool_diameter": "10", "tool_corner_radius": "0.5"}),
+        ("; tool EM, mill, diameter 10", {"tool_diameter": "10"}),
+        ("; tool EM, mill", {}),
+    ],
+)
+def test_parts_that_may_be_absent_are_read(line: str, found: dict[str, str]) -> None:
+    control = CONTROLS["dmu65"]
+    patterns = line_patterns([control.templates["operation_start"]], {}, control.settings, {})
+    values: dict[str, str] = {}
+    assert match_lines([(1, line)], patterns, values) == {1}
+    assert values == {"tool_name": "EM", "tool_type": "mill", **found}
+
+
 def test_a_word_beside_tcp_is_remarked_upon(post: Post, capfd: pytest.CaptureFixture[str]) -> None:
     _, out, _ = post.all(SIMULTANEOUS)
     program = post.folder / "part.h"

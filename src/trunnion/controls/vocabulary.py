@@ -42,6 +42,7 @@ PROGRAM_CHOICES: Final = {
     "tool_list": ("off", "on"),
     "preselect": ("off", "on"),
     "restart": ("off", "on"),
+    "standing_spindle": ("refused", "allowed"),
 }
 
 #: What each of them changes.
@@ -53,6 +54,8 @@ PROGRAM_MEANINGS: Final = {
     "preselect": "With on, the program selects the next other tool after each tool change; without it SELECT/TOOL of "
     "the CL file does.",
     "restart": "With on, every operation calls its tool and its speed, so that the program can be entered there.",
+    "standing_spindle": "With allowed, cuts before the first SPINDL of the CL files are written, for tools that do not "
+    "turn; they are refused otherwise.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.

@@ -120,7 +120,7 @@ def _line_pattern(
     at = 0
     seen: set[str] = set()
     for match in _FIELD.finditer(line):
-        parts.append(re.escape(line[at : match.start()]))
+        parts.append(_literal(line[at : match.start()]))
         name, form = match[1], match[2]
         default = settings.get(name, "")
         shape = re.sub(r"\d+", r"\\d+", default) if _WORD_SETTING.fullmatch(default) else ".*?"
@@ -130,9 +130,14 @@ def _line_pattern(
         parts.append(f"(?P={name})" if name in seen else f"(?P<{name}>{value})")
         seen.add(name)
         at = match.end()
-    parts.append(re.escape(line[at:]))
+    parts.append(_literal(line[at:]))
     value_only = bool(seen - family_values.keys()) and not re.sub(r"[\s;()]", "", _FIELD.sub("", line))
     return LinePattern(re.compile("".join(parts)), value_only)
+
+
+def _literal(text: str) -> str:
+    """What stands between the fields of a template as an expression; ``[[`` and ``]]`` enclose what may be absent."""
+    return re.escape(text).replace(r"\[\[", "(?:").replace(r"\]\]", ")?")
 
 
 def match_lines(lines: Sequence[tuple[int, str]], patterns: Sequence[LinePattern], values: dict[str, str]) -> set[int]:
@@ -156,5 +161,6 @@ def match_lines(lines: Sequence[tuple[int, str]], patterns: Sequence[LinePattern
         at += 1
         known.add(number)
         for name, value in found.groupdict().items():
-            values.setdefault(name, value)
+            if value is not None:
+                values.setdefault(name, value)
     return known

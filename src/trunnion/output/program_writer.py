@@ -6,7 +6,7 @@ with its events, operation end. An operation with several tool axes is several m
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import BinaryIO
+from typing import BinaryIO, Final
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
 from trunnion.output.template_values import LoadedTool, TemplateValues, tool_text
 from trunnion.output.template_writer import TemplateWriter
+
+#: M codes of coolant that belong to the control.
+_OWN_COOLANT: Final = frozenset({7, 8})
 
 
 def write_program(
@@ -230,14 +233,20 @@ class _ProgramWriter:
         self._blocks.assume_rotary_position(motion)
 
     def _switch_coolant_off(self, motion: Motion, ends_program: bool) -> None:
-        """Switch the coolant off after an operation, unless the end of the operation or of the program does it."""
-        if self._blocks.coolant == "OFF" or (ends_program and self._files is None):
+        """Switch the coolant off after an operation, unless the end of the operation or of the program does it.
+
+        The end of a program switches off what the control's own words have switched on; that it does so with a word of
+        the machine builder is not known.
+        """
+        if self._blocks.coolant == "OFF":
             return
-        off = f"M{self._control.coolant['OFF']}"
-        end = self._control.templates[f"operation_end_{self._program.template_suffix(motion)}"]
-        if off not in end.lines:
+        ends_program = ends_program and self._files is None
+        off, ends = f"M{self._control.coolant['OFF']}", [f"operation_end_{self._program.template_suffix(motion)}"]
+        ends += ["program_end"] if ends_program else []
+        said = any(off in self._control.templates[end].lines for end in ends)
+        if not said and not (ends_program and self._blocks.coolant_codes <= _OWN_COOLANT):
             self._blocks.writer.write_lines([off])
-        self._blocks.coolant = "OFF"
+        self._blocks.coolant, self._blocks.coolant_codes = "OFF", set()
 
     # From plane to plane
 

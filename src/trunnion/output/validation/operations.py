@@ -1,16 +1,27 @@
 """What an operation needs at its start: a spindle speed, a tool, templates for its machining mode, a tolerance."""
 
+import numpy as np
+
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.errors import Problem, Severity
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation
+from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation, SpindleOn
 from trunnion.output.program import Program
 
 
-def spindle_problems(program: Program, operation: Operation, spindle_known: bool) -> list[Problem]:
-    """Warn of an operation that starts before the first spindle speed."""
-    if spindle_known:
+def spindle_problems(program: Program, operation: Operation) -> list[Problem]:
+    """Refuse a cut before the first SPINDL of a program, or warn of it; ``operation``: no spindle was started before.
+
+    A check of the program without its CL files would fail it as well.
+    """
+    starts = [event.row for event in operation.events if isinstance(event, SpindleOn)]
+    cuts = np.flatnonzero(operation.moves.kind[: min(starts, default=len(operation.moves))] != Kind.RAPID)
+    if starts and not len(cuts):
         return []
+    if len(cuts) and program.effective_setting("standing_spindle") != "allowed":
+        what = f"operation {operation.name} cuts while the spindle stands: no SPINDL comes before"
+        cure = "put SPINDL before it, or write setting standing_spindle=allowed for a tool that does not turn"
+        return [Problem(program.file, int(operation.moves.line[cuts[0]]), what, cure)]
     what = f"operation {operation.name} has no spindle speed"
     return [Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING)]
 

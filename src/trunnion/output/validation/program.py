@@ -46,11 +46,12 @@ def check_program(program: Program) -> list[Problem]:
         problems += _motion_problems(program, motion)
         rejected = program.control.family.validate_operation(operation, spindle_known)
         problems += [Problem(program.file, line, why.what, why.cure) for line, why in rejected]
+        if not spindle_known:
+            problems += spindle_problems(program, operation)
+        spindle_known = spindle_known or any(isinstance(event, SpindleOn) for event in operation.events)
         if not motion.starts_operation:
             problems += next_axis_problems(program, motion)
             continue
-        spindle_known = spindle_known or any(isinstance(event, SpindleOn) for event in operation.events)
-        problems += spindle_problems(program, operation, spindle_known)
         problems += tool_problems(program, operation, tool_in_spindle)
         tool_in_spindle = operation.tool.name
         problems += machining_mode_problems(program, motion)

@@ -38,6 +38,14 @@ def test_what_is_switched_off_is_off_before_the_next_motion(post: Post) -> None:
     assert motion(post(HEAD + "COOLNT/OFF\nGOTO/20,0,5\n" + FOOT))[2:] == ["M9", "X20."]
 
 
+@pytest.mark.parametrize(
+    ("words", "last"), [("FLOOD", "M5"), ("THRU", "M9"), ("THRU FLOOD", "M9"), ("THRU OFF FLOOD", "M5")]
+)
+def test_coolant_by_a_word_of_the_machine_builder_is_off_before_the_end(words: str, last: str, post: Post) -> None:
+    lines = post(HEAD + "".join(f"COOLNT/{word}\nGOTO/20,{k},5\n" for k, word in enumerate(words.split())) + FOOT)
+    assert lines[lines.index(";End of Program") - 1] == last
+
+
 def test_two_coolants_before_one_motion_are_both_said(post: Post) -> None:
     assert motion(post(HEAD + "COOLNT/FLOOD\nCOOLNT/THRU\nGOTO/20,0,5\n" + FOOT))[2:] == ["M8", "X20. M26"]
 
@@ -201,9 +209,19 @@ def test_a_tool_without_number_and_name_is_an_error_that_names_the_setting(post:
 
 
 def test_a_missing_spindle_speed_is_said(post: Post) -> None:
-    code, _, err = post.all(HEAD.replace("SPINDL/RPM,4000.0000,CLW\n", "") + FOOT)
+    text = HEAD.replace("SPINDL/RPM,4000.0000,CLW\n", "") + FOOT
+    code, _, err = post.all(text)
+    assert code != 0
+    assert "part.cls:10: error: operation OP1 cuts while the spindle stands" in err
+    assert "--set standing_spindle=allowed" in err
+    code, _, err = post.all(text, "--set", "standing_spindle=allowed")
     assert code == 0
     assert "part.cls:1: warning: operation OP1 has no spindle speed" in err
+
+
+def test_only_a_cut_needs_a_spindle(post: Post) -> None:
+    late = HEAD.replace("SPINDL/RPM,4000.0000,CLW\n", "").replace("FEDRAT", "SPINDL/RPM,4000,CLW\nFEDRAT") + FOOT
+    assert "has no spindle speed" not in post.all(late)[2]
 
 
 def test_a_cycle_that_begins_below_its_height_is_refused(post: Post) -> None:
