@@ -123,13 +123,13 @@ FAULTS = [
     ("matsuura_mx330", " M29 S500", "", "holes"),
     ("matsuura_mx330", "\nN210 G69", "\nN210", "turns"),
     # Fidia
-    ("hs664rt", "N160 G55 O1", "N160", "words"),
-    ("hs664rt", "N360 G55 O1", "N360", "words"),
-    ("hs664rt", "N360 G55 O1", "N360 G55 O2", "offset"),
+    ("hs664rt", "N170 G55 O1", "N170", "words"),
+    ("hs664rt", "N380 G55 O1", "N380", "words"),
+    ("hs664rt", "N380 G55 O1", "N380 G55 O2", "offset"),
     ("hs664rt", " G71\n", "\n", "modal"),
-    ("hs664rt", "N180 G154", "N180", "turns"),
+    ("hs664rt", "N190 G154", "N190", "turns"),
     ("hs664rt", " G196\n", "\n", "turns"),
-    ("hs664rt", "N340 M306 T.2", "N340 T.2", "tool"),
+    ("hs664rt", "N360 M306 T.2", "N360 T.2", "tool"),
     ("hs664rt", " G84 ", " G85 ", "holes"),
     ("hs664rt", " G84 ", " G89 ", "holes"),
     # LinuxCNC

@@ -72,7 +72,7 @@ def test_a_feed_is_said_again_when_it_means_something_else(post: Post) -> None:
 
 def test_dwells_stops_messages_and_inserts_are_blocks_of_their_own(post: Post) -> None:
     text = HEAD + "DELAY/2.5\nDELAY/30,REV\nSTOP\nOPSTOP\nPPRINT/look here\nINSERT/H1=5\nGOTO/10,0,5\n" + FOOT
-    own = ["G4 F2.5", "G4 S30.", "M5", "M0", "M3", "M1", ";look here", "H1=5"]
+    own = ["G4 F2.5", "G4 S30.", "M5", "M0", "M1", "M3", ";look here", "H1=5"]
     said_again = ["G94 G1 X10. Y0.0 Z5. B0.0 C0.0 F500.", "G40 G17"]  # H1=5 may have changed anything
     assert motion(post(text))[2:] == own + said_again
 
