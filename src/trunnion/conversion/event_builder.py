@@ -90,7 +90,7 @@ class EventBuilder:
                 self._rpm, spindle_set = event.value, True
             elif event.kind == "spindle":
                 spindle_set = self._set_spindle(event, row, found) or spindle_set
-            elif event.kind == "skip" or event.file != 0 or event.line not in self._template_lines:
+            elif event.kind in ("skip", "delta") or event.file != 0 or event.line not in self._template_lines:
                 found += self._simple_events(event, row, len(rows))
         if spindle_set and self._sense is not None:
             found.append(SpindleOn(row, line, self._rpm, self._sense))
@@ -165,9 +165,8 @@ class EventBuilder:
             case "known":
                 yield Insert(row, line, str(value))
             case "delta":
-                if line not in self._template_lines:
-                    cure = "see the settings delta_length and delta_radius"
-                    self._warn.refuse(line, "DL or DR of TOOL CALL in a form that is not ours", cure, event.file)
+                cure = "take it out, and give it by the settings delta_length and delta_radius"
+                self._warn.refuse(line, "DL or DR of TOOL CALL, which a toolpath does not hold", cure, event.file)
             case "cycle32":
                 self._warn(line, "cycle 32 is not carried over", "see the setting tolerance=…", event.file)
             case "cycle832":
