@@ -152,11 +152,13 @@ class EventWriter:
 
     def _write_word_event(self, event: WordEvent, end_lines: Sequence[str]) -> None:
         if self._joins_motion(event):
-            here = takewhile(lambda joining: joining.row == event.row, reversed(self._joining_events))
-            if any(type(joining) is type(event) for joining in here):
+            if any(type(joining) is type(event) for joining in self._joining_at(event.row)):
                 self._finish_rows(event.row)  # what is switched twice before a row is switched in order
-            same = [e for e in self._joining_events if type(e) is type(event) and e.row == event.row]
-            self._joining_events = [e for e in self._joining_events if e not in same]  # or only the last time
+            here = self._joining_at(event.row)
+            del self._joining_events[len(self._joining_events) - len(here) :]
+            self._joining_events += [
+                joining for joining in here if type(joining) is not type(event)
+            ]  # or the last time
             self._joining_events.append(event)
             return
         self._finish_rows(event.row)
@@ -164,6 +166,11 @@ class EventWriter:
             self._start_spindle(event)
         elif not self._is_switched_in(end_lines, event):
             self._blocks.write_event(event)
+
+    def _joining_at(self, row: int) -> list[WordEvent]:
+        """The events that are to join a row, the last one that any joins so far, in their order."""
+        here = list(takewhile(lambda joining: joining.row == row, reversed(self._joining_events)))
+        return here[::-1]
 
     def _write_line_event(self, event: Dwell | Message | Insert | BlockSkip | SelectTool) -> None:
         blocks = self._blocks
