@@ -119,6 +119,9 @@ def test_times_that_nobody_waits_for_are_not_known(tmp_path: Path, capsys: pytes
     assert found["cutting_seconds"] == 0.0
     assert [operation["moves_without_time"] for operation in found["operations"]] == [3, 3]
     assert main(["info", str(file)]) == 0
+    capsys.readouterr()
+    file.write_text(CLSF.replace("MMPM,600", "MMPM,-0"), encoding="utf-8")
+    assert data_of([file], capsys)["moves_without_time"] == 2
 
 
 def test_systems_tools_and_unknown_statements_are_listed(clsf: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -120,7 +120,7 @@ def measure(operation: Operation, before: Floats | None, spindle: SpindleState |
     per_minute = np.where(moves.per_rev, moves.feed * rpm, moves.feed)[cut]
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = np.where(length[cut] > 0.0, 60.0 * length[cut] / per_minute, 0.0)
-    known = seconds <= _LONGEST_TIME
+    known = (seconds >= 0.0) & (seconds <= _LONGEST_TIME)
     found.cutting_length = float(length[cut].sum())
     found.cutting_seconds = float(seconds[known].sum())
     found.moves_without_time = int((~known).sum())
@@ -198,7 +198,7 @@ def _add_dwell(found: Measures, amount: float, in_revolutions: bool, rpm: float,
 
 def _add_time(found: Measures, seconds: float, times: int) -> None:
     """Add a time so many times; one that nobody waits for is a mistake in the file, and not known."""
-    if seconds <= _LONGEST_TIME:
+    if 0.0 <= seconds <= _LONGEST_TIME:
         found.cutting_seconds += seconds * times
     else:
         found.moves_without_time += times
