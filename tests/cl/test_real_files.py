@@ -112,39 +112,3 @@ def test_a_real_apt_file_is_read_whole(path: Path) -> None:
         "tools": [event.number for event in events if isinstance(event, LoadTool)],
         "extents": (tip.min(axis=0).tolist(), tip.max(axis=0).tolist()),
     }
-
-
-PROGRAMS = {"Sacrifice-Board": 30, "Teste-Metrologia": 6}
-
-
-@pytest.mark.skipif(not APT_FILES, reason="the files of others are not beside the project")
-@pytest.mark.parametrize("part", PROGRAMS)
-def test_arcs_and_holes_agree_with_a_program_of_another_post(part: str) -> None:
-    """What their author's own post made of the first setup; it scales feeds and speeds, which are not compared."""
-    program = (SHARED / "data" / "heidenhain" / part / "11.h").read_text(encoding="latin-1")
-    arcs, holes, here, centre = [], [], [0.0, 0.0], (0.0, 0.0)
-    for line in program.splitlines():
-        if found := re.search(r"\bCC X([-+.\d]+) Y([-+.\d]+)", line):
-            centre = (float(found[1]), float(found[2]))
-            continue
-        for k, letter in enumerate("XY"):
-            if found := re.search(rf"^\d+ (?:L|C)\b.*\b{letter} ?([-+]?[.\d]+)", line):
-                here[k] = float(found[1])
-        if found := re.search(r" C .*DR([-+])", line):
-            arcs.append((*centre, found[1]))
-        if "M99" in line:
-            holes.append(tuple(here))
-    toolpath = read_cl(SHARED / "data" / "solidworks" / f"{part}.apt")
-    first = [o for o in toolpath.operations if len(o.moves) and o.moves.axis[0].tolist() == [0, 0, 1]]
-    centres = np.concatenate([o.arcs.centre for o in first])
-    senses = np.concatenate([o.arcs.normal[:, 2] for o in first])
-    assert len(arcs) == PROGRAMS[part] == len(centres)
-    np.testing.assert_allclose(centres[:, :2], [arc[:2] for arc in arcs], atol=1e-3)
-    assert ["+" if sense > 0 else "-" for sense in senses] == [arc[2] for arc in arcs]
-    drilled = []
-    for operation in first:
-        rows = [event.row for event in operation.events if isinstance(event, CycleOn | CycleOff)]
-        drilled += [
-            tuple(tip[:2].tolist()) for k, tip in enumerate(operation.moves.tip) if rows and rows[0] <= k < rows[1]
-        ]
-    np.testing.assert_allclose(np.array(drilled).reshape(-1, 2), np.array(holes).reshape(-1, 2), atol=1e-3)

@@ -291,3 +291,10 @@ def test_linuxcnc_makes_the_motions_that_we_read(back: bool, tmp_path: Path) -> 
     assert sum(name == "DWELL" for _, name, _ in canon.notes) == 2 * dwells
     drags = [move for move in work if move.sense == 0]
     assert len(drags) == 2
+
+
+@pytest.mark.parametrize("machine", ["yl569", "xyzac_trt", "ucp800"])
+def test_the_first_motion_may_be_a_hole(tmp_path: Path, machine: str) -> None:
+    """The tool comes from home, which nothing in the program places above or below the part."""
+    cycle = "CYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,250\nGOTO/66,0,240,0,0,1\nGOTO/-25,0,240\nCYCLE/OFF\n"
+    made(operation("HOLES", cycle), tmp_path, "cycles=off", machine=machine)

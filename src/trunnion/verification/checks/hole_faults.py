@@ -16,6 +16,7 @@ from trunnion.verification.checks.peck_faults import peck_faults
 from trunnion.verification.checks.spindle_checks import RPM_TOLERANCE
 from trunnion.verification.expected.holes import Hole
 from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE
+from trunnion.verification.kinematics.positioning_moves import comes_from_home
 from trunnion.verification.matching.hole_matching import MatchedHole
 
 #: Half of the last digit of the feeds of threads, mm/min, and of pitches, mm; and the noise of computing.
@@ -81,7 +82,8 @@ def hole_faults(
         off = float(aside[1:][k])
         yield motions.fault(k, off, f"{off:.5f} mm beside the hole that the CL file asks for")
         return
-    yield from _approach_faults(hole, motions, float(height[0]), bool(aside[0] > hole.tolerance), clearance)
+    from_aside = bool(aside[0] > hole.tolerance) and not comes_from_home(run, match.first)
+    yield from _approach_faults(hole, motions, float(height[0]), from_aside, clearance)
     if len(motions.row) < 3 or (kind == Kind.RAPID).all():
         yield motions.fault(0, 0.0, "the hole is not drilled")
         return
@@ -99,7 +101,10 @@ def hole_faults(
 def _approach_faults(
     hole: Hole, motions: DrillMotions, start_height: float, from_aside: bool, clearance: float | None
 ) -> Iterator[HoleFault]:
-    """The tool comes too low, or at feed; ``from_aside``: the approach does not start on the axis of the hole."""
+    """The tool comes too low, or at feed.
+
+    from_aside  the approach starts at a known place that is not on the axis of the hole
+    """
     if clearance is not None and clearance < -hole.tolerance:
         text = f"goes to the hole {-clearance:.4f} mm too low over both it and the one before"
         yield motions.fault(0, clearance, text)

@@ -61,6 +61,19 @@ def tool_axis_exit_rows(run: Run) -> Ints:
     return np.asarray(rows[(out > 0.0) & (aside < _STRAIGHT) & same_axis])
 
 
+def comes_from_home(run: Run, row: int) -> bool:
+    """Whether a row begins at a machine position, so that nothing says how high above the part.
+
+    Rotary axes may turn in between.
+    """
+    before = row - 1
+    while (
+        before >= 0 and not run.state.machine_frame[before] and bool(_turns_only(run.programmed[before : before + 1]))
+    ):
+        before -= 1
+    return before < 0 or bool(run.state.machine_frame[before])
+
+
 def approach_rows(run: Run) -> Ints:
     """Rows that are the first leg of an approach: X and Y at rapid, with Z alone in the next block.
 
