@@ -148,9 +148,9 @@ def test_more_numbers_are_never_taken_for_tip_and_axis(refused: Callable[..., st
     assert f"GOTO has {count} numbers" in refused("apt", f"GOTO/{numbers}")
 
 
-@pytest.mark.parametrize("mode", ["NORMDS", "NORMPS"])
-def test_compensation_in_space_is_refused(refused: Callable[..., str], mode: str) -> None:
-    assert "compensation in space" in refused("catia", f"CUTCOM/{mode}", "GOTO/1,2,3,0,0,1")
+@pytest.mark.parametrize(("dialect", "mode"), [("catia", "NORMDS"), ("catia", "NORMPS"), ("apt", "ENDPT")])
+def test_compensation_in_space_is_refused(refused: Callable[..., str], dialect: str, mode: str) -> None:
+    assert "compensation in space" in refused(dialect, f"CUTCOM/{mode}", "GOTO/1,2,3,0,0,1")
 
 
 # -- arcs ---------------------------------------------------------------------------------------------------------
@@ -402,6 +402,9 @@ def test_the_matrix_of_catia_is_read_in_its_lines(read: Read, refused: Callable[
         ("GORGT/L1,PAST,L2", "statement of an APT part program"),
         ("1009/ 73, 12", "the word is the number 1009"),
         ("5.0, 6.0, 7.0", "numbers without a word"),
+        ("MODE/INCR,ON", "would count from each other"),
+        ("MOVE/1,2,3", "MOVE is motion"),
+        ("SCALE/2", "SCALE repeats, shifts or turns"),
         ("RETRCT", "without a clearance plane"),
         ("CLRSRF/YZPLAN,5", "not a plane of constant Z"),
     ],

@@ -109,12 +109,16 @@ class NoAxis(Enum):
 
 
 class AxisStatement(NamedTuple):
-    """A statement about tool axes from ``row`` on (TLAXIS, MULTAX): an axis, and that of points that give none."""
+    """A statement about tool axes from ``row`` on (TLAXIS, MULTAX): an axis, and that of points that give none.
+
+    ``vectors``: what points give behind their coordinates are tool axes; else it may be a vector of compensation.
+    """
 
     row: int
     line: int
     axis: tuple[float, float, float] | None
     no_axis: NoAxis
+    vectors: bool = True
 
 
 @dataclass(slots=True)

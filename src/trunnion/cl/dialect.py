@@ -66,6 +66,8 @@ class Dialect:
     comment      takes the text of a ``$$`` line that carries a statement
     in_sections  operations stand between TOOL PATH and END-OF-PATH; else they begin with a tool, a name, a system
     no_axis      the tool axis of a point that gives none, before any statement about it
+    multax_off   the same after MULTAX/OFF
+    vectors      points may give tool axes before any MULTAX, and after MULTAX/OFF
     """
 
     name: str
@@ -76,6 +78,8 @@ class Dialect:
     comment: Callable[[ReaderState, str], None] | None = None
     in_sections: bool = False
     no_axis: NoAxis = NoAxis.MODAL
+    multax_off: NoAxis = NoAxis.DOUBTFUL
+    vectors: bool = True
 
 
 def marks(*patterns: bytes) -> tuple[re.Pattern[bytes], ...]:

@@ -55,6 +55,7 @@ class ReaderState:
     name_row         the same of its name
     length_row       the same of its length in the spindle
     no_axis          the tool axis of a point that gives none
+    vectors          what points give behind their coordinates are tool axes
     direction        the direction of INDIRV, for the arc that follows
     clearance        height of the clearance plane
     system           the coordinate system of the points as the file gives it, empty if it gives none
@@ -89,6 +90,7 @@ class ReaderState:
     name_row: int = -1
     length_row: int = -1
     no_axis: NoAxis = NoAxis.MODAL
+    vectors: bool = True
     direction: tuple[float, ...] | None = None
     clearance: float | None = None
     system: tuple[float, ...] = ()
@@ -96,10 +98,10 @@ class ReaderState:
     note: tuple[int, str] | None = None
 
     def __post_init__(self) -> None:
-        self.no_axis = self.dialect.no_axis
+        self.no_axis, self.vectors = self.dialect.no_axis, self.dialect.vectors
         if not self.dialect.in_sections:
             self.builder.name, self.builder.line = "OPERATION 1", 1
-            self.builder.axes.append(AxisStatement(0, 0, None, self.no_axis))
+            self.builder.axes.append(AxisStatement(0, 0, None, self.no_axis, self.vectors))
 
     @property
     def operation_row(self) -> int:
@@ -125,7 +127,7 @@ class ReaderState:
             feeds=[feed._replace(row=0) for feed in before.feeds[-1:]],
             rapids=[0] if at in before.rapids else [],
             starts=[start._replace(row=0) for start in before.starts if start.row == at],
-            axes=[AxisStatement(0, self.line, None, self.no_axis)],
+            axes=[AxisStatement(0, self.line, None, self.no_axis, self.vectors)],
         )  # fmt: skip
         cycles = [event for event in before.events if isinstance(event, CycleOn | CycleOff)]
         if cycles and isinstance(cycles[-1], CycleOn):
@@ -152,7 +154,7 @@ class ReaderState:
     def set_axis(self, axis: tuple[float, float, float] | None, no_axis: NoAxis) -> None:
         """Set the tool axis of the rows that follow, and that of points that give none."""
         self.no_axis = no_axis
-        self.builder.axes.append(AxisStatement(self.operation_row, self.line, axis, no_axis))
+        self.builder.axes.append(AxisStatement(self.operation_row, self.line, axis, no_axis, self.vectors))
 
     def set_system(self, numbers: tuple[float, ...]) -> None:
         """Note the coordinate system of the points in that of the model, which must stay the same in a file.

@@ -17,6 +17,7 @@ _UPRIGHT = 1e-6
 
 _Z = np.array([0.0, 0.0, 1.0])
 _GIVE_AXIS = "write the tool axis in the GOTO, or TLAXIS/ before it"
+_GIVE_MULTAX = "write MULTAX before points with tool axes; output tips, with the compensation of the radius off"
 
 
 def fill_tool_axes(
@@ -30,27 +31,42 @@ def fill_tool_axes(
     if not builder.continues:
         modal_axis[:] = _Z
     events = []
-    no_axis = NoAxis.MODAL
+    no_axis, vectors = NoAxis.MODAL, True
     at = builder.first
     statements: list[FromStatement | AxisStatement] = [*builder.starts, *builder.axes]
     statements.sort(key=lambda statement: (statement.row, statement.line))
     for statement in statements:
         stop = min(builder.first + statement.row, builder.stop)
+        _check_vectors(columns, at, stop, vectors, modal_axis, diagnostics)
         _fill(columns, at, stop, no_axis, modal_axis, diagnostics)
         at = stop
         if statement.axis:
             _set_axis(statement.axis, statement.line, modal_axis, diagnostics)
         if isinstance(statement, AxisStatement):
-            no_axis = statement.no_axis
+            no_axis, vectors = statement.no_axis, statement.vectors
         else:
             x, y, z = statement.tip
             i, j, k = modal_axis.tolist()
             events.append(From(statement.row, statement.line, (x * unit, y * unit, z * unit), (i, j, k)))
+    _check_vectors(columns, at, builder.stop, vectors, modal_axis, diagnostics)
     _fill(columns, at, builder.stop, no_axis, modal_axis, diagnostics)
     for row, line, word in builder.upright:
         if row < builder.stop and not _is_upright(columns.axis[row]):
             diagnostics.error(line, f"{word} with a tilted tool axis cannot be read", "write GOTO/ with the point")
     return events
+
+
+def _check_vectors(
+    columns: MoveColumns, begin: int, stop: int, vectors: bool, modal_axis: Floats, diagnostics: Diagnostics
+) -> None:
+    """Refuse what rows ``begin:stop`` give behind their points, if it need not be a tool axis; the same one may be."""
+    if vectors:
+        return
+    axis = columns.axis[begin:stop]
+    others = np.flatnonzero(np.abs(axis - modal_axis).max(axis=1, initial=0.0) > _UPRIGHT)
+    for row in others[:1].tolist():
+        what = "three more numbers behind a point without MULTAX: a tool axis, or a vector of compensation"
+        diagnostics.error(int(columns.line[begin + row]), what, _GIVE_MULTAX)
 
 
 def _fill(

@@ -26,6 +26,7 @@ APT_HANDLERS: Final[Mapping[str, Handler]] = {
     "GOHOME": apt_motion.gohome,
     "ORIGIN": apt_motion.no_shift,
     "TRANS": apt_motion.no_shift,
+    "CUTCOM": apt_motion.cutcom,
     "CIRCLE": motion.plain_circle,
     "MOVARC": apt_arcs.movarc,
     "AUTOPS": operations.ignore,

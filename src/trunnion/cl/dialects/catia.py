@@ -3,16 +3,18 @@
 import re
 from typing import Final
 
+from trunnion.cl.builder import NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import CycleWords, Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
-from trunnion.cl.statements import events, motion, operations
+from trunnion.cl.statements import motion
 
 _NAME: Final = re.compile(r"\s*OPERATION NAME\s*:\s*(.*)", re.IGNORECASE)
 _MATRIX: Final = re.compile(r"\*CATIA0\s*", re.IGNORECASE)
 _TIP: Final = "output tips and tool axes, with the compensation of the radius off or in the plane"
+_MILLING: Final = "output the milling operations alone"
 
 
 def _comment(state: ReaderState, text: str) -> None:
@@ -44,11 +46,10 @@ def _goto(state: ReaderState, statement: Statement) -> None:
     motion.goto(state, statement)
 
 
-def _cutcom(state: ReaderState, statement: Statement) -> None:
-    """Radius compensation; in space, the numbers of the points that follow are not tip and axis."""
-    if not {"NORMDS", "NORMPS", "ENDPT"}.isdisjoint(statement.words()):
-        raise StatementError(f"CUTCOM/{statement.listed()}: radius compensation in space cannot be read", _TIP)
-    events.cutcom(state, statement)
+def _toolno(state: ReaderState, statement: Statement) -> None:
+    """The number of the tool, which LOADTL has as well, and its kind: turning points are not those of a mill."""
+    if "TURN" in statement.words():
+        raise StatementError(f"TOOLNO/{statement.listed()} belongs to turning, which is not read", _MILLING)
 
 
 CATIA: Final = Dialect(
@@ -58,7 +59,7 @@ CATIA: Final = Dialect(
         rb"\$\$[ \t]*CATIA APT VERSION\b", rb"\$\$\*CATIA\d", rb"\$\$[ \t]*OPERATION NAME[ \t]*:",
         rb"\$\$[ \t]*TOOLCHANGE(?:BEGINNING|END)\b",
     ),
-    handlers={**APT_HANDLERS, "GOTO": _goto, "CUTCOM": _cutcom, "TOOLNO": operations.ignore},
+    handlers={**APT_HANDLERS, "GOTO": _goto, "TOOLNO": _toolno},
     cycles=CycleWords(
         modes=CYCLES.modes,
         words=CYCLES.words,
@@ -66,4 +67,7 @@ CATIA: Final = Dialect(
         refused=CYCLES.refused,
     ),
     comment=_comment,
+    # After MULTAX/OFF points have no axis, and the last one stays; points have vectors after MULTAX only.
+    multax_off=NoAxis.MODAL,
+    vectors=False,
 )  # fmt: skip

@@ -4,7 +4,7 @@ from trunnion.cl.builder import NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, numbers
-from trunnion.cl.statements import motion
+from trunnion.cl.statements import events, motion
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -16,11 +16,13 @@ def tlaxis(state: ReaderState, statement: Statement) -> None:
 
 
 def multax(state: ReaderState, statement: Statement) -> None:
-    """Say whether points have tool axes. After OFF, some systems keep the last one and others go back to (0, 0, 1)."""
+    """Say whether points have tool axes. After OFF, a dialect may keep the last one or go back to (0, 0, 1)."""
     if statement.values not in ((), ("ON",), ("OFF",)):
         state.note_unknown(statement, f"MULTAX/{statement.listed()} is not known", *statement.words())
         return
-    state.set_axis(None, NoAxis.DOUBTFUL if statement.values == ("OFF",) else NoAxis.MODAL)
+    off = statement.values == ("OFF",)
+    state.vectors = state.dialect.vectors or not off
+    state.set_axis(None, state.dialect.multax_off if off else NoAxis.MODAL)
 
 
 def clearance(state: ReaderState, statement: Statement) -> None:
@@ -48,6 +50,14 @@ def retrct(state: ReaderState, statement: Statement) -> None:
     state.builder.upright.append((state.row, state.line, "RETRCT"))
     motion.write_row(state, (start[0], start[1], max(start[2], state.clearance)))
     motion.keep_axis(state)
+
+
+def cutcom(state: ReaderState, statement: Statement) -> None:
+    """Switch radius compensation; in space, the numbers of the points that follow are not tip and axis."""
+    if not {"NORMDS", "NORMPS", "ENDPT"}.isdisjoint(statement.words()):
+        what = f"CUTCOM/{statement.listed()}: radius compensation in space cannot be read"
+        raise StatementError(what, "output tips and tool axes, with the compensation of the radius off or in the plane")
+    events.cutcom(state, statement)
 
 
 def gohome(state: ReaderState, statement: Statement) -> None:

@@ -22,6 +22,9 @@ _SYSTEM: Final = (
     "output all motion itself, in one coordinate system",
 )
 _SUBPROGRAM: Final = ("belongs to a subprogram", "output the motion itself, without subprograms")
+_MOTION: Final = ("is motion that cannot be read", "write GOTO/ with each point, and CIRCLE/ or GOFWD/ for arcs")
+_TURNING: Final = ("belongs to turning, which is not read", "output the milling operations alone")
+_PROBING: Final = ("moves the tool until it touches the part", "output the cutting operations alone")
 
 #: Statements that move the machine, or change what the points behind them mean: why, and how to do without.
 REFUSED_WORDS: Final = {
@@ -29,6 +32,15 @@ REFUSED_WORDS: Final = {
     "ROTATE": _ROTARY,
     "ROTHED": _ROTARY,
     "POSITN": ("moves the tool to a point that it does not give", "write GOTO/ with the point"),
+    "MOVE": _MOTION,
+    "CONT": _MOTION,
+    "ARC": _MOTION,
+    "TURRET": _TURNING,
+    "THREAD": _TURNING,
+    "SWITCH": _TURNING,
+    "PROBE": _PROBING,
+    "REFSYS": _SYSTEM,
+    "SCALE": _SYSTEM,
     "COPY": _SYSTEM,
     "INDEX": _SYSTEM,
     "TRACUT": _SYSTEM,

@@ -37,7 +37,9 @@ _SIDES = frozenset({"LEFT", "RIGHT", "ON", "OFF"})
 _PLANES = frozenset({"XYPLAN", "ZXPLAN", "YZPLAN"})
 
 #: Statements about the form of a program that every program fulfils.
-_FULFILLED_MODES = frozenset({("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MULTAX",), ("MULTAX", "ON")})
+_FULFILLED_MODES = frozenset(
+    {("SET", "MODE", "ABSOL"), ("MODE", "MILL"), ("MODE", "INCR", "OFF"), ("MULTAX",), ("MULTAX", "ON")}
+)
 
 
 def fedrat(state: ReaderState, statement: Statement) -> None:
@@ -222,6 +224,9 @@ def opskip(state: ReaderState, statement: Statement) -> None:
 def set_mode(state: ReaderState, statement: Statement) -> None:
     """Keep SET, MODE or MULTAX where it states what every program does anyway."""
     words = (statement.major, *statement.words())
+    if "INCR" in words and "OFF" not in words:
+        what = f"{statement.source.strip()}: the points that follow would count from each other"
+        raise StatementError(what, "output absolute coordinates, or GODLTA/ for each distance")
     if words in _FULFILLED_MODES and not statement.plain_numbers():
         state.add(SetMode(state.operation_row, state.line, words))
     else:
