@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.support.locations import SHARED
+from tests.support.locations import SHARED, TESTS
 from trunnion.cl import read_cl
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, LoadTool, Operation, Phase
 
 FILES = sorted([*SHARED.glob("golden/*/*.cls"), *SHARED.glob("data/nx/*.cls")])
 
-pytestmark = pytest.mark.skipif(not FILES, reason="the files of others are not beside the project")
+needs_files = pytest.mark.skipif(not FILES, reason="the files of others are not beside the project")
 
 NAMES = {
     "Initial Move": {Phase.INITIAL},
@@ -24,6 +24,7 @@ NAMES = {
 }
 
 
+@needs_files
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_a_real_file_is_read_without_a_remark(path: Path) -> None:
     toolpath = read_cl(path, strict=True)
@@ -31,6 +32,7 @@ def test_a_real_file_is_read_without_a_remark(path: Path) -> None:
     assert all(len(operation.moves) for operation in toolpath.operations)
 
 
+@needs_files
 def test_the_points_of_a_real_file_are_those_of_its_lines() -> None:
     path = SHARED / "data" / "nx" / "toolpath-contact.cls"
     lines = path.read_text(encoding="gb18030").splitlines()
@@ -44,6 +46,7 @@ def test_the_points_of_a_real_file_are_those_of_its_lines() -> None:
     assert operation.moves.tip.tolist() == expected
 
 
+@needs_files
 def test_the_phases_are_those_that_the_machine_s_program_names() -> None:
     """Each row of this path is one motion block of the program that ran."""
     folder = SHARED / "golden" / "yl569"
@@ -60,7 +63,9 @@ def test_the_phases_are_those_that_the_machine_s_program_names() -> None:
     assert operation.moves.kind.tolist().count(Kind.ARC) == len(operation.arcs.row)
 
 
-APT_FILES = sorted([*SHARED.glob("data/creo/*"), *SHARED.glob("data/solidworks/*.apt")])
+APT_FILES = sorted(
+    [*SHARED.glob("data/creo/*"), *SHARED.glob("data/solidworks/*.apt"), *(TESTS / "cl" / "real").glob("*.ncl.*")]
+)
 _NUMBER = re.compile(r"[-+]?[0-9]*\.?[0-9]+")
 
 
@@ -98,8 +103,7 @@ def hole_rows(operation: Operation) -> int:
     return count
 
 
-@pytest.mark.skipif(not APT_FILES, reason="the files of others are not beside the project")
-@pytest.mark.parametrize("path", APT_FILES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", APT_FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_a_real_apt_file_is_read_whole(path: Path) -> None:
     toolpath = read_cl(path, strict=True)
     assert toolpath.dialect == ("ncl" if ".ncl" in path.name else "solidworks")

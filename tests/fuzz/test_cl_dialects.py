@@ -38,7 +38,7 @@ LINES = (
     "REMARK -> CUTTER / $", "FROM/1,2,3", "GOHOME", "GOHOME/1,2,3", "FEDRAT/5,PERMIN", "FEDRAT/INVERS,AUTO",
     "M1=MACRO/A", "1009/5", "ROTABL/5", "TRANS/0,0,0", "UNITS/MM", "TOOL PATH/A,TOOL,B", "END-OF-PATH", "SHOPWD/1",
     "FINI", "PARTNO/1", "TPRINT/T1", "LOADTL/6,0,80.0,3", "CLEARP/XYPLAN,9", "PPWORD/A,1", "SPINDL/OFF", "$$->", "$$",
-    "$",
+    "$", "GOTO,1,2,3", "GOTO/1,2,3,0.6,0.8,0", "TOOLNO/1,TURN", "MODE/INCR,ON", "PROBE/OFF", "PARTNO/'A'",
 )  # fmt: skip
 
 _ROW = re.compile(r"(GOTO|GODLTA|(TLON,)?GOFWD|RETRCT|GOHOME/[-+.\d])", re.IGNORECASE)

@@ -43,6 +43,14 @@ class Step:
         return cross[0] / length, cross[1] / length, cross[2] / length
 
 
+def turned(step: Step) -> float:
+    """Degrees by which an arc turns about its normal."""
+    first, last = ([p - m for p, m in zip(point, step.centre, strict=True)] for point in (step.start, step.point))
+    tangent = sum(t * p for t, p in zip(step.tangent, last, strict=True))
+    along = sum(a * b for a, b in zip(first, last, strict=True)) / step.radius
+    return math.degrees(math.atan2(tangent, along)) % 360.0 or 360.0
+
+
 def listed(*values: float, decimals: int = 6) -> str:
     """Numbers between commas."""
     return ", ".join(f"{value:.{decimals}f}" for value in values)
@@ -79,7 +87,7 @@ class _Writer:
 
     def arc(self, step: Step) -> list[str]:
         numbers = listed(*step.centre, *step.normal, step.radius)
-        return [f"MOVARC/{numbers}, ANGLE, 90.0", *self.goto(step)]
+        return [f"MOVARC/{numbers}, ANGLE, {turned(step):.6f}", *self.goto(step)]
 
     def cycle(self, step: Step) -> list[str]:
         depth, clear, feed, peck = step.numbers

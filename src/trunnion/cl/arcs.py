@@ -17,6 +17,9 @@ RADIUS_TOLERANCE = ARC_POINT_TOLERANCE
 #: An arc whose ends are as near to each other is a full circle, mm.
 _CLOSED = 1e-4
 
+#: How far an arc may turn by another angle than it says, radians: angles are rounded.
+_OFF_ANGLE = 1e-3
+
 #: How far the normal of a CIRCLE may be off unit length.
 _NORMAL_TOLERANCE = 0.01
 
@@ -70,6 +73,7 @@ def arcs_of(
         arcs = replace(arcs, radius=radius)
     has_unit_normal = np.abs(length - 1) <= _NORMAL_TOLERANCE
     _check(arcs, usable, has_unit_normal, start, tip[row], diagnostics)
+    _check_angles(arcs, usable, start, tip[row], diagnostics)
     return arcs
 
 
@@ -101,6 +105,22 @@ def _check(
             f"the {which} point of the arc lies {off:.3f} mm off its radius {radius[index]:.4f}",
             "write centre, radius and points of one and the same circle",
         )
+
+
+def _check_angles(
+    arcs: Arcs, circles: Sequence[CircleStatement], start: Floats, end: Floats, diagnostics: Diagnostics
+) -> None:
+    """Report arcs that turn by another angle than their statement says, as about a normal that points the wrong way.
+
+    start, end  (m, 3) float64, mm
+    """
+    said = np.radians([circle.angle for circle in circles])
+    turned = _swept_angles(arcs, start, end) + 2.0 * np.pi * arcs.full_turns
+    off = np.abs(turned - said)
+    for index in np.flatnonzero((off > _OFF_ANGLE) & (off * arcs.radius > 2.0 * RADIUS_TOLERANCE)).tolist():
+        by, not_by = np.degrees([turned[index], said[index]]).tolist()
+        what = f"the arc turns by {by:.3f} degrees about its normal, and not by {not_by:.3f}"
+        diagnostics.error(circles[index].line, what, "write the normal about which it turns by the right-hand rule")
 
 
 def report_open_ends(
@@ -148,11 +168,17 @@ def distance_from_line(offset: Floats, normal: Floats) -> Floats:
 
 def arc_lengths(arcs: Arcs, start: Floats, end: Floats) -> Floats:
     """Lengths of arcs and helices, (m,) mm, from ``start`` to ``end``, (m, 3) each."""
+    rise = np.einsum("ij,ij->i", end - start, arcs.normal)
+    angle = _swept_angles(arcs, start, end)
+    return np.asarray(np.hypot(arcs.radius * (angle + 2.0 * np.pi * arcs.full_turns), rise))
+
+
+def _swept_angles(arcs: Arcs, start: Floats, end: Floats) -> Floats:
+    """Angles of the last turns of arcs and helices, (m,) radians, a full one where they close."""
     first, last = start - arcs.centre, end - arcs.centre
     rise = np.einsum("ij,ij->i", last - first, arcs.normal)
     across = np.einsum("ij,ij->i", np.cross(first, last), arcs.normal)
     angle = np.arctan2(across, np.einsum("ij,ij->i", first, last) - rise * np.einsum("ij,ij->i", first, arcs.normal))
     angle = np.mod(angle, 2.0 * np.pi)
     closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < _CLOSED
-    angle = np.where(closed, 2.0 * np.pi, angle)
-    return np.asarray(np.hypot(arcs.radius * (angle + 2.0 * np.pi * arcs.full_turns), rise))
+    return np.asarray(np.where(closed, 2.0 * np.pi, angle))

@@ -4,6 +4,7 @@ Statements may refer to later ones, and the length unit may be known only at the
 here, and ``trunnion.cl.assemble`` makes operations of them when the file has been read.
 """
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import NamedTuple
@@ -80,7 +81,7 @@ class CircleStatement(NamedTuple):
     """An arc: xc, yc, zc, i, j, k, r in units of the file, and the number of turns that it begins (TIMES).
 
     A radius that is NaN is the distance of the start point. ``may_go_on``: points behind the next one may belong to the
-    arc as well.
+    arc as well. ``angle``: degrees by which it turns, NaN if it does not say.
     """
 
     row: int
@@ -88,6 +89,7 @@ class CircleStatement(NamedTuple):
     numbers: tuple[float, ...]
     turns: int
     may_go_on: bool = False
+    angle: float = math.nan
 
 
 class FromStatement(NamedTuple):
@@ -130,6 +132,7 @@ class OperationBuilder:
     rapids     rows before which a RAPID stands
     axes       statements about the tool axis
     upright    (row, line, word) of statements that are understood for the tool axis (0, 0, 1) only
+    tilted     why no row may have another one, empty if it may: what to do instead
     """
 
     name: str
@@ -149,3 +152,4 @@ class OperationBuilder:
     starts: list[FromStatement] = field(default_factory=list)
     axes: list[AxisStatement] = field(default_factory=list)
     upright: list[tuple[int, int, str]] = field(default_factory=list)
+    tilted: str = ""

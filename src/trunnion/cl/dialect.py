@@ -68,6 +68,7 @@ class Dialect:
     no_axis      the tool axis of a point that gives none, before any statement about it
     multax_off   the same after MULTAX/OFF
     vectors      points may give tool axes before any MULTAX, and after MULTAX/OFF
+    upright      points with a tilted tool axis are in coordinates that the file does not give: what to do instead
     """
 
     name: str
@@ -80,6 +81,7 @@ class Dialect:
     no_axis: NoAxis = NoAxis.MODAL
     multax_off: NoAxis = NoAxis.DOUBTFUL
     vectors: bool = True
+    upright: str = ""
 
 
 def marks(*patterns: bytes) -> tuple[re.Pattern[bytes], ...]:

@@ -102,6 +102,7 @@ class ReaderState:
         if not self.dialect.in_sections:
             self.builder.name, self.builder.line = "OPERATION 1", 1
             self.builder.axes.append(AxisStatement(0, 0, None, self.no_axis, self.vectors))
+            self.builder.tilted = self.dialect.upright
 
     @property
     def operation_row(self) -> int:
@@ -127,7 +128,7 @@ class ReaderState:
             feeds=[feed._replace(row=0) for feed in before.feeds[-1:]],
             rapids=[0] if at in before.rapids else [],
             starts=[start._replace(row=0) for start in before.starts if start.row == at],
-            axes=[AxisStatement(0, self.line, None, self.no_axis, self.vectors)],
+            axes=[AxisStatement(0, self.line, None, self.no_axis, self.vectors)], tilted=before.tilted,
         )  # fmt: skip
         cycles = [event for event in before.events if isinstance(event, CycleOn | CycleOff)]
         if cycles and isinstance(cycles[-1], CycleOn):

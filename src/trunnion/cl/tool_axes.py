@@ -50,6 +50,8 @@ def fill_tool_axes(
             events.append(From(statement.row, statement.line, (x * unit, y * unit, z * unit), (i, j, k)))
     _check_vectors(columns, at, builder.stop, vectors, modal_axis, diagnostics)
     _fill(columns, at, builder.stop, no_axis, modal_axis, diagnostics)
+    if builder.tilted:
+        _check_upright(columns, builder, diagnostics)
     for row, line, word in builder.upright:
         if row < builder.stop and not _is_upright(columns.axis[row]):
             diagnostics.error(line, f"{word} with a tilted tool axis cannot be read", "write GOTO/ with the point")
@@ -91,6 +93,14 @@ def _fill(
             what = "a point without a tool axis after MULTAX/OFF, and the point before has a tilted one"
             diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS)
             return
+
+
+def _check_upright(columns: MoveColumns, builder: OperationBuilder, diagnostics: Diagnostics) -> None:
+    """Refuse a tilted tool axis where the file does not give the coordinates of such points."""
+    tilted = np.flatnonzero(np.abs(columns.axis[builder.first : builder.stop] - _Z).max(axis=1, initial=0.0) > _UPRIGHT)
+    for row in tilted[:1].tolist():
+        what = "a tilted tool axis, at a point in the coordinates of a plane that the file does not give"
+        diagnostics.error(int(columns.line[builder.first + row]), what, builder.tilted)
 
 
 def _is_upright(axis: Floats) -> bool:

@@ -36,7 +36,7 @@ class _Setting(argparse.Action):
 
 
 #: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
-DIALECTS = ("clsf", "ncl", "solidworks", "catia", "apt")
+DIALECTS = ("clsf", "ncl", "solidworks", "catia", "fusion", "apt")
 
 
 def _tolerance(text: str) -> float:

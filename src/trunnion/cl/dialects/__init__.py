@@ -6,6 +6,7 @@ from trunnion.cl.dialect import Dialect
 from trunnion.cl.dialects.apt import APT
 from trunnion.cl.dialects.catia import CATIA
 from trunnion.cl.dialects.clsf import CLSF
+from trunnion.cl.dialects.fusion import FUSION
 from trunnion.cl.dialects.ncl import NCL
 from trunnion.cl.dialects.recognition import Recognition, recognize
 from trunnion.cl.dialects.solidworks import SOLIDWORKS
@@ -13,9 +14,9 @@ from trunnion.cl.dialects.solidworks import SOLIDWORKS
 __all__ = ["DIALECTS", "Dialect", "Recognition", "recognize_dialect"]
 
 #: By their names. The last one is told by words that the others have as well.
-DIALECTS: Final[dict[str, Dialect]] = {dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CATIA, APT)}
+DIALECTS: Final[dict[str, Dialect]] = {dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CATIA, FUSION, APT)}
 
 
 def recognize_dialect(head: bytes) -> Recognition:
     """The dialect of a file by the lines at its head; a file without any mark is taken as an NX CLSF."""
-    return recognize(head, (CLSF, NCL, SOLIDWORKS, CATIA), APT, CLSF)
+    return recognize(head, (CLSF, NCL, SOLIDWORKS, CATIA, FUSION), APT, CLSF)

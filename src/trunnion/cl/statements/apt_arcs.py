@@ -75,7 +75,7 @@ def movarc(state: ReaderState, statement: Statement) -> None:
     given, (angle,) = numbers("MOVARC", values[:7], 7), numbers("MOVARC ANGLE", values[8:], 1)
     if not 0.0 < angle < 360.0 * motion.MAX_TURNS:
         raise StatementError(f"MOVARC has an ANGLE of {angle:g} degrees", "write an angle above 0")
-    motion.begin_circle(state, given, math.ceil(angle / 360.0 - 1e-6))
+    motion.begin_circle(state, given, math.ceil(angle / 360.0 - 1e-6), angle=angle)
 
 
 def _floats(text: str, count: int) -> tuple[float, ...]:

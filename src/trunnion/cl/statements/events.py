@@ -227,6 +227,8 @@ def set_mode(state: ReaderState, statement: Statement) -> None:
     if "INCR" in words and "OFF" not in words:
         what = f"{statement.source.strip()}: the points that follow would count from each other"
         raise StatementError(what, "output absolute coordinates, or GODLTA/ for each distance")
+    if words == ("MODE", "TURN"):
+        raise StatementError("MODE/TURN: turning is not read", "output the milling operations alone")
     if words in _FULFILLED_MODES and not statement.plain_numbers():
         state.add(SetMode(state.operation_row, state.line, words))
     else:

@@ -1,5 +1,7 @@
 """Statements of motion: points, circles, and motion that cannot be read."""
 
+import math
+
 from trunnion.cl.builder import CircleStatement, FromStatement, NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
@@ -81,11 +83,14 @@ def circle_with_points(state: ReaderState, statement: Statement) -> None:
     begin_circle(state, statement.numbers(7), 1, may_go_on=True)
 
 
-def begin_circle(state: ReaderState, numbers: tuple[float, ...], turns: int, *, may_go_on: bool = False) -> None:
+def begin_circle(
+    state: ReaderState, numbers: tuple[float, ...], turns: int, *, may_go_on: bool = False, angle: float = math.nan
+) -> None:
     """Make the next row an arc, or this one if the statement is a motion.
 
     numbers  xc, yc, zc, i, j, k, r; r is NaN if it is the distance of the start point
     turns    turns that the arc begins
+    angle    degrees by which it turns, NaN if the file does not say
     """
     refuse_in_circle(state, "another CIRCLE")
     if state.cycle_line:
@@ -95,7 +100,7 @@ def begin_circle(state: ReaderState, numbers: tuple[float, ...], turns: int, *, 
         start = current_tip(state)
         if start is not None and not state.builder.starts:
             state.builder.starts.append(FromStatement(0, state.line, start, None))
-    state.builder.circles.append(CircleStatement(state.operation_row, state.line, numbers, turns, may_go_on))
+    state.builder.circles.append(CircleStatement(state.operation_row, state.line, numbers, turns, may_go_on, angle))
 
 
 def unsupported(state: ReaderState, statement: Statement) -> None:

@@ -1,6 +1,6 @@
-"""Programs that another post made of the same CL files: what is cut, drilled and changed where, and in which order.
+"""CL files that CAM systems wrote, posted and proven; and compared with the programs of another post.
 
-Its author scales feeds and speeds, and sets a datum of his own for each setup; neither is compared.
+The author of these programs scales feeds and speeds, and sets a datum of his own for each setup; neither is compared.
 """
 
 import re
@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 import trunnion
-from tests.support.locations import SHARED
+from tests.support.locations import SHARED, TESTS
 from trunnion.arrays import Floats
 
 PROGRAMS = SHARED / "data" / "heidenhain"
 CL_FILES = SHARED / "data" / "solidworks"
 
-pytestmark = pytest.mark.skipif(not PROGRAMS.exists(), reason="the files of others are not beside the project")
+needs_programs = pytest.mark.skipif(not PROGRAMS.exists(), reason="the files of others are not beside the project")
 
 _WORD = re.compile(r"([XYZ]) ?([-+]?[.\d]+)")
 
@@ -80,6 +80,13 @@ def turned_about_z(points: Floats, others: Floats) -> tuple[Floats, Floats]:
     return turn, others.mean(axis=0) - turn @ points.mean(axis=0)
 
 
+@pytest.mark.parametrize("file", ["bohren_1.ncl.8", "profilfraesen_2.ncl.1"])
+@pytest.mark.parametrize("machine", ["dmu65", "xyzac_trt"])
+def test_a_real_file_of_creo_is_posted_and_proven(file: str, machine: str) -> None:
+    assert trunnion.post(TESTS / "cl" / "real" / file, machine=machine, columns=False).passed
+
+
+@needs_programs
 @pytest.mark.parametrize(
     ("part", "setup", "program", "counts"),
     [

@@ -1,0 +1,66 @@
+"""APT exports of Autodesk Fusion and HSMWorks.
+
+Their posts write the points of a tilted operation in the coordinates of its plane, and say nothing of the plane.
+"""
+
+from typing import Final
+
+from trunnion.cl.builder import NoAxis
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.dialect import Dialect, marks
+from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement
+from trunnion.cl.statements import apt_tools, events, operations
+
+_POST: Final = "output the NC program by the CAM system's post, or CL data with a tool axis at each point"
+
+
+def _partno(state: ReaderState, statement: Statement) -> None:
+    """The name of the part, in quotation marks; and what nothing in the file tells."""
+    what = "some revisions of this export write operations in tilted planes without their tool axes"
+    state.diagnostics.remark(state.line, what, "make sure that all operations of the file are upright")
+    operations.partno(state, statement._replace(text=statement.text.strip("'")))
+
+
+def _units(state: ReaderState, statement: Statement) -> None:
+    """The length unit, which old revisions repeat for each operation."""
+    if state.length_unit is not None:
+        what = "UNITS for each operation: an old revision, which writes tilted operations without tool axes"
+        raise StatementError(what, _POST)
+    operations.units(state, statement)
+
+
+def _loadtl(state: ReaderState, statement: Statement) -> None:
+    """The tool, at the beginning of each operation."""
+    if "IN" in statement.words():
+        what = "LOADTL with IN: an export that writes tilted operations without tool axes"
+        raise StatementError(what, _POST)
+    state.split_operation()
+    apt_tools.loadtl(state, statement)
+
+
+def _spindl(state: ReaderState, statement: Statement) -> None:
+    """The spindle; the words alone are the wrong way round in all revisions of these posts."""
+    if statement.values in (("ON",), ("OFF",)):
+        what = f"SPINDL/{statement.listed()} alone: these exports write ON to stop the spindle, and OFF to start it"
+        raise StatementError(what, "write SPINDL/n,RPM,CLW or STOP, or leave the command out of the operation")
+    events.spindl(state, statement)
+
+
+FUSION: Final = Dialect(
+    name="fusion",
+    title="Autodesk Fusion or HSMWorks APT",
+    marks=marks(rb"PARTNO[ \t]*/[ \t]*'"),
+    handlers={
+        **APT_HANDLERS,
+        "PARTNO": _partno,
+        "UNITS": _units,
+        "LOADTL": _loadtl,
+        "SPINDL": _spindl,
+    },
+    cycles=CYCLES,
+    no_axis=NoAxis.Z,
+    multax_off=NoAxis.Z,
+    upright=_POST + "; if points and tool axes are in one system, write setting dialect=apt",
+)
