@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.support.cl_dialects import WRITERS, Step, Vector, Z, write_in
+from tests.support.cl_dialects import EVERY, Step, Vector, Z, write_in
 from trunnion.cl import read_cl
 from trunnion.model.toolpath import CycleOn, Event, Kind, Message, SpindleOn, Toolpath
 from trunnion.planning.holes.cycles import cycle_from_event
@@ -138,7 +138,7 @@ def changes(tools: list[tuple[int, float, float]]) -> list[tuple[int, float, flo
 @given(steps=paths(), inch=st.booleans())
 def test_a_path_is_the_same_in_every_dialect(tmp_path: Path, steps: list[Step], inch: bool) -> None:
     found = {}
-    for dialect in WRITERS:
+    for dialect in EVERY:
         text = write_in(dialect, steps, inch)
         if text is None:
             continue

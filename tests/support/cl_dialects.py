@@ -67,6 +67,7 @@ class _Writer:
 
     name = "apt"
     cycles: frozenset[str] = frozenset({"DRILL", "DEEP", "BRKCHP", "TAP", "FACE", "REAM"})
+    tilts = True
 
     def __init__(self, inch: bool) -> None:
         self.feed_unit = "IPM" if inch else "MMPM"
@@ -268,15 +269,39 @@ class _Catia(_Writer):
         return [f"CYCLE/{step.text}, {depth:.6f}, {clear:.6f}, {feed:.4f},{self.feed_unit}"]
 
 
-#: By the names of the dialects.
+class _Fusion(_Writer):
+    name = "fusion"
+    cycles = frozenset()
+    tilts = False
+
+    def head(self) -> list[str]:
+        return ["PARTNO/'PART'", "PPRINT/'PART'", f"UNITS/{self.units}", "MULTAX/OFF"]
+
+    def tool(self, number: int, diameter: float, corner: float) -> list[str]:
+        (cutter, load) = super().tool(number, diameter, corner)
+        return ["PPRINT/'Contour'", cutter, f"{load}, 0, 60.0, 0"]
+
+    def goto(self, step: Step) -> list[str]:
+        return [f"GOTO/{listed(*step.point)}"]
+
+
+#: By the names of the dialects: those that have words for every step.
 WRITERS: Final[dict[str, type[_Writer]]] = {
     writer.name: writer for writer in (_Clsf, _Ncl, _Solidworks, _Catia, _Writer)
 }
 
+#: All of them.
+EVERY: Final[dict[str, type[_Writer]]] = {**WRITERS, _Fusion.name: _Fusion}
+
+
+def says(dialect: str, step: Step) -> bool:
+    """Whether a dialect has words for a step."""
+    writer = EVERY[dialect]
+    return (step.word != "CYCLE" or step.text in writer.cycles) and (writer.tilts or step.axis == Z)
+
 
 def write_in(dialect: str, steps: Sequence[Step], inch: bool) -> str | None:
-    """A path in a dialect; None if it has no words for one of its cycles."""
-    writer = WRITERS[dialect](inch)
-    if any(step.word == "CYCLE" and step.text not in writer.cycles for step in steps):
+    """A path in a dialect; None if it has no words for one of its steps."""
+    if not all(says(dialect, step) for step in steps):
         return None
-    return writer.write(steps)
+    return EVERY[dialect](inch).write(steps)
