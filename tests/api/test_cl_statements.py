@@ -18,7 +18,7 @@ MACHINES = ("yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt")
 STATEMENTS = (
     "ROTATE/TABLE,AAXIS,90", "ROTABL/ATANGL,90,CLW", "TLAXIS/0,1,0", "AUXFUN/31", "PREFUN/91", "CLAMP/ON",
     "TURRET/3", "HEAD/2", "PIVOTZ/100", "COOLNT/MIST,HIGH", "SPINDL/RPM,800,CLW,RANGE,2",
-    "LOAD/TOOL,1,LENGTH,90", "SET/MODE,INCR", "MODE/TURN", "MULTAX/OFF", "OPSKIP/ON,2", "CLRSRF/50", "TOOLNO/3,TURN",
+    "LOAD/TOOL,1,LENGTH,90", "MULTAX/OFF", "OPSKIP/ON,2", "CLRSRF/50", "TOOLNO/3,TURN",
 )  # fmt: skip
 
 #: Damaged statements: a letter is wrong, missing or too many, a slash or a line end is lost.
@@ -53,6 +53,17 @@ def test_a_statement_that_moves_or_chooses_something_is_never_dropped(tmp_path: 
     (problem,) = caught.value.problems
     assert (problem.file, problem.line) == (str(tmp_path / "part.cls"), 12)
     assert "[control.statements]" in problem.cure
+
+
+@pytest.mark.parametrize("statement", ["SET/MODE,INCR", "MODE/TURN"])
+def test_a_mode_that_changes_the_meaning_of_what_follows_cannot_be_settled_by_a_definition(
+    tmp_path: Path, statement: str
+) -> None:
+    with pytest.raises(trunnion.InputError) as caught:
+        trunnion.post(part(tmp_path, statement), machine="yl569")
+    (problem,) = caught.value.problems
+    assert problem.line == 12
+    assert problem.what.startswith(statement)
 
 
 def test_what_looks_like_a_damaged_statement_is_refused_too(tmp_path: Path) -> None:

@@ -403,7 +403,6 @@ def test_the_matrix_of_catia_is_read_in_its_lines(read: Read, refused: Callable[
         ("GORGT/L1,PAST,L2", "statement of an APT part program"),
         ("1009/ 73, 12", "the word is the number 1009"),
         ("5.0, 6.0, 7.0", "numbers without a word"),
-        ("GOTO,1,2,3", "begins as GOTO and is no such statement"),
         ("MODE/INCR,ON", "would count from each other"),
         ("MOVE/1,2,3", "MOVE is motion"),
         ("SCALE/2", "SCALE repeats, shifts or turns"),

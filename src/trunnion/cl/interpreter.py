@@ -25,10 +25,6 @@ _MAX_UNKNOWN_STATEMENTS = 1000
 _NOT_CL = "not a CL file: no statement in it is known"
 _GIVE_CL = "give a CL file: an NX CLSF, APTSOURCE, NCL or other APT CL data"
 
-#: What begins with one of these is no word of a shop's own, but motion that is damaged.
-_MOTION_WORDS = frozenset({"GOTO", "GODLTA", "GOFWD", "CIRCLE", "MOVARC", "CYCLE", "TLAXIS", "FEDRAT"})
-_DAMAGED = "write the statement with its slash, or output the file again"
-
 #: What stands for a word that is none.
 _NUMBER = re.compile(r"[-+.]?[0-9]")
 
@@ -156,9 +152,6 @@ class ClInterpreter:
     def _unknown_statement(self, statement: Statement) -> None:
         if not statement.source:
             return  # the end mark of a DOS file
-        begun = (word for word in _MOTION_WORDS & self._dialect.handlers.keys() if statement.major.startswith(word))
-        if word := next(begun, ""):
-            raise StatementError(f"{statement.major[:40]} begins as {word} and is no such statement", _DAMAGED)
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
             raise self._diagnostics.fatal(0, _NOT_CL, _GIVE_CL)

@@ -246,7 +246,7 @@ def test_a_tool_that_the_file_selects_is_preselected_there(post: Post) -> None:
 @pytest.mark.parametrize(
     ("statement", "said"),
     [
-        ("SET/MODE,INCR", "SET/MODE,INCR is not followed"),
+        ("SET/MODE,INCR", "SET/MODE,INCR: the points that follow would count from each other"),
         ("SPINDL/RPM,900,CLW,RANGE,2", "a gear range has no words here: SPINDL with RANGE"),
     ],
 )
