@@ -1,6 +1,7 @@
 """Kernels: kept machine code does what it did when it was compiled, and belongs to one state of the sources."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -60,17 +61,40 @@ print(double.was_loaded, fold.was_loaded)
 SHOW_LOG = "import logging; logging.basicConfig(level='INFO', format='%(message)s')\n"
 
 
+#: A folder with two modules of kernels, and what the process printed that compiled them into its folder ``kept``.
+Compiled = tuple[Path, list[str]]
+
+
+def write_modules(folder: Path) -> Path:
+    """Write two modules of kernels into a folder."""
+    (folder / "some_inner.py").write_text(INNER, encoding="utf-8")
+    (folder / "some_kernels.py").write_text(KERNELS, encoding="utf-8")
+    return folder
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with two modules of kernels."""
-    (tmp_path / "some_inner.py").write_text(INNER, encoding="utf-8")
-    (tmp_path / "some_kernels.py").write_text(KERNELS, encoding="utf-8")
+    """A folder with two modules of kernels, of which none has been compiled."""
+    return write_modules(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
+    """A folder with two modules of kernels that a process has compiled, and what it printed; tests only read it."""
+    folder = write_modules(tmp_path_factory.mktemp("compiled"))
+    return folder, run(folder)
+
+
+@pytest.fixture
+def kept(compiled: Compiled, tmp_path: Path) -> Path:
+    """A test's own copy of the machine code; the modules stay, as it belongs to their path."""
+    shutil.copytree(compiled[0] / "kept", tmp_path / "kept")
     return tmp_path
 
 
-def run(folder: Path, script: str = RUN, **environment: str) -> list[str]:
-    """What a fresh process prints that keeps its kernels in a folder."""
-    path = os.pathsep.join((str(folder), str(ROOT / "src")))
+def run(folder: Path, script: str = RUN, modules: Path | None = None, **environment: str) -> list[str]:
+    """What a fresh process prints that keeps its kernels in a folder, where its modules are unless they are named."""
+    path = os.pathsep.join((str(folder), str(modules or folder), str(ROOT / "src")))
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "kept"), "PYTHONPATH": path, **environment}
     done = subprocess.run(
         [sys.executable, "-c", SHOW_LOG + script], env=environment, capture_output=True, text=True, check=True
@@ -78,20 +102,14 @@ def run(folder: Path, script: str = RUN, **environment: str) -> list[str]:
     return done.stdout.splitlines() + done.stderr.splitlines()
 
 
-def change(file: Path, old: str, new: str) -> None:
-    """Change a source file."""
-    source = file.read_text(encoding="utf-8")
-    assert old in source
-    file.write_text(source.replace(old, new), encoding="utf-8")
+def test_what_is_loaded_is_what_was_compiled(compiled: Compiled, kept: Path) -> None:
+    modules, first = compiled
+    loaded = run(kept, modules=modules)
 
-
-def test_what_is_loaded_is_what_was_compiled(folder: Path) -> None:
-    compiled, loaded = run(folder), run(folder)
-
-    assert compiled[0] == loaded[0] == "[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]"
-    assert compiled[1] == "False False"
+    assert first[0] == loaded[0] == "[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]"
+    assert first[1] == "False False"
     assert loaded[1:] == ["True True"]
-    assert [line for line in compiled if line.startswith("compiling")] == [
+    assert [line for line in first if line.startswith("compiling")] == [
         "compiling the kernel some_kernels.double, once",
         "compiling the kernel some_kernels.fold, once",
     ]
@@ -105,52 +123,52 @@ def test_what_is_loaded_is_what_was_compiled(folder: Path) -> None:
     ],
 )
 def test_a_change_in_another_file_renews_the_kernels_that_it_reaches_and_no_others(
-    folder: Path, old: str, new: str, result: str
+    compiled: Compiled, kept: Path, old: str, new: str, result: str
 ) -> None:
-    run(folder)
-    change(folder / "some_inner.py", old, new)
+    assert old in INNER
+    (kept / "some_inner.py").write_text(INNER.replace(old, new), encoding="utf-8")  # is imported before the other
 
-    assert run(folder)[:2] == [result, "False True"]
-    assert len(list(folder.glob("kept/*/double-*"))) == 1  # the old one is gone
+    assert run(kept, modules=compiled[0])[:2] == [result, "False True"]
+    assert len(list(kept.glob("kept/*/double-*"))) == 1  # the old one is gone
 
 
-def test_a_damaged_file_is_noticed_and_compiled_anew(folder: Path) -> None:
-    compiled = run(folder)
-    for file in folder.glob("kept/*/double-*/*/*.nbc"):
+def test_a_damaged_file_is_noticed_and_compiled_anew(compiled: Compiled, kept: Path) -> None:
+    modules, first = compiled
+    for file in kept.glob("kept/*/double-*/*/*.nbc"):
         code = bytearray(file.read_bytes())
         code[len(code) // 2] ^= 1
         file.write_bytes(code)
-    (index,) = folder.glob("kept/*/fold-*/*/*.nbi")
+    (index,) = kept.glob("kept/*/fold-*/*/*.nbi")
     index.write_bytes(index.read_bytes()[:50])
-    damaged = run(folder)
+    damaged = run(kept, modules=modules)
 
-    assert damaged[:2] == [compiled[0], "False False"]
+    assert damaged[:2] == [first[0], "False False"]
     assert [line for line in damaged if "damaged" in line] == [
         f"the machine code of some_kernels.{name} was damaged on disk and is compiled anew"
         for name in ("double", "fold")
     ]
-    assert run(folder)[1:] == ["True True"]
+    assert run(kept, modules=modules)[1:] == ["True True"]
 
 
-def test_what_cannot_be_loaded_is_compiled_anew(folder: Path) -> None:
-    run(folder)
-    for kept in folder.glob("kept/*/double-*"):
-        for file in kept.glob("*/*.nbc"):
+def test_what_cannot_be_loaded_is_compiled_anew(compiled: Compiled, kept: Path) -> None:
+    for folder in kept.glob("kept/*/double-*"):
+        for file in folder.glob("*/*.nbc"):
             file.write_bytes(b"not a pickle")
-        damaged = store.Store(kept.parent, "double", "")
-        damaged.folder = kept
+        damaged = store.Store(folder.parent, "double", "")
+        damaged.folder = folder
         damaged.seal()
-    found = run(folder)
+    found = run(kept, modules=compiled[0])
 
     assert found[1] == "False True"
     assert "the machine code of some_kernels.double cannot be loaded and is compiled anew" in found[2]
 
 
-def test_what_a_process_left_unfinished_is_compiled_again_without_a_word_about_damage(folder: Path) -> None:
-    run(folder)
-    for sums in folder.glob("kept/*/double-*/checksums.json"):
+def test_what_a_process_left_unfinished_is_compiled_again_without_a_word_about_damage(
+    compiled: Compiled, kept: Path
+) -> None:
+    for sums in kept.glob("kept/*/double-*/checksums.json"):
         sums.unlink()
-    found = run(folder)
+    found = run(kept, modules=compiled[0])
 
     assert found[1] == "False True"
     assert not [line for line in found if "damaged" in line]
@@ -193,12 +211,12 @@ def test_processes_that_need_the_same_kernel_wait_for_the_one_that_compiles_it(f
         assert sum(lines[1].split()[which] == "False" for lines in printed) == 1
 
 
-def test_what_another_checkout_compiled_meanwhile_is_completed_and_nothing_waits_for_itself(folder: Path) -> None:
-    run(folder)
-    other = folder / "other"
+def test_what_another_checkout_compiled_meanwhile_is_completed_and_nothing_waits_for_itself(
+    compiled: Compiled, kept: Path
+) -> None:
+    modules, other = compiled[0], kept / "other"
     other.mkdir()
-    for name in ("some_inner.py", "some_kernels.py"):
-        (other / name).write_bytes((folder / name).read_bytes())
+    write_modules(other)
     script = f"""
 import sys
 sys.path.insert(0, {str(other)!r})
@@ -206,20 +224,29 @@ from trunnion.jit.kernels import Kernel
 load, first = Kernel._load, set()
 Kernel._load = lambda self, store: self.name in first and load(self, store) or first.add(self.name) or False
 """
-    path = os.pathsep.join((str(other), str(ROOT / "src")))
-    found = run(folder, script + RUN, PYTHONPATH=path)
+    found = run(kept, script + RUN, modules=other)
 
     assert found[:2] == ["[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]", "False False"]
-    assert run(folder, PYTHONPATH=path)[1] == "True True"
-    assert run(folder)[1] == "True True"
+    assert run(kept, modules=other)[1] == "True True"
+    assert run(kept, modules=modules)[1] == "True True"
 
 
 @pytest.mark.parametrize("text", ["5", "[]", "{}", "null", "[" * 100_000, '{"../lock": 1}', "\0"])
-def test_checksums_that_are_none_are_damage(folder: Path, text: str) -> None:
-    run(folder)
-    for file in (folder / "kept").rglob("checksums.json"):
+def test_checksums_that_are_none_make_a_kernel_incomplete(tmp_path: Path, text: str) -> None:
+    kept = store.Store(tmp_path, "some_kernels.double", "0123456789abcdef")
+    (kept.folder / "of_a_module").mkdir(parents=True)
+    (kept.folder / "of_a_module" / "code.nbc").write_bytes(b"code")
+    kept.seal()
+    assert kept.is_whole()
+    (kept.folder / "checksums.json").write_text(text, encoding="utf-8")
+
+    assert not kept.is_whole()
+
+
+def test_checksums_that_are_none_are_damage(compiled: Compiled, kept: Path) -> None:
+    for file, text in zip(sorted((kept / "kept").rglob("checksums.json")), ["[" * 100_000, "{}"], strict=True):
         file.write_text(text, encoding="utf-8")
-    found = run(folder)
+    found = run(kept, modules=compiled[0])
 
     assert found[:2] == ["[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]", "False False"]
     assert any("was damaged on disk" in line for line in found)
