@@ -18,7 +18,8 @@ settings.load_profile("trunnion")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the slow ones."""
     here = Path(__file__).parent
-    slow = [here / name for name in SLOW]
+    places = {here / name for name in SLOW}
+    slow = {path for path in {item.path for item in items} if not places.isdisjoint((path, *path.parents))}
     for item in items:
-        if any(item.path.is_relative_to(place) for place in slow):
+        if item.path in slow:
             item.add_marker(pytest.mark.slow)

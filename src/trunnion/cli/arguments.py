@@ -1,7 +1,8 @@
 """The arguments of the command line."""
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from importlib import import_module
 from typing import Any, cast
 
@@ -87,6 +88,20 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
 
     Ends the process with exit code 2 and a usage line when they cannot be understood.
     """
+    parser, commands = _parsers()
+    arguments, unknown = parser.parse_known_args(list(argv))
+    if unknown:
+        commands[arguments.command].error(_not_expected(unknown, arguments.command))
+    if getattr(arguments, "dialect", None) and "settings" in arguments:
+        if "dialect" in dict(arguments.settings):
+            parser.error("--dialect and --set dialect=… are the same: give one of them")
+        arguments.settings = [*arguments.settings, ("dialect", arguments.dialect)]
+    return arguments
+
+
+@cache
+def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentParser]]:
+    """The parser of the command line, and those of the commands."""
     parser = argparse.ArgumentParser(
         prog="trunnion", description="CL files to proven NC programs for five-axis machine tools."
     )
@@ -104,14 +119,7 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
-    arguments, unknown = parser.parse_known_args(list(argv))
-    if unknown:
-        commands.choices[arguments.command].error(_not_expected(unknown, arguments.command))
-    if getattr(arguments, "dialect", None) and "settings" in arguments:
-        if "dialect" in dict(arguments.settings):
-            parser.error("--dialect and --set dialect=… are the same: give one of them")
-        arguments.settings = [*arguments.settings, ("dialect", arguments.dialect)]
-    return arguments
+    return parser, commands.choices
 
 
 def _add_post(parser: argparse.ArgumentParser) -> None:

@@ -6,6 +6,7 @@ What these cannot express is code, in the writer module of the control's family.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
@@ -225,7 +226,7 @@ class Control:
 
         A number that a template prints must not print as 0 unless it is 0.
         """
-        formats = [self.formats[number_format] for field, number_format in self._printed_fields() if field == name]
+        formats = [self.formats[number_format] for number_format in self._printing_formats(name)]
         rule = self.setting_rule(name)
         if not rule.allows(text):
             return rule.cure()
@@ -242,14 +243,14 @@ class Control:
     def setting_rule(self, name: str) -> SettingRule:
         """Return what a setting may be; a setting that a template prints with a number format is a number."""
         rule = self.setting_rules.get(name, SettingRule())
-        if rule.is_number or name not in {field for field, _ in self._printed_fields()}:
+        if rule.is_number or not self._printing_formats(name):
             return rule
         return SettingRule(SettingKind.NUMBER)
 
-    def _printed_fields(self) -> set[tuple[str, str]]:
-        """Name and format of each number in the templates."""
-        fields = {field for template in self.templates.values() for field in template.fields()}
-        return {(name, number_format) for name, number_format in fields if number_format in self.formats}
+    def _printing_formats(self, name: str) -> set[str]:
+        """The formats in which templates print a number of this name."""
+        fields = chain.from_iterable(template.fields() for template in self.templates.values())
+        return {number_format for field, number_format in fields if field == name and number_format in self.formats}
 
     def has_effect(self, setting: str) -> bool:
         """Whether a setting changes programs: a template prints it, or the writer or the planner reads it."""

@@ -9,6 +9,7 @@ a format that has inches prints it as a length in mm.
 import re
 from collections.abc import Container, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 from trunnion.controls.words import NumberFormat, WordRangeError
 from trunnion.errors import InputError, Problem
@@ -30,9 +31,9 @@ class Template:
     file: str = ""
     line: int = 0
 
-    def fields(self) -> set[tuple[str, str]]:
+    def fields(self) -> frozenset[tuple[str, str]]:
         """Return the (name, format) of every field; the format is empty where the field has none."""
-        return {(name, number_format or "") for text in self.lines for name, number_format in _FIELD.findall(text)}
+        return _fields(self.lines)
 
     def numbers(self) -> set[tuple[str, str]]:
         """Return the (number, format) of every field that is a number."""
@@ -91,6 +92,11 @@ class Template:
             raise InputError(
                 Problem(self.file, self.line, f"setting {name} is {value!r}", f"write a number: setting {name}=0.5")
             ) from None
+
+
+@lru_cache(maxsize=1024)  # each setting of a control asks for those of all templates
+def _fields(lines: tuple[str, ...]) -> frozenset[tuple[str, str]]:
+    return frozenset((name, number_format or "") for text in lines for name, number_format in _FIELD.findall(text))
 
 
 def without_fields(text: str) -> str:

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final, TypedDict, Unpack, overload
 
@@ -96,7 +96,9 @@ class Table:
 
     def files(self) -> list[str]:
         """Every file that a value of this table comes from, sorted."""
-        return sorted(set(_files(self.content)))
+        found: set[str] = set()
+        _add_files(self.content, found)
+        return sorted(found)
 
     @property
     def _values(self) -> dict[str, LocatedValue]:
@@ -320,15 +322,14 @@ def _plain(content: LocatedValue) -> object:
     return content.value
 
 
-def _files(content: LocatedValue) -> Iterator[str]:
-    yield content.file
-    if isinstance(content.value, dict):
-        for item in content.value.values():
-            yield from _files(item)
-    elif isinstance(content.value, list):
-        for item in content.value:
+def _add_files(content: LocatedValue, files: set[str]) -> None:
+    """Add the file of a value and those of the values in it."""
+    files.add(content.file)
+    value = content.value
+    if isinstance(value, dict | list):
+        for item in value.values() if isinstance(value, dict) else value:
             if isinstance(item, LocatedValue):
-                yield from _files(item)
+                _add_files(item, files)
 
 
 def _finite(value: object) -> float | None:
