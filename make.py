@@ -8,13 +8,14 @@ python3 make.py package    build the wheel and the sdist in dist, and try both i
 python3 make.py run ...    run a program of the environment, such as pytest
 """
 
+import hashlib
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import venv
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -28,11 +29,14 @@ def program_of(environment: Path, name: str) -> Path:
     return environment / ("Scripts" if os.name == "nt" else "bin") / name
 
 
-def run(*command: str | Path, environment: Path = HOME) -> None:
+def run(*command: str | Path, environment: Path = HOME, variables: Mapping[str, str] | None = None) -> None:
     """Run a program of an environment from the project's folder; end with its exit code when it fails."""
     print("$", *command, flush=True)
     name, *arguments = command
-    done = subprocess.run([str(program_of(environment, str(name))), *map(str, arguments)], cwd=HERE, check=False)
+    done = subprocess.run(
+        [str(program_of(environment, str(name))), *map(str, arguments)],
+        cwd=HERE, check=False, env={**os.environ, **(variables or {})},
+    )  # fmt: skip
     if done.returncode:
         sys.exit(done.returncode)
 
@@ -53,12 +57,18 @@ def install(*what: str | Path, environment: Path = HOME) -> None:
 
 
 def set_up(what: str) -> None:
-    """Create the environment once, and install this checkout into it."""
+    """Create the environment once, and install this checkout into it, again if ``pyproject.toml`` has changed."""
     if sys.version_info < (3, 11):  # noqa: UP036 - people start this file with whatever Python they have
         sys.exit("Trunnion needs Python 3.11 or later; this is " + sys.version.split()[0])
     create(HOME)
+    installed, asked = HOME / "installed.txt", hashlib.sha256((HERE / "pyproject.toml").read_bytes()).hexdigest()
+    before = installed.read_text(encoding="utf-8").split() if installed.exists() else []
+    if before[:1] == [asked] and what in before:
+        return
     install("--editable", what)
     run("python", "-m", "compileall", "-q", "src")  # an editable package is not byte-compiled when it is installed
+    same = before if before[:1] == [asked] else [asked]
+    installed.write_text(" ".join([*same, what]), encoding="utf-8")
 
 
 def sample() -> None:
@@ -118,7 +128,7 @@ def build() -> None:
     shutil.rmtree(dist, ignore_errors=True)
     run("python", "-m", "build", "--outdir", dist)
     (wheel,), (sdist,) = dist.glob("*.whl"), dist.glob("*.tar.gz")
-    try_out(sdist, sys.executable)
+    try_out(sdist, sys.executable, {"NUMBA_DISABLE_JIT": "1"})  # its wheel was built from it: that one compiles kernels
     for python in (sys.executable, *other_pythons()):
         try_out(wheel, python)
 
@@ -134,13 +144,14 @@ def works(python: str) -> bool:
     return not subprocess.run([python, "--version"], capture_output=True, check=False).returncode
 
 
-def try_out(archive: Path, python: str) -> None:
+def try_out(archive: Path, python: str, variables: Mapping[str, str] | None = None) -> None:
     """Install an archive into a new environment, with the newest packages that it allows, and post the sample."""
     with tempfile.TemporaryDirectory() as folder:
         environment, output = Path(folder, "environment"), Path(folder, "blade.mpf")
         subprocess.run([python, "-m", "venv", str(environment)], check=True)
         install(archive, environment=environment)
-        run("trunnion", "post", SAMPLE, "--machine", "yl569", "--output", output, environment=environment)
+        post = ("trunnion", "post", SAMPLE, "--machine", "yl569", "--output", output)
+        run(*post, environment=environment, variables=variables)
         print(f"{archive.name}, {python}: {len(output.read_bytes())} bytes of NC")
 
 

@@ -7,6 +7,9 @@ from hypothesis import HealthCheck, settings
 
 from tests.support.slow import SLOW
 
+#: Files and folders of the slow ones.
+PLACES = {Path(__file__).parent / name for name in SLOW}
+
 # Kernels compile at their first call, and machines are busy: no test depends on time. What a random machine makes
 # impossible is left out by ``assume``, and some draws of machines leave much out.
 settings.register_profile(
@@ -15,11 +18,14 @@ settings.register_profile(
 settings.load_profile("trunnion")
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not even import the slow ones where they are left out."""
+    return True if config.getoption("markexpr") == "not slow" and collection_path in PLACES else None
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the slow ones."""
-    here = Path(__file__).parent
-    places = {here / name for name in SLOW}
-    slow = {path for path in {item.path for item in items} if not places.isdisjoint((path, *path.parents))}
+    slow = {path for path in {item.path for item in items} if not PLACES.isdisjoint((path, *path.parents))}
     for item in items:
         if item.path in slow:
             item.add_marker(pytest.mark.slow)

@@ -92,7 +92,7 @@ def test_the_seeds_are_read(folder: Path, dialect: str) -> None:
     assert judge(SEEDS[dialect], folder, count=True)
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(head=st.sampled_from(sorted(SEEDS)), lines=st.lists(st.sampled_from(LINES), max_size=12), cut=st.integers(0, 30))
 def test_statements_of_all_dialects_among_each_other_are_read_or_refused(
     folder: Path, head: str, lines: list[str], cut: int

@@ -31,7 +31,7 @@ def test_a_mangled_definition_is_a_machine_or_refused(folder: Path, seed: int) -
         oracle.judge_definition(mangle(rng.choice(LIBRARY), LIBRARY, rng), folder)
 
 
-@settings(max_examples=150)
+@settings(max_examples=60)
 @given(text=st.text(alphabet="[]{}=\"'#.,axis_nme019-+einf\n ", max_size=200))
 def test_random_letters_of_the_language_are_refused(folder: Path, text: str) -> None:
     assert oracle.judge_definition(text.encode(), folder) is None

@@ -6,6 +6,7 @@ long as it gives a reason and leaves no program.
 
 import io
 from contextlib import redirect_stderr, redirect_stdout
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -31,10 +32,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_control_moves_every_machine(name: str, control: str, path: str, folder: Path) -> None:
     pair = pair_of(control, name, folder)
     family, asked = FAMILIES[path]
+    drawn = count()
 
     @FEW
     @given(st.composite(family)(pair.machine))
     def every(text: str) -> None:
+        if next(drawn) == 0 and not meets_simplest(name, control, list(FAMILIES).index(path)):
+            return
         done = posted(text, pair, folder, asked)
         reasons = REFUSED.get(pair.family)
         if reasons is not None and path in reasons and not (path.startswith("simultaneous") and stands(text, pair)):
@@ -45,6 +49,11 @@ def test_every_control_moves_every_machine(name: str, control: str, path: str, f
             check_proven(done, pair, asked)
 
     every()
+
+
+def meets_simplest(name: str, control: str, path: int = 0) -> bool:
+    """Whether a pair also has the simplest path, which is drawn first: a third of each machine's and control's."""
+    return (shipped_machines().index(name) + CONTROLS.index(control) + path) % 3 == 0
 
 
 def stands(text: str, pair: Pair) -> bool:
@@ -61,9 +70,13 @@ def test_all_cycles_that_a_control_has_are_proven(name: str, control: str, folde
     if refused is None:
         refused = {mode: "" for mode in CYCLES if posted(simplest(mode), pair, folder, ()).code}
 
+    drawn = count()
+
     @FEW
     @given(st.composite(cycles([mode for mode in CYCLES if mode not in refused]))(pair.machine))
     def every(text: str) -> None:
+        if next(drawn) == 0 and not meets_simplest(name, control):
+            return
         check_proven(posted(text, pair, folder, ()), pair, ())
 
     every()

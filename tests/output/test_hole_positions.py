@@ -177,7 +177,7 @@ def test_a_way_too_low_is_seen_by_the_proof(tmp_path: Path) -> None:
 HEIGHTS = st.tuples(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0))
 
 
-@settings(max_examples=200, derandomize=True)
+@settings(max_examples=80, derandomize=True)
 @given(HEIGHTS, HEIGHTS)
 def test_the_lowest_place_of_a_way_is_that_of_all_its_places(
     one: tuple[float, float], other: tuple[float, float]
@@ -188,7 +188,7 @@ def test_the_lowest_place_of_a_way_is_that_of_all_its_places(
 
 
 @pytest.mark.parametrize("name", sinumeriks())
-@settings(max_examples=10, derandomize=True, phases=[Phase.explicit, Phase.generate])
+@settings(max_examples=6, derandomize=True, phases=[Phase.explicit, Phase.generate])
 @given(
     words=statements().map(lambda words: re.sub("RTRCTO,[^,]*,", "", words).replace("RAPTO", "RTRCTO,25,RAPTO")),
     share=st.tuples(st.floats(0.2, 0.8), st.floats(0.2, 0.8)),

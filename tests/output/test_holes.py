@@ -186,7 +186,7 @@ POINTS = st.lists(st.tuples(*[st.floats(-40.0, 40.0)] * 3), min_size=1, max_size
 
 
 @pytest.mark.parametrize("name", sinumeriks())
-@settings(max_examples=12, derandomize=True)
+@settings(max_examples=6, derandomize=True)
 @given(
     words=st.lists(statements(), min_size=1, max_size=3),
     shares=st.lists(SHARES, min_size=1, max_size=3),

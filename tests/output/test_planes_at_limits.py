@@ -54,7 +54,7 @@ def at_limit(model: Machine, high: bool, first: float, twist: float) -> Toolpath
     return Toolpath("part.cls", (top, replace(side, frame=frame)))
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(
     st.sampled_from(NAMES),
     st.booleans(),

@@ -66,7 +66,7 @@ def digit(name: str) -> float:
     return 10.0 ** -CONTROLS[name].number_formats(three_axis=False)["angle"].decimals
 
 
-@settings(max_examples=120)
+@settings(max_examples=50)
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     tilt=st.floats(-6.0, -1.5).map(lambda power: 10.0**power),

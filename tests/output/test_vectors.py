@@ -61,7 +61,7 @@ def wound(machine: Machine, rotary: Floats) -> Floats:
     return found
 
 
-@sized(max_examples=60)
+@sized(max_examples=25)
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS)
 def test_axes_stand_where_rotary_words_would_have_them(
     tmp_path_factory: pytest.TempPathFactory, name: str, moves: Moves

@@ -43,7 +43,7 @@ def any_arc(draw: st.DrawFn) -> tuple[Operation, float, float]:
     return arc_operation(start, end, centre, normal, turns), radius, sweep + 2 * np.pi * turns
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=25)
 @given(any_arc(), st.sampled_from([0.001, 0.01, 0.1]))
 def test_lines_for_an_arc_keep_the_chord_tolerance(case: tuple[Operation, float, float], tolerance: float) -> None:
     operation, radius, sweep = case

@@ -147,14 +147,14 @@ def check_plan(name: str, variant: str, path: Moves, options: PlanOptions) -> No
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@settings(deadline=None, max_examples=14, phases=[Phase.generate])
+@settings(deadline=None, max_examples=6, phases=[Phase.generate])
 @given(st.sampled_from(NAMES), st.sampled_from(sorted(MACHINES)), st.data())
 def test_with_tcp(family: str, name: str, variant: str, data: st.DataObject) -> None:
     check_plan(name, variant, data.draw(paths(family)), PlanOptions())
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@settings(deadline=None, max_examples=8, phases=[Phase.generate])
+@settings(deadline=None, max_examples=4, phases=[Phase.generate])
 @given(st.sampled_from(NAMES), st.sampled_from(sorted(MACHINES)), st.sampled_from([0.001, 0.01, 0.1]), st.data())
 def test_without_tcp(family: str, name: str, variant: str, tolerance: float, data: st.DataObject) -> None:
     check_plan(name, variant, data.draw(paths(family)), PlanOptions(tcp=False, tip_tolerance=tolerance))

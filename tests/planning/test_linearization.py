@@ -104,7 +104,7 @@ def divided(
     )
 
 
-@settings(deadline=None, max_examples=60, phases=[Phase.generate])
+@settings(deadline=None, max_examples=25, phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     st.lists(st.tuples(steps, leans), min_size=2, max_size=5),
@@ -156,7 +156,7 @@ def fewest(
     return int(count[-1]) if np.isfinite(count[-1]) else nodes
 
 
-@settings(deadline=None, max_examples=30, phases=[Phase.generate])
+@settings(deadline=None, max_examples=15, phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     st.lists(st.tuples(steps, leans), min_size=2, max_size=3),

@@ -49,7 +49,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 paths = smooth_paths(25.0) | smooth_paths(100.0) | smooth_paths(3.0) | short_paths(12)
 
 
-@settings(max_examples=250)
+@settings(max_examples=80)
 @given(name=st.sampled_from(sorted(MACHINES)), moves=paths)
 def test_plans_are_proven(name: str, moves: Moves, folder: Path) -> None:
     machine, toolpath = MACHINES[name], toolpath_of(moves)
@@ -65,7 +65,7 @@ def test_plans_are_proven(name: str, moves: Moves, folder: Path) -> None:
     assert (rotary <= high + HALF_DIGIT).all()
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     tilt=st.floats(3.0, 29.0),

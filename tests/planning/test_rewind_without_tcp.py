@@ -122,7 +122,7 @@ def test_the_proof_checks_the_tip_during_a_turn(fault: str, asked: bool, tmp_pat
         assert found.passed is passes, [str(c) for c in found.checks if not c.passed]
 
 
-@settings(deadline=None, max_examples=20, phases=[Phase.generate])
+@settings(deadline=None, max_examples=10, phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     st.floats(3.0, 29.0),

@@ -36,7 +36,7 @@ kinds = st.sampled_from([Kind.LINEAR, Kind.LINEAR, Kind.RAPID])
 rough = st.lists(st.tuples(steps, lean, lean, kinds), min_size=2, max_size=4)
 
 
-@settings(deadline=None, max_examples=60, phases=[Phase.generate])
+@settings(deadline=None, max_examples=25, phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     rough,
@@ -93,7 +93,7 @@ def smooth(form: str, turns: float, tilt: float, n: int) -> tuple[Floats, Floats
     return np.round(tip, 5), axis
 
 
-@settings(deadline=None, max_examples=25, phases=[Phase.generate])
+@settings(deadline=None, max_examples=12, phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     st.sampled_from(["round", "over the pole", "spiral"]),
@@ -121,7 +121,7 @@ def test_smooth_paths_also_past_the_pole_and_over_several_turns(
 # With TCP
 
 
-@settings(deadline=None, max_examples=25, phases=[Phase.generate])
+@settings(deadline=None, max_examples=12, phases=[Phase.generate])
 @given(st.sampled_from(NAMES), rough, st.sampled_from([0.01, 0.1, 1.0]))
 def test_with_tcp_points_keep_the_tool_axis_if_there_is_a_tolerance(
     name: str, path: list[tuple[tuple[float, float, float], float, float, Kind]], tolerance: float

@@ -59,7 +59,7 @@ def test_operations_are_matched_each_within_its_own_limits(folder: Path) -> None
     assert failed(START + upright + FOOT + START.replace("OP1", "OP2") + helix + FOOT, "hs664rt", folder) == []
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(
     name=st.sampled_from(["hs664rt", "dmu65", "yl569", "xyzac_trt"]),
     rise=st.sampled_from([0.0, 9e-6, 1.1e-5, 1e-4, 1e-3, 0.01]),

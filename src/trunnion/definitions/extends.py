@@ -3,6 +3,7 @@
 import re
 import tomllib
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.resources.abc import Traversable
@@ -131,8 +132,15 @@ def _is_file(location: Library) -> bool:
         return False
 
 
-def _identity(source: _DefinitionFile) -> str:
-    return str(source.location.resolve()) if isinstance(source.location, Path) else source.label
+def _identity(source: _DefinitionFile) -> object:
+    """What tells a file from others, by whatever path it was found."""
+    if not isinstance(source.location, Path):
+        return source.label
+    with suppress(OSError):
+        found = source.location.stat()
+        if found.st_ino:  # some file systems count no files
+            return found.st_dev, found.st_ino
+    return source.location.resolve()
 
 
 def _merge_ancestors(

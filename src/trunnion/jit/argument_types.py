@@ -69,6 +69,8 @@ def as_readable(value: Any) -> Any:
 
 
 def _read_only(array: Any) -> Any:
+    if array.flags.c_contiguous and not array.flags.writeable:
+        return array
     view = np.ascontiguousarray(array).view()
     view.flags.writeable = False
     return view

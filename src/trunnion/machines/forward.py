@@ -9,6 +9,7 @@ another way, and neither imports the other, so that their agreement proves both.
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -97,14 +98,15 @@ class KinematicChain(NamedTuple):
     zero: Floats
 
 
+@lru_cache(maxsize=16)  # the checks ask for single rows, and putting the chain together takes longer than these
 def kinematic_chain(machine: Machine, tool_length: float | None = None) -> KinematicChain:
-    """The chain of a machine.
+    """The chain of a machine; its arrays are read-only.
 
     tool_length  from the gauge point to the tip, mm; None: that of ``machine.tool_length``
     """
     spindle = np.array(machine.spindle_direction)
     length = (machine.tool_length or 0.0) if tool_length is None else tool_length
-    return KinematicChain(
+    chain = KinematicChain(
         rotary=np.array([axis.is_rotary for axis in machine.axes]),
         direction=np.array([[axis.sense * d for d in axis.direction] for axis in machine.axes]),
         point=np.array([axis.point for axis in machine.axes]),
@@ -112,6 +114,9 @@ def kinematic_chain(machine: Machine, tool_length: float | None = None) -> Kinem
         spindle=spindle,
         zero=np.array(machine.workpiece_zero or (0.0, 0.0, 0.0)),
     )
+    for array in chain:
+        array.setflags(write=False)
+    return chain
 
 
 @kernel(writes="tip axis")

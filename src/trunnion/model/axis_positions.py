@@ -9,6 +9,7 @@ in the low four bits, that of the second in the high four.
 """
 
 import math
+from functools import lru_cache
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -132,14 +133,14 @@ def joints_from_rows(
     Slides that cannot bring the tip there are NaN.
     """
     joints = np.empty((len(xyz), 5))
-    x, y, z = slide_columns(machine)
-    write_joints(kinematics, (x, y, z), machine.rotary, xyz_is_tip, xyz, rotary, joints)
+    write_joints(kinematics, slide_columns(machine), machine.rotary, xyz_is_tip, xyz, rotary, joints)
     return joints
 
 
-def slide_columns(machine: Machine) -> list[int]:
+@lru_cache(maxsize=16)
+def slide_columns(machine: Machine) -> tuple[int, int, int]:
     """Return the columns of the slides X, Y and Z."""
-    return [machine.column(name) for name in "XYZ"]
+    return machine.column("X"), machine.column("Y"), machine.column("Z")
 
 
 @kernel(writes="rotary")

@@ -5,6 +5,7 @@ import math
 from collections.abc import Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -79,13 +80,13 @@ class Posted:
         return [line for line in self.err.splitlines() if line.split()[1:2] == ["FAIL"]]
 
 
+@cache
 def pair_of(control: str, name: str, folder: Path) -> Pair:
     """The definition of a pair, with wide limits of the linear axes."""
     file = folder / f"{name}_{control}.toml"
-    if not file.exists():
-        slides = [axis.name for axis in load_machine(name).axes if not axis.is_rotary]
-        room = "".join(f'[[axis]]\nname = "{slide}"\nlimits_mm = [-3000, 3000]\n' for slide in slides)
-        file.write_text(f'extends = "{name}"\n[control]\nextends = "{control}"\n{room}', encoding="utf-8")
+    slides = [axis.name for axis in load_machine(name).axes if not axis.is_rotary]
+    room = "".join(f'[[axis]]\nname = "{slide}"\nlimits_mm = [-3000, 3000]\n' for slide in slides)
+    file.write_text(f'extends = "{name}"\n[control]\nextends = "{control}"\n{room}', encoding="utf-8")
     machine = load_machine(file)
     return Pair(control, file, machine, load_control(machine.control))
 

@@ -113,7 +113,7 @@ class RowRecorder:
         self._planes: dict[bytes, Floats] = {}
         self._normals: list[tuple[Ints, Floats]] = []
         self._kinematics = kinematic_parameters(machine)
-        self._slides = slide_columns(machine)
+        self._slides = list(slide_columns(machine))
         self.start = machine.home.copy()
         self.current_joints = machine.home.copy()
         self._rotary_unresolved = False

@@ -52,7 +52,7 @@ class _HomeMotions:
                 off[:, k] -= 360.0 * np.rint(off[:, k] / 360.0)
         words = np.array(_axis_words(run.machine))
         named = (run.programmed[rows][:, None] & words) != 0
-        at_home = (np.abs(off) <= home_tolerance(run, rows)) & MachinePositions(run).at(rows)
+        at_home = (np.abs(off) <= home_tolerance(run, rows)) & MachinePositions.of(run).at(rows)
         return _HomeMotions(rows, joints, before, named, at_home)
 
 

@@ -31,7 +31,7 @@ def check_order(context: ComparedContext) -> Check:
     retracts = find_rewind_retracts(run, matching.extra, tolerance)
     lawful = {row for retract in retracts for row in range(retract.first, retract.end)}
     lawful |= hole_approach_rows(run, matching.extra, match_holes(run, expected), tolerance)
-    machine_positions = MachinePositions(run)
+    machine_positions = MachinePositions.of(run)
     measurable = [row for row in matching.extra if not machine_positions.crossed(np.array([row]))[0]]
     lawful |= {row for row in measurable if _retracts_before_home(run, row, tolerance)}
     unexplained = [row for row in matching.extra if row not in lawful]

@@ -71,7 +71,7 @@ class _Judge:
         self._along, self._outward = _spindle_slide(self._machine)
         frame = self._run.state.machine_frame.rows_with(True)
         self._frame = frame[~np.isin(frame, self._retracts)]
-        self._machine_positions = MachinePositions(self._run)
+        self._machine_positions = MachinePositions.of(self._run)
         self._safe_height = self._height_of_retract()
         self._homes = self._rows_home()
         self._part: SweptPart | None = None

@@ -31,7 +31,7 @@ class MovingRows:
         self.tool = np.array(numbers, np.int64)[run.tool]
         self.start_tip, self.start_axis = (column[0] for column in forward(run.machine, run.start[None]))
         moving = self._moving(rows)
-        self._machine_positions = MachinePositions(run) if with_machine_frame else None
+        self._machine_positions = MachinePositions.of(run) if with_machine_frame else None
         if self._machine_positions is not None:
             moving |= self._machine_positions.crossed(rows)
         self.rows = rows[moving]

@@ -8,6 +8,8 @@ known. Otherwise the same number means another place: what a run says of the sli
 proves no retract, and says of no motion that nothing moves.
 """
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Ints
@@ -40,6 +42,14 @@ class MachinePositions:
             ends = [_next_in_workpiece(run, word, row + 1) for row in begins.tolist()]
             self._spans[machine.column(str(word.name))] = begins, np.array(ends, np.int64)
 
+    @staticmethod
+    def of(run: Run) -> "MachinePositions":
+        """What is known of the slides of a run, found once for all checks."""
+        found = _of_runs.get(run)
+        if found is None:
+            found = _of_runs[run] = MachinePositions(run)
+        return found
+
     def at(self, rows: Ints) -> Flags:
         """Which axes stand where machine coordinates, or a known zero, have put them after rows, (k, 5) bool.
 
@@ -53,6 +63,10 @@ class MachinePositions:
     def crossed(self, rows: Ints) -> Flags:
         """Which rows move a slide between the two kinds of coordinates: nobody knows how far, (k,) bool."""
         return np.asarray((self.at(rows) != self.at(rows - 1)).any(axis=1))
+
+
+#: Kept as long as the runs.
+_of_runs: WeakKeyDictionary[Run, MachinePositions] = WeakKeyDictionary()
 
 
 def _next_in_workpiece(run: Run, word: ProgrammedWord, first: int) -> int:

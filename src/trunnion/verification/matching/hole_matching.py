@@ -10,6 +10,7 @@ file itself has there are counted first, and skipped.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -52,12 +53,26 @@ class MatchedHole:
         return np.arange(self.first + self.shares_first_row, self.end - self.shares_last_row)
 
 
-def match_holes(run: Run, expected: ExpectedPath | None = None) -> list[MatchedHole]:
+#: What has been found, as the matching and several checks ask for it; kept as long as the run and what is expected.
+_matched: WeakKeyDictionary[Run, WeakKeyDictionary[ExpectedPath, tuple[MatchedHole, ...]]] = WeakKeyDictionary()
+
+
+def match_holes(run: Run, expected: ExpectedPath | None = None) -> Sequence[MatchedHole]:
     """The motions of a run that drill holes, hole by hole, in the order of the run.
 
     A thread that has a block of its own includes the rapid to it and, where the CL file asks for that, the rapid
     straight up after it.
     """
+    if expected is None:
+        return _search_holes(run, None)
+    known = _matched.setdefault(run, WeakKeyDictionary())
+    found = known.get(expected)
+    if found is None:
+        found = known[expected] = tuple(_search_holes(run, expected))
+    return found
+
+
+def _search_holes(run: Run, expected: ExpectedPath | None) -> list[MatchedHole]:
     holes = () if expected is None else expected.holes
     rows = np.flatnonzero((run.programmed == 0) & (run.kind != Kind.ARC))
     cycles = np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1) if len(rows) else []

@@ -87,7 +87,7 @@ PATHS = st.one_of(
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@settings(max_examples=12, suppress_health_check=SLOW, phases=[Phase.generate])
+@settings(max_examples=6, suppress_health_check=SLOW, phases=[Phase.generate])
 @given(moves=PATHS)
 def test_the_axes_stand_where_rotary_words_would_have_them(name: str, moves: Moves, folder: Path) -> None:
     model, path = machine(name), toolpath_of(moves)
@@ -151,7 +151,7 @@ def chosen(model: Machine, vector: Floats, stands: Floats, inside: bool) -> Floa
     return np.asarray(min(candidates, key=key))
 
 
-@settings(max_examples=300, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=100, suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     name=st.sampled_from(MACHINES),
     stands=st.tuples(st.floats(-100.0, 100.0), st.floats(-170.0, 170.0)),
@@ -185,7 +185,7 @@ def test_where_it_is_said_to_lead_there_the_control_chooses_so(
         assert np.abs(goes - 360.0 * np.rint(goes / 360.0)).max() < 0.3
 
 
-@settings(max_examples=150)
+@settings(max_examples=60)
 @given(
     name=st.sampled_from(MACHINES),
     stands=st.tuples(st.floats(-60.0, 60.0), st.floats(-170.0, 170.0)),

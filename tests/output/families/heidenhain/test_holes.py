@@ -128,7 +128,7 @@ HEIGHT = st.integers(0, 800).map(lambda n: n / 100.0)
 HOLE = st.tuples(*[st.integers(-6000, 6000).map(lambda n: n / 100.0)] * 2, st.sampled_from([0.0, 12.5, -4.0]))
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     mode=st.sampled_from(MODES),

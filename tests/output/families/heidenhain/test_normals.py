@@ -123,7 +123,7 @@ def summary(found: Verification) -> str:
     return next((check.summary for check in found.checks if check.key == "normal"), "")
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS, seed=st.integers(0, 99))
 def test_normals_beside_a_tool_axis_that_changes_are_proven(name: str, moves: Moves, seed: int, folder: Path) -> None:
     shift = 20.0 * np.sin(np.arange(len(moves)))[:, None] * [1.0, 0.5, 0.2]
@@ -151,7 +151,7 @@ def test_normals_beside_a_tool_axis_that_changes_are_proven(name: str, moves: Mo
     assert (f"{len(printed)} normal" in summary(found)) == bool(len(wanted))
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     share=SHARES,

@@ -60,7 +60,7 @@ def test_three_axis_operations_and_planes_stay_as_they_are(post: Post) -> None:
     assert post(HEAD + FOOT, *VECTOR) == post(HEAD + FOOT)
 
 
-@settings(max_examples=80)
+@settings(max_examples=30)
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS, way=st.sampled_from(sorted(TCP)))
 def test_what_is_planned_is_proven(name: str, moves: Moves, way: str, folder: Path) -> None:
     shift = 20.0 * np.sin(np.arange(len(moves)))[:, None] * [1.0, 0.5, 0.2]
@@ -99,7 +99,7 @@ def test_a_rewind_is_said_by_the_rotary_axes(post: Post) -> None:
     assert out.count(" LN ") > 100
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS)
 def test_axes_stand_where_rotary_words_would_have_them(name: str, moves: Moves, folder: Path) -> None:
     """The control finds the planned position for each vector; where it would not, the block has rotary words."""

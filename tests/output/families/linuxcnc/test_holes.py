@@ -146,7 +146,7 @@ def drilled(draw: st.DrawFn) -> str:
 
 
 @needs_linuxcnc
-@settings(max_examples=80)
+@settings(max_examples=30)
 @given(text=drilled())
 def test_holes_of_all_cycles_are_proven_and_linuxcnc_makes_them_as_our_reader_does(
     text: str, tmp_path_factory: pytest.TempPathFactory

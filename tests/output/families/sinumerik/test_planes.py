@@ -41,7 +41,7 @@ TIPS = st.tuples(*[st.floats(-80.0, 80.0)] * 3)
 
 @pytest.mark.parametrize("name", sinumeriks())
 @pytest.mark.parametrize("way", ["cycle800", "frames"])
-@settings(max_examples=12, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(max_examples=6, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(shares=st.lists(SHARES, min_size=1, max_size=3), tips=st.lists(TIPS, min_size=1, max_size=3), mode=st.data())
 def test_planes_are_proven_on_every_machine_that_reaches_them(
     tmp_path_factory: pytest.TempPathFactory,

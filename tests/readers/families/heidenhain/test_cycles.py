@@ -203,7 +203,7 @@ def test_cycles_drill_along_a_tilted_tool(run: Runner) -> None:
     close(drilled, -17.0 * found.axis[-1], atol=1e-9)
 
 
-@settings(max_examples=100)
+@settings(max_examples=50)
 @given(
     total=st.integers(1, 500).map(float),
     first=st.integers(1, 100).map(float),

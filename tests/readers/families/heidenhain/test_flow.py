@@ -112,7 +112,7 @@ formulas = st.recursive(
 )
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(text=formulas)
 def test_formulas_are_those_of_arithmetic(text: str) -> None:
     try:

@@ -264,7 +264,7 @@ def programs(draw: st.DrawFn) -> str:
     return "\n".join([*writer.lines, "M2", ""])
 
 
-@settings(max_examples=150, phases=[Phase.generate], suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, phases=[Phase.generate], suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(text=programs())
 def test_the_reader_makes_the_motions_that_linuxcnc_makes(text: str, tmp_path: Path) -> None:
     path = tmp_path / "part.ngc"
