@@ -16,11 +16,13 @@ import sys
 import tempfile
 import venv
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 HOME = HERE / ".venv"
 SUPPORTED = (11, 12, 13)  # minor versions of Python 3 that the wheel is tried on
+TESTS = ("python", "-m", "pytest", "-n", "auto", "--dist", "worksteal")  # neighbours share what one process has kept
 SAMPLE = Path("tests", "golden", "yl569", "3_blade_finish.cls")
 
 
@@ -93,14 +95,21 @@ def quick() -> None:
     """What to run before a commit."""
     set_up(".[test]")
     check()
-    run("python", "-m", "pytest", "-n", "auto", "-m", "not slow")
+    run(*TESTS, "-m", "not slow")
 
 
 def test() -> None:
     """Everything that CI runs."""
     set_up(".[test,docs]")
     check()
-    run("python", "-m", "pytest", "-n", "auto")
+    with ThreadPoolExecutor(1) as beside:  # each of its programs keeps one processor busy at most
+        others = beside.submit(site_and_build)
+        run(*TESTS)
+        others.result()
+
+
+def site_and_build() -> None:
+    """The site, then the archives."""
     site()
     build()
 

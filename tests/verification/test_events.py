@@ -1,6 +1,8 @@
 """Dwells, stops, coolant, radius compensation and tool lengths on a machine of each family, and faults in them."""
 
+import shutil
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -46,18 +48,34 @@ MACHINES = {
 Proving = Callable[..., set[str]]
 
 
-@pytest.fixture
-def posted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[[str, str], Path]:
-    """Post the text of an operation for a machine; it must be proven."""
+@pytest.fixture(scope="module")
+def once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], Path]:
+    """Post the text of an operation for a machine, once for all tests that ask; it must be proven."""
 
+    @cache
     def post(machine: str, text: str) -> Path:
-        (tmp_path / "part.cls").write_text(CL_HEAD + text + CL_FOOT, encoding="utf-8")
-        out = tmp_path / "part.nc"
-        assert main(["post", str(tmp_path / "part.cls"), "--machine", machine, "--output", str(out)]) == 0
-        capsys.readouterr()
-        return out
+        folder = tmp_path_factory.mktemp("posted")
+        cl, program = folder / "part.cls", folder / "part.nc"
+        cl.write_text(CL_HEAD + text + CL_FOOT, encoding="utf-8")
+        assert main(["post", str(cl), "--machine", machine, "--output", str(program)]) == 0
+        return folder
 
     return post
+
+
+@pytest.fixture
+def posted(
+    once: Callable[[str, str], Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> Callable[[str, str], Path]:
+    """A test's own copy of a CL file and its program."""
+
+    def copied(machine: str, text: str) -> Path:
+        for file in once(machine, text).iterdir():
+            shutil.copy(file, tmp_path)
+        capsys.readouterr()
+        return tmp_path / "part.nc"
+
+    return copied
 
 
 @pytest.fixture
