@@ -6,6 +6,7 @@ import pytest
 
 from tests.support.locations import DOCS, YL569
 from trunnion.cli import main
+from trunnion.cli.arguments import parse_arguments
 from trunnion.controls.loading import shipped_controls
 
 PROGRAM = str(YL569 / "2_hub_rough.expected.mpf")
@@ -55,3 +56,11 @@ def test_no_page_names_the_zero_by_another_key() -> None:
     for page in Path(DOCS).rglob("*.md"):
         rest = page.read_text(encoding="utf-8").replace("`spindle_point_mm`, `workpiece_zero_mm` | vectors", "")
         assert "workpiece_zero_mm" not in rest, page.name
+
+
+def test_a_command_line_leaves_nothing_for_the_next_one() -> None:
+    post = ["post", "a.cls", "--machine", "yl569"]
+    more = parse_arguments([*post, "--set", "tool=7", "--with", "a.spf", "--dialect", "apt"])
+    again = parse_arguments(post)
+    assert (more.settings, more.subprograms) == ([("tool", "7"), ("dialect", "apt")], ["a.spf"])
+    assert (again.settings, again.subprograms, again.dialect) == ([], [], None)

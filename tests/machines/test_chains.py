@@ -17,6 +17,7 @@ from trunnion.machines import (
     load_machine,
     shipped_machines,
 )
+from trunnion.machines.forward import kinematic_chain
 from trunnion.machines.inverse import POLE, SLIDES_DEPENDENT, UNREACHABLE, solve_point, solve_slides
 from trunnion.machines.machine import Vector
 
@@ -240,3 +241,11 @@ def test_no_rows_in_give_no_rows_out() -> None:
 
 def test_status_bits_are_apart() -> None:
     assert len({UNREACHABLE, POLE, SLIDES_DEPENDENT, UNREACHABLE | POLE, POLE | SLIDES_DEPENDENT}) == 5
+
+
+def test_the_chain_of_a_machine_is_put_together_once_and_for_all() -> None:
+    machine = load_machine("yl569")
+    chain = kinematic_chain(machine)
+    assert kinematic_chain(machine) is chain
+    assert not any(array.flags.writeable for array in chain)
+    assert (kinematic_chain(machine, 50.0).tip_at_zero != chain.tip_at_zero).any()

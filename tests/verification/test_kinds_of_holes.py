@@ -4,8 +4,13 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from tests.support.verifying import CL_FOOT, CL_HEAD
 from trunnion.cli import main
+from trunnion.model.run import Run
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.matching import hole_matching
+from trunnion.verification.matching.hole_matching import MatchedHole
 
 HOLES = """RAPID
 GOTO/0,0,30
@@ -53,3 +58,20 @@ def test_a_cycle_of_another_kind_is_a_fault(
     assert main(["verify", str(program), "--machine", machine, "--cl", str(cl)]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert "holes" in [line.split()[0] for line in lines if line.split()[1:2] == ["FAIL"]]
+
+
+def test_the_holes_of_a_run_are_searched_for_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The matching and several checks ask for them, and each run has its own."""
+    searched: list[Run] = []
+    search = hole_matching._search_holes
+
+    def counted(run: Run, expected: ExpectedPath | None) -> list[MatchedHole]:
+        searched.append(run)
+        return search(run, expected)
+
+    monkeypatch.setattr(hole_matching, "_search_holes", counted)
+    cl, program = tmp_path / "part.cls", tmp_path / "part.nc"
+    cl.write_text(CL_HEAD + HOLES.format(cycle=DRILL) + CL_FOOT, encoding="utf-8")
+    assert trunnion.post(cl, machine="xyzac_trt", output=program).passed
+    assert trunnion.verify(program, machine="xyzac_trt", cl=cl).passed
+    assert len(searched) == len(set(searched)) == 2
