@@ -8,7 +8,7 @@ Frame:  the program's: the coordinate system of the first operation that moves, 
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -94,15 +94,16 @@ class ExpectedPath:
             file = toolpaths[0].file if toolpaths else "CL file"
             raise InputError(Problem(file, 0, "there is no motion in it to compare with", "output the toolpath again"))
         frame = Frame() if absolute else moving[0][1].frame
-        limits = _by_operation(tolerances, [transform_to_frame(frame, whole) for _, whole in moving])
+        limits = _by_operation(tolerances, len(moving))
         sections: list[Section] = []
         found: list[Hole] = []
         hole_ends: list[int] = []
         first = 0
         spindle: ExpectedSpindle | None = None
         tool = ExpectedTool(None)
-        for (path, whole), limit in zip(moving, limits, strict=True):
+        for (path, whole), limit_of in zip(moving, limits, strict=True):
             placed = transform_to_frame(frame, whole)
+            limit = limit_of(placed)
             if whole.frame != frame:  # points of another coordinate system have the noise of turning
                 limit = replace(limit, tip=limit.tip + TURNING_NOISE)
             operation, hole_rows = without_holes(placed)
@@ -240,13 +241,16 @@ class ExpectedPath:
 
 
 def _by_operation(
-    tolerances: Tolerances | Sequence[Tolerances] | Callable[[Operation], Tolerances], operations: list[Operation]
-) -> list[Tolerances]:
-    """Return the tolerances of each operation."""
-    if isinstance(tolerances, Tolerances):
-        return [tolerances] * len(operations)
+    tolerances: Tolerances | Sequence[Tolerances] | Callable[[Operation], Tolerances], count: int
+) -> list[Callable[[Operation], Tolerances]]:
+    """Return how to get the tolerances of each operation."""
     if callable(tolerances):
-        return [tolerances(operation) for operation in operations]
-    if len(tolerances) != len(operations):
-        raise ValueError(f"{len(tolerances)} tolerances for {len(operations)} operations")
-    return list(tolerances)
+        return [tolerances] * count
+    each = [tolerances] * count if isinstance(tolerances, Tolerances) else list(tolerances)
+    if len(each) != count:
+        raise ValueError(f"{len(each)} tolerances for {count} operations")
+    return [partial(_given, tolerance) for tolerance in each]
+
+
+def _given(tolerances: Tolerances, operation: Operation) -> Tolerances:
+    return tolerances
