@@ -114,7 +114,8 @@ def _placed(mutation: Mutation, failed: list[Check], run: Run, first: set[int]) 
     """How near the failed checks are to the fault."""
     motions = run.line[run.line >= mutation.line][:1].tolist()
     changes = [e.line for e in run.events if e.kind == "tool_change" and e.line >= mutation.line][:1]
-    shows = {line + k for line in (*first, *motions, *changes) for k in (-1, 0, 1)} | _uses(mutation)
+    shows = {line + k for line in (*first, *motions, *changes) for k in (-1, 0, 1)}
+    shows |= _uses(mutation) | _assigned_without_definition(mutation)
     right = {"BLOCK": {mutation.line}, "NEXT": {mutation.line - 1, mutation.line + 1}, "SHOWS": shows}
     for what, lines in right.items():
         near = tuple(check.key for check in failed if any(place.nc_line in lines for place in check.places))
@@ -127,6 +128,18 @@ def _uses(mutation: Mutation) -> set[int]:
     """Lines of the program that use a variable which the line of the fault sets."""
     names = re.findall(r"(\b_\w+)=", mutation.lines[mutation.line - 1]) if mutation.line <= len(mutation.lines) else []
     return {k for k, line in enumerate(mutation.lines, 1) for name in names if re.search(rf"{name}\b(?!=)", line)}
+
+
+def _assigned_without_definition(mutation: Mutation) -> set[int]:
+    """Lines that set variables before a DEF: that is where a lost definition shows."""
+    defined: set[str] = set()
+    found = set()
+    for k, line in enumerate(mutation.lines, 1):
+        if re.search(r"\bDEF\b", line):
+            defined |= set(re.findall(r"\b_\w+", line))
+        elif set(re.findall(r"(\b_\w+)=", line)) - defined:
+            found.add(k)
+    return found
 
 
 def first_difference(one: Run, two: Run) -> set[int] | None:
