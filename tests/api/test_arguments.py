@@ -70,7 +70,8 @@ WRONG: list[tuple[Callable[..., Any], dict[str, Any], dict[str, list[Any]]]] = [
         CONVERT,
         {
             "nc": [None, 5],
-            "machine": [None],
+            "machine": [5],
+            "dialect": ["apt", None, 5],
             "output": [io.StringIO(), 3],
             "subprograms": ["abc"],
             "zero": [("a", 2, 3)],

@@ -1,4 +1,4 @@
-"""Conversion: an NC program back to a toolpath, and out again as a CL file or for another machine."""
+"""Conversion: an NC program back to a toolpath, and out again as a CL file or for another machine; CL to CL."""
 
 import io
 from collections.abc import Iterable, Mapping, Sequence
@@ -7,7 +7,8 @@ from pathlib import Path
 
 from trunnion import conversion, readers
 from trunnion.api import kernels
-from trunnion.api.arguments import check_observer, check_path, check_paths
+from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths
+from trunnion.api.converting_cl import convert_cl, write_and_prove
 from trunnion.api.input_files import definition_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
@@ -16,7 +17,7 @@ from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
 from trunnion.api.settings import Settings, control_setting_faults, set_up_machine
 from trunnion.api.targets import OutputLike, open_target, written_text
-from trunnion.cl.write import write_cl
+from trunnion.cl.writers import WRITERS
 from trunnion.controls import Control, load_control
 from trunnion.controls.vocabulary import INCH
 from trunnion.conversion import Conversion
@@ -34,7 +35,7 @@ _MOST_NAMED = 20
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ConvertResult:
-    """A program that was converted.
+    """A program, or a CL file, that was converted.
 
     toolpath  what it makes the tool do
     settings  what it states and a toolpath has no place for, as ``trunnion.post`` takes it
@@ -70,9 +71,10 @@ class ConvertResult:
 def convert(
     nc: FilePath,
     *,
-    machine: MachineLike,
+    machine: MachineLike | None = None,
     to_machine: MachineLike | None = None,
     to_cl: bool = False,
+    dialect: str = "clsf",
     output: OutputLike = None,
     subprograms: Sequence[FilePath] = (),
     zero: str | Iterable[float] | None = None,
@@ -81,16 +83,19 @@ def convert(
     force: bool = False,
     observer: Observer = SILENT,
 ) -> ConvertResult:
-    """Convert an NC program to a CL file, or post it for another machine and prove it.
+    """Convert an NC program to a CL file, or post it for another machine and prove it; or a CL file to another dialect.
 
     Parameters
     ----------
     nc
-        The program.
+        The program; without a machine, a CL file of any dialect that ``read_cl`` reads.
     machine
-        The machine that it is for: a name, a path or a ``Machine``.
+        The machine that it is for: a name, a path or a ``Machine``. None: ``nc`` is a CL file.
     to_machine, to_cl
         One of both: the machine for which it is posted, or True for a CL file.
+    dialect
+        What the CL file is written in: ``"clsf"``, ``"catia"`` or ``"ncl"``. It is read back and compared before it
+        appears.
     output
         File of the result, or a binary stream; None: the result has the text. Never a file that is read.
     subprograms
@@ -100,7 +105,8 @@ def convert(
     tool_length
         Length of the tool there, gauge point to tip, mm.
     settings
-        In place of what the program states; for the other machine as ``trunnion.post`` takes them.
+        In place of what the program states; for the other machine as ``trunnion.post`` takes them. Between CL files:
+        ``cl_units`` and ``dialect`` of the one that is read, ``units`` of the one that is written.
     force
         Convert what was understood, and write a program that must not run; its head says so.
     observer
@@ -116,7 +122,8 @@ def convert(
     InputError
         When a file or an argument cannot be used, or there is no motion at the part.
     RefusedError
-        When the program has words that are not understood, or when the new one must not run; nothing is written.
+        When the program has words that are not understood, or when the new one must not run, or when a CL file would
+        read back otherwise; nothing is written.
 
     Examples
     --------
@@ -131,6 +138,14 @@ def convert(
     if (to_machine is None) is not to_cl:
         what, cure = "is given with to_cl" if to_cl else "is None", "give either to_machine or to_cl=True"
         raise InputError(argument_problem("to_machine", what, cure))
+    check_choice("dialect", dialect, tuple(WRITERS))
+    if machine is None:
+        _refuse_for_cl(to_machine=to_machine, subprograms=others, zero=zero, tool_length=tool_length, force=force)
+        with open_target(output, inputs=[program]) as target:
+            toolpath, remarks = convert_cl(program, target, dialect, settings, observer)
+        return ConvertResult(toolpath, {}, remarks, None, target.path, target.memory)
+    if dialect != "clsf" and not to_cl:
+        raise InputError(argument_problem("dialect", "is given with to_machine", "leave it out, or give to_cl=True"))
     source = as_machine(machine)
     target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
     control = load_control(source.control)
@@ -151,13 +166,23 @@ def convert(
             if run.state.inches.values[-1] and control.settings.get("units") != INCH:
                 carried["units"] = INCH
             comments = [f"--set {key}={value}" for key, value in carried.items()]
-            converter.report(write_cl(converted.toolpath, target.files.main, comments=comments))
+            converter.report(write_and_prove(converted.toolpath, target, dialect, comments=comments))
             posted = None
         else:
             job = _with_settings(job, carried)
             posted = post_toolpaths([converted.toolpath], job, target, observer)
     problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
+
+
+def _refuse_for_cl(**given: object) -> None:
+    """Refuse arguments that are about NC programs."""
+    if given["to_machine"] is not None:
+        what, cure = "is None", "give the machine that the NC program is for; post writes the program of a CL file"
+        raise InputError(argument_problem("machine", what, cure))
+    if name := next((name for name, value in given.items() if value), ""):
+        what, cure = "has no meaning for a CL file", "leave it out, or give the machine that the NC program is for"
+        raise InputError(argument_problem(name, what, cure))
 
 
 def _with_settings(job: PostJob, carried: Mapping[str, str]) -> PostJob:

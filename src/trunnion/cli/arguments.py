@@ -39,6 +39,9 @@ class _Setting(argparse.Action):
 #: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
 DIALECTS = ("clsf", "ncl", "solidworks", "catia", "fusion", "apt")
 
+#: Those that are written.
+WRITTEN_DIALECTS = ("clsf", "catia", "ncl")
+
 
 def _tolerance(text: str) -> float:
     try:
@@ -201,12 +204,15 @@ def _add_diff(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_convert(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="NC", help="NC program")
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that the program is for")
+    parser.add_argument("file", metavar="NC|CL", help="NC program; without --machine, a CL file")
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that the program is for")
     _add_subprograms(parser, "it")
     into = parser.add_mutually_exclusive_group(required=True)
     into.add_argument("--to-cl", action="store_true", help="write a CL file")
     into.add_argument("--to-machine", metavar="NAME_OR_FILE", help="write a program for this machine")
+    parser.add_argument(
+        "--dialect", choices=WRITTEN_DIALECTS, dest="to_dialect", help="what the CL file is written in; clsf"
+    )
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the program's own machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool there, gauge point to tip")
     parser.add_argument("--output", metavar="FILE|-|FOLDER", help="result; without it a file of that name here")

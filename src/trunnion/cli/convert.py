@@ -1,10 +1,11 @@
-"""``trunnion convert``: an NC program back to a toolpath, and out again as a CL file or for another machine."""
+"""``trunnion convert``: an NC program or a CL file to a toolpath, and out again as a CL file or for another machine."""
 
 import argparse
 import shlex
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Final
 
 from trunnion.api.converting import convert
 from trunnion.api.reading import load_machine
@@ -12,18 +13,23 @@ from trunnion.cli.terminal import ConversionTerminal, output_folder, output_plac
 from trunnion.controls import load_control
 from trunnion.wording import counted
 
+#: Extensions of CL files by their dialects.
+_CL_EXTENSIONS: Final = {"clsf": ".cls", "catia": ".aptsource", "ncl": ".ncl"}
+
 
 def run(arguments: argparse.Namespace) -> int:
     """Convert one program; 1 if what came of it is forced."""
-    machine = load_machine(arguments.machine)
+    machine = load_machine(arguments.machine) if arguments.machine else None
     to_machine = load_machine(arguments.to_machine) if arguments.to_machine else None
-    extension = ".cls" if to_machine is None else load_control(to_machine.control).extension
+    dialect = arguments.to_dialect or "clsf"
+    extension = _CL_EXTENSIONS[dialect] if to_machine is None else load_control(to_machine.control).extension
     target = _target_file(arguments, extension)
     converted = convert(
         arguments.file,
         machine=machine,
         to_machine=to_machine,
         to_cl=arguments.to_cl,
+        dialect=dialect,
         output=output_place(target),
         subprograms=arguments.subprograms,
         zero=arguments.zero or None,

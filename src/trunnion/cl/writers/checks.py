@@ -1,12 +1,14 @@
 """What a CL file cannot hold of a toolpath."""
 
+import re
 from collections.abc import Iterable, Iterator
+from typing import Final
 
 import numpy as np
 
-from trunnion.cl.arcs import RADIUS_TOLERANCE, distance_from_line
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import Problem
+from trunnion.model.arcs import ARC_POINT_TOLERANCE
 from trunnion.model.toolpath import (
     CycleOn,
     From,
@@ -18,6 +20,13 @@ from trunnion.model.toolpath import (
     Toolpath,
     UnknownStatement,
 )
+
+_CONTINUATION: Final = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n[ \t]*")
+
+
+def joined(text: str) -> str:
+    """A statement with its continuation lines as one line."""
+    return _CONTINUATION.sub("", text)
 
 
 def problems_of(toolpath: Toolpath, comments: Iterable[str]) -> list[Problem]:
@@ -41,9 +50,6 @@ def is_detected_as_utf8(toolpath: Toolpath, comments: Iterable[str]) -> bool:
 
 def _operation_problems(file: str, operation: Operation) -> Iterator[Problem]:
     yield from (_bad_text(file, line, what) for line, what, text in _texts(operation) if not _is_one_line(text))
-    if ",TOOL," in operation.name:
-        what = f"operation name {operation.name!r} has ',TOOL,' in it, which ends the name in a CL file"
-        yield Problem(file, operation.line, what, "rename the operation")
     yield from _arc_problems(file, operation)
 
 
@@ -57,9 +63,10 @@ def _arc_problems(file: str, operation: Operation) -> Iterator[Problem]:
             yield Problem(file, int(moves.line[row]), what, "put a point before it")
             continue
         offsets = np.array([start, moves.tip[row]]) - arcs.centre[index]
-        off = float(np.max(np.abs(distance_from_line(offsets, arcs.normal[index]) - arcs.radius[index])))
-        if off > RADIUS_TOLERANCE:
-            what = f"an end of the arc lies {off:.3f} mm off its radius; a CL file allows {RADIUS_TOLERANCE} mm"
+        across = np.linalg.norm(np.cross(offsets, arcs.normal[index]), axis=1)
+        off = float(np.max(np.abs(across - arcs.radius[index])))
+        if off > ARC_POINT_TOLERANCE:
+            what = f"an end of the arc lies {off:.3f} mm off its radius; a CL file allows {ARC_POINT_TOLERANCE} mm"
             yield Problem(file, int(moves.line[row]), what, "make it a line, or correct its centre")
 
 
@@ -69,7 +76,8 @@ def _texts(operation: Operation) -> Iterator[tuple[int, str, str]]:
     yield operation.line, "tool name", operation.tool.name
     for event in operation.events:
         if isinstance(event, Stop | Message | Insert | UnknownStatement):
-            yield event.line, f"text of {type(event).__name__}", event.text
+            text = joined(event.text) if isinstance(event, UnknownStatement) else event.text
+            yield event.line, f"text of {type(event).__name__}", text
         elif isinstance(event, SetMode | CycleOn):
             for word in event.words if isinstance(event, SetMode) else event.mode:
                 yield event.line, "word", word

@@ -1,0 +1,80 @@
+"""Conversion of a toolpath into a CL file, which is read back and compared before it appears."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from trunnion.api.observer import Observer
+from trunnion.api.reading import read_cl
+from trunnion.api.settings import Settings, as_texts
+from trunnion.api.targets import Target
+from trunnion.cl import DIALECTS
+from trunnion.cl.read_back import read_back_problems
+from trunnion.cl.writers import WRITERS
+from trunnion.errors import InputError, Problem, RefusedError, argument_problem, merge_repeated
+from trunnion.model.toolpath import Toolpath
+
+#: Settings of a conversion from CL file to CL file, and what they may be.
+_SETTINGS: Final[Mapping[str, tuple[str, ...]]] = {
+    "cl_units": ("mm", "inch"),
+    "dialect": tuple(DIALECTS),
+    "units": ("mm", "inch"),
+}
+
+_INCH: Final = 25.4
+
+
+def write_and_prove(
+    toolpath: Toolpath, target: Target, dialect: str, *, inch: bool = False, comments: Sequence[str] = ()
+) -> tuple[Problem, ...]:
+    """Write a CL file and read it back; return what the dialect cannot say.
+
+    Raises
+    ------
+    InputError
+        If the dialect has no words for a motion, a tool or a cycle.
+    RefusedError
+        If what was written says anything else than the toolpath.
+    """
+    writer = WRITERS[dialect](toolpath, inch=inch)
+    writer.write(target.files.main, comments)
+    target.files.flush()
+    if problems := read_back_problems(writer.toolpath, target.files.path, dialect):
+        raise RefusedError(problems)
+    return merge_repeated(writer.remarks)
+
+
+def convert_cl(
+    path: Path, target: Target, dialect: str, settings: Settings | None, observer: Observer
+) -> tuple[Toolpath, tuple[Problem, ...]]:
+    """Read a CL file of any dialect, and write it in another one; return the toolpath and all warnings."""
+    texts = _checked(settings)
+    try:
+        toolpath = read_cl(path, units=texts.get("cl_units"), dialect=texts.get("dialect"), observer=observer)
+    except InputError as error:
+        if "not a CL file" not in error.problems[0].what:
+            raise
+        hint = argument_problem("machine", "is None, so that the file is a CL file", "give it for an NC program")
+        raise InputError((*error.problems, hint)) from None
+    observer.problems(toolpath.remarks)
+    inch = texts["units"] == "inch" if "units" in texts else toolpath.unit == _INCH
+    remarks = write_and_prove(toolpath, target, dialect, inch=inch)
+    observer.problems(remarks)
+    return toolpath, (*toolpath.remarks, *remarks)
+
+
+def _checked(settings: Settings | None) -> dict[str, str]:
+    """The settings as texts."""
+    texts = as_texts(settings)
+    problems = [
+        argument_problem("settings", f"{key} has no meaning between two CL files", f"leave it out, or write {allowed}")
+        for allowed in [" or ".join(_SETTINGS)]
+        for key in texts.keys() - _SETTINGS.keys()
+    ]
+    for key, choices in _SETTINGS.items():
+        if texts.get(key, choices[0]) not in choices:
+            cure = f"write {' or '.join(f'{key}={choice}' for choice in choices)}"
+            problems.append(argument_problem("settings", f"{key} is {texts[key]!r}", cure))
+    if problems:
+        raise InputError(problems)
+    return texts

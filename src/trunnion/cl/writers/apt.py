@@ -1,0 +1,247 @@
+"""What CATIA APTSOURCE and Creo NCL write alike: one coordinate system, CUTTER, flat arcs of less than a turn."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import ClassVar, Final
+
+import numpy as np
+
+from trunnion.cl.writers.half_circles import with_half_circles
+from trunnion.cl.writers.lengths import INCH
+from trunnion.cl.writers.points import number_text
+from trunnion.cl.writers.writer import UNSETTLED_SYSTEM, ClWriter
+from trunnion.errors import Problem
+from trunnion.model.arcs import FLAT_ARC
+from trunnion.model.frames import into_frame
+from trunnion.model.toolpath import (
+    CycleOff,
+    CycleOn,
+    Frame,
+    From,
+    Kind,
+    LoadTool,
+    Message,
+    Operation,
+    Phase,
+    SelectTool,
+    SetMode,
+    Tool,
+    Toolpath,
+)
+from trunnion.wording import counted
+
+#: Kinds of holes as one word, by the modes that a toolpath has.
+_CYCLES: Final = {
+    ("DRILL",): "DRILL",
+    ("FACE",): "FACE",
+    ("DRILL", "FACE"): "FACE",
+    ("DRILL", "DEEP"): "DEEP",
+    ("DRILL", "BRKCHP"): "BRKCHP",
+    ("TAP",): "TAP",
+    ("REAM",): "REAM",
+}
+
+#: Words of CYCLE that all have; any other is one of which a dialect says nothing.
+_CYCLE_WORDS: Final = frozenset({"RAPTO", "FEDTO", "RTRCTO", "STEP", "DWELL", "MMPM", "MMPR"})
+_BARE_WORDS: Final = frozenset({("RTRCTO", "AUTO"), ("DWELL", "REV")})
+
+#: A tip flatter than this, degrees from the horizontal, is that of a mill.
+_FLATTEST_DRILL: Final = 1.0
+_NO_CONE: Final = 180.0
+
+
+class AptWriter(ClWriter):
+    """Writes APT: operations follow each other without an end of their own, in one coordinate system."""
+
+    has_retract_plane: ClassVar[bool] = False
+
+    def prepared(self, toolpath: Toolpath) -> Toolpath:
+        """All operations in the coordinate system of the first one, full circles in two halves."""
+        frames = [operation.frame for operation in toolpath.operations]
+        if any(frame != frames[0] for frame in frames):
+            first = next(operation for operation in toolpath.operations if operation.frame != frames[0])
+            what = f"operations have coordinate systems of their own, and {self.title} has one"
+            self.remark(first.line, what, "all points are written in that of the first operation")
+        elif frames and frames[0] != Frame():
+            what = f"where its coordinate system (MSYS) lies is not carried over: {self.title} has no word for it here"
+            self.remark(toolpath.operations[0].line, what, "points stay as they are")
+        self._remark_system(toolpath)
+        operations, halved = [], 0
+        for operation in toolpath.operations:
+            found, count = with_half_circles(into_frame(operation, frames[0]))
+            operations.append(found)
+            halved += count
+        if halved:
+            what = f"{counted(halved, 'full circle')} become two arcs each: {self.title} tells an arc by its end"
+            self.remark(0, what, "the path stays the same")
+        self._remark_phases(operations)
+        for operation in operations:
+            self._remark_tool(operation)
+        return replace(toolpath, operations=tuple(operations))
+
+    def _remark_system(self, toolpath: Toolpath) -> None:
+        identity = tuple(np.eye(3, 4).ravel().tolist())
+        if toolpath.system not in ((), identity) and toolpath.dialect != self.name:
+            self.remark(0, UNSETTLED_SYSTEM, "points stay as they are")
+
+    def system_numbers(self) -> list[str]:
+        """The coordinate system of the file in that of the model, if it comes from a file of this dialect."""
+        if self.source.dialect != self.name:
+            return []
+        unit = INCH if self.inch else 1.0
+        return [number_text(n / unit if k % 4 == 3 else n, 10) for k, n in enumerate(self.source.system)]
+
+    def _remark_phases(self, operations: Sequence[Operation]) -> None:
+        """Say that colours are lost, which tell approach, engage and the like."""
+        for operation in operations:
+            moves = operation.moves
+            plain = np.where(moves.kind == Kind.RAPID, Phase.RAPID, Phase.CUT)
+            off = np.flatnonzero(moves.phase != plain)
+            if len(off):
+                what = f"phases of motion (colours) are not carried over: {self.title} has no words for them"
+                self.remark(int(moves.line[off[0]]), what, "points are rapids or cuts")
+                return
+
+    def _remark_tool(self, operation: Operation) -> None:
+        """Say which sizes of a tool CUTTER has no place for."""
+        tool = operation.tool
+        lost = [
+            word
+            for word, size in (("flute length", tool.flute_length), ("upper radius", tool.upper_radius))
+            if size
+        ]  # fmt: skip
+        if tool.kind in ("BARREL", "TCUTTER"):
+            lost.append(f"form {tool.kind}")
+        if tool.kind == "DRILL" and tool.corner_radius:
+            lost.append("form DRILL")
+        if tool.kind == "MILL" and not tool.corner_radius and tool.tip_angle > _FLATTEST_DRILL:
+            lost.append("form MILL of a pointed tool")
+        if "," in tool.name:
+            lost.append("name behind the comma")
+        if lost:
+            self.remark(operation.line, f"tool {tool.name}: {', '.join(lost)} not carried over", "complete it by hand")
+
+    def losses(self, operation: Operation) -> Iterator[Problem]:
+        """Helices, several turns, and cycles of which the dialect says nothing."""
+        moves, arcs = operation.moves, operation.arcs
+        starts = {event.row: np.array(event.tip) for event in operation.events if isinstance(event, From)}
+        for index, row in enumerate(arcs.row.tolist()):
+            start = starts.get(row, moves.tip[row - 1])
+            rise = abs(float((moves.tip[row] - start) @ arcs.normal[index]))
+            if rise > FLAT_ARC or arcs.full_turns[index]:
+                what = f"a helix or an arc of several turns, for which {self.title} has no words"
+                yield self._lost(int(moves.line[row]), what, "output it as lines")
+            yield from self.arc_losses(operation, index)
+        for event in operation.events:
+            if isinstance(event, CycleOn):
+                yield from self._cycle_losses(event)
+            elif isinstance(event, LoadTool) and event.row > 0:
+                what = f"{operation.name} loads a second tool, and in {self.title} that begins another operation"
+                yield self._lost(event.line, what, "begin an operation for it, with its form")
+        yield from self._feed_losses(operation)
+
+    def arc_losses(self, operation: Operation, index: int) -> Iterator[Problem]:
+        """What the dialect cannot say of a flat arc."""
+        yield from ()
+
+    def _cycle_losses(self, event: CycleOn) -> Iterator[Problem]:
+        words = [word for word, _ in event.values if word not in _CYCLE_WORDS]
+        words += [f"{word},{after}" for word, after in event.words if (word, after) not in _BARE_WORDS]
+        if ("RTRCTO", "AUTO") in event.words and not self.has_retract_plane:
+            words.append("RTRCTO,AUTO")
+        if event.mode not in _CYCLES:
+            words.append(",".join(event.mode))
+        if words:
+            what = f"CYCLE with {' and '.join(words)}, of which it is not settled how {self.title} says it"
+            yield self._lost(event.line, what, "output the holes as motion")
+        if not {"FEDTO", "RAPTO"} <= {word for word, _ in event.values}:
+            yield self._lost(event.line, "CYCLE without FEDTO or RAPTO", "write the depth and the height of the cycle")
+
+    def _feed_losses(self, operation: Operation) -> Iterator[Problem]:
+        """Points without a feed behind operations that have one: here feeds go on."""
+        moves = operation.moves
+        first = self.toolpath.operations[0]
+        bare = np.flatnonzero(np.isnan(moves.feed) & (moves.kind != Kind.RAPID))
+        if len(bare) and operation is not first:
+            what = (
+                f"{operation.name} cuts before it has a feed, and in {self.title} that of the operation before goes on"
+            )
+            yield self._lost(int(moves.line[bare[0]]), what, "write FEDRAT/ before it")
+
+    def _lost(self, line: int, what: str, cure: str) -> Problem:
+        return Problem(self.source.file, line, what, cure)
+
+    def begin(self, number: int, operation: Operation) -> list[str]:
+        """The name, the tool and the tolerances."""
+        lines = [*self.title_lines(number, operation), *self.tool_lines(operation.tool)]
+        for word, tolerance in (("INTOL", operation.intol), ("OUTTOL", operation.outtol)):
+            if tolerance is not None:
+                lines += self.statement(word, number_text(tolerance, 6))
+        return lines
+
+    def end(self, operation: Operation) -> list[str]:
+        """The end of a cycle: in a toolpath it ends with its operation."""
+        cycles = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
+        return self.statement("CYCLE", "OFF") if cycles and isinstance(cycles[-1], CycleOn) else []
+
+    def foot(self) -> list[str]:
+        """The end of the file."""
+        return ["FINI"]
+
+    def title_lines(self, number: int, operation: Operation) -> list[str]:
+        """The lines that name an operation."""
+        raise NotImplementedError
+
+    def tool_lines(self, tool: Tool) -> list[str]:
+        """The tool's form and name."""
+        lines = self.cutter([number_text(number, 6) for number in _cutter_numbers(tool)])
+        return [*lines, *([f"TPRINT/{tool.name}"] if tool.name else [])]
+
+    def cutter(self, numbers: list[str]) -> list[str]:
+        """The statement of a tool's form; none if nothing is known of it."""
+        return self.statement("CUTTER", *numbers) if numbers else []
+
+    def select_tool(self, event: SelectTool) -> list[str]:
+        """SELCTL."""
+        return self.statement("SELCTL", str(event.number))
+
+    def message(self, event: Message) -> list[str]:
+        """A text; quotation marks around a text of the program are not part of it, so that its own need others."""
+        quoted = len(event.text) > 1 and event.text[0] == event.text[-1] == "'"
+        if not event.display and quoted:
+            return [f"PPRINT/'{event.text}'"]
+        return super().message(event)
+
+    def mode(self, event: SetMode) -> list[str]:
+        """Nothing: every file of the dialect says or means it."""
+        return []
+
+    def hole_word(self, event: CycleOn) -> str:
+        """The word for the kind of a hole."""
+        return _CYCLES[event.mode]
+
+    def hole_values(self, event: CycleOn) -> dict[str, list[str]]:
+        """The numbers of a cycle by their words, a depth without its sign, feeds under FEED with their unit."""
+        found: dict[str, list[str]] = {}
+        for word, numbers in event.values:
+            texts = [number_text(number, 4) for number in numbers]
+            if word == "FEDTO":
+                found["DEPTH"] = [number_text(abs(numbers[0]), 4)]
+            elif word in ("MMPM", "MMPR"):
+                found["FEED"] = [self.feed_unit(per_rev=word == "MMPR"), *texts]
+            else:
+                found[word] = texts
+        if ("DWELL", "REV") in event.words:
+            found["DWELL"] = ["REV", *found["DWELL"]]
+        return found
+
+
+def _cutter_numbers(tool: Tool) -> list[float]:
+    """The numbers of CUTTER: d, r, e, f, a, b, h; none for an unknown tool without sizes."""
+    if tool.kind == "UNKNOWN" and not tool.diameter:
+        return []
+    d, r = tool.diameter, tool.corner_radius
+    if tool.kind == "DRILL":
+        tip = 0.5 * (_NO_CONE - tool.tip_angle) if tool.tip_angle else 0.0
+        return [d, 0.0, 0.5 * d, 0.0, tip, 0.0, tool.length]
+    return [d, r, 0.5 * d - r, r, tool.tip_angle, tool.taper_angle, tool.length]
