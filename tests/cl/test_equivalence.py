@@ -20,6 +20,8 @@ lengths = st.integers(-200_000, 200_000).map(lambda number: number / 1000)
 points = st.tuples(lengths, lengths, lengths)
 tilts = st.tuples(st.integers(0, 100), st.integers(0, 359))
 
+_STEPS = ["GOTO", "ARC", "CYCLE", "RAPID", "FEED", "COOLANT", "DWELL", "CUTCOM", "COMMENT"]
+
 
 @st.composite
 def axes(draw: st.DrawFn) -> Vector:
@@ -34,21 +36,20 @@ def axes(draw: st.DrawFn) -> Vector:
 
 @st.composite
 def arcs(draw: st.DrawFn, axis: Vector) -> list[Step]:
-    """A line to the start of an arc, and the arc, about an axis of coordinates in either sense."""
-    k = draw(st.sampled_from([0, 1, 2]))
-    normal = [0.0, 0.0, 0.0]
-    normal[k] = draw(st.sampled_from([1.0, -1.0]))
+    """A line to the start of an arc, and the arc, about an axis of coordinates or a tilted one, in either sense."""
+    first, second, third = np.roll(np.eye(3), draw(st.sampled_from([0, 1, 2])), axis=0)
+    if draw(st.booleans()):  # of whole numbers of tenths, as 3, 4 and 5 make them
+        first, third = 0.6 * first + 0.8 * third, 0.6 * third - 0.8 * first
+    sense = draw(st.sampled_from([1.0, -1.0]))
     centre, radius = draw(points), draw(st.integers(1, 50))
     begin = draw(st.integers(0, 23)) * 15
-    end = begin + normal[k] * draw(st.integers(1, 11)) * 15  # less than half a turn: "ON" is the first meeting
-    first, second = (k + 1) % 3, (k + 2) % 3
+    end = begin + sense * draw(st.integers(1, 11)) * 15  # less than half a turn: "ON" is the first meeting
     ends = []
-    for angle in (begin, end):
-        point = list(centre)
-        point[first] += radius * math.cos(math.radians(angle))
-        point[second] += radius * math.sin(math.radians(angle))
-        ends.append((round(point[0], 6), round(point[1], 6), round(point[2], 6)))
-    turn = (normal[0], normal[1], normal[2])
+    for angle in (math.radians(begin), math.radians(end)):
+        x, y, z = (np.array(centre) + radius * (math.cos(angle) * first + math.sin(angle) * second)).tolist()
+        ends.append((round(x, 6), round(y, 6), round(z, 6)))
+    i, j, k = (sense * third + 0.0).tolist()
+    turn = (i, j, k)
     return [
         Step("GOTO", point=ends[0], axis=axis),
         Step("ARC", point=ends[1], axis=axis, centre=centre, normal=turn, start=ends[0]),
@@ -67,7 +68,9 @@ def paths(draw: st.DrawFn) -> list[Step]:
         steps.append(Step("FEED", (float(draw(st.integers(10, 5000))),)))
         for _ in range(draw(st.integers(1, 4))):
             axis = draw(axes())
-            match draw(st.sampled_from(["GOTO", "ARC", "CYCLE", "RAPID", "FEED", "COOLANT", "DWELL", "CUTCOM"])):
+            match draw(
+                st.sampled_from(["GOTO", "ARC", "CYCLE", "RAPID", "FEED", "COOLANT", "DWELL", "CUTCOM", "COMMENT"])
+            ):
                 case "GOTO":
                     steps += [
                         Step("GOTO", point=point, axis=draw(axes())) for point in draw(st.lists(points, max_size=4))
@@ -88,7 +91,10 @@ def paths(draw: st.DrawFn) -> list[Step]:
                 case "DWELL":
                     steps.append(Step("DWELL", (0.5,)))
                 case "CUTCOM":
-                    steps.append(Step("CUTCOM", text=draw(st.sampled_from(["LEFT", "RIGHT", "OFF"]))))
+                    words = ["LEFT", "RIGHT", "OFF", "LEFT,XYPLAN,5", "RIGHT,YZPLAN", "ON"]
+                    steps.append(Step("CUTCOM", text=draw(st.sampled_from(words))))
+                case "COMMENT":
+                    steps.append(Step("COMMENT", text=draw(st.sampled_from(["a, b / c", "$ 5", "IT'S"]))))
         steps.append(Step("RAPID", point=draw(points), axis=draw(axes())))
     return steps
 
@@ -110,7 +116,7 @@ def content(toolpath: Toolpath) -> dict[str, Any]:
         told(event, begin + event.row)
         for operation, begin in pairs
         for event in operation.events
-        if not isinstance(event, Message)
+        if event != Message(event.row, event.line, "A TOOL")  # SolidWorks' note, which names the tool
     ]
     kind = np.concatenate([operation.moves.kind for operation in operations])
     feed = np.concatenate([operation.moves.feed for operation in operations])

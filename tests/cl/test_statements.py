@@ -130,6 +130,8 @@ def test_coolnt_keeps_its_kind(body: Body, kind: str) -> None:
     [
         ("CUTCOM/LEFT", CutterComp(0, 3, "LEFT")),
         ("CUTCOM/RIGHT,XYPLAN,5", CutterComp(0, 3, "RIGHT", "XYPLAN", 5)),
+        ("CUTCOM/LEFT,YZPLAN,ADJUST,7", CutterComp(0, 3, "LEFT", "YZPLAN", 7)),
+        ("CUTCOM/ADJUST,7,RIGHT", CutterComp(0, 3, "RIGHT", "", 7)),
         ("CUTCOM/OFF", CutterComp(0, 3, "OFF")),
         ("DELAY/1.5", Dwell(0, 3, 1.5)),
         ("DELAY/3,REV", Dwell(0, 3, 3, True)),
@@ -387,6 +389,9 @@ def test_cycle_on_repeats_the_last_cycle(body: Body) -> None:
         "COOLNT/LAVA",
         "SPINDL/ORIENT",
         "CUTCOM/ADJUST,1",
+        "CUTCOM/LEFT,1,ADJUST,2",
+        "CUTCOM/LEFT,ADJUST",
+        "CUTCOM/NORMDS",
         "OPSKIP/ON,2",
         "DELAY/1,MIN",
         "ROTATE/TABLE,90",

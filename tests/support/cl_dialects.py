@@ -14,7 +14,7 @@ Z: Final[Vector] = (0.0, 0.0, 1.0)
 class Step:
     """A tool change, a feed, a point, an arc, a cycle with its holes, or a switch; lengths in units of the file.
 
-    word     TOOL, SPINDLE, COOLANT, FEED, RAPID, GOTO, ARC, CYCLE, DWELL, CUTCOM
+    word     TOOL, SPINDLE, COOLANT, FEED, RAPID, GOTO, ARC, CYCLE, DWELL, CUTCOM, COMMENT
     numbers  of the tool (number, diameter, corner radius), speed, feed, depth, clearance, peck and so on
     point    end point; ``axis`` is the tool axis there
     """
@@ -116,6 +116,8 @@ class _Writer:
                     lines.append(f"COOLNT/{step.text}")
                 case "CUTCOM":
                     lines.append(f"CUTCOM/{step.text}")
+                case "COMMENT":
+                    lines.append(f"PPRINT/{step.text}")
                 case "DWELL":
                     lines.append(f"DELAY/{step.numbers[0]:.3f}")
                 case "RAPID":

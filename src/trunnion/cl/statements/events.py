@@ -34,6 +34,7 @@ _GEAR_RANGES = frozenset({"LOW", "MEDIUM", "HIGH", "RANGE"})
 _SPINDLE_WORDS = frozenset({"RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "DIAMTR"}) | _GEAR_RANGES
 _COOLANTS = frozenset({"ON", "OFF", "FLOOD", "MIST", "TAP", "THRU", "AIR"})
 _SIDES = frozenset({"LEFT", "RIGHT", "ON", "OFF"})
+_REGISTER = "ADJUST"
 _PLANES = frozenset({"XYPLAN", "ZXPLAN", "YZPLAN"})
 
 #: Statements about the form of a program that every program fulfils.
@@ -171,11 +172,19 @@ def cutcom(state: ReaderState, statement: Statement) -> None:
     side = [word for word in words if word in _SIDES]
     plane = [word for word in words if word in _PLANES]
     register = statement.plain_numbers()
+    if side and _names_register(statement.values):
+        words.remove(_REGISTER)
     if len(side) != 1 or len(plane) > 1 or len(words) != len(side) + len(plane) or len(register) > 1:
         state.note_unknown(statement, f"CUTCOM/{statement.listed()} is not known", *words)
         return
     number = whole_number("CUTCOM", register) if register else 0
     state.add(CutterComp(state.operation_row, state.line, side[0], plane[0] if plane else "", number))
+
+
+def _names_register(values: tuple[str | float, ...]) -> bool:
+    """Whether ADJUST,n stands among the values; ADJUST of other forms shifts work offsets."""
+    at = values.index(_REGISTER) if values.count(_REGISTER) == 1 else len(values)
+    return at + 1 < len(values) and not isinstance(values[at + 1], str)
 
 
 def delay(state: ReaderState, statement: Statement) -> None:
