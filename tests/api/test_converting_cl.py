@@ -1,5 +1,7 @@
 """CL files converted to other dialects by the library and by the command."""
 
+import gzip
+import io
 from pathlib import Path
 
 import numpy as np
@@ -79,3 +81,12 @@ def test_what_would_read_back_otherwise_is_not_written(tmp_path: Path, monkeypat
     with pytest.raises(trunnion.RefusedError, match="SpindleOff instead of SpindleOn"):
         trunnion.convert(CL, to_cl=True, dialect="ncl", output=tmp_path / "a.ncl")
     assert not list(tmp_path.iterdir())
+
+
+def test_packed_files_and_streams(tmp_path: Path, capfdbinary: pytest.CaptureFixture[bytes]) -> None:
+    packed = tmp_path / "part.cls.gz"
+    packed.write_bytes(gzip.compress(CL.read_bytes()))
+    expected = trunnion.convert(CL, to_cl=True, dialect="ncl").text
+    assert main(["convert", str(packed), "--to-cl", "--dialect", "ncl", "--output", str(tmp_path)]) == 0
+    assert (tmp_path / "part.ncl").read_text(encoding="utf-8") == expected
+    assert trunnion.convert(io.BytesIO(CL.read_bytes()), to_cl=True, dialect="ncl").text == expected

@@ -66,7 +66,7 @@ GO = "GOTO/0,0,0"
         (("UNITS/MM", "UNITS/INCHES", GO), 4, "after another unit in line 3"),
         (("FEDRAT/MMPM,1", "FEDRAT/IPM,1", GO), 4, "feeds in mm (line 3) and in inches (line 4)"),
         (("PAINT/COLOR,RED", GO), 3, "'RED'"),
-        (("NURBS/", "KNOT/0,1", "CNTRL/1,2,3", GO), 3, "NURBS is motion that cannot be read"),
+        (("NURBS/", "KNOT/0,1", "CNTRL/1,2,3", GO), 3, "NURBS without a point to begin in"),
         (("CNTRL/1,2,3", GO), 3, "CNTRL is motion"),
         (("COOLNT/O$N", GO), 3, "dollar sign within the line"),
         (("COOLNT/\x01ON", GO), 3, "unknown encoding: byte 0x01"),

@@ -4,10 +4,11 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import BinaryIO
 
 from trunnion import conversion, readers
 from trunnion.api import kernels
-from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths
+from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths, is_stream
 from trunnion.api.converting_cl import convert_cl, write_and_prove
 from trunnion.api.input_files import definition_files
 from trunnion.api.job import PostJob, prepare
@@ -69,7 +70,7 @@ class ConvertResult:
 
 
 def convert(
-    nc: FilePath,
+    nc: FilePath | BinaryIO,
     *,
     machine: MachineLike | None = None,
     to_machine: MachineLike | None = None,
@@ -88,7 +89,7 @@ def convert(
     Parameters
     ----------
     nc
-        The program; without a machine, a CL file of any dialect that ``read_cl`` reads.
+        The program; without a machine, a CL file or stream of any dialect that ``read_cl`` reads.
     machine
         The machine that it is for: a name, a path or a ``Machine``. None: ``nc`` is a CL file.
     to_machine, to_cl
@@ -134,16 +135,18 @@ def convert(
     True
     """
     check_observer(observer)
-    program, others = check_path("nc", nc), check_paths("subprograms", subprograms)
+    others = check_paths("subprograms", subprograms)
     if (to_machine is None) is not to_cl:
         what, cure = "is given with to_cl" if to_cl else "is None", "give either to_machine or to_cl=True"
         raise InputError(argument_problem("to_machine", what, cure))
     check_choice("dialect", dialect, tuple(WRITERS))
     if machine is None:
         _refuse_for_cl(to_machine=to_machine, subprograms=others, zero=zero, tool_length=tool_length, force=force)
-        with open_target(output, inputs=[program]) as target:
-            toolpath, remarks = convert_cl(program, target, dialect, settings, observer)
+        source_file = nc if is_stream(nc) else check_path("nc", nc)
+        with open_target(output, inputs=[source_file] if isinstance(source_file, Path) else []) as target:
+            toolpath, remarks = convert_cl(source_file, target, dialect, settings, observer)
         return ConvertResult(toolpath, {}, remarks, None, target.path, target.memory)
+    program = check_path("nc", nc)
     if dialect != "clsf" and not to_cl:
         raise InputError(argument_problem("dialect", "is given with to_machine", "leave it out, or give to_cl=True"))
     source = as_machine(machine)

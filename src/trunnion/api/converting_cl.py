@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
 from trunnion.api.observer import Observer
 from trunnion.api.reading import read_cl
@@ -45,9 +45,9 @@ def write_and_prove(
 
 
 def convert_cl(
-    path: Path, target: Target, dialect: str, settings: Settings | None, observer: Observer
+    path: Path | BinaryIO, target: Target, dialect: str, settings: Settings | None, observer: Observer
 ) -> tuple[Toolpath, tuple[Problem, ...]]:
-    """Read a CL file of any dialect, and write it in another one; return the toolpath and all warnings."""
+    """Read a CL file or stream of any dialect, and write it in another one; return the toolpath and all warnings."""
     texts = _checked(settings)
     try:
         toolpath = read_cl(path, units=texts.get("cl_units"), dialect=texts.get("dialect"), observer=observer)

@@ -89,7 +89,14 @@ def load_toolpaths(
     InputError
         If a file cannot be used, or there is none.
     """
-    toolpaths = as_toolpaths(cl, job.settings.get("cl_units"), strict, observer, job.settings.get("dialect"))
+    toolpaths = as_toolpaths(
+        cl,
+        job.settings.get("cl_units"),
+        strict,
+        observer,
+        job.settings.get("dialect"),
+        number_setting(job.settings, "spline_tolerance"),
+    )
     if job.control.units == INCH:
         _check_units_of(toolpaths)
     toolpaths = replace_unknown_statements(toolpaths, job.control.statements, job.machine)

@@ -43,6 +43,7 @@ def read_cl(
     units: str | None = None,
     dialect: str | None = None,
     strict: bool = False,
+    spline_tolerance: float | None = None,
     observer: Observer = SILENT,
 ) -> Toolpath:
     """Read a CL file: NX CLSF, CATIA APTSOURCE, Creo NCL, SolidWorks CAM APT or other APT CL data.
@@ -58,6 +59,9 @@ def read_cl(
         ``"apt"``; by default the content of the file decides.
     strict
         Raise an error for an unknown statement instead of keeping it with a remark.
+    spline_tolerance
+        How far the points that splines (NURBS) become may leave them between each other, 0.0001 to 1 mm; by default
+        the smaller of INTOL and OUTTOL, at most 0.01 mm, and 0.001 mm without them.
     observer
         Receives the progress, in bytes.
 
@@ -79,14 +83,20 @@ def read_cl(
     >>> toolpath.operations[0].moves.tip.shape
     (23, 3)
     """
-    toolpaths = _read(path, units, dialect, strict, observer, "path")
+    toolpaths = _read(path, units, dialect, strict, spline_tolerance, observer, "path")
     if len(toolpaths) > 1:
         raise not_one_file(toolpaths[0].file, len(toolpaths))
     return toolpaths[0]
 
 
 def _read(
-    cl: object, units: str | None, dialect: str | None, strict: bool, observer: Observer, argument: str
+    cl: object,
+    units: str | None,
+    dialect: str | None,
+    strict: bool,
+    spline_tolerance: float | None,
+    observer: Observer,
+    argument: str,
 ) -> list[Toolpath]:
     """The toolpaths of a CL file, a stream or an archive; errors name the argument."""
     path = cl if is_stream(cl) else check_path(argument, cl)
@@ -95,6 +105,8 @@ def _read(
         check_choice("units", units.lower() if isinstance(units, str) else units, ("mm", "inch"))
     if dialect is not None:
         check_choice("dialect", dialect, tuple(DIALECTS))
+    if spline_tolerance is not None and not _is_spline_tolerance(spline_tolerance):
+        raise wrong_argument("spline_tolerance", spline_tolerance, "give a number from 0.0001 to 1")
     is_plain = isinstance(path, Path) and unusable_file(path, "a CL file") is None
     size = path.stat().st_size if isinstance(path, Path) and is_plain else 0
     with observer.progress(path.name if isinstance(path, Path) else "stdin", size, "B") as advance:
@@ -105,7 +117,14 @@ def _read(
             advance(total - done)
             done = total
 
-        return read_cl_files(path, units=units, dialect=dialect, strict=strict, progress=read)
+        return read_cl_files(
+            path, units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance, progress=read
+        )
+
+
+def _is_spline_tolerance(value: object) -> bool:
+    """Whether splines may become points within this, mm."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and 1e-4 <= value <= 1.0
 
 
 def load_machine(machine: FilePath) -> Machine:
@@ -228,6 +247,7 @@ def as_toolpaths(
     strict: bool,
     observer: Observer,
     dialect: str | None = None,
+    spline_tolerance: float | None = None,
 ) -> list[Toolpath]:
     """The toolpaths of one program, as ``read_toolpaths`` has them.
 
@@ -236,7 +256,7 @@ def as_toolpaths(
     InputError
         If a file cannot be used, or the points of two files are in different coordinate systems.
     """
-    toolpaths = read_toolpaths(cl, units, strict, observer, dialect)
+    toolpaths = read_toolpaths(cl, units, strict, observer, dialect, spline_tolerance)
     if problem := other_system(toolpaths):
         raise InputError(problem)
     return toolpaths
@@ -248,8 +268,9 @@ def read_toolpaths(
     strict: bool,
     observer: Observer,
     dialect: str | None = None,
+    spline_tolerance: float | None = None,
 ) -> list[Toolpath]:
-    """Toolpaths in their order, read if they are named; ``units``, ``dialect``, ``strict`` as ``read_cl`` has them.
+    """Toolpaths in their order, read if they are named; how, is said as for ``read_cl``.
 
     Raises
     ------
@@ -264,5 +285,9 @@ def read_toolpaths(
     return [
         toolpath
         for each in cl
-        for toolpath in ([each] if isinstance(each, Toolpath) else _read(each, units, dialect, strict, observer, "cl"))
+        for toolpath in (
+            [each]
+            if isinstance(each, Toolpath)
+            else _read(each, units, dialect, strict, spline_tolerance, observer, "cl")
+        )
     ]

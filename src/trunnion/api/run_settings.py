@@ -65,6 +65,13 @@ def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
 RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
     "cl_units": _choice("Length unit of the CL files.", "mm", "inch", default="what the files say"),
     "dialect": _choice("What the CL files are written in.", *DIALECTS, default="what their content says"),
+    "spline_tolerance": RunSetting(
+        "How far the points that splines (NURBS) of CL files become may leave them between each other.",
+        "the smaller of INTOL and OUTTOL, from 0.0001 to 0.01; 0.001 without them",
+        bounds=(1e-4, 1.0),
+        form="MM",
+        example="0.002",
+    ),
     "zero": RunSetting(
         "Position of the workpiece zero on the machine, mm. With it every slide is checked against its limits; without "
         "it only whether the program fits into the travel somewhere.",

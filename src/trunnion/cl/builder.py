@@ -92,6 +92,16 @@ class CircleStatement(NamedTuple):
     angle: float = math.nan
 
 
+@dataclass(slots=True)
+class SplineStatement:
+    """A spline: the row of its first control point, its knots, and how many control points it has in as many rows."""
+
+    row: int
+    line: int
+    knots: tuple[float, ...] = ()
+    points: int = 0
+
+
 class FromStatement(NamedTuple):
     """A FROM: the tip, and the tool axis if it gives one."""
 
@@ -153,3 +163,4 @@ class OperationBuilder:
     axes: list[AxisStatement] = field(default_factory=list)
     upright: list[tuple[int, int, str]] = field(default_factory=list)
     tilted: str = ""
+    splines: list[SplineStatement] = field(default_factory=list)

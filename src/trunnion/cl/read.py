@@ -19,6 +19,7 @@ from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
+from trunnion.cl.splines import with_spline_points
 from trunnion.cl.unknown import unknown_statement_remarks
 from trunnion.encoding import EncodingDetector
 from trunnion.model.toolpath import Toolpath
@@ -61,6 +62,7 @@ def read_cl(
     units: str | None = None,
     dialect: str | None = None,
     strict: bool = False,
+    spline_tolerance: float | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
     """Read a CL file, as ``read_cl_files`` does.
@@ -73,7 +75,9 @@ def read_cl(
     sources = cl_sources(path)
     if len(sources) > 1:
         raise not_one_file(sources[0].name, len(sources))
-    return read_source(sources[0], units=units, dialect=dialect, strict=strict, progress=progress)
+    return read_source(
+        sources[0], units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance, progress=progress
+    )
 
 
 def read_cl_files(
@@ -82,6 +86,7 @@ def read_cl_files(
     units: str | None = None,
     dialect: str | None = None,
     strict: bool = False,
+    spline_tolerance: float | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> list[Toolpath]:
     """Read a CL file, or all those of an archive in the order of their names.
@@ -96,6 +101,8 @@ def read_cl_files(
         A key of ``trunnion.cl.dialects.DIALECTS``; None: told by the content of the file.
     strict
         Make an unknown statement an error instead of a remark.
+    spline_tolerance
+        How far the points that splines become may leave them between each other, mm; None: as INTOL and OUTTOL say.
     progress
         Called from time to time with the number of bytes read.
 
@@ -110,7 +117,9 @@ def read_cl_files(
         If a file cannot be used, with every problem found.
     """
     return [
-        read_source(source, units=units, dialect=dialect, strict=strict, progress=progress)
+        read_source(
+            source, units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance, progress=progress
+        )
         for source in cl_sources(path)
     ]
 
@@ -122,6 +131,7 @@ def read_source(
     units: str | None = None,
     dialect: str | None = None,
     strict: bool = False,
+    spline_tolerance: float | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
     """Read one CL file, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
@@ -149,6 +159,7 @@ def read_source(
     unit = interpreter.unit(units)
     if unit != 1.0:
         columns.tip[: scanner.rows] *= unit
+    columns = with_spline_points(interpreter.builders, columns, scanner.rows, unit, spline_tolerance, diagnostics)
     modal_axis = np.array([0.0, 0.0, 1.0])
     operations = tuple(
         assemble_operation(builder, columns, unit, modal_axis, diagnostics) for builder in interpreter.builders

@@ -40,6 +40,7 @@ _GODLTA = np.frombuffer(b"GODLTA", np.uint8)
 _GOHOME = np.frombuffer(b"GOHOME", np.uint8)
 _TLON = np.frombuffer(b"TLON", np.uint8)
 _GOFWD = np.frombuffer(b"GOFWD", np.uint8)
+_CNTRL = np.frombuffer(b"CNTRL", np.uint8)
 _RETRCT = np.frombuffer(b"RETRCT", np.uint8)
 #: Major words whose text is taken as it stands, dollar signs included.
 _TEXT_MAJORS = (
@@ -272,8 +273,8 @@ def _skip_word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
 
 @inner
 def _makes_row(data: Bytes, begin: int, end: int, apt: bool) -> bool:
-    """Whether a statement is a motion: GOTO/, GODLTA/, GOHOME/ with a number; in APT also [TLON,]GOFWD/ and RETRCT."""
-    for word in (_GOTO, _GODLTA):
+    """Whether a statement is a motion: GOTO/, GODLTA/, CNTRL/, GOHOME/ with a number; in APT also GOFWD/ and RETRCT."""
+    for word in (_GOTO, _GODLTA, _CNTRL):
         at = _skip_word(data, begin, end, word)
         if at and at < end and data[at] == _SLASH:
             return True

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 
-from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBuilder, SurfaceSpeed
+from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBuilder, SplineStatement, SurfaceSpeed
 from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.dialect import Dialect
 from trunnion.cl.statement import Statement
@@ -49,7 +49,8 @@ class ReaderState:
     first_inch_feed  line of the first feed in inches, 0 if there is none
     spindle, cycle   last ones of the operation, which SPINDL/ON and CYCLE/ON repeat
     cycle_line       line where the cycle began that is on, 0 if none is
-    spline_reported  the file has splines, and an error says so
+    spline           the last spline, which KNOT and CNTRL go on
+    spline_reported  the statements that follow belong to a spline that an error has named
     tool             the last LoadTool of the file
     cutter_row       row before which a statement last told the form of a tool, -1 if none has
     name_row         the same of its name
@@ -84,6 +85,7 @@ class ReaderState:
     spindle: SpindleOn | SurfaceSpeed | None = None
     cycle: CycleOn | None = None
     cycle_line: int = 0
+    spline: SplineStatement | None = None
     spline_reported: bool = False
     tool: LoadTool | None = None
     cutter_row: int = -1

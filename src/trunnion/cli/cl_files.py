@@ -52,30 +52,44 @@ def result_stem(file: str) -> str:
 
 
 def read_toolpaths(
-    files: Sequence[str], units: str | None, strict: bool, executor: Executor, dialect: str | None = None
+    files: Sequence[str],
+    units: str | None,
+    strict: bool,
+    executor: Executor,
+    dialect: str | None = None,
+    spline_tolerance: str = "",
 ) -> Iterator[list[Toolpath]]:
     """Toolpaths of CL files, those of one file or archive after the other.
 
-    Units, dialect and ``strict`` are as ``trunnion.cl.read_cl_files`` has them. The first file is read at once in
-    ``executor``, the others when they are due; none is kept. Returns when reading runs in its kernel, which leaves the
-    interpreter to the imports of the caller.
+    Units, dialect, ``strict`` and the tolerance of splines are as ``trunnion.cl.read_cl_files`` has them. The first
+    file is read at once in ``executor``, the others when they are due; none is kept. Returns when reading runs in its
+    kernel, which leaves the interpreter to the imports of the caller.
     """
-    scanning = Event()
+    scanning, within = Event(), _tolerance(spline_tolerance)
     inputs = cl_inputs(files)
-    begun = [executor.submit(_read, inputs[0], units, dialect, strict, scanning)]
+    begun = [executor.submit(_read, inputs[0], units, dialect, strict, within, scanning)]
     begun[0].add_done_callback(lambda _: scanning.set())
     scanning.wait()
 
     def one_by_one() -> Iterator[list[Toolpath]]:
         yield begun.pop().result()
         for file in inputs[1:]:
-            yield _read(file, units, dialect, strict, Event())
+            yield _read(file, units, dialect, strict, within, Event())
 
     return one_by_one()
 
 
+def _tolerance(text: str) -> float | None:
+    """The tolerance of splines; None for a text that the check of the settings will refuse."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if 1e-4 <= value <= 1.0 else None
+
+
 def _read(
-    file: str | BinaryIO, units: str | None, dialect: str | None, strict: bool, scanning: Event
+    file: str | BinaryIO, units: str | None, dialect: str | None, strict: bool, within: float | None, scanning: Event
 ) -> list[Toolpath]:
     path = Path(file) if isinstance(file, str) else file
     name, size = (path.name, path.stat().st_size if path.is_file() else 0) if isinstance(path, Path) else ("stdin", 0)
@@ -88,4 +102,6 @@ def _read(
             done = read
             scanning.set()
 
-        return read_cl_files(path, units=units, dialect=dialect, strict=strict, progress=so_far)
+        return read_cl_files(
+            path, units=units, dialect=dialect, strict=strict, spline_tolerance=within, progress=so_far
+        )

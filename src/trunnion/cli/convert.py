@@ -9,6 +9,7 @@ from typing import Final
 
 from trunnion.api.converting import convert
 from trunnion.api.reading import load_machine
+from trunnion.cli.cl_files import cl_inputs, result_stem
 from trunnion.cli.terminal import ConversionTerminal, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.wording import counted
@@ -25,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     extension = _CL_EXTENSIONS[dialect] if to_machine is None else load_control(to_machine.control).extension
     target = _target_file(arguments, extension)
     converted = convert(
-        arguments.file,
+        cl_inputs([arguments.file])[0] if machine is None else arguments.file,
         machine=machine,
         to_machine=to_machine,
         to_cl=arguments.to_cl,
@@ -56,6 +57,8 @@ def _post_hint(target: str, machine: str, settings: Mapping[str, str]) -> str:
 
 def _target_file(arguments: argparse.Namespace, extension: str) -> str:
     """Where the result goes."""
-    name = Path(arguments.file).stem + extension
     folder = output_folder(arguments.output)
-    return str(folder / name) if folder is not None else arguments.output
+    if folder is None:
+        return str(arguments.output)
+    stem = Path(arguments.file).stem if arguments.machine else result_stem(arguments.file)
+    return str(folder / (stem + extension))

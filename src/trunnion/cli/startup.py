@@ -20,8 +20,9 @@ def run(arguments: argparse.Namespace) -> int:
     with ThreadPoolExecutor(1) as executor:
         given = dict(arguments.settings)
         coming = read_toolpaths(
-            arguments.files, given.get("cl_units"), arguments.strict, executor, given.get("dialect")
-        )
+            arguments.files, given.get("cl_units"), arguments.strict, executor, given.get("dialect"),
+            given.get("spline_tolerance", ""),
+        )  # fmt: skip
         from trunnion.cli.post import post
 
         return post(arguments, coming)

@@ -37,7 +37,7 @@ APT_HANDLERS: Final[Mapping[str, Handler]] = {
     "REWIND": operations.ignore,
     "TPRINT": apt_tools.tprint,
     "PPRINT": events.quoted_message,
-    "NURBS": motion.unsupported,
+    **dict.fromkeys(("NURBS", "KNOT", "CNTRL"), motion.unsupported),
 }
 
 _POST: Final = "its meaning differs from post-processor to post-processor"

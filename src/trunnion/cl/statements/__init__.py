@@ -5,7 +5,7 @@ Out:    the state with what the statement says, in units of the file.
 """
 
 from trunnion.cl.dialect import Handler
-from trunnion.cl.statements import apt_tools, cycles, events, motion, operations
+from trunnion.cl.statements import apt_tools, cycles, events, motion, operations, splines
 
 __all__ = ["HANDLERS"]
 
@@ -33,9 +33,9 @@ HANDLERS: dict[str, Handler] = {
     "GOHOME": motion.gohome,
     "FROM": motion.from_,
     "CIRCLE": motion.circle,
-    "NURBS": motion.unsupported,
-    "KNOT": motion.unsupported,
-    "CNTRL": motion.unsupported,
+    "NURBS": splines.nurbs,
+    "KNOT": splines.knot,
+    "CNTRL": splines.cntrl,
     "TLON": motion.unsupported,
     "INDIRV": motion.unsupported,
     "COPY": motion.unsupported,

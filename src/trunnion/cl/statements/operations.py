@@ -49,7 +49,7 @@ def tool_path(state: ReaderState, statement: Statement) -> None:
     name, tool = (*_TOOL_WORD.split(statement.text, maxsplit=1), "")[:2]
     outside = state.builder
     state.builder = replace(
-        outside, name=name.strip(), line=state.line, first=state.row, colours=[], rapids=[], circles=[]
+        outside, name=name.strip(), line=state.line, first=state.row, colours=[], rapids=[], circles=[], splines=[]
     )
     state.builder.tool = replace(outside.tool, name=tool.strip() or outside.tool.name)
     state.in_operation = True

@@ -1,0 +1,219 @@
+"""Splines become points: as many that the chords between them stay within a tolerance.
+
+In:     operations as they were read, in which each control point has a row; lengths in mm.
+Out:    the same with the points of the splines in place of their control points, the last of which is their end.
+
+No control gets splines: their points are lines like all others.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.cl.builder import MoveColumns, OperationBuilder, SplineStatement
+from trunnion.cl.diagnostics import Diagnostics
+from trunnion.wording import counted
+
+#: Where a file states no tolerance, mm; and the largest that is taken from INTOL and OUTTOL, and the smallest.
+_TOLERANCE: Final = 0.001
+_MAX_TOLERANCE: Final = 0.01
+_MIN_TOLERANCE: Final = 1e-4
+
+#: More points than this are a mistake in the file, or would fill the memory.
+_MAX_POINTS: Final = 20_000_000
+_MAX_POINTS_OF_ONE: Final = 1_000_000
+
+_DEGREE: Final = 3
+#: How far the last knot may be off 1: knots have seven decimals.
+_AT_END: Final = 1e-6
+
+_CURE: Final = "output the spline again, or turn spline output off in the CAM system"
+
+
+def with_spline_points(
+    builders: Sequence[OperationBuilder],
+    columns: MoveColumns,
+    rows: int,
+    unit: float,
+    tolerance: float | None,
+    diagnostics: Diagnostics,
+) -> MoveColumns:
+    """The columns with points in place of control points; rows of ``builders`` are changed to theirs.
+
+    Parameters
+    ----------
+    builders
+        The operations.
+    columns
+        Tip in mm, axis and line of each row.
+    rows
+        How many there are.
+    unit
+        Length unit of the file, mm.
+    tolerance
+        Greatest distance of a spline from the chords of its points, mm; None: by INTOL and OUTTOL.
+    diagnostics
+        Takes splines that cannot be evaluated, and a remark on how many points come of the others.
+    """
+    blocks: list[tuple[int, int, Floats]] = []
+    finest, poles, total, line = math.inf, 0, 0, 0
+    for builder in builders:
+        if not builder.splines:
+            continue
+        within = _tolerance(builder, unit) if tolerance is None else tolerance
+        finest = min(finest, within)
+        for spline in builder.splines:
+            points = _points_of(builder, spline, columns, unit, within, diagnostics)
+            if points is not None:
+                blocks.append((builder.first + spline.row, spline.points, points))
+                poles, total, line = poles + spline.points, total + len(points), line or spline.line
+            if total > _MAX_POINTS:
+                what = f"splines that take more than {_MAX_POINTS} points within {within:g} mm"
+                raise diagnostics.fatal(spline.line, what, "give a coarser tolerance, or several files")
+    if not blocks or diagnostics.has_errors:
+        return columns
+    what = f"{counted(len(blocks), 'spline')} (NURBS) with {counted(poles, 'control point')}"
+    what += f" become {counted(total, 'point')} within {finest:g} mm"
+    diagnostics.remark(line, what, "setting spline_tolerance=MM makes more of them, or fewer")
+    return _insert(builders, columns, rows, blocks)
+
+
+def _tolerance(builder: OperationBuilder, unit: float) -> float:
+    """The smaller one of INTOL and OUTTOL, within limits."""
+    given = [value * unit for value in (builder.intol, builder.outtol) if value is not None and value > 0.0]
+    return min(max(min(given), _MIN_TOLERANCE), _MAX_TOLERANCE) if given else _TOLERANCE
+
+
+def _points_of(
+    builder: OperationBuilder,
+    spline: SplineStatement,
+    columns: MoveColumns,
+    unit: float,
+    tolerance: float,
+    diagnostics: Diagnostics,
+) -> Floats | None:
+    """(m, 3) the points of a spline behind its start; None if it has none, which is reported."""
+    fault = _fault(builder, spline)
+    first = builder.first + spline.row
+    if not fault:
+        starts = [start.tip for start in builder.starts if start.row == spline.row]
+        start = np.array(starts[-1]) * unit if starts else columns.tip[first - 1]
+        poles = np.vstack((start, columns.tip[first : first + spline.points]))
+        knots = np.array(spline.knots)
+        counts = _counts(poles, knots, tolerance)
+        if float(counts.sum()) <= _MAX_POINTS_OF_ONE:
+            return evaluate(poles, knots, counts.astype(np.int64))
+        fault = f"a spline that takes more than {_MAX_POINTS_OF_ONE} points within {tolerance:g} mm"
+    diagnostics.error(spline.line, fault, _CURE)
+    return None
+
+
+def _fault(builder: OperationBuilder, spline: SplineStatement) -> str:
+    """Why a spline cannot be evaluated; empty if it can."""
+    knots = spline.knots
+    if not knots or not spline.points:
+        return "NURBS without knots or without control points"
+    if not all(low < high for low, high in pairwise([0.0, *knots])):
+        return "the knots of a NURBS do not increase from 0"
+    if abs(knots[-1] - 1.0) > _AT_END:
+        return f"the last knot of a NURBS is {knots[-1]:g}, not 1"
+    degree = spline.points - len(knots) + 1
+    if degree != _DEGREE:
+        counts = f"{counted(len(knots), 'knot')} and {counted(spline.points, 'control point')}"
+        return f"NURBS with {counts}: its degree would be {degree}, and only cubic ones are known"
+    within = range(spline.row + 1, spline.row + spline.points)
+    if any(row in within for row in _rows_of(builder)):
+        return "another statement stands between the control points of a NURBS"
+    return ""
+
+
+def _rows_of(builder: OperationBuilder) -> list[int]:
+    """Rows before which something stands."""
+    rows = [row for row, _ in builder.colours] + builder.rapids + [row for row, *_ in builder.upright]
+    for each in (builder.events, builder.feeds, builder.circles, builder.starts, builder.axes):
+        rows += [one.row for one in each]
+    return rows
+
+
+def _clamped(knots: Floats) -> Floats:
+    """All knots: 0 and 1 as often as a curve that begins and ends in its control points has them."""
+    return np.concatenate((np.zeros(_DEGREE + 1), knots[:-1], np.ones(_DEGREE + 1)))
+
+
+def _counts(poles: Floats, knots: Floats, tolerance: float) -> Floats:
+    """(s,) how many chords each span takes: its second derivative is linear, and greatest at one of its ends."""
+    full = _clamped(knots)
+    first = 3.0 * np.diff(poles, axis=0) / (full[4:-1] - full[1:-4])[:, None]
+    second = 2.0 * np.diff(first, axis=0) / (full[4:-2] - full[2:-4])[:, None]
+    bend = np.linalg.norm(second, axis=1)
+    span = np.diff(np.concatenate(([0.0], knots[:-1], [1.0])))
+    return np.asarray(np.maximum(np.ceil(span * np.sqrt(np.maximum(bend[:-1], bend[1:]) / (8.0 * tolerance))), 1.0))
+
+
+def evaluate(poles: Floats, knots: Floats, counts: Ints) -> Floats:
+    """Points of a cubic spline behind its start, (m, 3).
+
+    poles   (n, 3) float64   the start and all control points
+    knots   (n - 3,) float64  increasing up to 1; 0 is left out
+    counts  (n - 3,) int64   points of each span, the last of which is its end
+    """
+    full, n = _clamped(knots), len(poles)
+    ends = np.concatenate(([0.0], knots[:-1], [1.0]))
+    spans = np.repeat(np.arange(len(counts)), counts)
+    step = np.arange(len(spans)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+    at = ends[spans] + (ends[spans + 1] - ends[spans]) * step / counts[spans]
+    base = spans + _DEGREE
+    found = [poles[base - _DEGREE + j] for j in range(_DEGREE + 1)]
+    for r in range(1, _DEGREE + 1):
+        for j in range(_DEGREE, r - 1, -1):
+            low, high = full[base - _DEGREE + j], full[base + 1 + j - r]
+            share = ((at - low) / (high - low))[:, None]
+            found[j] = (1.0 - share) * found[j - 1] + share * found[j]
+    points = np.asarray(found[_DEGREE], np.float64)
+    points[-1] = poles[n - 1]
+    return points
+
+
+def _insert(
+    builders: Sequence[OperationBuilder],
+    columns: MoveColumns,
+    rows: int,
+    blocks: Sequence[tuple[int, int, Floats]],
+) -> MoveColumns:
+    """New columns with points in place of the control points, and the builders with their rows."""
+    counts = np.ones(rows, np.int64)
+    for first, poles, points in blocks:
+        counts[first : first + poles - 1] = 0
+        counts[first + poles - 1] = len(points)
+    moved = np.concatenate(([0], np.cumsum(counts)))
+    source = np.repeat(np.arange(rows), counts)
+    new = MoveColumns.allocate(len(source))
+    new.tip[:], new.axis[:], new.line[:] = columns.tip[source], columns.axis[source], columns.line[source]
+    for first, _, points in blocks:
+        new.tip[moved[first] : moved[first] + len(points)] = points
+    for builder in builders:
+        _move_rows(builder, moved)
+    return new
+
+
+def _move_rows(builder: OperationBuilder, moved: Ints) -> None:
+    """Give an operation its new rows; ``moved`` (rows + 1,) is where each row of the file is now."""
+    first, begin = builder.first, int(moved[builder.first])
+
+    def now(row: int) -> int:
+        return int(moved[min(first + row, len(moved) - 1)]) - begin
+
+    builder.events = [replace(event, row=now(event.row)) for event in builder.events]
+    builder.feeds = [feed._replace(row=now(feed.row)) for feed in builder.feeds]
+    builder.colours = [(now(row), colour) for row, colour in builder.colours]
+    builder.rapids = [now(row) for row in builder.rapids]
+    builder.circles = [circle._replace(row=now(circle.row)) for circle in builder.circles]
+    builder.starts = [start._replace(row=now(start.row)) for start in builder.starts]
+    builder.axes = [axis._replace(row=now(axis.row)) for axis in builder.axes]
+    builder.upright = [(now(row), line, word) for row, line, word in builder.upright]
+    builder.first, builder.stop = begin, int(moved[builder.stop])

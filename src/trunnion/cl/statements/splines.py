@@ -1,0 +1,79 @@
+"""Splines of NX: NURBS, KNOT and CNTRL, a cubic B-spline from the point before it to its last control point.
+
+That it is cubic and begins in the point before it is settled by real files: each spline has two control points more
+than knots, and only so its speed is continuous. The knot 0 is not written, the knot 1 once.
+"""
+
+from typing import Final
+
+from trunnion.cl.builder import SplineStatement
+from trunnion.cl.diagnostics import StatementError
+from trunnion.cl.state import ReaderState
+from trunnion.cl.statement import Statement
+from trunnion.cl.statements import motion
+
+_CURE: Final = "output splines as NX does for three axes, or turn spline output off in the CAM system"
+
+
+def nurbs(state: ReaderState, statement: Statement) -> None:
+    """Begin a spline in the last point."""
+    state.spline = None
+    state.spline_reported = True  # until it is certain that this one can be read
+    if not state.in_operation:
+        raise StatementError("NURBS outside any operation", "write TOOL PATH/name,TOOL,tool before it")
+    if statement.values:
+        what = f"NURBS/{statement.listed()}: the spline has a degree, weights or a form whose meaning is not known"
+        raise StatementError(what, _CURE)
+    motion.refuse_in_circle(state, "NURBS")
+    if state.cycle_line:
+        what = f"NURBS within the cycle of line {state.cycle_line}, where each point is a hole"
+        raise StatementError(what, "write CYCLE/OFF before it")
+    if state.operation_row in state.builder.rapids:
+        raise StatementError("RAPID before a NURBS", "remove the RAPID")
+    if motion.current_tip(state) is None:
+        raise StatementError("NURBS without a point to begin in", "write FROM/ or GOTO/ before it")
+    state.spline_reported = False
+    state.spline = SplineStatement(state.operation_row, state.line)
+    state.builder.splines.append(state.spline)
+
+
+def knot(state: ReaderState, statement: Statement) -> None:
+    """Add knots to the spline that has begun."""
+    if state.spline_reported:
+        return
+    if state.spline is None or state.spline.points:
+        raise StatementError("KNOT without a NURBS before it", _CURE)
+    state.spline.knots += _numbers(state, statement)
+
+
+def cntrl(state: ReaderState, statement: Statement) -> None:
+    """Add a control point, in a row of its own until the spline is evaluated."""
+    if state.spline_reported:
+        return
+    if len(statement.values) == 6:
+        _give_up(state)
+        raise StatementError("CNTRL with a tool axis: what it means along a spline is not known", _CURE)
+    values = _numbers(state, statement, 3)
+    motion.write_row(state, values)
+    spline = state.spline
+    if spline is None or state.operation_row != spline.row + spline.points:
+        _give_up(state)
+        raise StatementError("CNTRL that follows neither KNOT nor another CNTRL", _CURE)
+    spline.points += 1
+
+
+def _numbers(state: ReaderState, statement: Statement, *counts: int) -> tuple[float, ...]:
+    """The numbers of a statement; without them the spline is given up."""
+    try:
+        return statement.numbers(*counts)
+    except StatementError:
+        _give_up(state)
+        raise
+
+
+def _give_up(state: ReaderState) -> None:
+    """Report no more of a spline that an error has named."""
+    state.spline_reported = True
+    if state.spline is not None:
+        state.builder.splines.remove(state.spline)
+        state.spline = None
