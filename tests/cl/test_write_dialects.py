@@ -103,6 +103,16 @@ def test_a_feed_of_the_operation_before_is_not_taken_over(dialect: str, body: Bo
 
 
 @pytest.mark.parametrize("dialect", OTHERS)
+def test_behind_gohome_the_name_goes_on(dialect: str, body: Body, tmp_path: Path) -> None:
+    one = body("INTOL/0.01", "FEDRAT/MMPM,100", "GOTO/0,0,0", "GOHOME", "RAPID", "GOTO/1,0,0", "GOHOME")
+    two = body("FEDRAT/MMPM,100", "GOTO/2,0,0")
+    back, lost = again(Toolpath("a", (one, two)), dialect, tmp_path)
+    names = [operation.name for operation in back.operations]
+    assert names == (["OP"] * 3 if dialect == "catia" else ["FEATNO 1", "FEATNO 1", "FEATNO 2"])
+    assert any("OP states no tolerance" in what for what in lost)
+
+
+@pytest.mark.parametrize("dialect", OTHERS)
 def test_coordinate_systems_become_that_of_the_first_operation(dialect: str, read: Read, tmp_path: Path) -> None:
     one = "TOOL PATH/{},TOOL,T\nMSYS/{}\nFEDRAT/MMPM,100\nGOTO/1,2,3,0,0,1\nEND-OF-PATH\n"
     text = one.format("A", "10,0,0,1,0,0,0,1,0") + one.format("B", "10,0,5,0,1,0,0,0,1")

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import ClassVar, Final
 
 import numpy as np
@@ -16,8 +17,10 @@ from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import (
     CycleOff,
     CycleOn,
+    Event,
     Frame,
     From,
+    GoHome,
     Kind,
     LoadTool,
     Message,
@@ -55,6 +58,9 @@ class AptWriter(ClWriter):
 
     has_retract_plane: ClassVar[bool] = False
 
+    _title: list[str]
+    _rows: int
+
     def prepared(self, toolpath: Toolpath) -> Toolpath:
         """All operations in the coordinate system of the first one, full circles in two halves."""
         frames = [operation.frame for operation in toolpath.operations]
@@ -75,6 +81,7 @@ class AptWriter(ClWriter):
             what = f"{counted(halved, 'full circle')} become two arcs each: {self.title} tells an arc by its end"
             self.remark(0, what, "the path stays the same")
         self._remark_phases(operations)
+        self._remark_tolerances(operations)
         for operation in operations:
             self._remark_tool(operation)
         return replace(toolpath, operations=tuple(operations))
@@ -101,6 +108,14 @@ class AptWriter(ClWriter):
                 what = f"phases of motion (colours) are not carried over: {self.title} has no words for them"
                 self.remark(int(moves.line[off[0]]), what, "points are rapids or cuts")
                 return
+
+    def _remark_tolerances(self, operations: Sequence[Operation]) -> None:
+        """Say where a tolerance goes on that an operation does not have."""
+        for before, operation in pairwise(operations):
+            pairs = ((before.intol, operation.intol), (before.outtol, operation.outtol))
+            if any(was is not None and now is None for was, now in pairs):
+                what = f"{operation.name} states no tolerance, and in {self.title} that of the operation before goes on"
+                self.remark(operation.line, what, "write INTOL/ and OUTTOL/ into it")
 
     def _remark_tool(self, operation: Operation) -> None:
         """Say which sizes of a tool CUTTER has no place for."""
@@ -173,11 +188,18 @@ class AptWriter(ClWriter):
 
     def begin(self, number: int, operation: Operation) -> list[str]:
         """The name, the tool and the tolerances."""
-        lines = [*self.title_lines(number, operation), *self.tool_lines(operation.tool)]
+        self._title = self.title_lines(number, operation)
+        self._rows = len(operation.moves)
+        lines = [*self._title, *self.tool_lines(operation.tool)]
         for word, tolerance in (("INTOL", operation.intol), ("OUTTOL", operation.outtol)):
             if tolerance is not None:
                 lines += self.statement(word, number_text(tolerance, 6))
         return lines
+
+    def event(self, event: Event) -> list[str]:
+        """The statements of an event; behind GOHOME another operation begins, which gets the same name."""
+        lines = super().event(event)
+        return [*lines, *self._title] if isinstance(event, GoHome) and event.row < self._rows else lines
 
     def end(self, operation: Operation) -> list[str]:
         """The end of a cycle: in a toolpath it ends with its operation."""

@@ -240,10 +240,6 @@ class ClWriter:
         major, *words = event.words
         return [major + (f"/{','.join(words)}" if words else "")]
 
-    def home(self) -> list[str]:
-        """Go to the machine's home."""
-        return ["GOHOME"]
-
     def event(self, event: Event) -> list[str]:
         """The statements of an event."""
         match event:
@@ -260,7 +256,7 @@ class ClWriter:
             case SetMode():
                 return self.mode(event)
             case GoHome():
-                return self.home()
+                return ["GOHOME"]
             case From():
                 return self.statement("FROM", *(self.length(value) for value in event.tip), *axis_texts(event.axis))
             case UnknownStatement():
