@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.support.cl_reading import Body, Read
+from tests.support.locations import SHARED
 from trunnion.cl import read_cl
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.write import write_cl
@@ -97,9 +98,12 @@ def test_what_only_one_dialect_cannot_say(body: Body, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("dialect", OTHERS)
-def test_a_feed_of_the_operation_before_is_not_taken_over(dialect: str, body: Body) -> None:
+def test_a_feed_of_the_operation_before_is_not_taken_over(dialect: str, body: Body, tmp_path: Path) -> None:
     first, second = body("FEDRAT/MMPM,100", "GOTO/0,0,0"), body("GOTO/1,0,0")
     assert "OP cuts before it has a feed" in refused(dialect, first, second)
+    holes = body("CYCLE/DRILL,RAPTO,3,FEDTO,-5,MMPM,10", "GOTO/1,0,0", "CYCLE/OFF")
+    for operations in ((second, second), (first, holes)):
+        again(Toolpath("a", operations), dialect, tmp_path)
 
 
 @pytest.mark.parametrize("dialect", OTHERS)
@@ -228,3 +232,13 @@ def test_a_wrong_writer_is_found(body: Body, tmp_path: Path, monkeypatch: pytest
     assert problem.line == 3
     assert "SpindleOn 10.0 CLW instead of SpindleOn 9.0 CLW" in problem.what
     assert isinstance(writer.toolpath.operations[0].events[0], SpindleOn)
+
+
+FILES = sorted(path for each in ("creo", "nx", "solidworks") for path in (SHARED / "data" / each).glob("*"))
+
+
+@pytest.mark.skipif(not FILES, reason="the files of others are not beside the project")
+@pytest.mark.parametrize("dialect", WRITERS)
+def test_real_files_read_back_in_every_dialect(dialect: str, tmp_path: Path) -> None:
+    for path in FILES:
+        again(read_cl(path), dialect, tmp_path)

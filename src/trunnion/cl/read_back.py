@@ -14,6 +14,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.cl.read import read_cl
 from trunnion.cl.writers import WRITERS
+from trunnion.cl.writers.checks import rows_with_own_feed
 from trunnion.errors import InputError, Problem
 from trunnion.model.toolpath import (
     CycleOff,
@@ -83,13 +84,14 @@ class _Rows(NamedTuple):
         begins = np.cumsum([0, *(len(operation.moves) for operation in operations)]).tolist()
         moves, arcs = [o.moves for o in operations], [o.arcs for o in operations]
         kind = np.concatenate([m.kind for m in moves])
-        feed = np.where(kind == Kind.RAPID, 0.0, np.concatenate([m.feed for m in moves]))
+        without = (kind == Kind.RAPID) | np.concatenate([rows_with_own_feed(o) for o in operations])
+        feed = np.where(without, 0.0, np.concatenate([m.feed for m in moves]))
         columns = {
             "position": np.concatenate([m.tip for m in moves]),
             "tool axis": np.concatenate([m.axis for m in moves]),
             "kind of motion": kind,
             "feed": feed,
-            "unit of the feed": np.concatenate([m.per_rev for m in moves]) & (kind != Kind.RAPID) & ~np.isnan(feed),
+            "unit of the feed": np.concatenate([m.per_rev for m in moves]) & ~without & ~np.isnan(feed),
             "arc": np.concatenate([a.row + begin for a, begin in zip(arcs, begins, strict=False)]),
             "centre of an arc": np.concatenate([a.centre for a in arcs]),
             "normal of an arc": np.concatenate([a.normal for a in arcs]),

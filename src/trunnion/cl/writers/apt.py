@@ -7,6 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from trunnion.cl.writers.checks import rows_with_own_feed
 from trunnion.cl.writers.half_circles import with_half_circles
 from trunnion.cl.writers.lengths import INCH
 from trunnion.cl.writers.points import number_text
@@ -174,14 +175,12 @@ class AptWriter(ClWriter):
 
     def _feed_losses(self, operation: Operation) -> Iterator[Problem]:
         """Points without a feed behind operations that have one: here feeds go on."""
-        moves = operation.moves
-        first = self.toolpath.operations[0]
-        bare = np.flatnonzero(np.isnan(moves.feed) & (moves.kind != Kind.RAPID))
-        if len(bare) and operation is not first:
-            what = (
-                f"{operation.name} cuts before it has a feed, and in {self.title} that of the operation before goes on"
-            )
-            yield self._lost(int(moves.line[bare[0]]), what, "write FEDRAT/ before it")
+        operations = self.toolpath.operations
+        before = operations[: next(n for n, each in enumerate(operations) if each is operation)]
+        bare = np.isnan(operation.moves.feed) & (operation.moves.kind != Kind.RAPID) & ~rows_with_own_feed(operation)
+        if bare.any() and any(not np.isnan(each.moves.feed).all() for each in before):
+            what = f"{operation.name} cuts before it has a feed, and in {self.title} the last one goes on"
+            yield self._lost(int(operation.moves.line[bare.argmax()]), what, "write FEDRAT/ before it")
 
     def _lost(self, line: int, what: str, cure: str) -> Problem:
         return Problem(self.source.file, line, what, cure)

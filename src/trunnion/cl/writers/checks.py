@@ -6,10 +6,12 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import Flags
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import Problem
 from trunnion.model.arcs import ARC_POINT_TOLERANCE
 from trunnion.model.toolpath import (
+    CycleOff,
     CycleOn,
     From,
     Insert,
@@ -27,6 +29,17 @@ _CONTINUATION: Final = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n[ \t]*")
 def joined(text: str) -> str:
     """A statement with its continuation lines as one line."""
     return _CONTINUATION.sub("", text)
+
+
+def rows_with_own_feed(operation: Operation) -> Flags:
+    """(n,) bool: holes of cycles that have a feed, so that the modal one does not count."""
+    found = np.zeros(len(operation.moves), np.bool_)
+    for event in sorted(operation.events, key=lambda event: event.row):
+        if isinstance(event, CycleOn):
+            found[event.row :] = any(word in ("MMPM", "MMPR") for word, _ in event.values)
+        elif isinstance(event, CycleOff):
+            found[event.row :] = False
+    return found
 
 
 def problems_of(toolpath: Toolpath, comments: Iterable[str]) -> list[Problem]:
