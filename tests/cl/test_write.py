@@ -13,7 +13,9 @@ from tests.support.cl_reading import Body, Read
 from tests.support.locations import YL569
 from tests.support.toolpath_strategies import OTHERS, SAYABLE, toolpaths
 from trunnion.cl import read_cl
+from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.write import write_cl
+from trunnion.cl.writers import WRITERS
 from trunnion.errors import InputError
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, From, Operation, Phase, Toolpath
 
@@ -77,6 +79,24 @@ def test_a_toolpath_written_and_read_is_the_same(tmp_path_factory: pytest.TempPa
     assert back.part == toolpath.part
     for first, second in zip(toolpath.operations, back.operations, strict=True):
         assert_same(first, second)
+
+
+@settings(deadline=None, max_examples=25)
+@given(toolpaths(SAYABLE | OTHERS), st.sampled_from(list(WRITERS)), st.booleans())
+def test_every_dialect_says_a_toolpath_whole_or_refuses_it(
+    tmp_path_factory: pytest.TempPathFactory, toolpath: Toolpath, dialect: str, inch: bool
+) -> None:
+    assume(not any(arcs_in_cycles(operation) for operation in toolpath.operations))
+    writer, sink = WRITERS[dialect](toolpath, inch=inch), io.BytesIO()
+    path = tmp_path_factory.getbasetemp() / "again"
+    try:
+        writer.write(sink)
+    except InputError:
+        assert dialect != "clsf"
+        assert sink.getvalue() == b""
+        return
+    path.write_bytes(sink.getvalue())
+    assert read_back_problems(writer.toolpath, path, dialect) == []
 
 
 @pytest.mark.parametrize("name", GOLDEN)
