@@ -77,7 +77,7 @@ def scan(
 
     data     (b,)   uint8      whole lines: ``data[stop - 1]`` is a newline
     last     the file ends at ``stop``
-    apt      comments are spans as well, since some carry statements, and GOFWD and RETRCT are motions
+    apt      comments with an arrow are statements, and GOFWD and RETRCT are motions
     line     line of the file that begins at ``start``
     row      first row of ``columns`` to write
     spans    (s, 5) int64      written from 0 on, see ``SPAN_COLUMNS``
@@ -211,8 +211,8 @@ def _find_statement(data: Bytes, at: int, stop: int, apt: bool) -> tuple[int, in
     """Begin, end, lines and mark of the statement at ``at``, without blanks and comment around it; it may be empty."""
     while _is_blank(data[at]) and data[at] != _NEWLINE:
         at += 1
-    if apt and data[at] == _DOLLAR and data[at + 1] == _DOLLAR:
-        if data[at + 2] != _MINUS or data[at + 3] != _ARROW:
+    if data[at] == _DOLLAR and data[at + 1] == _DOLLAR:
+        if not apt or data[at + 2] != _MINUS or data[at + 3] != _ARROW:
             content, end = _find_content_end(data, at, True)
             return at, content, 1, COMMENT
         at += 2  # "$$-> WORD / ..." is a statement, which may be continued

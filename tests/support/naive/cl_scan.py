@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
-MAJOR = re.compile(r"GOTO/|GODLTA/|GOHOME/[-+.0-9]")
+MAJOR = re.compile(r"GOTO/|GODLTA/|CNTRL/|GOHOME/[-+.0-9]")
 TEXT = re.compile(r"PPRINT|INSERT|DISPL|PARTNO|TPRINT|TOOLPATH|STOP|OPSTOP|REMARK")
 
 

@@ -1,13 +1,28 @@
 """NX CLSF."""
 
+import re
 from typing import Final
 
+from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import CycleWords, Dialect, marks
+from trunnion.cl.state import ReaderState
 from trunnion.cl.statements import HANDLERS
 
 _MODES: Final = (
     "DRILL", "DEEP", "BRKCHP", "CSINK", "TAP", "BORE", "DRAG", "NODRAG", "MANUAL", "FACE", "REAM", "THRU", "BACK",
 )  # fmt: skip
+
+#: What NX writes above a path whose points are those of the contour; "centerline and contact point" has both.
+_CONTOUR: Final = re.compile(r"\s*contact\b.*\bdata\s*", re.IGNORECASE)
+
+
+def _comment(state: ReaderState, text: str) -> None:
+    """A comment that says what the points are: those of the contour are no tips."""
+    if _CONTOUR.fullmatch(text):
+        what = f"$${text}: the points are those of the contour, and not those of the tool"
+        cure = "output the centre line: turn contact points off in the cutter compensation of the operation"
+        raise StatementError(what, cure)
+
 
 CLSF: Final = Dialect(
     name="clsf",
@@ -16,4 +31,5 @@ CLSF: Final = Dialect(
     handlers=HANDLERS,
     cycles=CycleWords({word: (word,) for word in _MODES}),
     in_sections=True,
+    comment=_comment,
 )
