@@ -169,6 +169,20 @@ def test_texts_names_and_registers_survive(dialect: str, read: Read, tmp_path: P
     assert lost == (["names of 1 operation become numbers: Creo NCL has no names"] if dialect == "ncl" else [])
 
 
+def test_holders_and_lengths_in_the_spindle(read: Read, tmp_path: Path) -> None:
+    text = (
+        "UNITS/MM\n$$-> CUTTER / 8\nTPRINT/MILL 8,HSK 63\nLOADTL/3,LENGTH,121.5,OSETNO,4\nFEDRAT/9,MMPM\nGOTO/1,2,3\n"
+    )
+    toolpath = read(text)
+    for dialect in OTHERS:
+        back, lost = again(toolpath, dialect, tmp_path)
+        tool, (load,) = back.operations[0].tool, back.operations[0].events
+        assert (tool.name, tool.holder, tool.set_length) == ("MILL 8", "HSK 63", 121.5)
+        assert (load.number, load.adjust) == (3, 4)  # type: ignore[attr-defined]
+        assert not any("tool" in what for what in lost)
+    assert again(toolpath, "clsf", tmp_path)[1] == ["tool MILL 8: holder, length in the spindle not carried over"]
+
+
 def test_losses_that_move_nothing_are_remarked_upon(read: Read, tmp_path: Path) -> None:
     text = (
         "TOOL PATH/A,TOOL,DRILL, LONG\nTLDATA/DRILL,6,0,50,118,35\nMSYS/1,2,3,1,0,0,0,1,0\nPAINT/COLOR,42\n"

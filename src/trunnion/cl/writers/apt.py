@@ -59,6 +59,9 @@ class AptWriter(ClWriter):
 
     has_retract_plane: ClassVar[bool] = False
 
+    #: The length of the tool in the spindle, if the operation states it.
+    set_length: list[str]
+
     _title: list[str]
     _rows: int
 
@@ -121,11 +124,13 @@ class AptWriter(ClWriter):
     def _remark_tool(self, operation: Operation) -> None:
         """Say which sizes of a tool CUTTER has no place for."""
         tool = operation.tool
-        lost = [
-            word
-            for word, size in (("flute length", tool.flute_length), ("upper radius", tool.upper_radius))
-            if size
-        ]  # fmt: skip
+        sizes = {
+            "flute length": tool.flute_length,
+            "upper radius": tool.upper_radius,
+            "extension": tool.extension,
+            "length in the spindle": 0.0 if _loads(operation) else tool.set_length,
+        }
+        lost = [word for word, size in sizes.items() if size]
         if tool.kind in ("BARREL", "TCUTTER"):
             lost.append(f"form {tool.kind}")
         if tool.kind == "DRILL" and tool.corner_radius:
@@ -189,6 +194,7 @@ class AptWriter(ClWriter):
         """The name, the tool and the tolerances."""
         self._title = self.title_lines(number, operation)
         self._rows = len(operation.moves)
+        self.set_length = [self.length(operation.tool.set_length)] if operation.tool.set_length else []
         lines = [*self._title, *self.tool_lines(operation.tool)]
         for word, tolerance in (("INTOL", operation.intol), ("OUTTOL", operation.outtol)):
             if tolerance is not None:
@@ -216,7 +222,8 @@ class AptWriter(ClWriter):
     def tool_lines(self, tool: Tool) -> list[str]:
         """The tool's form and name."""
         lines = self.cutter([number_text(number, 6) for number in _cutter_numbers(tool)])
-        return [*lines, *([f"TPRINT/{tool.name}"] if tool.name else [])]
+        names = ",".join(name for name in (tool.name, tool.holder) if name or tool.holder)
+        return [*lines, *([f"TPRINT/{names}"] if names else [])]
 
     def cutter(self, numbers: list[str]) -> list[str]:
         """The statement of a tool's form; none if nothing is known of it."""
@@ -255,6 +262,11 @@ class AptWriter(ClWriter):
         if ("DWELL", "REV") in event.words:
             found["DWELL"] = ["REV", *found["DWELL"]]
         return found
+
+
+def _loads(operation: Operation) -> bool:
+    """Whether an operation loads its tool."""
+    return any(isinstance(event, LoadTool) for event in operation.events)
 
 
 def _cutter_numbers(tool: Tool) -> list[float]:

@@ -44,8 +44,11 @@ class CatiaWriter(AptWriter):
         return [f"$$ OPERATION NAME : {operation.name}"]
 
     def load_tool(self, event: LoadTool) -> list[str]:
-        """LOADTL, with the register behind it."""
-        return self.statement("LOADTL", str(event.number), *[str(event.adjust)] * bool(event.adjust))
+        """LOADTL, with the register behind it; with a length in the spindle, the register is a couplet too."""
+        number, register = str(event.number), [str(event.adjust)] * bool(event.adjust)
+        if not self.set_length:
+            return self.statement("LOADTL", number, *register)
+        return self.statement("LOADTL", number, "LENGTH", *self.set_length, *["OSETNO", *register] * bool(register))
 
     def spindle(self, event: SpindleOn) -> list[str]:
         """The speed stands first."""

@@ -32,6 +32,12 @@ class ClsfWriter(ClWriter):
         """The toolpath as it is; a coordinate system whose meaning is not settled is lost."""
         if toolpath.system and toolpath.system != _IDENTITY:
             self.remark(0, UNSETTLED_SYSTEM, "points stay as they are")
+        for operation in toolpath.operations:
+            tool = operation.tool
+            sizes = {"holder": tool.holder, "extension": tool.extension, "length in the spindle": tool.set_length}
+            if lost := [word for word, said in sizes.items() if said]:
+                what = f"tool {tool.name}: {', '.join(lost)} not carried over"
+                self.remark(operation.line, what, f"{self.title} has no words for it")
         return toolpath
 
     def losses(self, operation: Operation) -> Iterator[Problem]:

@@ -48,6 +48,8 @@ def in_unit(operation: Operation, unit: float) -> Operation:
             length=one(tool.length),
             flute_length=one(tool.flute_length),
             upper_radius=one(tool.upper_radius),
+            extension=one(tool.extension),
+            set_length=one(tool.set_length),
         ),
         frame=replace(frame, origin=(x, y, z)),
         events=tuple(map(scaled, operation.events)),

@@ -55,8 +55,9 @@ class NclWriter(AptWriter):
         return self.statement("$$-> CUTTER", *([d] if plain else numbers))
 
     def load_tool(self, event: LoadTool) -> list[str]:
-        """LOADTL, with the register of its length."""
-        return self.statement("LOADTL", str(event.number), *["OSETNO", str(event.adjust)][: 2 * bool(event.adjust)])
+        """LOADTL, with the length in the spindle and its register."""
+        length = ["LENGTH", *self.set_length] * bool(self.set_length)
+        return self.statement("LOADTL", str(event.number), *length, *["OSETNO", str(event.adjust)] * bool(event.adjust))
 
     def cycle(self, event: CycleOn) -> list[str]:
         """A cycle in couplets; RETURN,0 is the height before it."""
