@@ -20,6 +20,7 @@ lengths = st.integers(-200_000, 200_000).map(lambda number: number / 1000)
 points = st.tuples(lengths, lengths, lengths)
 tilts = st.tuples(st.integers(0, 100), st.integers(0, 359))
 
+_COMMENTS = ["a, b / c", "$ 5", "IT'S"]
 _STEPS = ["GOTO", "ARC", "CYCLE", "RAPID", "FEED", "COOLANT", "DWELL", "CUTCOM", "COMMENT"]
 
 
@@ -94,7 +95,7 @@ def paths(draw: st.DrawFn) -> list[Step]:
                     words = ["LEFT", "RIGHT", "OFF", "LEFT,XYPLAN,5", "RIGHT,YZPLAN", "ON"]
                     steps.append(Step("CUTCOM", text=draw(st.sampled_from(words))))
                 case "COMMENT":
-                    steps.append(Step("COMMENT", text=draw(st.sampled_from(["a, b / c", "$ 5", "IT'S"]))))
+                    steps.append(Step("COMMENT", text=draw(st.sampled_from(_COMMENTS))))
         steps.append(Step("RAPID", point=draw(points), axis=draw(axes())))
     return steps
 
@@ -116,7 +117,7 @@ def content(toolpath: Toolpath) -> dict[str, Any]:
         told(event, begin + event.row)
         for operation, begin in pairs
         for event in operation.events
-        if event != Message(event.row, event.line, "A TOOL")  # SolidWorks' note, which names the tool
+        if not isinstance(event, Message) or event.text in _COMMENTS  # some dialects have notes of their own
     ]
     kind = np.concatenate([operation.moves.kind for operation in operations])
     feed = np.concatenate([operation.moves.feed for operation in operations])
