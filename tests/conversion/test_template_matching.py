@@ -5,9 +5,12 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from tests.support.klartext import CONTROLS, SIMULTANEOUS, Post
+from tests.support.posting import FOOT, HEAD
 from trunnion.cli import main
 from trunnion.controls import load_control
+from trunnion.controls.template import Template
 from trunnion.conversion.template_matching import family_value_expressions, line_patterns, match_lines
 from trunnion.machines import load_machine, shipped_machines
 
@@ -77,3 +80,36 @@ def test_what_a_family_says_now_is_one_of_its_spellings(name: str) -> None:
     for field, value in control.family.template_values(dict(control.settings), None).items():
         if isinstance(value, str):
             assert re.fullmatch(spoken[field], value)
+
+
+def test_a_part_in_double_brackets_may_be_there_or_not() -> None:
+    patterns = line_patterns(
+        [Template("program_start", ("O{program}[[ ({title})]]", "(END)"))], {}, {"program": "00001", "title": ""}, {}
+    )
+    for lines, expected in (
+        ("O07118 (FLANGE 7-1182)", {"program": "07118", "title": "FLANGE 7-1182"}),
+        ("O07118", {"program": "07118"}),
+    ):
+        values: dict[str, str] = {}
+        assert match_lines([(1, lines), (2, "(END)")], patterns, values) == {1, 2}
+        assert values == expected
+
+
+@pytest.mark.parametrize(
+    ("base", "settings"),
+    [
+        ("haas_umc750", {"program": "07118", "title": "FLANGE B"}),
+        ("matsuura_mx330", {"program": "7118", "title": "FLANGE B"}),
+        ("dmu65", {"delta_length": "0.25"}),
+    ],
+)
+def test_what_stands_in_brackets_goes_over(base: str, settings: dict[str, str], tmp_path: Path) -> None:
+    (tmp_path / "own.toml").write_text(f'extends = "{base}"\nname = "OWN"\n', encoding="utf-8")
+    (tmp_path / "part.cls").write_text(HEAD + FOOT, encoding="utf-8")
+    program = tmp_path / "part.nc"
+    trunnion.post(tmp_path / "part.cls", machine=base, settings=settings, output=program)
+    result = trunnion.convert(program, machine=base, to_machine=tmp_path / "own.toml")
+    assert {key: result.settings[key].lstrip("+") for key in settings} == settings
+    if "delta_length" in settings:
+        with pytest.raises(trunnion.RefusedError, match=r"delta_length is '.0\.25', which is not carried over"):
+            trunnion.convert(program, machine=base, to_machine="yl569")

@@ -7,15 +7,19 @@ Out:    toolpaths with the events or the lines of the definition in place of the
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Final
 
 from trunnion.cl import (
     StatementError,
+    can_be_unknown,
     events_of,
     statement_words,
     unknown_statement_errors,
     unknown_statement_remarks,
 )
+from trunnion.controls.loading import control_library
+from trunnion.definitions import resolve_extends
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Event, Insert, Operation, Toolpath, UnknownStatement
@@ -30,6 +34,26 @@ _CURE: Final = (
     "remove it, or write under [control.statements] of the machine's definition what becomes of it: a line of the"
     ' program, or "" for nothing; or under [cl.words] which known statement it is'
 )
+
+
+@lru_cache(maxsize=8)
+def check_statements(machine: Machine) -> None:
+    """Check that what a definition says of CL statements can count.
+
+    Raises
+    ------
+    InputError
+        With each entry of ``[control.statements]`` and ``[cl.words]`` whose statement is always read.
+    """
+    what, cure = "is a statement that is read: the entry would never count", "leave it out"
+    table = resolve_extends(machine.control.unread_copy(), control_library()).table("statements")
+    for name in [name for name in list(table.keys()) if not can_be_unknown(name)]:
+        table.add_problem(name, what, cure)
+    file = machine.files[-1] if machine.files else machine.key
+    words = [word for word in machine.cl_words if not can_be_unknown(word)]
+    problems = [*table.problems, *(Problem(file, 0, f"cl.words.{word} {what}", cure) for word in words)]
+    if problems:
+        raise InputError(problems)
 
 
 def replace_unknown_statements(

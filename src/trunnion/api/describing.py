@@ -11,6 +11,7 @@ from trunnion.controls import Control, load_control, shipped_controls
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.setting_rules import SettingKind
 from trunnion.controls.vocabulary import (
+    PROGRAM_MEANINGS,
     SUBPROGRAM_TEMPLATES,
     SURFACE_NORMAL_WORDS,
     TEMPLATE_ORDER,
@@ -207,7 +208,7 @@ def _describe(key: str, control: Control) -> ControlDescription:
         words=words,
         texts=tuple(TemplateDescription(name, control.templates[name].lines) for name in names),
         settings=tuple(_control_setting(control, name) for name in control.settings if control.has_effect(name)),
-        run_settings=run_settings(),
+        run_settings=tuple(setting for setting in run_settings() if setting.name not in control.settings),
     )
 
 
@@ -238,7 +239,11 @@ def _control_setting(control: Control, name: str) -> SettingDescription:
         allowed = "the number of a tool, such as 5, or its name"
     default = control.settings[name] or _method_default(control, name) or "none"
     return SettingDescription(
-        name, control.setting_meanings.get(name, ""), default, allowed, control.differs_by_operation(name)
+        name,
+        control.setting_meanings.get(name) or PROGRAM_MEANINGS.get(name, ""),
+        default,
+        allowed,
+        control.differs_by_operation(name),
     )
 
 

@@ -22,6 +22,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, SpindleOff, SpindleOn
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
+from trunnion.readers.program.known_words import HOME, begins_with
 
 #: Columns of a run that a text must leave as they are, and what each of them is.
 _COLUMNS: Final = {
@@ -107,7 +108,8 @@ class _Trial:
             with_text = self._run(texts)
         except InputError as error:
             return f"the program cannot be run with it: {error.problems[0].what}"
-        return _difference(without, with_text)
+        words = [word for word in readers.known_words(self._program.machine) if HOME not in word.effects]
+        return _difference(without, with_text, words)
 
     def _run(self, texts: Sequence[str]) -> Run:
         sink = BytesIO()
@@ -147,8 +149,8 @@ def _first_feed(feed: Floats) -> float:
     return float(known[0]) if len(known) else 100.0
 
 
-def _difference(without: Run, with_text: Run) -> str:
-    """What a run does that another one does not, in words; empty if nothing."""
+def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWord]) -> str:
+    """What a run does that another one does not, in words; words ``declared`` to do nothing do nothing."""
     known = {diagnostic.text for diagnostic in without.errors}
     unknown = [diagnostic.text for diagnostic in with_text.errors if diagnostic.text not in known]
     if len(with_text) > len(without) and not unknown:
@@ -160,8 +162,12 @@ def _difference(without: Run, with_text: Run) -> str:
         return f"nobody can say what it does: {unknown[0]}"
     if len(with_text) < len(without):
         return "it ends the program"
-    more = _events(with_text) - _events(without)
-    return f"it changes {', '.join(sorted({kind for kind, _ in more}))}" if more else ""
+    more = {
+        "where the machine is" if kind == "known" else kind
+        for kind, text in _events(with_text) - _events(without)
+        if not (kind == "known" and begins_with(declared, text))
+    }
+    return f"it changes {', '.join(sorted(more))}" if more else ""
 
 
 def _first_change(without: Run, with_text: Run) -> str:

@@ -1,6 +1,6 @@
 """Planning: toolpaths to motions on a machine, before any text is written."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from trunnion import planning, readers
@@ -129,6 +129,19 @@ def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
     return replace(found, motions=tuple(with_tool_retract(motion, distance) for motion in found.motions))
 
 
+def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]) -> list[Problem]:
+    """Warnings of settings for one operation by a name that several have."""
+    names = [name for _, name in cut]
+    cure = "rename one of them in the CL file if it must not have it"
+    return [
+        Problem(
+            file, 0, f"{names.count(name)} operations are called {name}: all have its settings", cure, Severity.WARNING
+        )
+        for name, file in {name: file for file, name in reversed(cut) if name in own}.items()
+        if names.count(name) > 1
+    ]
+
+
 def plan_program(
     toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer = SILENT
 ) -> tuple[Program, Plan, list[Problem]]:
@@ -157,6 +170,7 @@ def plan_program(
         if len(operation.moves)
     ]
     check_operation_names(job.own_settings, job.settings, [name for _, name in cut])
+    observer.problems(_settings_of_twins(job.own_settings, cut))
     planned = _planned(toolpaths, job)
     observer.planned(planned)
     file = toolpaths[0].file

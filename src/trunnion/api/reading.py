@@ -15,8 +15,10 @@ from trunnion.api.arguments import (
     is_stream,
     wrong_argument,
 )
+from trunnion.api.cl_statements import check_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.cl import DIALECTS, not_one_file, other_system, read_cl_files
+from trunnion.controls.definition_files import is_control_file
 from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
 from trunnion.errors import InputError, Problem, unusable_file
@@ -152,7 +154,14 @@ def load_machine(machine: FilePath) -> Machine:
     >>> [axis.name for axis in trunnion.load_machine("yl569").axes]
     ['C', 'B', 'X', 'Y', 'Z']
     """
-    return machines.load_machine(str(check_path("machine", machine)))
+    path = str(check_path("machine", machine))
+    try:
+        return machines.load_machine(path)
+    except InputError:
+        if not (path.endswith(".toml") and is_control_file(Path(path))):
+            raise
+        cure = "give a machine whose [control] extends it"
+        raise InputError(Problem(path, 0, "defines a control, not a machine", cure)) from None
 
 
 def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[FilePath] = ()) -> Run:
@@ -238,6 +247,7 @@ def as_machine(machine: MachineLike, argument: str = "machine") -> Machine:
     """The machine itself, loaded if it is named; errors name the argument."""
     loaded = machine if isinstance(machine, Machine) else load_machine(check_path(argument, machine))
     readers.check_reading(loaded)
+    check_statements(loaded)
     return loaded
 
 

@@ -96,6 +96,9 @@ def check_settings(settings: Mapping[str, str], control: Control, machine: Machi
         for key, setting in RUN_SETTINGS.items()
         if key in settings and setting.choices and settings[key] not in setting.choices
     ]
+    if settings.get("preselect") == "on" and not control.family.tool_preselection("1"):
+        cure = f"leave it out: it is not known how {control.name} selects a tool before it is called"
+        problems.append(_problem("preselect", "on", cure))
     known = {**control.settings, **settings}
     problems += [
         _problem(key, known[key], f"{cure}{_meaning(key, control)}")
@@ -119,6 +122,8 @@ def control_setting_faults(settings: Mapping[str, str], control: Control, machin
         offsets = readers.reader_of(machine).work_offsets
         faults += [] if offsets.value_of(settings["work_offset"]) else [("work_offset", f"write {offsets.form}")]
     effective = {**control.settings, **{key: value for key, value in settings.items() if value}}
+    beside = {key: control.missing_beside(key, effective) for key in judged if settings[key]}
+    faults += [(key, f"write {name} too: without it no line has it") for key, name in beside.items() if name]
     found = dict(faults)
     return faults + [(key, cure) for key, cure in control.family.validate_settings(effective) if key not in found]
 

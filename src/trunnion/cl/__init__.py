@@ -12,7 +12,7 @@ from trunnion.cl.unknown import (
     unknown_statement_remarks,
     unknown_statements,
 )
-from trunnion.cl.word_events import events_of
+from trunnion.cl.word_events import can_be_unknown, events_of
 
 #: Kernels that every file needs.
 KERNELS = (scan, fill_modal_axes)
@@ -21,6 +21,7 @@ __all__ = [
     "DIALECTS",
     "KERNELS",
     "StatementError",
+    "can_be_unknown",
     "events_of",
     "not_one_file",
     "other_system",

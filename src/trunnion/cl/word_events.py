@@ -2,9 +2,12 @@
 
 from trunnion.cl.builder import MoveColumns, SurfaceSpeed
 from trunnion.cl.diagnostics import Diagnostics, StatementError
+from trunnion.cl.dialect import Dialect
+from trunnion.cl.dialects import DIALECTS
 from trunnion.cl.dialects.clsf import CLSF
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import parse
+from trunnion.cl.unknown import statement_words
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, UnknownStatement
 
 _CURE = "write a statement that switches something or carries text, such as COOLNT/AIR, or nothing"
@@ -34,3 +37,41 @@ def events_of(text: str) -> tuple[Event, ...]:
     if diagnostics.has_errors or not events or any(isinstance(event, _ABOUT_ROWS) for event in events):
         raise StatementError(f"{text} is not an event by itself", _CURE)
     return tuple(events)
+
+
+def can_be_unknown(text: str) -> bool:
+    """Whether there can be statements that an entry of a definition stands for: some that the reader does not know.
+
+    An entry stands for statements with its words at least, and only if it has the words that are not known.
+    """
+    major, words = statement_words(text)
+    return any(_can_be_unknown(dialect, major, words) for dialect in DIALECTS.values())
+
+
+def _can_be_unknown(dialect: Dialect, major: str, words: frozenset[str]) -> bool:
+    if major not in dialect.handlers:
+        return True
+    listed = ",".join(sorted(words))
+    alone = _leaves_unknown(dialect, f"{major}/{listed}" if listed else major, words)
+    if alone is not None:
+        return alone
+    # The words stand behind numbers that a statement of the kind must have, or before them.
+    others = ",".join(sorted(words - {"TOOL"}))
+    return any(
+        _leaves_unknown(dialect, f"{major}/{values}", words)
+        for values in (f"1,{listed}", f"{listed},1", f"TOOL,1,{others}")
+    )
+
+
+def _leaves_unknown(dialect: Dialect, text: str, words: frozenset[str]) -> bool | None:
+    """Whether reading a statement leaves an unknown one that an entry with these words stands for; None: an error."""
+    state = ReaderState(MoveColumns.allocate(0), Diagnostics(""), dialect, strict=False, in_operation=True)
+    try:
+        statement = parse(text.encode(), "utf-8")
+        dialect.handlers[statement.major](state, statement)
+        failed = state.diagnostics.has_errors
+    except StatementError:
+        failed = True
+    events = state.builder.events
+    found = any(isinstance(event, UnknownStatement) and words.issuperset(event.words) for event in events)
+    return None if failed and not found else found

@@ -242,7 +242,9 @@ class Control:
 
     def setting_rule(self, name: str) -> SettingRule:
         """Return what a setting may be; a setting that a template prints with a number format is a number."""
-        rule = self.setting_rules.get(name, SettingRule())
+        words = PROGRAM_CHOICES.get(name, ())
+        by_default = SettingRule(SettingKind.CHOICE, one_of=words, optional=False) if words else SettingRule()
+        rule = self.setting_rules.get(name, by_default)
         if rule.is_number or not self._printing_formats(name):
             return rule
         return SettingRule(SettingKind.NUMBER)
@@ -261,6 +263,14 @@ class Control:
         if fields or setting in PRINTED_SETTINGS:
             return bool(printed & {setting, *fields})
         return True
+
+    def missing_beside(self, setting: str, settings: Mapping[str, str]) -> str:
+        """Return a setting without which no line of the program has a printed setting; empty if there is none."""
+        places = [place for template in self.templates.values() for place in template.fields_beside(setting)]
+        empty = {name for name in self.settings if not settings.get(name) and name not in self.method_defaults}
+        if setting not in PRINTED_SETTINGS or not places or not all(place & empty for place in places):
+            return ""
+        return min(name for place in places for name in place & empty)
 
     def template_suffix(self, mode: MachiningMode, settings: Mapping[str, str]) -> str:
         """Return the suffix of the templates for a machining mode; empty if the control cannot work in that mode."""

@@ -20,7 +20,6 @@ from trunnion.controls.vocabulary import (
     INCH,
     MM,
     PHASES,
-    PROGRAM_CHOICES,
     RADIUS_ARC_WORDS,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
@@ -212,7 +211,7 @@ def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) 
 def _read_coolant(table: Table) -> dict[str, int]:
     """The M codes of coolants; ``"none"`` takes away what the definition extends."""
     taken = [name for name, value in table.to_dict().items() if value == "none"]
-    table.mark_read(*taken)
+    table.mark_read(*taken, *COOLANTS)
     return _read_integers(table, tuple(name for name in COOLANTS if name not in taken), complete=False)
 
 
@@ -262,9 +261,8 @@ def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) 
 def _check_settings(table: Table, by_method: Sequence[Table], control: Control) -> None:
     """Report defaults that their own rules do not allow."""
     for name, value in control.settings.items():
-        choices = PROGRAM_CHOICES.get(name)
-        if choices and value not in choices:
-            table.add_problem(name, f"is {value!r}", f"write {' or '.join(choices)}")
+        if name == "preselect" and value == "on" and not control.family.tool_preselection("1"):
+            table.add_problem(name, "is 'on', and it is not known how this control selects tools", "leave it out")
         cure = control.setting_cure(name, value)
         if cure and name in table:
             table.add_problem(name, f"is {value!r}", cure)

@@ -16,6 +16,10 @@ from trunnion.definitions import Table
 #: Controls read numbers without an exponent.
 _NUMBER: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)")
 
+#: Numbers of tools; and texts that mean one, but are not written as one.
+_TOOL_NUMBER: Final = re.compile(r"[1-9][0-9]{0,7}")
+_NEARLY_NUMBER: Final = re.compile(r"[+-]?[\d.,]+")
+
 #: Unicode categories of characters that would break a line, or that a file cannot have.
 _NOT_IN_A_LINE: Final = frozenset({"Cc", "Cs", "Zl", "Zp"})
 
@@ -72,7 +76,7 @@ class SettingRule:
 
     kind                       what it is
     unit                       of a number, for messages
-    above, at_least, at_most   bounds of a number; None: there is none
+    above, at_least, at_most   bounds of a number, the last of a tool's too; None: there is none
     one_of                     the words of a CHOICE
     optional                   may be empty: then there is none
     """
@@ -102,7 +106,7 @@ class SettingRule:
             case SettingKind.CHOICE:
                 return text in self.one_of
             case SettingKind.TOOL:
-                return tool_number(text) != 0
+                return _is_tool(text) and self._is_in_bounds(tool_number(text))
             case SettingKind.TEXT:
                 return True
             case _:
@@ -111,8 +115,10 @@ class SettingRule:
     def _allows_number(self, text: str) -> bool:
         if not _NUMBER.fullmatch(text) or (self.kind is SettingKind.WHOLE and not text.isdecimal()):
             return False
-        value = float(text)
-        return (
+        return self._is_in_bounds(float(text))
+
+    def _is_in_bounds(self, value: float | None) -> bool:
+        return value is None or (
             math.isfinite(value)
             and (self.above is None or value > self.above)
             and (self.at_least is None or value >= self.at_least)
@@ -122,6 +128,7 @@ class SettingRule:
     def cure(self) -> str:
         """Return what to write, such as ``write a number above 0 and of at most 10, mm``."""
         nothing = ", or nothing" if self.optional else ""
+        some = "" if self.optional else ", of at least one character"
         match self.kind:
             case SettingKind.NUMBER | SettingKind.WHOLE:
                 what = "a whole number" if self.kind is SettingKind.WHOLE else "a number"
@@ -130,11 +137,12 @@ class SettingRule:
             case SettingKind.CHOICE:
                 return f"write {' or '.join(self.one_of)}{nothing}"
             case SettingKind.TOOL:
-                return "write the tool's number, such as 5"
+                most = "" if self.at_most is None else f" and at most {self.at_most:g}"
+                return f"write the tool's number, such as 5, without zeros before it{most}"
             case SettingKind.TEXT:
-                return "write a text of one line"
+                return f"write a text of one line{some}"
             case _:
-                return f"write {_FORMS[self.kind][1]}{nothing}"
+                return f"write {_FORMS[self.kind][1]}{nothing or some}"
 
     def _bounds(self) -> str:
         parts = (("above", self.above), ("of at least", self.at_least), ("of at most", self.at_most))
@@ -145,6 +153,13 @@ class SettingRule:
 def is_one_line(text: str) -> bool:
     """Whether a text has no line break, control character or other character that a program cannot have."""
     return not any(unicodedata.category(character) in _NOT_IN_A_LINE for character in text)
+
+
+def _is_tool(text: str) -> bool:
+    """Whether a text is a number of a tool as programs write it, or a name that nobody takes for a number."""
+    if tool_number(text) is not None:
+        return _TOOL_NUMBER.fullmatch(text) is not None
+    return text == text.strip() and _NEARLY_NUMBER.fullmatch(text) is None
 
 
 def tool_number(text: str) -> int | None:
@@ -171,7 +186,7 @@ def read_setting_rules(table: Table, settings: Table) -> dict[str, SettingRule]:
             entry.text("unit", "") if is_number else "",
             entry.number("above", None) if is_number else None,
             entry.number("at_least", None) if is_number else None,
-            entry.number("at_most", None) if is_number else None,
+            entry.number("at_most", None) if is_number or kind is SettingKind.TOOL else None,
             words,
             entry.flag("optional", not settings.text(name, "")),
         )

@@ -35,6 +35,16 @@ class Template:
         """Return the (name, format) of every field; the format is empty where the field has none."""
         return _fields(self.lines)
 
+    def fields_beside(self, name: str) -> list[set[str]]:
+        """Return for each place of a field the other fields without which it is not printed."""
+        found = []
+        for text in self.lines:
+            always = {field for field, _ in _FIELD.findall(_OPTIONAL_PART.sub("", text))}
+            parts = [{field for field, _ in _FIELD.findall(part)} for part in _OPTIONAL_PART.findall(text)]
+            places = [always] if name in always else [always | part for part in parts if name in part]
+            found += [place - {name} for place in places]
+        return found
+
     def numbers(self) -> set[tuple[str, str]]:
         """Return the (number, format) of every field that is a number."""
         return {(number, number_format) for text in self.lines for number, number_format in _NUMBER_FIELD.findall(text)}

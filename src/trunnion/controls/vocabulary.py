@@ -146,7 +146,7 @@ PROGRAM_SETTINGS: Final = frozenset(
 )  # fmt: skip
 
 #: Settings that only templates bring into a program, by their own names.
-PRINTED_SETTINGS: Final = frozenset({"title", "part", "date", "work_offset", "smoothing"})
+PRINTED_SETTINGS: Final = frozenset({"title", "part", "date", "series", "work_offset", "smoothing"})
 
 #: Settings of the machining mode with TCP.
 TCP_SETTINGS: Final = frozenset({"orientation", "tcp_on", "tcp_on_vector", "tcp_off"})

@@ -21,6 +21,9 @@ MAX_FILE_BYTES: Final = 1_000_000
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 
+#: How messages begin about what a file has twice.
+_TWICE = ("Cannot overwrite a value", "Cannot declare")
+
 #: Longer names are no file's.
 _MAX_NAME: Final = 1000
 
@@ -82,6 +85,9 @@ def _syntax_problem(label: str, text: str, message: str) -> Problem:
     number = re.search(r"line (\d+)", location)
     at_end = text.count("\n") + 1 if "end of document" in location else 0
     line = int(number.group(1)) if number else at_end
+    if number and what.startswith(_TWICE):
+        key = text.split("\n")[line - 1].partition("=")[0].strip()
+        return Problem(label, line, f"is not TOML: {key} is there already", "write each key and each [table] once")
     return Problem(label, line, f"is not TOML: {what[:1].lower()}{what[1:]}", "correct the line, or the one before it")
 
 
@@ -101,6 +107,8 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
             raise InputError(Problem(file, line, f'extends: nothing shipped is called "{name}"', cure))
         return found
     cure = "write the name of a shipped definition, or the path of a .toml file in the same folder or below it"
+    if name.casefold().endswith(".toml") and not name.endswith(".toml"):
+        cure += "; .toml in small letters"
     pure = PurePosixPath(name)
     outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name)
     if "/" in name and pure.name and not pure.suffix:
@@ -244,7 +252,9 @@ def _check_is_name(text: str, kind: str) -> None:
     if is_folder:
         raise InputError(Problem(text, 0, f"is a folder, not a {kind} definition", cure))
     if is_file:
-        raise InputError(Problem(text, 0, f"is not a {kind} definition, whose name ends in .toml", cure))
+        what = f"is not a {kind} definition, whose name ends in .toml"
+        what += ", in small letters" if text.casefold().endswith(".toml") else ""
+        raise InputError(Problem(text, 0, what, cure))
 
 
 def resolve_extends(table: Table, library: Library) -> Table:

@@ -42,7 +42,7 @@ def _merge_by_name(
 ) -> list[LocatedValue]:
     """Merge two arrays of named tables: those of the parent in their order, then the new ones of the child."""
     result = list(_items(parent))
-    merged: set[str] = set()
+    merged: dict[str, LocatedValue] = {}
     for i, item in enumerate(_items(child)):
         assert isinstance(item.value, dict)
         name = _name_of(item)
@@ -66,12 +66,14 @@ def _merge_by_name(
                 problems.append(Problem(remove.file, remove.line, what, cure))
             else:
                 del result[at]
-        elif at is None or name in merged:
-            # The second of two with the same name stays apart, and is reported when the table is read.
+        elif name in merged:
+            what = f'{item_path}.name is "{name}" a second time (first in line {merged[name].line})'
+            problems.append(Problem(item.file, item.line, what, "write all its keys in one table"))
+        elif at is None:
             result.append(item)
         else:
             result[at] = merge(result[at], item, item_path, problems, keep_removals)
-        merged.add(name)
+        merged.setdefault(name, item)
     return result
 
 

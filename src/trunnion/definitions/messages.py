@@ -60,3 +60,9 @@ def unquoted(key: str, value: object) -> str:
     """A hint how to write a number that is in quotes, after a comma; empty if there is none in ``value``."""
     found = _NUMBER.match(value.strip()) if isinstance(value, str) else None
     return f", without quotes and unit: {key} = {found.group()}" if found else ""
+
+
+def in_quotes(key: str, value: object) -> str:
+    """A hint how to write as a text a number that is not in quotes, after a colon; empty if ``value`` is none."""
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return f': {key} = "{value}"' if is_number else ""

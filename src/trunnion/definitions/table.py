@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final, TypedDict, Unpack, overload
 
-from trunnion.definitions.messages import a_number, as_written, bounds, did_you_mean, in_unit, unquoted
+from trunnion.definitions.messages import a_number, as_written, bounds, did_you_mean, in_quotes, in_unit, unquoted
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of, without_unit
 from trunnion.errors import InputError, Problem
@@ -17,6 +17,9 @@ class Required:
 
 
 REQUIRED: Final = Required()
+
+#: No length, angle, speed or count of a definition is greater; squares of what is do not overflow.
+_GREATEST: Final = 1e9
 
 
 class Bounds(TypedDict, total=False):
@@ -171,7 +174,8 @@ class Table:
             return fallback
         if not isinstance(value, str) or (one_of and value not in one_of):
             near = did_you_mean(value, one_of) if isinstance(value, str) else ""
-            self.add_problem(key, f"is {as_written(value)}", near + " " + cure if near else cure)
+            quoted = "" if one_of else in_quotes(key, value)
+            self.add_problem(key, f"is {as_written(value)}", (near + " " + cure if near else cure) + quoted)
             return fallback
         return value
 
@@ -189,7 +193,7 @@ class Table:
             return fallback
         number = _finite(value)
         if number is None:
-            self.add_problem(key, f"is {as_written(value)}", cure + unquoted(key, value))
+            self.add_problem(key, f"is {as_written(value)}", cure + unquoted(key, value) + _magnitude(value))
             return fallback
         if not _within(number, above, at_least, at_most):
             self.add_problem(key, f"is {as_written(value)}", cure)
@@ -243,7 +247,7 @@ class Table:
             return fallback
         numbers = _finite_numbers(value)
         if numbers is None or len(numbers) != n:
-            self.add_problem(key, f"is {as_written(value)}", cure)
+            self.add_problem(key, f"is {as_written(value)}", cure + _magnitude(value))
             return fallback
         return numbers
 
@@ -262,7 +266,7 @@ class Table:
             return fallback
         numbers = _finite_numbers(value)
         if numbers is None or len(numbers) != 2:
-            self.add_problem(key, f"is {as_written(value)}", cure)
+            self.add_problem(key, f"is {as_written(value)}", cure + _magnitude(value))
             return fallback
         low, high = numbers
         if low >= high:
@@ -333,14 +337,20 @@ def _add_files(content: LocatedValue, files: set[str]) -> None:
 
 
 def _finite(value: object) -> float | None:
-    """The finite number that a TOML value is, or None; true and false are no numbers here."""
+    """The number that a TOML value is, or None if it is too large or none; true and false are no numbers here."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     try:
         number = float(value)
     except OverflowError:
         return None
-    return number if math.isfinite(number) else None
+    return number if abs(number) <= _GREATEST else None
+
+
+def _magnitude(value: object) -> str:
+    """The bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
+    numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
+    return f", from {-_GREATEST:g} to {_GREATEST:g}" if any(not abs(number) <= _GREATEST for number in numbers) else ""
 
 
 def _finite_numbers(value: object) -> tuple[float, ...] | None:

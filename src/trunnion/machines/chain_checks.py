@@ -21,17 +21,18 @@ def check_chain(
     axis_tables  the tables of the axes
     axes         what they describe, from the workpiece to the tool
     spindle      direction of the spindle
-    sound        each axis is sound by itself; only then are their number and geometry checked
+    sound        each axis is sound by itself; only then is their geometry checked
     """
     rotary = [k for k, axis in enumerate(axes) if axis.is_rotary]
     slides = [k for k, axis in enumerate(axes) if not axis.is_rotary]
     _check_names(axis_tables, axes)
-    if sound and (len(rotary) != 2 or len(slides) != 3):
+    if all("kind" in entry for entry in axis_tables) and (len(rotary) != 2 or len(slides) != 3):
         what = f"has {len(slides)} linear and {len(rotary)} rotary axes"
         table.add_problem("axis", what, "write three linear and two rotary axes, from the workpiece to the tool")
         sound = False
     for k in range(1, len(axes)):
-        if axes[k].mount is Mount.PART and axes[k - 1].mount is Mount.TOOL:
+        stated = all("carries" in axis_tables[at] for at in (k - 1, k))
+        if stated and axes[k].mount is Mount.PART and axes[k - 1].mount is Mount.TOOL:
             what = f'is "part", but {axes[k - 1].name} before it carries the tool'
             cure = "order the axes from the workpiece to the tool: all that carry the part come first"
             axis_tables[k].add_problem("carries", what, cure)

@@ -49,6 +49,10 @@ _CYCLE_LINES_BYTES: Final = 1024
 #: Machining modes in which the tool lies along Z of the program.
 _Z_ALONG_TOOL: Final = (MachiningMode.THREE_AXIS, MachiningMode.TILTED)
 
+_SHORTEN: Final = (
+    "shorten it: a text of the CL file, of a template, or of a setting that one prints, such as setting title=…"
+)
+
 
 class MotionBlockWriter:
     """Writes the motion blocks of a program.
@@ -165,7 +169,7 @@ class MotionBlockWriter:
         for line in lines:
             if len(line.encode()) > room:
                 what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"
-                raise InputError(Problem(self.program.file, 0, f"{what}: {line[:60]}…", "shorten the text"))
+                raise InputError(Problem(self.program.file, 0, f"{what}: {line[:60]}…", _SHORTEN))
         sign, blocks, continues = self.control.continued, list[str](), False
         for line in lines:
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]

@@ -22,13 +22,16 @@ EFFECTS: Final = (
     "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant off", "tcp on", "tcp off",
 )  # fmt: skip
 
+#: The effect of a word after which the machine is elsewhere.
+HOME: Final = "comes back home"
+
 #: Effects that act before the motion of their block; all others act after it.
 _BEFORE_MOTION: Final = (
     "spindle clockwise", "spindle counter-clockwise", "coolant flood", "coolant mist", "tcp on",
 )  # fmt: skip
 
 #: Effects that are not events of their own: the word itself says what happens.
-_SILENT: Final = frozenset({"no effect", "comes back", "comes back home"})
+_SILENT: Final = frozenset({"no effect", "comes back", HOME})
 
 _OWN: Final = (
     "is a word of the control itself, or begins with one: the declaration would hide it",
@@ -101,7 +104,8 @@ def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[Know
 
 
 def _known_word(table: Table, key: str) -> KnownWord:
-    text, _, means = table.text(key).partition(":")
+    value = table.text(key, None)  # None: no text, which is noted
+    text, _, means = (value if value is not None else EFFECTS[0]).partition(":")
     effects = tuple(effect.strip() for effect in text.split(","))
     if unknown := [effect for effect in effects if effect not in EFFECTS]:
         table.add_problem(key, f"has no effect {unknown[0]!r}", f"write one of {', '.join(EFFECTS)}")
@@ -198,7 +202,7 @@ class KnownWords:
                 control.change_tool()
             case "tcp on" | "tcp off":
                 control.set_tcp(value == "on")
-            case "comes back home":
+            case _ if effect == HOME:
                 control.go_home()
             case _ if kind == "spindle":
                 control.add_event("spindle", value)

@@ -29,6 +29,8 @@ _LEFT_HAND_TAP: Final = "G74"
 
 #: Greatest shift off the wall of a bore, mm.
 _MAX_SHIFT: Final = 100.0
+#: Least shift, mm: the cycle must not print it as 0.
+_MIN_SHIFT: Final = 0.001
 
 
 def cycle_lines(
@@ -70,7 +72,7 @@ def cycle_lines(
 def is_valid_shift(text: str) -> bool:
     """Return whether the setting ``bore_lift`` is empty, or a length by which a tool can be shifted in a bore, mm."""
     try:
-        return not text or 0.0 < float(text) < _MAX_SHIFT
+        return not text or _MIN_SHIFT <= float(text) < _MAX_SHIFT
     except ValueError:
         return False
 

@@ -166,7 +166,7 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
     if settings.get("orientation") == "vector" and not settings.get("tcp_on_vector", ""):
         wrong.append(("orientation", "write angles: this control has no TCP that takes the tool axis as a vector"))
     if not is_valid_shift(settings.get("bore_lift", "")):
-        wrong.append(("bore_lift", "write millimetres above 0, such as 0.5, or nothing"))
+        wrong.append(("bore_lift", "write millimetres, at least 0.001, such as 0.5, or nothing"))
     return wrong
 
 

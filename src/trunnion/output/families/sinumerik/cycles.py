@@ -19,7 +19,8 @@ _THIRD_AXIS: Final = "3"
 _MM_PER_TURN: Final = "1"
 _INCHES_PER_TURN: Final = "3"
 
-#: Greatest lift-off in a bore, mm.
+#: Least lift-off in a bore, mm: the cycle must not print it as 0. And the greatest.
+_MIN_LIFT: Final = 0.001
 _MAX_LIFT: Final = 100.0
 
 #: How far a chip-breaking peck is retracted, mm.
@@ -93,7 +94,7 @@ def cycle_statement(
 def is_valid_lift(text: str) -> bool:
     """Return whether the setting ``bore_lift`` is empty, or a length by which a tool can lift off in a bore, mm."""
     try:
-        return not text or abs(float(text)) < _MAX_LIFT
+        return not text or _MIN_LIFT <= abs(float(text)) < _MAX_LIFT
     except ValueError:
         return False
 

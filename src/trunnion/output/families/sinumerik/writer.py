@@ -161,7 +161,9 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
     """Return an invalid lift-off or style of swivelling."""
     wrong = []
     if not is_valid_lift(settings.get("bore_lift", "")):
-        wrong.append(("bore_lift", "write millimetres, such as 0.5, or nothing"))
+        wrong.append(
+            ("bore_lift", "write millimetres, at least 0.001 and negative for the other side, such as 0.5; or nothing")
+        )
     if not _NEW_SWIVEL.fullmatch(settings.get("swivel_style", "0")):
         wrong.append(("swivel_style", "write a whole number that ends in 0: planes are never added to each other"))
     return wrong
