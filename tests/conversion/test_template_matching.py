@@ -113,3 +113,14 @@ def test_what_stands_in_brackets_goes_over(base: str, settings: dict[str, str], 
     if "delta_length" in settings:
         with pytest.raises(trunnion.RefusedError, match=r"delta_length is '.0\.25', which is not carried over"):
             trunnion.convert(program, machine=base, to_machine="yl569")
+
+
+def test_a_program_that_must_not_run_is_converted_only_by_force(tmp_path: Path) -> None:
+    (tmp_path / "part.cls").write_text(HEAD + FOOT, encoding="utf-8")
+    program = tmp_path / "part.mpf"
+    settings = {"title": "BLADE", "zero": "0,0,900"}
+    trunnion.post(tmp_path / "part.cls", machine="yl569", settings=settings, force=True, output=program)
+    with pytest.raises(trunnion.RefusedError, match="says that it must not run as it is"):
+        trunnion.convert(program, machine="yl569", to_machine="dmu65")
+    result = trunnion.convert(program, machine="yl569", to_machine="dmu65", force=True)
+    assert result.settings["title"] == "BLADE"

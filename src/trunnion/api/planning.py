@@ -11,7 +11,7 @@ from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
 from trunnion.api.settings import Settings, check_operation_names, number_setting
-from trunnion.controls.vocabulary import INCH
+from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
@@ -188,7 +188,7 @@ def plan_program(
         refused = Problem(file, 0, "no program is written", "force=True writes it")
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
-    notices = [f"MUST NOT RUN AS IT IS, written by --force: {problem.what}" for problem in blocking]
+    notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
     return replace(program, notices=notices), planned, [*problems, *found]
 
 

@@ -23,6 +23,7 @@ from trunnion.api.reports import add_report, check_report_name
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
+from trunnion.controls.vocabulary import FORCED_NOTICE
 from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.files import file_on_disk
 from trunnion.jit import compile_ahead
@@ -178,7 +179,7 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
             result.write_report(job.report)
         raise _proof_failed(result)
     if failed:
-        notices = [f"MUST NOT RUN AS IT IS, written by --force: {check.title}: {check.summary}" for check in failed]
+        notices = [f"{FORCED_NOTICE}, written by --force: {check.title}: {check.summary}" for check in failed]
         target.files.restart()
         write(replace(program, notices=[*program.notices, *notices]), target.files.main, subprograms=subprograms)
     if program.has_time_tokens:

@@ -76,6 +76,9 @@ WRITER_FORMATS: Final = frozenset(
     {"coordinate", "dwell", "feed", "speed", "pitch", "angle", "arc_angle", "primary", "inverse_time", "plane_angle"}
 )
 
+#: How comments begin in the head of a program that was written although it was refused.
+FORCED_NOTICE: Final = "MUST NOT RUN AS IT IS"
+
 #: Templates that every definition must have.
 REQUIRED_TEMPLATES: Final = (
     "program_start", "operation_start", "first_tool", "tool_change", "approach_three_axis", "operation_end_three_axis",

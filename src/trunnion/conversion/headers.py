@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.controls.definition import Control
+from trunnion.controls.vocabulary import FORCED_NOTICE
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
@@ -29,10 +30,12 @@ class HeaderReader:
     """Reads the headers and ends of one program's operations.
 
     template_lines   lines of the main file that were written from templates, as far as they have been read
+    forced_line      line in which the head says that the program must not run as it is; 0 if it says nothing of it
     """
 
     def __init__(self, run: Run, control: Control, text: ProgramText) -> None:
         self.template_lines: set[int] = set()
+        self.forced_line = 0
         self._run = run
         self._control = control
         self._text = text
@@ -61,7 +64,9 @@ class HeaderReader:
         for section, next_line in zip(sections, lines[1:], strict=True):
             first, last = self._path_lines(section, next_line)
             if section is sections[0]:
-                program_start = self._text.line_texts(1, section.line if section.line > 1 else first)
+                head = self._text.line_texts(1, section.line if section.line > 1 else first)
+                program_start = [(number, text) for number, text in head if FORCED_NOTICE not in text]
+                self.forced_line = next((number for number, text in head if FORCED_NOTICE in text), 0)
                 self.template_lines |= match_lines(program_start, self._patterns.of("program_start"), program_values)
             self.template_lines |= match_lines(self._text.line_texts(section.line, first), header, section.values)
             lines_behind = self._text.line_texts(last + 1, next_line)

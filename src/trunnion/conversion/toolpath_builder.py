@@ -182,6 +182,9 @@ class _ToolpathBuilder:
         self, sections: Sequence[ProgramSection], operations: Sequence[Operation], by_vectors: bool
     ) -> None:
         run, rows = self._run, [section.rows for section in sections]
+        if self._headers.forced_line:
+            what = "the program says that it must not run as it is: it was written although checks had failed"
+            self._warn.refuse(self._headers.forced_line, what, "convert one that is proven")
         refuse_unsimulated_motions(run, self._warn)
         warn_of_park_positions(run, self._warn)
         warn_of_normals(run, self._warn)
