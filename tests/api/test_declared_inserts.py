@@ -10,7 +10,7 @@ from trunnion.cli import main
 
 @pytest.mark.parametrize(
     ("effect", "code", "what"),
-    [("comes back: probing", 0, ""), ("comes back home", 1, "it changes where the machine is")],
+    [("comes back: probing", 0, ""), ("comes back home", 1, "it moves the machine")],
 )
 def test_a_declared_word_may_stand_in_raw_text(
     effect: str, code: int, what: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

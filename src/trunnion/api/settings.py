@@ -122,7 +122,8 @@ def control_setting_faults(settings: Mapping[str, str], control: Control, machin
         offsets = readers.reader_of(machine).work_offsets
         faults += [] if offsets.value_of(settings["work_offset"]) else [("work_offset", f"write {offsets.form}")]
     effective = {**control.settings, **{key: value for key, value in settings.items() if value}}
-    beside = {key: control.missing_beside(key, effective) for key in judged if settings[key]}
+    own = [key for key in judged if settings[key] not in ("", control.settings[key])]
+    beside = {key: control.missing_beside(key, effective) for key in own}
     faults += [(key, f"write {name} too: without it no line has it") for key, name in beside.items() if name]
     found = dict(faults)
     return faults + [(key, cure) for key, cure in control.family.validate_settings(effective) if key not in found]

@@ -350,7 +350,11 @@ def _finite(value: object) -> float | None:
 def _magnitude(value: object) -> str:
     """The bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
     numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
-    return f", from {-_GREATEST:g} to {_GREATEST:g}" if any(not abs(number) <= _GREATEST for number in numbers) else ""
+    return (
+        f", from {-_GREATEST:g} to {_GREATEST:g}"
+        if any(_GREATEST < abs(number) < math.inf for number in numbers)
+        else ""
+    )
 
 
 def _finite_numbers(value: object) -> tuple[float, ...] | None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.definitions import Table
-from trunnion.machines.machine import Axis, Mount, Vector
+from trunnion.machines.machine import Axis, AxisKind, Mount, Vector
 
 #: Two directions closer than this count as parallel, rad (0.06 degrees): such a machine could not orient a tool.
 PARALLEL_TOLERANCE: Final = 1e-3
@@ -26,7 +26,9 @@ def check_chain(
     rotary = [k for k, axis in enumerate(axes) if axis.is_rotary]
     slides = [k for k, axis in enumerate(axes) if not axis.is_rotary]
     _check_names(axis_tables, axes)
-    if all("kind" in entry for entry in axis_tables) and (len(rotary) != 2 or len(slides) != 3):
+    if all(entry.to_dict().get("kind") in tuple(AxisKind) for entry in axis_tables) and (
+        len(rotary) != 2 or len(slides) != 3
+    ):
         what = f"has {len(slides)} linear and {len(rotary)} rotary axes"
         table.add_problem("axis", what, "write three linear and two rotary axes, from the workpiece to the tool")
         sound = False
