@@ -12,6 +12,7 @@ from tests.support.program_text import motion_part
 from tests.support.proof import unproven
 from trunnion.cl import read_cl
 from trunnion.cli import main
+from trunnion.controls import load_control
 from trunnion.machines import load_machine
 
 Capture = pytest.CaptureFixture[str]
@@ -205,9 +206,10 @@ def test_a_program_that_leaves_the_travel_of_the_other_machine_is_refused(tmp_pa
 
 
 def test_a_setting_that_the_other_control_does_not_have_is_named(tmp_path: Path, capfd: Capture) -> None:
+    shipped = "\n".join(load_control(load_machine("yl569").control).templates["program_start"].lines)
     (tmp_path / "own.toml").write_text(
         'schema = 1\nextends = "yl569"\nname = "own"\n[control.settings]\nshop = ""\n'
-        '[control.templates]\nprogram_start = ";SHOP {shop}"\n'
+        f"[control.templates]\nprogram_start = '''\n;SHOP {{shop}}\n{shipped}\n'''\n"
     )
     program, target = tmp_path / "a.mpf", tmp_path / "b.mpf"
     own = ["--machine", str(tmp_path / "own.toml")]
