@@ -43,6 +43,7 @@ def posted(toolpath: Toolpath, given: dict[str, str], planes: bool = True) -> by
     planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance)
     if not planes and any(motion.plane is not None for motion in planned.motions):
         planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance, PlanOptions(mode=MachiningMode.TCP))
+    given = {"standing_spindle": "allowed", **given}
     program = Program(MACHINE, CONTROL, planned.motions, given, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None

@@ -155,7 +155,7 @@ def written(
         )
     except (InputError, RefusedError):
         return None
-    program = Program(machine, control, planned.motions, {"tool": "7"}, toolpath.file)
+    program = Program(machine, control, planned.motions, {"tool": "7", "standing_spindle": "allowed"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
     sink, others = io.BytesIO(), dict[str, io.BytesIO]()

@@ -111,7 +111,7 @@ def written(
         parse_plan_options({}, control),
         control_capabilities(control, {}),
     )
-    program = Program(model, control, planned.motions, {"tool": "7"}, toolpath.file)
+    program = Program(model, control, planned.motions, {"tool": "7", "standing_spindle": "allowed"}, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
     one = folder / f"one{control.extension}"
