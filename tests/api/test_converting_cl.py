@@ -34,7 +34,7 @@ def test_a_cl_file_becomes_one_of_another_dialect(
 
 def test_units_are_those_of_the_file_or_of_the_setting(tmp_path: Path) -> None:
     inch = tmp_path / "inch.ncl"
-    inch.write_text("UNITS / INCHES\n$$-> CUTTER / 0.5\nLOADTL / 1\nFEDRAT / 10.0, IPM\nGOTO / 1.2345, 2, 3\n")
+    inch.write_text("UNITS / INCHES\n$$-> CUTTER / 0.5\nLOADTL / 1\nFEDRAT / 10.0, IPM\nGOTO / 1.2345, 2, 3\nFINI\n")
     text = trunnion.convert(inch, to_cl=True, dialect="catia").text
     assert text is not None
     assert "UNITS/INCHES" in text

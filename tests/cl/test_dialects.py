@@ -495,3 +495,24 @@ def test_other_commands_of_creo_are_comments(read: Read, fails: Fail, refused: C
 def test_an_alias_of_creo_may_put_commands_into_remarks(apt: Callable[..., Operation]) -> None:
     operation = apt("ncl", "REMARK -> FEATNO / 9", "REMARK -> CUTTER / 6.5", "REMARK any $ text", "GOTO / 1,2,3")
     assert (operation.name, operation.tool.diameter) == ("FEATNO 9", 6.5)
+
+
+@pytest.mark.parametrize("dialect", [name for name in HEADS if name != "clsf"])
+def test_no_beginning_of_a_file_is_taken_for_the_whole(read: Read, fails: Fail, dialect: str) -> None:
+    lines = [*HEADS[dialect], "GOTO/1,2,3", "GOTO/1,2,35", "COOLNT/OFF"]
+    text = "\n".join([*lines, "FINI"])
+    assert len(read(text).operations[0].moves) == 2
+    behind_last_motion = text.index("COOLNT/OFF")
+    for length in range(text.index("GOTO") + 6, len(text)):
+        assert fails(text[:length]), text[:length]
+    (problem,) = fails(text[:behind_last_motion])
+    assert "no FINI" in problem.what
+    (problem,) = fails(text[: behind_last_motion - 2], dialect=dialect)
+    assert f"in the middle of line {len(lines) - 1}" in problem.what
+
+
+def test_motion_behind_the_end_needs_an_end_of_its_own(read: Read, fails: Fail) -> None:
+    text = "\n".join([*HEADS["apt"], "GOTO/1,2,3", "FINI", "GOTO/1,2,4", ""])
+    (problem,) = fails(text)
+    assert "no FINI" in problem.what
+    assert sum(len(operation.moves) for operation in read(text + "END\n").operations) == 2

@@ -39,8 +39,14 @@ def problem_of(file: Path) -> str:
     return str(caught.value)
 
 
+def in_two_streams(text: bytes) -> bytes:
+    return bz2.compress(text[:100]) + bz2.compress(text[100:])
+
+
 @pytest.mark.parametrize(
-    "pack", [gzip.compress, bz2.compress, lambda text: zipped({"a.txt": text})], ids=["gz", "bz2", "zip"]
+    "pack",
+    [gzip.compress, bz2.compress, in_two_streams, lambda text: zipped({"a.txt": text})],
+    ids=["gz", "bz2", "bz2 in two streams", "zip"],
 )
 def test_a_packed_file_is_read_like_the_file(tmp_path: Path, pack: object) -> None:
     plain, packed = tmp_path / "plain", tmp_path / "packed.cls"  # the name says nothing
@@ -80,6 +86,9 @@ def test_an_archive_is_one_job_in_the_order_of_its_names(tmp_path: Path) -> None
         (gzip.compress(CLSF.encode())[:-9], "cannot be unpacked"),
         (gzip.compress(CLSF.encode())[:40] + b"xxxx" + gzip.compress(CLSF.encode())[44:], "cannot be unpacked"),
         (bz2.compress(CLSF.encode())[:-5], "cannot be unpacked"),
+        (bz2.compress(CLSF.encode()) + b"BZi" + in_two_streams(CLSF.encode())[3:], "cannot be unpacked"),
+        (bz2.compress(CLSF.encode()) + b"GOTO/1,2,3", "cannot be unpacked"),
+        (in_two_streams(CLSF.encode())[:-5], "cannot be unpacked"),
         (zipped({"a.cls": CLSF})[:-30], "cannot be unpacked"),
         (zipped({"a.cls": CLSF}, zipfile.ZIP_STORED).replace(b"GOTO", b"GOTP", 1), "Bad CRC-32"),
         (zipped({"a.cls": CLSF}, zipfile.ZIP_LZMA), "packed in a way that is not read"),
@@ -93,8 +102,8 @@ def test_an_archive_is_one_job_in_the_order_of_its_names(tmp_path: Path) -> None
         (zipped({"a.cls": CLSF.encode("utf-16")}), "UTF-16"),
     ],
     ids=[
-        "gz cut", "gz damaged", "bz2 cut", "zip cut", "zip damaged", "lzma", "no cl", "empty", "zip in zip", "gz in gz",
-        "7z", "tar", "gz of nothing", "utf-16",
+        "gz cut", "gz damaged", "bz2 cut", "bz2 damaged", "bz2 text", "bz2 2 cut", "zip cut", "zip damaged", "lzma",
+        "no cl", "empty", "zip in zip", "gz in gz", "7z", "tar", "gz of nothing", "utf-16",
     ],
 )  # fmt: skip
 def test_what_cannot_be_read_is_refused_with_its_name(tmp_path: Path, content: bytes, said: str) -> None:

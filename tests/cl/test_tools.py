@@ -22,7 +22,7 @@ SEVEN = "CUTTER/10,1,4,1,0,2,50\n"
 
 def tools(tmp_path: Path, dialect: str, text: str) -> list[Tool]:
     file = tmp_path / "part.txt"
-    file.write_text(HEADS[dialect] + text + ("END-OF-PATH\n" if dialect == "clsf" else ""), encoding="utf-8")
+    file.write_text(HEADS[dialect] + text + ("END-OF-PATH\n" if dialect == "clsf" else "FINI\n"), encoding="utf-8")
     toolpath = read_cl(file, dialect=dialect)
     assert toolpath.remarks == ()
     return [operation.tool for operation in toolpath.operations]
@@ -69,7 +69,7 @@ def test_another_tool_has_nothing_of_the_one_before(tmp_path: Path) -> None:
 def test_lengths_are_in_mm_and_info_shows_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "part.apt"
     text = "PARTNO/1\nUNIT/INCHES\nTRNTYP/WORLD,0,0,0\nINSERT/[HOLDER=H1] MILL\nCUTTER/1.,0\n"
-    file.write_text(text + "LOAD/TOOL,5,LENGTH,4.\nCSI_SET_EXTENSION_LENGTH/2.\nGOTO/1,2,3\n", encoding="utf-8")
+    file.write_text(text + "LOAD/TOOL,5,LENGTH,4.\nCSI_SET_EXTENSION_LENGTH/2.\nGOTO/1,2,3\nFINI\n", encoding="utf-8")
     (tool,) = trunnion.describe_cl(file).tools
     assert (tool.holder, tool.diameter, tool.extension, tool.set_length) == ("H1", 25.4, 50.8, 101.6)
     assert main(["info", str(file)]) == 0

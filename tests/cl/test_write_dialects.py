@@ -129,14 +129,14 @@ def test_coordinate_systems_become_that_of_the_first_operation(dialect: str, rea
 
 def test_a_coordinate_system_stays_in_its_dialect(read: Read, tmp_path: Path) -> None:
     rows = "0,1,0,5.5, -1,0,0,6, 0,0,1,7"
-    toolpath = read(f"UNITS/MM\n$$-> CSYS / {rows}\nFEDRAT/100,MMPM\nGOTO/1,2,3\n")
+    toolpath = read(f"UNITS/MM\n$$-> CSYS / {rows}\nFEDRAT/100,MMPM\nGOTO/1,2,3\nFINI\n")
     back, lost = again(toolpath, "ncl", tmp_path, inch=True)
     assert back.system == pytest.approx(toolpath.system)
     assert toolpath.system[3] == 5.5
     assert len(lost) == 1
     for other in ("catia", "clsf"):
         assert any("in that of the model is not carried over" in what for what in again(toolpath, other, tmp_path)[1])
-    matrix = "$$*CATIA0\n$$ A\n$$ 0 1 0 5.5\n$$ -1 0 0 6\n$$ 0 0 1 7\nFEDRAT/100,MMPM\nMULTAX\nGOTO/1,2,3,0,0,1\n"
+    matrix = "$$*CATIA0\n$$ A\n$$ 0 1 0 5.5\n$$ -1 0 0 6\n$$ 0 0 1 7\nFEDRAT/100,MMPM\nMULTAX\nGOTO/1,2,3,0,0,1\nFINI\n"
     assert again(read(matrix), "catia", tmp_path)[0].system == toolpath.system
 
 
@@ -170,9 +170,8 @@ def test_texts_names_and_registers_survive(dialect: str, read: Read, tmp_path: P
 
 
 def test_holders_and_lengths_in_the_spindle(read: Read, tmp_path: Path) -> None:
-    text = (
-        "UNITS/MM\n$$-> CUTTER / 8\nTPRINT/MILL 8,HSK 63\nLOADTL/3,LENGTH,121.5,OSETNO,4\nFEDRAT/9,MMPM\nGOTO/1,2,3\n"
-    )
+    head = "UNITS/MM\n$$-> CUTTER / 8\nTPRINT/MILL 8,HSK 63\nLOADTL/3,LENGTH,121.5,OSETNO,4\n"
+    text = head + "FEDRAT/9,MMPM\nGOTO/1,2,3\nFINI\n"
     toolpath = read(text)
     for dialect in OTHERS:
         back, lost = again(toolpath, dialect, tmp_path)

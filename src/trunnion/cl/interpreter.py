@@ -93,6 +93,8 @@ class ClInterpreter:
         state = self._state
         state.row = row
         if not self._dialect.in_sections:
+            if row > max(state.end_row, 0):
+                self._report_cut_off(complete, lines)
             if row > state.builder.first:
                 state.close_operation()
         elif state.in_operation:
@@ -114,6 +116,14 @@ class ClInterpreter:
             # What follows the last operation is done after its last row.
             last = state.builders[-1]
             last.events.extend(replace(event, row=last.stop - last.first) for event in state.builder.events)
+
+    def _report_cut_off(self, complete: bool, lines: int) -> None:
+        where = "" if complete else f", and ends in the middle of line {lines}"
+        self._diagnostics.error(
+            lines,
+            f"the file has no FINI behind its last motion{where}",
+            "it is cut off: write it out again; if it is known to be whole, write FINI at its end",
+        )
 
     def knows_unit(self, given: str | None) -> bool:
         """Whether the user, UNITS or the feeds say the length unit of the file."""

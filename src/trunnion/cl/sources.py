@@ -155,7 +155,7 @@ def _unpacker(head: bytes) -> Callable[[BinaryIO], BinaryIO] | None:
     if head.startswith(_GZIP):
         return lambda packed: cast("BinaryIO", gzip.GzipFile(fileobj=packed, mode="rb"))
     if head.startswith(_BZIP2) and head[3:4].isdigit():
-        return lambda packed: cast("BinaryIO", bz2.BZ2File(packed))
+        return lambda packed: cast("BinaryIO", _Bzip2(packed))
     return None
 
 
@@ -303,6 +303,35 @@ class _Shared(io.RawIOBase):
         piece = self._stream.read(len(buffer))
         buffer[: len(piece)] = piece
         return len(piece)
+
+
+class _Bzip2(io.RawIOBase):
+    """A text packed by bzip2, in one stream or several behind each other, as programs with several threads write it.
+
+    ``bz2.BZ2File`` ends in silence at what is no stream, and loses all that follows.
+    """
+
+    def __init__(self, packed: BinaryIO) -> None:
+        self._packed = packed
+        self._stream = bz2.BZ2Decompressor()
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: memoryview, /) -> int:  # type: ignore[override]
+        while True:
+            rest = self._stream.unused_data if self._stream.eof else b""
+            given = rest or (self._packed.read(_PIECE) if self._stream.needs_input or self._stream.eof else b"")
+            if self._stream.eof:
+                if not given:
+                    return 0
+                self._stream = bz2.BZ2Decompressor()
+            elif self._stream.needs_input and not given:
+                raise EOFError("it ends in the middle")
+            piece = self._stream.decompress(given, len(buffer))
+            if piece:
+                buffer[: len(piece)] = piece
+                return len(piece)
 
 
 class _Unpacked(io.RawIOBase):

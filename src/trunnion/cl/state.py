@@ -40,6 +40,7 @@ class ReaderState:
     part             name of the part
     line, row        line of the statement, and the row of the columns before which it stands
     has_row          the statement is a motion, and ``row`` is reserved for it
+    end_row          row before which FINI or END stands, -1 if none has come
     length_unit      mm and line of the UNITS statement
     feed_factor      mm in the modal length unit of feeds
     feed_per_rev     feeds are per revolution
@@ -75,6 +76,7 @@ class ReaderState:
     line: int = 0
     row: int = 0
     has_row: bool = False
+    end_row: int = -1
     length_unit: tuple[float, int] | None = None
     feed_factor: float = 1.0
     feed_per_rev: bool = False

@@ -148,5 +148,10 @@ def paint(state: ReaderState, statement: Statement) -> None:
         state.builder.colours.append((state.operation_row, whole_number("PAINT/COLOR", statement.values[1:])))
 
 
+def end_of_file(state: ReaderState, statement: Statement) -> None:
+    """Note that no motion is missing: it is the last statement of a file whose operations have no end of their own."""
+    state.end_row = state.row
+
+
 def ignore(state: ReaderState, statement: Statement) -> None:
-    """Do nothing: ends of the file, which the file itself shows, names of machines, and what only listings have."""
+    """Do nothing: names of machines, and what only listings have."""
