@@ -213,6 +213,37 @@ def test_arcs_that_are_in_doubt_are_refused(refused: Callable[..., str], lines: 
     assert what in refused("catia", *lines)
 
 
+@pytest.mark.parametrize(
+    "word", ["TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GOBACK", "TLONPS,TLON,GOFWD", "GO,TO"]
+)
+@pytest.mark.parametrize("dialect", ["apt", "clsf"])
+def test_motion_along_geometry_is_refused_by_each_of_its_words(fails: Fail, dialect: str, word: str) -> None:
+    lines = [*HEADS["apt"], "GOTO/0,0,0", "INDIRV/0,1,0", f"{word}/(CIRCLE/5,0,0,5),ON,(LINE/5,0,0,5,5,0)", "FINI"]
+    if dialect == "clsf":
+        lines = ["TOOL PATH/A,TOOL,T", *lines[4:5], *lines[6:7], "END-OF-PATH"]
+    problems = fails("\n".join(lines) + "\n")
+    assert [problem.what for problem in problems] == [f"{word} is motion that cannot be read"]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["INDIRV/0,1,0", "GOTO/60,20,0"],
+        ["INDIRV/0,1,0"],
+        ["INDIRV/0,1,0", "INDIRV/0,1,0", *XY[2:], "40,30,0)"],
+        ["INDIRV/0,1,0", "GOTO/50,20,0", "AUTOPS", *XY[2:], "40,30,0)"],
+    ],
+)
+def test_an_arc_that_is_lost_behind_its_direction_is_refused(refused: Callable[..., str], lines: list[str]) -> None:
+    assert refused("catia", "GOTO/50,20,0", *lines).startswith("8: INDIRV without its arc")
+
+
+@pytest.mark.parametrize("statement", ["CLAMP,ON", "SHOPWD,ROTATE,90"])
+def test_each_word_of_a_statement_without_a_slash_is_judged(apt: Callable[..., Operation], statement: str) -> None:
+    (event,) = (e for e in apt("apt", "GOTO/0,0,0", statement).events if isinstance(e, UnknownStatement))
+    assert event.acts
+
+
 def test_the_start_gives_the_radius(apt: Callable[..., Operation], refused: Callable[..., str]) -> None:
     operation = apt("solidworks", "GOTO/5,0,0", "CIRCLE/0,0,0,0,0,-1", "GOTO/0,-5,0")
     assert (operation.arcs.radius.tolist(), operation.arcs.normal.tolist()) == ([5], [[0, 0, -1]])

@@ -13,7 +13,7 @@ from trunnion.cl.scan import COMMENT, MAKES_ROW
 from trunnion.cl.state import MM_PER_INCH, ReaderState
 from trunnion.cl.statement import Statement, parse
 from trunnion.cl.statements.operations import LENGTH_UNITS
-from trunnion.cl.word_classes import acts_on_machine
+from trunnion.cl.word_classes import acts_on_machine, drives_tool
 
 #: Statements no longer than this are likely to come again, and their parsed form is kept; at most so many.
 _CACHED_STATEMENT_BYTES = 64
@@ -24,6 +24,10 @@ _MAX_UNKNOWN_STATEMENTS = 1000
 
 _NOT_CL = "not a CL file: no statement in it is known"
 _GIVE_CL = "give a CL file: an NX CLSF, APTSOURCE, NCL or other APT CL data"
+
+_GIVE_POINTS = (
+    "output arcs as CIRCLE/, or in APT as INDIRV and TLON,GOFWD/(CIRCLE/…),ON,(LINE/…), or points in their place"
+)
 
 #: What stands for a word that is none.
 _NUMBER = re.compile(r"[-+.]?[0-9]")
@@ -92,6 +96,8 @@ class ClInterpreter:
         """
         state = self._state
         state.row = row
+        if state.direction is not None:
+            state.direction.report_lost_arc(self._diagnostics)
         if not self._dialect.in_sections:
             if row > max(state.end_row, 0):
                 self._report_cut_off(complete, lines)
@@ -170,6 +176,9 @@ class ClInterpreter:
             self._diagnostics.remark(self._state.line, what, "nothing becomes of it: check that nothing should")
             return
         _refuse_no_word(statement)
+        if drives_tool(statement.major):
+            self._state.direction = None
+            raise StatementError(f"{statement.major} is motion that cannot be read", _GIVE_POINTS)
         why = acts_on_machine(statement.major)
         what = f"{statement.major} {why if why.startswith('may') else 'is not known'}"
         self._state.note_unknown(statement, what, acts=bool(why))

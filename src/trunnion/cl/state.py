@@ -1,6 +1,7 @@
 """The state of the CL reader between two statements: the operation being read, the row, and what is modal."""
 
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBuilder, SplineStatement, SurfaceSpeed
 from trunnion.cl.diagnostics import Diagnostics, StatementError
@@ -26,6 +27,19 @@ FILE_UNIT_FEEDS = {"PERMIN": False, "PERREV": True}
 
 #: Numbers of a coordinate system are printed with five decimals or more.
 _SAME_SYSTEM = 2e-5
+
+
+class ArcDirection(NamedTuple):
+    """An INDIRV: the row of the arc that must follow, and the direction in which that begins."""
+
+    row: int
+    line: int
+    vector: tuple[float, ...]
+
+    def report_lost_arc(self, diagnostics: Diagnostics) -> None:
+        """Report that the motion behind it, if any, is no arc."""
+        what = "INDIRV without its arc: the next motion is no GOFWD"
+        diagnostics.error(self.line, what, "look for a line that is missing, or remove the INDIRV")
 
 
 @dataclass(slots=True)
@@ -58,7 +72,7 @@ class ReaderState:
     length_row       the same of its length in the spindle
     no_axis          the tool axis of a point that gives none
     vectors          what points give behind their coordinates are tool axes
-    direction        the direction of INDIRV, for the arc that follows
+    direction        the INDIRV whose arc has not followed yet
     clearance        height of the clearance plane
     system           the coordinate system of the points as the file gives it, empty if it gives none
     matrix           lines of a coordinate system in comments, while they are collected
@@ -95,7 +109,7 @@ class ReaderState:
     length_row: int = -1
     no_axis: NoAxis = NoAxis.MODAL
     vectors: bool = True
-    direction: tuple[float, ...] | None = None
+    direction: ArcDirection | None = None
     clearance: float | None = None
     system: tuple[float, ...] = ()
     matrix: list[str] | None = None

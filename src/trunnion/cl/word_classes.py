@@ -39,6 +39,12 @@ _COMMON_WORDS: Final = (
     "TLAXIS", "TLDATA", "TOOLPATH", "UNITS",
 )  # fmt: skip
 
+#: Words that drive the tool along geometry: a statement with one of them among its words is motion.
+_DRIVE_WORDS: Final = frozenset({
+    "GO", "GOBACK", "GODOWN", "GOFWD", "GOLFT", "GORGT", "GOUP", "INDIRP", "INDIRV", "TLLFT", "TLOFPS", "TLON", "TLONPS",
+    "TLRGT",
+})  # fmt: skip
+
 _LETTERS: Final = re.compile(r"[A-Z]+")
 
 ACTING_WORDS: Final = _MACHINE_WORDS | {
@@ -49,9 +55,17 @@ ACTING_WORDS: Final = _MACHINE_WORDS | {
 }
 
 
+def drives_tool(major: str) -> bool:
+    """Whether a statement is motion along geometry, by the words between the commas of its major word."""
+    return not _DRIVE_WORDS.isdisjoint(major.split(","))
+
+
 def acts_on_machine(major: str) -> str:
-    """Why a statement may have changed the machine, by its major word; empty if nothing suggests it."""
-    if major in ACTING_WORDS:
+    """Why a statement may have changed the machine, by its major word; empty if nothing suggests it.
+
+    A statement without a slash is all major word: each word between its commas counts.
+    """
+    if not ACTING_WORDS.isdisjoint((major, *major.split(","))):
         return "is not known"
     if motion := next((word for word in _MOTION_WORDS if major.startswith(word) or major.endswith(word)), ""):
         return f"may be a damaged {motion}"

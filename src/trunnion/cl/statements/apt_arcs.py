@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.state import ReaderState
+from trunnion.cl.state import ArcDirection, ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements import motion
 
@@ -35,13 +35,18 @@ _CURE: Final = "output arcs as INDIRV and TLON,GOFWD/(CIRCLE/…),ON,(LINE/…),
 
 def indirv(state: ReaderState, statement: Statement) -> None:
     """Note the direction in which the arc that follows begins."""
-    state.direction = statement.numbers(3)
+    if state.direction is not None:
+        state.direction.report_lost_arc(state.diagnostics)
+    state.direction = ArcDirection(state.row, state.line, statement.numbers(3))
 
 
 def gofwd(state: ReaderState, statement: Statement) -> None:
     """Write an arc up to the point where its circle meets the line or plane that ends it."""
     text = "".join(_CONTINUATION.sub("", statement.source).partition("$$")[0].split()).upper()
     direction, state.direction = state.direction, None
+    if direction is not None and direction.row != state.row:
+        direction.report_lost_arc(state.diagnostics)
+        direction = None
     start = motion.current_tip(state)
     if start is None or direction is None:
         what = "GOFWD without INDIRV, the direction in which it begins" if start else "GOFWD without a start point"
@@ -59,7 +64,8 @@ def gofwd(state: ReaderState, statement: Statement) -> None:
         end, given = (last[0], last[1], last[2]), (cylinder[3], cylinder[4], cylinder[5])
     else:
         raise StatementError("GOFWD along other geometry than a circle", _CURE)
-    normal = _normal(_minus(start, centre), (direction[0], direction[1], direction[2]), given)
+    i, j, k = direction.vector
+    normal = _normal(_minus(start, centre), (i, j, k), given)
     end = _on_circle(centre, normal, radius, end)
     _check_intersection(_minus(start, centre), _minus(end, centre), normal, found[2])
     motion.begin_circle(state, (*centre, *normal, radius), 1)
