@@ -41,8 +41,8 @@ _COMMON_WORDS: Final = (
 
 #: Words that drive the tool along geometry: a statement with one of them among its words is motion.
 _DRIVE_WORDS: Final = frozenset({
-    "GO", "GOBACK", "GODOWN", "GOFWD", "GOLFT", "GORGT", "GOUP", "INDIRP", "INDIRV", "TLLFT", "TLOFPS", "TLON", "TLONPS",
-    "TLRGT",
+    "GO", "GOBACK", "GODOWN", "GOFWD", "GOLFT", "GORGT", "GOUP", "INDIRP", "INDIRV", "TLLFT", "TLOFPS", "TLON",
+    "TLONPS", "TLRGT",
 })  # fmt: skip
 
 _LETTERS: Final = re.compile(r"[A-Z]+")
