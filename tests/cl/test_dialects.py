@@ -10,6 +10,7 @@ from tests.support.cl_reading import Fail, Read
 from trunnion.cl.dialects import DIALECTS, recognize_dialect
 from trunnion.cli.arguments import DIALECTS as LISTED
 from trunnion.model.toolpath import (
+    Coolant,
     CycleOn,
     From,
     GoHome,
@@ -133,7 +134,8 @@ def test_a_tilted_system_of_solidworks_needs_tool_axes(refused: Callable[..., st
 
 
 def test_the_tool_axis_goes_on_from_operation_to_operation(read: Read) -> None:
-    lines = ["$$ OPERATION NAME : B", "GOTO/2,0,0", "$$ OPERATION NAME : C", "TLAXIS/0,1,0", "GOTO/3,0,0"]
+    lines = ["$$ OPERATION NAME : B", "RAPID", "GOTO/2,0,0"]
+    lines += ["$$ OPERATION NAME : C", "TLAXIS/0,1,0", "RAPID", "GOTO/3,0,0"]
     toolpath = read("\n".join([*HEADS["catia"], "GOTO/1,0,0,1,0,0", *lines, "FINI"]))
     assert [operation.name for operation in toolpath.operations] == ["OPERATION 1", "B", "C"]
     assert [operation.moves.axis[0].tolist() for operation in toolpath.operations] == [[1, 0, 0], [1, 0, 0], [0, 1, 0]]
@@ -251,8 +253,8 @@ def test_the_start_gives_the_radius(apt: Callable[..., Operation], refused: Call
 
 
 def test_an_arc_may_be_the_first_row_of_an_operation_that_goes_on(apt: Callable[..., Operation]) -> None:
-    operation = apt("ncl", "GOTO / 5,0,0", "$$-> FEATNO / 2", "CIRCLE / 0,0,0,0,0,1,5", "GOTO / 0,5,0")
-    assert operation.name == "FEATNO 2"
+    operation = apt("ncl", "GOTO / 5,0,0", "LOADTL / 6", "CIRCLE / 0,0,0,0,0,1,5", "GOTO / 0,5,0")
+    assert operation.name == "OPERATION 2"
     assert [event.tip for event in operation.events if isinstance(event, From)] == [(5, 0, 0)]
     assert operation.arcs.radius.tolist() == [5]
 
@@ -501,6 +503,62 @@ def test_feed_and_cycle_go_on_in_the_next_operation(apt: Callable[..., Operation
     operation = apt("catia", *lines)
     assert operation.moves.feed.tolist() == [100]
     assert cycle(operation).row == 0
+
+
+CUT_ON = ["RAPID", "GOTO/0,0,50", "FEDRAT/200,MMPM", "GOTO/0,0,-10"]
+
+
+@pytest.mark.parametrize(
+    ("dialect", "boundary"),
+    [
+        ("catia", "$$ OPERATION NAME : B"),
+        ("ncl", "$$-> FEATNO / 2"),
+        ("solidworks", "INSERT/CHECK THE DEPTH"),
+        ("solidworks", "TRNTYP/WORLD,0,0,0"),
+        ("solidworks", "SPINDL/900,RPM,CLW"),
+        ("apt", "CYCLE/OFF"),
+    ],
+)
+def test_a_cut_goes_on_from_one_operation_into_the_next(read: Read, dialect: str, boundary: str) -> None:
+    lines = [*HEADS[dialect], *CUT_ON, boundary, "GOTO/0,60,-10", "RAPID", "GOTO/0,0,50"]
+    toolpath = read("\n".join([*lines, "FINI"]) + "\n")
+    (operation,) = toolpath.operations
+    assert operation.moves.tip[:, 2].tolist() == [50, -10, -10, 50]
+    assert operation.moves.kind.tolist() == [Kind.RAPID, Kind.LINEAR, Kind.LINEAR, Kind.RAPID]
+    assert operation.moves.feed[2] == 200
+    said = [remark.line for remark in toolpath.remarks if "they are one operation" in remark.what]
+    assert said == ([] if dialect == "apt" else [len(HEADS[dialect]) + len(CUT_ON) + 1])
+
+
+def test_an_arc_goes_on_with_its_events_and_the_smaller_tolerance(apt: Callable[..., Operation]) -> None:
+    lines = ["INTOL/0.01", *CUT_ON, "COOLNT/FLOOD", "$$-> FEATNO / 2", "COOLNT/MIST", "INTOL/0.005"]
+    operation = apt("ncl", *lines, "CIRCLE/10,0,-10,0,0,1,10", "GOTO/20,0,-10")
+    assert (operation.arcs.row.tolist(), operation.intol) == ([2], 0.005)
+    assert [(event.row, event.kind) for event in operation.events if isinstance(event, Coolant)] == [
+        (2, "FLOOD"),
+        (2, "MIST"),
+    ]
+    assert not any(isinstance(event, From) for event in operation.events)
+
+
+@pytest.mark.parametrize(
+    ("lines", "count"),
+    [
+        (["$$-> FEATNO / 2", "RAPID", "GOTO/0,60,50"], 2),
+        (["LOADTL/6", "GOTO/0,60,50"], 2),
+        (["GOHOME", "GOTO/0,60,50"], 2),
+        (["CYCLE/DRILL,DEPTH,5,CLEAR,2", "GOTO/0,0,0", "$$-> FEATNO / 2", "GOTO/0,60,0"], 2),
+        (["$$-> FEATNO / 2", "FROM/0,60,50", "GOTO/0,60,0"], 2),
+        (["$$-> FEATNO / 2", "GOTO/0,60,0", "$$-> FEATNO / 3", "GOTO/0,70,0"], 1),
+    ],
+)
+def test_where_no_cut_goes_on_the_operations_stay_apart(read: Read, lines: list[str], count: int) -> None:
+    toolpath = read("\n".join([*HEADS["ncl"], *CUT_ON, *lines, "FINI"]) + "\n")
+    assert len(toolpath.operations) == count
+
+
+def test_another_register_of_the_tool_in_a_cut_is_refused(refused: Callable[..., str]) -> None:
+    assert "another register" in refused("apt", *CUT_ON, "LOADTL/5,7", "GOTO/0,60,-10")
 
 
 def test_a_rapid_belongs_to_the_operation_of_its_point(apt: Callable[..., Operation]) -> None:

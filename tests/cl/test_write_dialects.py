@@ -118,7 +118,7 @@ def test_behind_gohome_the_name_goes_on(dialect: str, body: Body, tmp_path: Path
 
 @pytest.mark.parametrize("dialect", OTHERS)
 def test_coordinate_systems_become_that_of_the_first_operation(dialect: str, read: Read, tmp_path: Path) -> None:
-    one = "TOOL PATH/{},TOOL,T\nMSYS/{}\nFEDRAT/MMPM,100\nGOTO/1,2,3,0,0,1\nEND-OF-PATH\n"
+    one = "TOOL PATH/{},TOOL,T\nMSYS/{}\nFEDRAT/MMPM,100\nRAPID\nGOTO/1,2,3,0,0,1\nEND-OF-PATH\n"
     text = one.format("A", "10,0,0,1,0,0,0,1,0") + one.format("B", "10,0,5,0,1,0,0,0,1")
     back, lost = again(read(text), dialect, tmp_path)
     tips = [operation.moves.tip[0].tolist() for operation in back.operations]

@@ -1,0 +1,88 @@
+"""Operations of files without sections that are one path: the second begins with a cut from where the first ends.
+
+Between two operations the tool goes home. Where the file has no rapid there, that way would take the place of a cut.
+"""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from trunnion.cl.builder import FromStatement, OperationBuilder
+from trunnion.cl.diagnostics import Diagnostics
+from trunnion.model.toolpath import CycleOff, CycleOn, GoHome, LoadTool
+
+
+def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) -> list[OperationBuilder]:
+    """Return the operations, those that begin with a cut joined to the one before, with a remark.
+
+    An operation stays for itself if it has no operation before that it continues, another tool, comes from home or a
+    FROM of its own, or begins with a rapid or a hole. A cut that begins with another register of the tool is an error.
+    """
+    joined: list[OperationBuilder] = []
+    number: int | None = None
+    for builder in builders:
+        before = joined[-1] if joined and builder.continues else None
+        loads = [event for event in builder.events if isinstance(event, LoadTool)]
+        if before is None or not _begins_with_cut(before, builder) or _has_other_tool(before, builder, loads, number):
+            joined.append(builder)
+        else:
+            if first := next((load for load in loads if load.row == 0), None):
+                what = f"tool {first.number} is called with another register where operation {before.name} cuts on"
+                diagnostics.error(first.line, what, "retract by RAPID and GOTO/ before it")
+            what = f"operation {builder.name} begins with a cut from where {before.name} ends: they are one operation"
+            diagnostics.remark(builder.line, what, "begin it with RAPID if the tool should go home between them")
+            _append(before, builder)
+        number = loads[-1].number if loads else number
+    return joined
+
+
+def _begins_with_cut(before: OperationBuilder, builder: OperationBuilder) -> bool:
+    """Whether the first motion of an operation is a line or an arc at feed from the last point of the one before."""
+    if any(circle.row == 0 for circle in builder.circles):
+        is_cut = True
+    else:
+        is_cut = 0 not in builder.rapids and not _is_hole(builder)
+    end = before.stop - before.first
+    goes_home = any(isinstance(event, GoHome) and event.row == end for event in before.events)
+    goes_home = goes_home or any(isinstance(event, GoHome) and event.row == 0 for event in builder.events)
+    starts = any(start.row == 0 for start in _stated_starts(builder))
+    return is_cut and not goes_home and not starts
+
+
+def _is_hole(builder: OperationBuilder) -> bool:
+    """Whether the first row is a hole: a cycle that is on in the operation before is stated again."""
+    switches = [event for event in builder.events if isinstance(event, CycleOn | CycleOff) and event.row == 0]
+    return bool(switches) and isinstance(switches[-1], CycleOn)
+
+
+def _has_other_tool(
+    before: OperationBuilder, builder: OperationBuilder, loads: list[LoadTool], number: int | None
+) -> bool:
+    """Whether an operation begins with another tool than ``number``, the last one called, or one of another form."""
+    return before.tool != builder.tool or any(load.row == 0 and load.number != number for load in loads)
+
+
+def _stated_starts(builder: OperationBuilder) -> list[FromStatement]:
+    """The FROM statements: not the starts that stand for the last point before an arc."""
+    arcs = {circle.line for circle in builder.circles}
+    return [start for start in builder.starts if start.line not in arcs]
+
+
+def _append(before: OperationBuilder, builder: OperationBuilder) -> None:
+    """Put an operation behind the one before; the smaller tolerances count."""
+    shift = builder.first - before.first
+    repeated = [e for e in builder.events if isinstance(e, CycleOn) and e.row == 0 and e.line < builder.line]
+    before.events += [replace(e, row=e.row + shift) for e in builder.events if e not in repeated]
+    before.feeds += [feed._replace(row=feed.row + shift) for feed in builder.feeds]
+    before.rapids += [row + shift for row in builder.rapids]
+    before.colours += [(row + shift, colour) for row, colour in builder.colours]
+    before.circles += [circle._replace(row=circle.row + shift) for circle in builder.circles]
+    before.starts += [start._replace(row=start.row + shift) for start in _stated_starts(builder)]
+    before.axes += [axis._replace(row=axis.row + shift) for axis in builder.axes]
+    before.upright += builder.upright
+    before.intol = _smaller(before.intol, builder.intol)
+    before.outtol = _smaller(before.outtol, builder.outtol)
+    before.stop = builder.stop
+
+
+def _smaller(one: float | None, other: float | None) -> float | None:
+    return min((value for value in (one, other) if value is not None), default=None)
