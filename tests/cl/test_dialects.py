@@ -240,6 +240,26 @@ def test_an_arc_that_is_lost_behind_its_direction_is_refused(refused: Callable[.
     assert refused("catia", "GOTO/50,20,0", *lines).startswith("8: INDIRV without its arc")
 
 
+@pytest.mark.parametrize(
+    ("dialect", "statement", "meant"),
+    [
+        ("solidworks", "UNTI/INCH", "UNIT"),
+        ("solidworks", "TRNTPY/LOCAL,0,0,0", "TRNTYP"),
+        ("solidworks", "CSXS/1,0,0,0,0,1,0,0,0,0,1,0", "CSYS"),
+        ("ncl", "$$-> CUTER / 8", "CUTTER"),
+        ("catia", "OUTOL/0.1", "OUTTOL"),
+        ("catia", "TLONGOFWD/(CIRCLE/5,0,0,5),ON,(LINE/5,0,0,5,5,0)", "TLON,GOFWD"),
+        ("apt", "CLERP/XYPLAN,5", "CLEARP"),
+    ],
+)
+def test_a_damaged_word_of_a_dialect_is_never_dropped(
+    apt: Callable[..., Operation], dialect: str, statement: str, meant: str
+) -> None:
+    (event,) = (e for e in apt(dialect, "GOTO/0,0,0", statement).events if isinstance(e, UnknownStatement))
+    assert event.acts
+    assert event.what.endswith(f"may be a damaged {meant}")
+
+
 @pytest.mark.parametrize("statement", ["CLAMP,ON", "SHOPWD,ROTATE,90"])
 def test_each_word_of_a_statement_without_a_slash_is_judged(apt: Callable[..., Operation], statement: str) -> None:
     (event,) = (e for e in apt("apt", "GOTO/0,0,0", statement).events if isinstance(e, UnknownStatement))

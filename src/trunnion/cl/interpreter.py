@@ -13,7 +13,7 @@ from trunnion.cl.scan import COMMENT, MAKES_ROW
 from trunnion.cl.state import MM_PER_INCH, ReaderState
 from trunnion.cl.statement import Statement, parse
 from trunnion.cl.statements.operations import LENGTH_UNITS
-from trunnion.cl.word_classes import acts_on_machine, drives_tool
+from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
 
 #: Statements no longer than this are likely to come again, and their parsed form is kept; at most so many.
 _CACHED_STATEMENT_BYTES = 64
@@ -43,6 +43,7 @@ class ClInterpreter:
         self._dialect = dialect
         self._diagnostics = diagnostics
         self._encoding = encoding
+        self._words = words_that_count(dialect)
         self._known_statements = 0
         self._unknown_statements = 0
         self._parse_cache: dict[bytes, tuple[Handler | None, Statement]] = {}
@@ -171,7 +172,8 @@ class ClInterpreter:
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
             raise self._diagnostics.fatal(0, _NOT_CL, _GIVE_CL)
-        if statement.major.startswith("->") and not self._state.strict:
+        why = acts_on_machine(statement.major, self._words)
+        if statement.major.startswith("->") and not why and not self._state.strict:
             what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"
             self._diagnostics.remark(self._state.line, what, "nothing becomes of it: check that nothing should")
             return
@@ -179,7 +181,6 @@ class ClInterpreter:
         if drives_tool(statement.major):
             self._state.direction = None
             raise StatementError(f"{statement.major} is motion that cannot be read", _GIVE_POINTS)
-        why = acts_on_machine(statement.major)
         what = f"{statement.major} {why if why.startswith('may') else 'is not known'}"
         self._state.note_unknown(statement, what, acts=bool(why))
 

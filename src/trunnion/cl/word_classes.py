@@ -6,9 +6,12 @@ damaged one of these.
 """
 
 import re
+from collections.abc import Collection
 from typing import Final
 
+from trunnion.cl.dialect import Dialect
 from trunnion.cl.dialects import DIALECTS
+from trunnion.cl.statements.apt_refused import part_program
 
 #: Words of APT systems and post-processors (ISO 4343 and later ones) that act on the machine, and which no dialect here
 #: follows.
@@ -32,12 +35,15 @@ _SAY_NOTHING: Final = frozenset({
 #: Words of motion: a statement that begins or ends with one has lost its slash or its line end.
 _MOTION_WORDS: Final = ("GOTO", "GODLTA", "GOHOME", "RAPID", "CIRCLE", "FEDRAT", "SPINDL", "LOADTL", "CYCLE")
 
-#: Words that a damaged one is compared with: those that most files have.
+#: Words that a damaged one is compared with in all dialects: those that most files have.
 _COMMON_WORDS: Final = (
     *_MOTION_WORDS, "AUXFUN", "CLRSRF", "COOLNT", "CUTCOM", "CUTTER", "DELAY", "END-OF-PATH", "FROM", "GOFWD", "INDIRV",
     "INSERT", "LOAD", "MOVARC", "MSYS", "MULTAX", "OPSTOP", "PREFUN", "RETRCT", "ROTABL", "ROTATE", "SELECT", "STOP",
     "TLAXIS", "TLDATA", "TOOLPATH", "UNITS",
 )  # fmt: skip
+
+#: Shorter words of a dialect are not compared: too many others are one letter off.
+_SHORTEST_COMPARED: Final = 4
 
 #: Words that drive the tool along geometry: a statement with one of them among its words is motion.
 _DRIVE_WORDS: Final = frozenset({
@@ -60,20 +66,32 @@ def drives_tool(major: str) -> bool:
     return not _DRIVE_WORDS.isdisjoint(major.split(","))
 
 
-def acts_on_machine(major: str) -> str:
+def words_that_count(dialect: Dialect) -> frozenset[str]:
+    """The words of a dialect that a damaged one is compared with, in all files and in those of this dialect."""
+    return frozenset(_COMMON_WORDS) | {
+        word
+        for word, handler in dialect.handlers.items()
+        if len(word.removeprefix("->")) >= _SHORTEST_COMPARED
+        and word.removeprefix("->") not in _SAY_NOTHING
+        and handler is not part_program
+    }
+
+
+def acts_on_machine(major: str, words: Collection[str]) -> str:
     """Why a statement may have changed the machine, by its major word; empty if nothing suggests it.
 
-    A statement without a slash is all major word: each word between its commas counts.
+    ``words``: those of its dialect (``words_that_count``), one of which may be damaged. A statement without a slash is
+    all major word: each word between its commas counts.
     """
     if not ACTING_WORDS.isdisjoint((major, *major.split(","))):
         return "is not known"
     if motion := next((word for word in _MOTION_WORDS if major.startswith(word) or major.endswith(word)), ""):
         return f"may be a damaged {motion}"
     letters = _LETTERS.match(major)
-    if letters and letters[0] != major and letters[0] in _COMMON_WORDS:
+    if letters and letters[0] != major and letters[0] in words:
         return f"may be a damaged {letters[0]}"
-    if meant := next((word for word in _COMMON_WORDS if _is_one_letter_off(major, word)), ""):
-        return f"may be a damaged {meant}"
+    if meant := next((word for word in sorted(words) if _is_one_letter_off(major, word)), ""):
+        return f"may be a damaged {meant.removeprefix('->')}"
     return ""
 
 
