@@ -162,6 +162,19 @@ def test_blocks_that_are_dropped_are_missed(tmp_path: Path) -> None:
             assert proven([*blocks[:k], changed, *blocks[k + 1 :]], cl, tmp_path), changed
 
 
+def test_the_way_to_the_first_hole_may_begin_aside_of_it(tmp_path: Path) -> None:
+    cl, nc = tmp_path / "aside.cls", tmp_path / "aside.mpf"
+    first, aside = told(ring()[0] * 100.0, ring()[0]), told(ring()[0] * 100.0 + (0.0, 7.0, 0.0), ring()[0])
+    cl.write_text(holes(ring()[:2]).replace(first, aside), encoding="utf-8")
+    assert main(["post", str(cl), "--machine", "yl569", "--output", str(nc), "--set", "holes=torot"]) == 0
+    blocks = [line.split(" ", 1)[1] for line in nc.read_text(encoding="utf-8").splitlines()]
+    above = next(k for k, block in enumerate(blocks) if block == "TOROT") - 1
+    assert blocks[above] == "X39.2 Y0.0 Z29.4"
+    for changed in ("X39.2 Y0.1 Z29.4", "X33.6 Y0.0 Z25.2", "G1 X39.2 Y0.0 Z29.4"):
+        assert proven([*blocks[:above], changed, *blocks[above + 1 :]], cl, tmp_path), changed
+    assert proven([*blocks[:above], *blocks[above + 1 :]], cl, tmp_path)
+
+
 def test_a_way_too_low_is_seen_by_the_proof(tmp_path: Path) -> None:
     near = [ring()[0], ring()[3]]
     cl, nc = tmp_path / "two.cls", tmp_path / "two.mpf"

@@ -77,7 +77,7 @@ def _search_holes(run: Run, expected: ExpectedPath | None) -> list[MatchedHole]:
     rows = np.flatnonzero((run.programmed == 0) & (run.kind != Kind.ARC))
     cycles = np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1) if len(rows) else []
     if expected is None or len(cycles) >= len(holes):
-        return [_cycle_hole(run, cycle, k, holes[k] if k < len(holes) else None) for k, cycle in enumerate(cycles)]
+        return [_cycle_hole(run, expected, cycle, k) for k, cycle in enumerate(cycles)]
     return list(_match_in_order(run, expected, cycles))
 
 
@@ -86,15 +86,35 @@ def hole_rows(holes: Sequence[MatchedHole]) -> Ints:
     return np.concatenate([np.zeros(0, np.int64), *(hole.rows for hole in holes)])
 
 
-def _cycle_hole(run: Run, rows: Ints, index: int, hole: Hole | None) -> MatchedHole:
+def _cycle_hole(run: Run, expected: ExpectedPath | None, rows: Ints, index: int) -> MatchedHole:
     """One hole of a cycle, whose rows without a block these are."""
     first, end = int(rows[0]), int(rows[-1]) + 1
+    hole = None if expected is None or index >= len(expected.holes) else expected.holes[index]
     to = first - 1 if first and run.lines[first - 1] == run.lines[first] else first
-    if to == first and first and run.kind[first] != Kind.RAPID and run.kind[first - 1] == Kind.RAPID:
-        to -= 1
-        back = hole is not None and hole.cycle.retract > hole.cycle.clearance + 1e-9
-        end += back and end < len(run) and run.kind[end] == Kind.RAPID and _rise(run, end) > 0.0
+    if to == first and first and run.kind[first - 1] == Kind.RAPID:
+        if run.kind[first] != Kind.RAPID:
+            to -= 1
+            back = hole is not None and hole.cycle.retract > hole.cycle.clearance + 1e-9
+            end += back and end < len(run) and run.kind[end] == Kind.RAPID and _rise(run, end) > 0.0
+        elif expected is not None and hole is not None:
+            to -= _only_goes_to_hole(run, expected, index, first - 1)
     return MatchedHole(to, end, index)
+
+
+def _only_goes_to_hole(run: Run, expected: ExpectedPath, index: int, row: int) -> bool:
+    """Whether the row before a cycle, in a block of its own, goes above the hole and to no CL point."""
+    hole = expected.holes[index]
+    height, aside = hole.heights_and_offsets(run.positions(np.array([row])).tip)
+    above = bool(aside[0] <= hole.tolerance and height[0] >= hole.cycle.clearance - hole.tolerance)
+    return above and not (
+        _is_behind_point(expected, index) and _goes_to_cl_point(run, expected, hole.row - 1, row, -1, hole)
+    )
+
+
+def _is_behind_point(expected: ExpectedPath, index: int) -> bool:
+    """Whether a CL point of the same operation stands before a hole, and no other hole between."""
+    hole, before = expected.holes[index], expected.holes[max(index - 1, 0) : index]
+    return hole.row not in expected.first_rows and all(other.row != hole.row for other in before)
 
 
 def _rise(run: Run, row: int) -> float:
@@ -116,7 +136,7 @@ def _match_in_order(run: Run, expected: ExpectedPath, cycles: Sequence[Ints]) ->
             row = _find_plunge(run, hole, at, limit, _count_cl_plunges(expected, before, hole))
             found = None if row is None else _motion_hole(run, expected, index, row, at)
         if found is None and used < len(cycles):
-            found = _cycle_hole(run, cycles[used], index, hole)
+            found = _cycle_hole(run, expected, cycles[used], index)
             used += 1
         if found is None:
             misses += 1
@@ -125,7 +145,7 @@ def _match_in_order(run: Run, expected: ExpectedPath, cycles: Sequence[Ints]) ->
             at = found.end
         before = hole
     for rows in cycles[used:]:
-        yield _cycle_hole(run, rows, len(expected.holes), None)
+        yield _cycle_hole(run, expected, rows, len(expected.holes))
 
 
 def _plunges(hole: Hole, tip: Floats, kind: Codes) -> Flags:
@@ -172,9 +192,10 @@ def _motion_hole(run: Run, expected: ExpectedPath, index: int, plunge: int, at: 
     """The hole that row ``plunge`` begins to drill; rows before ``at`` belong to holes before it."""
     hole = expected.holes[index]
     end = _end_of_hole(run, hole, plunge)
-    first, before, after = plunge - 1, expected.holes[index - 1 : index], expected.holes[index + 1 : index + 2]
-    point_before = hole.row not in expected.first_rows and all(other.row != hole.row for other in before)
-    shares_first = first < at or (point_before and _goes_to_cl_point(run, expected, hole.row - 1, first, -1, hole))
+    first, after = plunge - 1, expected.holes[index + 1 : index + 2]
+    shares_first = first < at or (
+        _is_behind_point(expected, index) and _goes_to_cl_point(run, expected, hole.row - 1, first, -1, hole)
+    )
     point_after = all(other.row != hole.row for other in after)
     shares_last = point_after and _goes_to_cl_point(run, expected, hole.row, end - 1, 1, hole)
     return MatchedHole(first, end, index, True, shares_first, shares_last)
