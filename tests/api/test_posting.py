@@ -214,9 +214,9 @@ def test_an_observer_hears_what_happens_in_its_order(tmp_path: Path) -> None:
     assert log.total == {"odd.cls": cl.stat().st_size, "writing": 23}
     assert log.done == log.total
     cl.write_text(text.replace("FEDRAT/", "FROBNICATE/ON\nFEDRAT/", 1), encoding="utf-8")
-    for strict in (False, True):
-        with pytest.raises(trunnion.InputError, match="FROBNICATE"):
-            trunnion.post(cl, machine="yl569", strict=strict)
+    assert any("FROBNICATE" in problem.what for problem in trunnion.post(cl, machine="yl569").problems)
+    with pytest.raises(trunnion.InputError, match="FROBNICATE"):
+        trunnion.post(cl, machine="yl569", strict=True)
 
 
 def test_a_result_shows_itself_in_one_line(tmp_path: Path) -> None:

@@ -142,8 +142,9 @@ def test_a_tool_change_in_a_klartext_plane_is_found(tmp_path: Path) -> None:
     assert main(["post", str(tmp_path / "block.cls"), "--machine", "dmu65", "--output", str(file)]) == 0
     lines = file.read_text().splitlines()
     changes = [n for n, line in enumerate(lines) if "TOOL CALL 2" in line]
-    planes = [n for n, line in enumerate(lines) if "PLANE RESET" in line and n < changes[0]]
-    file.write_text("\n".join(line for n, line in enumerate(lines) if n != planes[-1]) + "\n")
+    last = max(n for n, line in enumerate(lines) if "PLANE SPATIAL" in line and n < changes[0])
+    left = [line for n, line in enumerate(lines) if not ("PLANE RESET" in line and last < n < changes[0])]
+    file.write_text("\n".join(left) + "\n")
     found = verify(file, machine="dmu65")
 
     assert not found.passed

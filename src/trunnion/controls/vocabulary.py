@@ -54,8 +54,8 @@ PROGRAM_MEANINGS: Final = {
     "preselect": "With on, the program selects the next other tool after each tool change; without it SELECT/TOOL of "
     "the CL file does.",
     "restart": "With on, every operation calls its tool and its speed, so that the program can be entered there.",
-    "standing_spindle": "With allowed, cuts before the first SPINDL of the CL files are written, for tools that do not "
-    "turn; they are refused otherwise.",
+    "standing_spindle": "With allowed, cuts before the first SPINDL of the CL files, or after SPINDL/OFF, are written, for "
+    "tools that do not turn; they are refused otherwise.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.

@@ -1,29 +1,40 @@
 """What an operation needs at its start: a spindle speed, a tool, templates for its machining mode, a tolerance."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.errors import Problem, Severity
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation, SpindleOn
+from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation, SpindleOff, SpindleOn
 from trunnion.output.program import Program
 
 
-def spindle_problems(program: Program, operation: Operation) -> list[Problem]:
-    """Refuse a cut before the first SPINDL of a program, or warn of it; ``operation``: no spindle was started before.
+def spindle_problems(program: Program, operation: Operation, turns: bool | None) -> list[Problem]:
+    """Refuse the first cut of an operation for which the spindle stands: before the first SPINDL, or after SPINDL/OFF.
 
-    A check of the program without its CL files would fail it as well.
+    A check of the program without its CL files would fail it as well. An operation without a speed is warned of.
+
+    ``turns`` is whether the spindle turns when the operation begins, by the operations before; None: no SPINDL yet.
     """
-    starts = [event.row for event in operation.events if isinstance(event, SpindleOn)]
-    cuts = np.flatnonzero(operation.moves.kind[: min(starts, default=len(operation.moves))] != Kind.RAPID)
-    if starts and not len(cuts):
-        return []
-    if len(cuts) and program.effective_setting("standing_spindle") != "allowed":
-        what = f"operation {operation.name} cuts while the spindle stands: no SPINDL comes before"
-        cure = "put SPINDL before it, or write setting standing_spindle=allowed for a tool that does not turn"
-        return [Problem(program.file, int(operation.moves.line[cuts[0]]), what, cure)]
-    what = f"operation {operation.name} has no spindle speed"
-    return [Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING)]
+    switches = [event for event in operation.events if isinstance(event, SpindleOn | SpindleOff)]
+    for event, following in pairwise([None, *switches, None]):
+        start = event.row if event else 0
+        on = turns if event is None else isinstance(event, SpindleOn)
+        cuts = np.flatnonzero(operation.moves.kind[start : following.row if following else None] != Kind.RAPID)
+        if on or not len(cuts):
+            continue
+        if program.effective_setting("standing_spindle") != "allowed":
+            why = "no SPINDL comes before" if event is None and turns is None else "SPINDL/OFF comes before"
+            what = f"operation {operation.name} cuts while the spindle stands: {why}"
+            cure = "put SPINDL before it, or write setting standing_spindle=allowed for a tool that does not turn"
+            return [Problem(program.file, int(operation.moves.line[start + cuts[0]]), what, cure)]
+        break
+    if turns is None and not any(isinstance(event, SpindleOn) for event in switches):
+        what = f"operation {operation.name} has no spindle speed"
+        return [Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING)]
+    return []
 
 
 def tool_problems(program: Program, operation: Operation, in_spindle: str) -> list[Problem]:

@@ -25,7 +25,8 @@ from trunnion.planning.holes.cycles import SpindleState, SpindleStates
 def check_program(program: Program) -> list[Problem]:
     """Return what the program would lack, and what the control would reject; errors mean not to write it."""
     problems: list[Problem] = []
-    spindle_known, tool_in_spindle = False, ""
+    tool_in_spindle = ""
+    turns: bool | None = None  # whether the spindle does; None until the first SPINDL
     rpm: float | None = None
     spindle = SpindleState(1.0, Sense.CLW)  # until the first SPINDL
     for motion in program.motions:
@@ -44,11 +45,14 @@ def check_program(program: Program) -> list[Problem]:
             turning = None if event.row == stands_at else rpm
             problems += event_problems(program, motion, event, turning, registers)
         problems += _motion_problems(program, motion)
-        rejected = program.control.family.validate_operation(operation, spindle_known)
+        rejected = program.control.family.validate_operation(operation, turns is not None)
         problems += [Problem(program.file, line, why.what, why.cure) for line, why in rejected]
-        if not spindle_known:
-            problems += spindle_problems(program, operation)
-        spindle_known = spindle_known or any(isinstance(event, SpindleOn) for event in operation.events)
+        problems += spindle_problems(program, operation, turns)
+        for event in operation.events:
+            if isinstance(event, SpindleOn):
+                turns = True
+            elif isinstance(event, SpindleOff) and turns:
+                turns = False
         if not motion.starts_operation:
             problems += next_axis_problems(program, motion)
             continue

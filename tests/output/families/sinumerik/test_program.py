@@ -219,6 +219,17 @@ def test_a_missing_spindle_speed_is_said(post: Post) -> None:
     assert "part.cls:1: warning: operation OP1 has no spindle speed" in err
 
 
+@pytest.mark.parametrize("again", ["", "TOOL PATH"])
+def test_a_cut_after_spindl_off_is_refused(post: Post, again: str) -> None:
+    cut = "GOTO/77,0,5\n"
+    second = FOOT + HEAD.replace("OP1", "OP2").replace("SPINDL/RPM,4000.0000,CLW\n", "") if again else ""
+    text = HEAD + "SPINDL/OFF\n" + second + cut + "SPINDL/ON\nGOTO/78,0,5\n" + FOOT
+    code, _, err = post.all(text)
+    assert code != 0
+    assert f"operation OP{2 if again else 1} cuts while the spindle stands: SPINDL/OFF comes before" in err
+    assert post(text, "--set", "standing_spindle=allowed")
+
+
 def test_only_a_cut_needs_a_spindle(post: Post) -> None:
     late = HEAD.replace("SPINDL/RPM,4000.0000,CLW\n", "").replace("FEDRAT", "SPINDL/RPM,4000,CLW\nFEDRAT") + FOOT
     assert "has no spindle speed" not in post.all(late)[2]
