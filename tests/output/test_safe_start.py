@@ -93,3 +93,38 @@ def test_a_tool_frame_of_holes_is_cancelled() -> None:
     settings = dict(load_control(load_machine("yl569").control.unread_copy()).settings)
     values = sinumerik.template_values({**settings, "holes": "torot", "tcp_used": "on"}, None)
     assert [values["cancel_swivel"], values["cancel_tool_frame"], values["cancel_frames"]] == [None, "TOROTOF", "TRANS"]
+
+
+@pytest.mark.parametrize(
+    ("machine", "offsets", "late"),
+    [
+        ("yl569", "G54,FLAT:G55", "TRAFOOF\n{work_offset}"),
+        ("matsuura_mx330", "G54,FLAT:G55", "{contour_on}\n{work_offset}"),
+        ("haas_umc750", "G54,FLAT:G55", "{work_offset}\n{smoothing}"),
+        ("xyzac_trt", "G54,FLAT:G55", "{work_offset}\nG43 H{length_number}"),
+        ("hs664rt", "G55 O1,FLAT:G55 O2", ""),
+        ("dmu65", "1,FLAT:2", ""),
+    ],
+    ids=["sinumerik", "fanuc", "haas", "linuxcnc", "fidia", "heidenhain"],
+)
+def test_rotary_axes_turn_in_the_offset_of_their_operation(
+    machine: str, offsets: str, late: str, tmp_path: Path
+) -> None:
+    assert posted(tmp_path, machine, TILTED + FLAT, work_offset=offsets)
+    if late:
+        file = tmp_path / "late.toml"
+        template = f"approach_three_axis = '''\nG0 {{primary_word}} {{secondary_word}}\n{late}\n'''"
+        file.write_text(f'extends = "{machine}"\n[control.templates]\n{template}\n', encoding="utf-8")
+        with pytest.raises(trunnion.RefusedError, match="turns in G54 for motion in G55"):
+            posted(tmp_path, str(file), TILTED + FLAT, work_offset=offsets)
+
+
+@pytest.mark.parametrize("machine", ["yl569", "matsuura_mx330", "haas_umc750", "xyzac_trt"])
+def test_a_program_that_can_be_entered_states_its_modes_at_every_operation(machine: str, tmp_path: Path) -> None:
+    lines = posted(tmp_path, machine, FLAT + TILTED, restart="on")
+    assert len([line for line in lines if {"G94", "G90", "G17", "G40"} <= set(line.split())]) == 3
+    assert (
+        len([line for line in lines if "G94" in line])
+        - len([line for line in posted(tmp_path, machine, FLAT + TILTED) if "G94" in line])
+        == 2
+    )

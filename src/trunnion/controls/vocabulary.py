@@ -14,7 +14,7 @@ COMMON_TEMPLATE_FIELDS: Final = frozenset(
         "zero_x", "zero_y", "zero_z", "time", "total_time", "time_shown", "total_time_shown",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
         "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",
-        "spindle_speed", "new_speed", "spindle_code", "subprogram", "unit_word",
+        "spindle_speed", "new_speed", "spindle_code", "subprogram", "unit_word", "entry_unit",
     }
 )  # fmt: skip
 
@@ -54,8 +54,8 @@ PROGRAM_MEANINGS: Final = {
     "preselect": "With on, the program selects the next other tool after each tool change; without it SELECT/TOOL of "
     "the CL file does.",
     "restart": "With on, every operation calls its tool and its speed, so that the program can be entered there.",
-    "standing_spindle": "With allowed, cuts before the first SPINDL of the CL files, or after SPINDL/OFF, are written, for "
-    "tools that do not turn; they are refused otherwise.",
+    "standing_spindle": "With allowed, cuts before the first SPINDL of the CL files, or after SPINDL/OFF, are written, "
+    "for tools that do not turn; they are refused otherwise.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.
@@ -179,6 +179,8 @@ SAFE_START_SETTING: Final = "safe_start"
 ALL_LEFT_ON: Final = "all"
 SAFE_START_CHOICES: Final = ("own", ALL_LEFT_ON)
 
-#: Among the settings that a family gets for its templates: an operation of the program is in a tilted plane, under TCP.
+#: Among the settings that a family gets for its templates: an operation of the program is in a tilted plane, under TCP;
+#: its operations have different work offsets.
 PLANES_USED: Final = "planes_used"
 TCP_USED: Final = "tcp_used"
+OFFSETS_DIFFER: Final = "offsets_differ"

@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.setting_rules import tool_number
 from trunnion.controls.template import Value
-from trunnion.controls.vocabulary import PLANES_USED, TCP_USED
+from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Axis, inverse
 from trunnion.machines.motion_time import format_duration
@@ -56,9 +56,11 @@ class TemplateValues:
         self._family: FamilyWriter = program.control.family
         self._seconds: list[float] = []
         modes = {motion.mode for motion in program.motions}
+        offsets = {program.effective_setting("work_offset", motion.operation) for motion in program.motions}
         self._used = {
             PLANES_USED: "on" if MachiningMode.TILTED in modes else None,
             TCP_USED: "on" if MachiningMode.TCP in modes else None,
+            OFFSETS_DIFFER: "on" if len(offsets) > 1 else None,
         }
 
     def values(self, motion: Motion, number: int, loaded: LoadedTool, spindle: SpindleOn | None) -> dict[str, Value]:
@@ -92,7 +94,8 @@ class TemplateValues:
             **dict(zip(("zero_x", "zero_y", "zero_z"), machine.workpiece_zero or _NO_POSITION, strict=True)),
             "subprogram": None,
             "machine": machine.name,
-            "unit_word": self._program.control.unit_words.get(self._program.control.units),
+            "unit_word": (unit_word := self._program.control.unit_words.get(self._program.control.units)),
+            "entry_unit": unit_word if self._program.effective_setting("restart") == "on" else None,
             "gauge_length": machine.tool_length,
             "operation": operation.name,
             "intol": operation.intol,

@@ -1,6 +1,6 @@
 """The work offset of a program."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
+from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, rotary_positioning_flags
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import CHUNK, RowRanges, chunk_bounds
 
@@ -78,6 +79,8 @@ def _check_selected(context: Context) -> Check:
                 context.place(row, 0.0, f"works in {_name(context, used[row])}, not in {_name(context, wanted)}")
                 for row in bad[: max(MAX_PLACES - len(places), 0)].tolist()
             ]
+    if compared:
+        places += _turned_in_others(context, stretches)
     known = list(dict.fromkeys(wanted for _, wanted in stretches))
     others = set(used.distinct().tolist()) - {0, *known}
     if others and not places:
@@ -86,6 +89,31 @@ def _check_selected(context: Context) -> Check:
     names = [_name(context, code) for code in known]
     good = f"{names[0]} throughout" if len(names) == 1 else ", ".join(names)
     return check_from_places("offset", _TITLE, places, good, count or None)
+
+
+def _turned_in_others(context: Context, stretches: Sequence[tuple[RowRanges, int]]) -> Iterator[Place]:
+    """Where rotary axes are positioned in another work offset than that of the motion that they are positioned for.
+
+    The rotary axes of a work offset count too. A program that selects its only one later is as those that ran.
+    """
+    run = context.run
+    turns = RowRanges.from_flags(
+        (start, rotary_positioning_flags(run, start, end) & ~run.state.machine_frame.part(start, end))
+        for start, end in chunk_bounds(len(run))
+    )
+    before = 0
+    for rows, wanted in stretches:
+        begin, inside, end = (turns.count_before(row) for row in (before, rows[0], rows[-1]))
+        again = 0  # rotary axes that turn once more before the motion
+        for k in range(end - 1, begin - 1, -1):
+            row = turns[k]
+            axes = int(run.programmed[row]) & int(ROTARY_WORDS)
+            code = int(run.state.work_offset[row])
+            if code not in (0, wanted) and axes & ~again:
+                what = f"turns in {_name(context, code)} for motion in {_name(context, wanted)}"
+                yield context.place(row, 0.0, f"{what}: write {_name(context, wanted)} before it")
+            again = again | axes if k < inside else 0
+        before = rows[-1] + 1
 
 
 def _check_changes(context: Context, rows: RowRanges) -> Check:

@@ -105,7 +105,7 @@ def test_the_program_of_more_operations_calls_a_tool_only_when_it_is_another(pos
 
 def test_a_spindle_that_changes_within_an_operation_has_blocks_of_its_own(post: Post) -> None:
     lines = "SPINDL/RPM,2000,CLW\nGOTO/20,0,5\nSPINDL/OFF\nGOTO/30,0,5\nSPINDL/RPM,2000,CCLW\nGOTO/40,0,5\nSPINDL/OFF\n"
-    blocks = post(HEAD + lines + FOOT)
+    blocks = post(HEAD + lines + FOOT, "--set", "standing_spindle=allowed")
     begin = blocks.index("L X+10 Z+5 F500")
     part = ["L X+10 Z+5 F500", "TOOL CALL Z S2000", "M3", "L X+20", "M5", "L X+30", "M4", "L X+40", "M5"]
     assert blocks[begin : begin + 9] == part

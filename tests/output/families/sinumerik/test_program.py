@@ -24,7 +24,7 @@ def test_spindle_edge_and_sense_stand_in_the_first_block(post: Post) -> None:
 
 def test_a_counterclockwise_spindle_is_m4_and_a_new_speed_joins_the_next_block(post: Post) -> None:
     text = HEAD.replace("CLW", "CCLW") + "SPINDL/RPM,2000,CCLW\nGOTO/20,0,5\nSPINDL/OFF\nGOTO/30,0,5\n" + FOOT
-    lines = motion(post(text))
+    lines = motion(post(text, "--set", "standing_spindle=allowed"))
     assert lines[0].endswith("M4")
     assert lines[2:] == ["X20. S2000", "M5", "X30."]
 
@@ -223,7 +223,7 @@ def test_a_missing_spindle_speed_is_said(post: Post) -> None:
 def test_a_cut_after_spindl_off_is_refused(post: Post, again: str) -> None:
     cut = "GOTO/77,0,5\n"
     second = FOOT + HEAD.replace("OP1", "OP2").replace("SPINDL/RPM,4000.0000,CLW\n", "") if again else ""
-    text = HEAD + "SPINDL/OFF\n" + second + cut + "SPINDL/ON\nGOTO/78,0,5\n" + FOOT
+    text = HEAD + "SPINDL/OFF\n" + second + cut + "SPINDL/RPM,900,CLW\nGOTO/78,0,5\n" + FOOT
     code, _, err = post.all(text)
     assert code != 0
     assert f"operation OP{2 if again else 1} cuts while the spindle stands: SPINDL/OFF comes before" in err

@@ -14,6 +14,7 @@ from trunnion.controls.vocabulary import (
     ALL_LEFT_ON,
     HOLES_IN_PLANES,
     HOLES_SETTING,
+    OFFSETS_DIFFER,
     PLANES_USED,
     SAFE_START_CHOICES,
     SAFE_START_SETTING,
@@ -61,11 +62,12 @@ SETTING_MEANINGS: Mapping[str, str] = {
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 _CANCELLING_FIELDS = ("cancel_swivel", "cancel_tool_frame", "cancel_frames")
+_OFFSET_FIELD = "offset_before_turn"
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
     "swivel_mode": ("plane_mode",),
-    SAFE_START_SETTING: _CANCELLING_FIELDS,
+    SAFE_START_SETTING: (*_CANCELLING_FIELDS, _OFFSET_FIELD),
 }
-TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, *_CANCELLING_FIELDS, "interpolation"})
+TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, *_CANCELLING_FIELDS, _OFFSET_FIELD, "interpolation"})
 
 #: _ST of CYCLE800 with 0 as its ones digit: a new plane, not one that is added.
 _NEW_SWIVEL: Final = re.compile(r"[0-9]{0,7}0")
@@ -106,6 +108,7 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
     found: dict[str, Value] = {
         "interpolation": "VECT" if settings["orientation"] == "vector" else "AXES",
         **_cancelled_planes(settings),
+        _OFFSET_FIELD: _offset_before_turn(settings),
     }
     if plane is None:
         return found | dict.fromkeys(_PLANE_FIELDS)
@@ -124,6 +127,16 @@ def _cancelled_planes(settings: Mapping[str, Value]) -> dict[str, Value]:
         "cancel_tool_frame": "TOROTOF" if everything or turns_frame else None,
         "cancel_frames": "TRANS" if everything or turns_frame or plane == "frames" else None,
     }
+
+
+def _offset_before_turn(settings: Mapping[str, Value]) -> Value:
+    """The work offset in which the rotary axes turn before TRAORI; None: the one that is in force.
+
+    The rotary axes of a work offset count too. The published programs turn before they select their only offset, G54.
+    """
+    left_on = settings[SAFE_START_SETTING] == ALL_LEFT_ON or settings.get("restart") == "on"
+    chosen = settings.get(OFFSETS_DIFFER) or settings["work_offset"] != "G54"
+    return settings["work_offset"] if left_on or chosen else None
 
 
 def tool_preselection(call: str) -> list[str]:
