@@ -57,6 +57,16 @@ def test_several_cl_files_become_one_program() -> None:
     assert [toolpath.file for toolpath in result.toolpaths] == [str(HUB), str(CL)]
 
 
+def test_a_problem_names_the_file_of_its_operation(tmp_path: Path) -> None:
+    second = tmp_path / "second.cls"
+    lines = HUB.read_text(encoding="utf-8").splitlines()
+    line = next(k for k, each in enumerate(lines) if each.startswith("SPINDL"))
+    second.write_text("\n".join([*lines[: line + 1], "SPINDL/OFF", *lines[line + 1 :], ""]), encoding="utf-8")
+    with pytest.raises(trunnion.InputError) as caught:
+        trunnion.post([HUB, second], machine="yl569")
+    assert {Path(problem.file).name for problem in caught.value.problems} == {"second.cls"}
+
+
 def test_without_a_place_the_result_has_the_text_and_a_stream_takes_it(tmp_path: Path) -> None:
     stream = io.BytesIO()
     kept = trunnion.post(CL, machine="yl569")

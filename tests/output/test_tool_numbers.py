@@ -116,3 +116,15 @@ def test_force_says_so_in_the_head(post: Post) -> None:
     text = operation("A") + operation("B", "TLDATA/MILL,6,0,75,0,0")
     out = post.all(text, "--force")[1]
     assert any("MUST NOT RUN AS IT IS" in line and "both call tool 1" in line for line in out)
+
+
+@pytest.mark.parametrize(("machine", "refused"), [("yl569", False), ("matsuura_mx330", True), ("xyzac_trt", True)])
+def test_two_tools_with_one_length_register_are_refused_where_it_counts(
+    post: Post, machine: str, refused: bool
+) -> None:
+    text = operation("A") + operation("B", tool="OTHER", number=2).replace("LOAD/TOOL,2", "LOAD/TOOL,2,ADJUST,1")
+    code, out, err = post.all(text, machine=machine)
+    assert (code, bool(out)) == ((1, False) if refused else (0, True))
+    said = "part.cls:15: error: tool 2 of operation B has length register 1, as tool 1 has"
+    assert (said in err) is refused
+    assert post.all(text, "--set", "tool=B:3", machine=machine)[0] == 0

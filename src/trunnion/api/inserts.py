@@ -70,7 +70,9 @@ def insert_problems(program: Program) -> list[Problem]:
                 effect = effects.get(text) or _not_known(text, program)
                 if not effect:
                     continue
-                problems.append(Problem(program.file, lines[text], f"INSERT/{text.strip()}: {effect}", _CURE))
+                problems.append(
+                    Problem(program.file_of(motion.operation), lines[text], f"INSERT/{text.strip()}: {effect}", _CURE)
+                )
                 if len(problems) >= _MOST_LISTED:
                     return problems
     return problems

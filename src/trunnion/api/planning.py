@@ -181,7 +181,8 @@ def plan_program(
     if errors:
         raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
     unproven = _missing_reader(job)
-    conflicts = tool_conflicts(program, [file for file, _ in cut])
+    by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
+    conflicts = tool_conflicts(program, uses_length_numbers=by_register)
     found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program)]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:

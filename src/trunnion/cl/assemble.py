@@ -72,6 +72,7 @@ def assemble_operation(
         line=builder.line,
         intol=None if builder.intol is None else builder.intol * unit,
         outtol=None if builder.outtol is None else builder.outtol * unit,
+        file=diagnostics.file,
     )
 
 

@@ -308,7 +308,7 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operation:
-    """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH."""
+    """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH in ``file``."""
 
     name: str
     tool: Tool
@@ -319,6 +319,7 @@ class Operation:
     line: int
     intol: float | None = None
     outtol: float | None = None
+    file: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

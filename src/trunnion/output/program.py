@@ -31,7 +31,7 @@ class Program:
 
     settings         those of the run; they take precedence over the control's
     own_settings     those of single operations, by their names; they take precedence over all others
-    file             the CL file, for messages
+    file             the first CL file, for messages
     notices          comments at the start of the program
     has_time_tokens  tokens stand for machining times (``trunnion.output.template_values.TIME_TOKEN``) until they are
                      known
@@ -58,6 +58,10 @@ class Program:
     def effective_setting(self, name: str, operation: Operation | None = None) -> str:
         """Return a setting of the run, for an operation if one is given, or else of the definition; empty for none."""
         return self.effective_settings(operation).get(name, "")
+
+    def file_of(self, operation: Operation) -> str:
+        """Return the CL file of an operation, for messages."""
+        return operation.file or self.file
 
     def method_of(self, operation: Operation) -> str:
         """Return the machining method of an operation: that of its settings, or else what the CL file tells."""

@@ -113,7 +113,7 @@ class _ProgramWriter:
             try:
                 self._write_motion(motion, k, ends_operation)
             except WordRangeError as error:
-                raise error.at(self._program.file, motion.operation.line) from None
+                raise error.at(self._program.file_of(motion.operation), motion.operation.line) from None
             if ends_operation:
                 self._switch_coolant_off(motion, ends_program)
                 self._end_operation_file(motion, k)
@@ -173,7 +173,7 @@ class _ProgramWriter:
         if self._program.effective_setting("tool_list") != "on":
             return []
         texts = dict.fromkeys(
-            tool_text(call, operation.tool, self._control.unit) for call, operation in self._tool_calls
+            tool_text(call, operation.tool, self._control.unit) for call, _, operation in self._tool_calls
         )
         return [line for text in ("TOOL LIST", *texts) for line in self._control.family.comment(text)]
 
@@ -181,7 +181,7 @@ class _ProgramWriter:
         """Select the next other tool, if that is asked for, as soon as ``tool`` is in the spindle."""
         if self._program.effective_setting("preselect") != "on":
             return
-        later = (call for call, _ in self._tool_calls[self._operation + 1 :] if call != tool)
+        later = (call for call, *_ in self._tool_calls[self._operation + 1 :] if call != tool)
         following = next(later, "")
         self._blocks.write_lines(self._control.family.tool_preselection(following) if following else [])
 

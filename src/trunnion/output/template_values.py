@@ -238,16 +238,21 @@ class TemplateValues:
         if loads:
             return self._family.tool_call(loads[-1].number, "", by_name=False)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
-        raise InputError(Problem(self._program.file, operation.line, what, "write setting tool=NUMBER"))
+        raise InputError(Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER"))
 
-    def tool_calls(self) -> list[tuple[str, Operation]]:
-        """The tool of each operation as the program calls it, in the order of the program; errors as ``tool_call``."""
-        calls: list[tuple[str, Operation]] = []
+    def tool_calls(self) -> list[tuple[str, int, Operation]]:
+        """The tool of each operation as the program calls it, and the register of its length, 0 for that of the tool.
+
+        In the order of the program; errors as ``tool_call``.
+        """
+        calls: list[tuple[str, int, Operation]] = []
         loaded = LoadedTool()
         for motion in self._program.motions:
             if motion.starts_operation:
-                loaded = LoadedTool(self.tool_call(motion.operation, loaded), motion.operation.tool.name)
-                calls.append((loaded.call, motion.operation))
+                operation = motion.operation
+                register = self.length_register(operation, loaded)
+                loaded = LoadedTool(self.tool_call(operation, loaded), operation.tool.name, register)
+                calls.append((loaded.call, register, operation))
         return calls
 
     def length_register(self, operation: Operation, loaded: LoadedTool) -> int:

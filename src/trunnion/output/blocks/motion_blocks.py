@@ -88,6 +88,7 @@ class MotionBlockWriter:
         self.xy_before_z = False
         self.max_file_bytes: int | None = None
         self.on_file_full: Callable[[], None] = lambda: None
+        self._file = program.file
         self._tool = ""
         self._length_register = 0
         self._words_to_repeat: dict[str, int] = {}
@@ -121,6 +122,7 @@ class MotionBlockWriter:
             The tool has been retracted, so that it goes to X and Y before it goes along the tool axis: in planes, and
             in three-axis operations on controls with ``level_approach``.
         """
+        self._file = self.program.file_of(motion.operation)
         self._tool = tool
         loads = [event for event in motion.operation.events if isinstance(event, LoadTool)]
         if loads:  # a tool that the run's settings name has its own register
@@ -169,7 +171,7 @@ class MotionBlockWriter:
         for line in lines:
             if len(line.encode()) > room:
                 what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"
-                raise InputError(Problem(self.program.file, 0, f"{what}: {line[:60]}…", _SHORTEN))
+                raise InputError(Problem(self._file, 0, f"{what}: {line[:60]}…", _SHORTEN))
         sign, blocks, continues = self.control.continued, list[str](), False
         for line in lines:
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
@@ -185,7 +187,7 @@ class MotionBlockWriter:
         try:
             self.write_block(self.event_words(event))
         except WordRangeError as error:
-            raise error.at(self.program.file, event.line) from None
+            raise error.at(self._file, event.line) from None
 
     def needs_motion(self, event: WordEvent) -> bool:
         """Whether the words of an event make no block alone, as ``RL`` does not."""
@@ -272,7 +274,7 @@ class MotionBlockWriter:
         try:
             self.writer.write_table(table.columns, table.forced, np.where(changes, phases, -1), texts, table.lines)
         except WordRangeError as error:
-            raise error.at(self.program.file, int(moves.line[start + error.row])) from None
+            raise error.at(self._file, int(moves.line[start + error.row])) from None
         if other_end:
             self.writer.forget("X", "Y", "Z")
         self._orientation.remember_state()

@@ -43,5 +43,5 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
         in_tilted_plane = "setting mode=tilted makes the operation in a tilted plane, or "
         has_planes = MachiningMode.TILTED in program.control.modes({})
         cure = (in_tilted_plane if has_planes else "") + "output the path without CUTCOM"
-        problems.append(Problem(program.file, event.line, f"{what}: {why}", cure))
+        problems.append(Problem(program.file_of(operation), event.line, f"{what}: {why}", cure))
     return problems

@@ -63,9 +63,11 @@ def cycle_problems(program: Program, motion: Motion, spindle: SpindleState) -> l
             warning = _check_cycle(program, motion, operation, event, states, along_tool)
             warnings += [warning] if warning else []
         except HoleCycleError as error:
-            problems.append(Problem(program.file, event.line, error.what, error.cure))
+            problems.append(Problem(program.file_of(operation), event.line, error.what, error.cure))
     if along_tool and not problems:
-        problems = [Problem(program.file, e.line, e.what, e.cure) for e in check_holes_under_tcp(operation)]
+        problems = [
+            Problem(program.file_of(operation), e.line, e.what, e.cure) for e in check_holes_under_tcp(operation)
+        ]
     return [*problems, *warnings]
 
 
@@ -109,7 +111,7 @@ def _check_cycle(
         raise HoleCycleError("a feed per revolution, which this control does not have", "output it in mm/min (MMPM)")
     if per_rev and spindle_here is not None and CYCLE_CALL_WORD in words:
         feed, per_rev = feed * spindle_here.rpm, False  # a cycle that is called hole by hole has mm/min
-    return rounding_problem(program.file, event.line, formats, feed, per_rev)
+    return rounding_problem(program.file_of(operation), event.line, formats, feed, per_rev)
 
 
 def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycleError:

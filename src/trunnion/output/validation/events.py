@@ -24,7 +24,7 @@ def event_problems(
     registers
         Numbers of the tools that the motion loads, and of the registers that LOAD/TOOL names.
     """
-    control, location = program.control, (program.file, event.line)
+    control, location = program.control, (program.file_of(motion.operation), event.line)
     if isinstance(event, Dwell):
         if event.revolutions and not rpm:
             what = "a dwell in spindle revolutions while the spindle stands: it would never end"
@@ -82,10 +82,16 @@ def block_skip_problems(program: Program) -> list[Problem]:
             continue
         if k + 1 == len(motions) or motions[k + 1].starts_operation:
             what = f"OPSKIP/ON ends with operation {motion.operation.name}: the way home cannot be skipped"
-            problems.append(Problem(program.file, skip.line, what, "write OPSKIP/OFF", Severity.WARNING))
+            problems.append(
+                Problem(program.file_of(motion.operation), skip.line, what, "write OPSKIP/OFF", Severity.WARNING)
+            )
             skip = None
         else:
             line = int(motions[k + 1].operation.moves.line[0])
             what = "the tool axis turns to another plane between blocks that may be skipped"
-            problems.append(Problem(program.file, line, what, "write OPSKIP/OFF before it, and OPSKIP/ON after it"))
+            problems.append(
+                Problem(
+                    program.file_of(motion.operation), line, what, "write OPSKIP/OFF before it, and OPSKIP/ON after it"
+                )
+            )
     return problems

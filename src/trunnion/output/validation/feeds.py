@@ -24,7 +24,14 @@ def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     rows = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
     if not len(rows):
         return []
-    return [Problem(program.file, int(moves.line[rows[0]]), "cutting motion without a feed", "put FEDRAT before it")]
+    return [
+        Problem(
+            program.file_of(motion.operation),
+            int(moves.line[rows[0]]),
+            "cutting motion without a feed",
+            "put FEDRAT before it",
+        )
+    ]
 
 
 def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -41,7 +48,7 @@ def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     found = []
     for k in rows.tolist():
         line, feed, per_rev = int(moves.line[k]), float(moves.feed[k]), bool(moves.per_rev[k])
-        problem = rounding_problem(program.file, line, formats, feed, per_rev)
+        problem = rounding_problem(program.file_of(motion.operation), line, formats, feed, per_rev)
         if problem is not None and feed in lowered and feed >= feed_format(formats, per_rev).least:
             problem = replace(problem, severity=Severity.WARNING)
         found += [problem] if problem is not None else []

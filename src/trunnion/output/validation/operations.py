@@ -29,11 +29,11 @@ def spindle_problems(program: Program, operation: Operation, turns: bool | None)
             why = "no SPINDL comes before" if event is None and turns is None else "SPINDL/OFF comes before"
             what = f"operation {operation.name} cuts while the spindle stands: {why}"
             cure = "put SPINDL before it, or write setting standing_spindle=allowed for a tool that does not turn"
-            return [Problem(program.file, int(operation.moves.line[start + cuts[0]]), what, cure)]
+            return [Problem(program.file_of(operation), int(operation.moves.line[start + cuts[0]]), what, cure)]
         break
     if turns is None and not any(isinstance(event, SpindleOn) for event in switches):
         what = f"operation {operation.name} has no spindle speed"
-        return [Problem(program.file, operation.line, what, "put SPINDL before it", Severity.WARNING)]
+        return [Problem(program.file_of(operation), operation.line, what, "put SPINDL before it", Severity.WARNING)]
     return []
 
 
@@ -48,12 +48,12 @@ def tool_problems(program: Program, operation: Operation, in_spindle: str) -> li
     if not loaded and name and not stays:
         what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
         cure = "setting tool=NUMBER calls it by number"
-        problems.append(Problem(program.file, operation.line, what, cure, Severity.WARNING))
+        problems.append(Problem(program.file_of(operation), operation.line, what, cure, Severity.WARNING))
     if name and (not (loaded or stays) or program.effective_setting("tool_call", operation) == "name"):
         try:
             program.control.family.tool_call(0, name, by_name=True)
         except UnsupportedFeatureError as why:
-            problems.append(Problem(program.file, operation.line, why.what, why.cure))
+            problems.append(Problem(program.file_of(operation), operation.line, why.what, why.cure))
     return problems
 
 
@@ -63,7 +63,7 @@ def machining_mode_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     operation = motion.operation
     what = f"operation {operation.name}: {program.control.name} has no words for {motion.mode}"
-    return [Problem(program.file, operation.line, what, "setting mode=… sets another mode")]
+    return [Problem(program.file_of(operation), operation.line, what, "setting mode=… sets another mode")]
 
 
 def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -74,7 +74,11 @@ def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     fallback = program.effective_setting("fallback_tolerance", operation)
     what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
-    return [Problem(program.file, operation.line, what, "write setting fallback_tolerance=VALUE", Severity.WARNING)]
+    return [
+        Problem(
+            program.file_of(operation), operation.line, what, "write setting fallback_tolerance=VALUE", Severity.WARNING
+        )
+    ]
 
 
 def _prints_tolerance(program: Program, motion: Motion) -> bool:
@@ -94,7 +98,7 @@ def plane_entry_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     what = f"a cut is the first motion in a tilted plane, and {program.control.name} wants X, Y and Z at rapid there"
     cure = "put RAPID before the first GOTO with this tool axis, clear of the part"
-    return [Problem(program.file, int(moves.line[0]), what, cure)]
+    return [Problem(program.file_of(motion.operation), int(moves.line[0]), what, cure)]
 
 
 def next_axis_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -105,4 +109,4 @@ def next_axis_problems(program: Program, motion: Motion) -> list[Problem]:
     moves, name = motion.operation.moves, program.control.name
     what = f"holes along another tool axis than those before, {motion.mode}: {name} has no template to go on from home"
     cure = f"write the template next_axis_{suffix} into the control's definition, or split the operation"
-    return [Problem(program.file, int(moves.line[0]), what, cure)]
+    return [Problem(program.file_of(motion.operation), int(moves.line[0]), what, cure)]

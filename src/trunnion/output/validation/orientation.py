@@ -20,7 +20,9 @@ def tool_vector_problems(program: Program, motion: Motion) -> list[Problem]:
     what = "for the tool's vector here the control could choose another rotary position than the planned one: operation"
     what = f"{what} {motion.operation.name} is written with rotary positions"
     cure = "no change is needed; orientation=angles writes all operations so"
-    return [Problem(program.file, int(motion.operation.moves.line[row]), what, cure, Severity.WARNING)]
+    return [
+        Problem(program.file_of(motion.operation), int(motion.operation.moves.line[row]), what, cure, Severity.WARNING)
+    ]
 
 
 def normal_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -29,7 +31,7 @@ def normal_problems(program: Program, motion: Motion) -> list[Problem]:
     moves = operation.moves
     if moves.normal is None or not np.isfinite(moves.normal).any():
         return []
-    location, name = (program.file, operation.line), operation.name
+    location, name = (program.file_of(operation), operation.line), operation.name
     if motion.mode is MachiningMode.WITHOUT_TCP:
         what = f"operation {name}: surface normals without TCP, where X, Y and Z are axis positions"
         problems.append(Problem(*location, what, "leave the setting normals out"))
@@ -38,13 +40,15 @@ def normal_problems(program: Program, motion: Motion) -> list[Problem]:
         problems.append(Problem(*location, what, "setting orientation=vector writes the tool axis as well"))
     if len(operation.arcs.row):
         what = "a circle, which can have no surface normal: the control would not compensate the tool there"
-        problems.append(Problem(program.file, int(moves.line[operation.arcs.row[0]]), what, "output lines only"))
+        problems.append(
+            Problem(program.file_of(operation), int(moves.line[operation.arcs.row[0]]), what, "output lines only")
+        )
     missing = (moves.kind == Kind.LINEAR) & ~np.isfinite(moves.normal[:, 0])
     inserted = missing[:-1] & (moves.line[:-1] == moves.line[1:]) & np.isfinite(moves.normal[1:, 0])
     if inserted.any():
         what = "a point between CL points, where the surface normal is not known"
         line = int(moves.line[int(np.argmax(inserted))])
-        problems.append(Problem(program.file, line, what, "leave the setting axis_tolerance out"))
+        problems.append(Problem(program.file_of(operation), line, what, "leave the setting axis_tolerance out"))
     elif missing.any():
         what = f"operation {name}: no contact point at {int(missing.sum())} of {counted(len(moves), 'point')}"
         effect = "the control does not compensate the tool there"

@@ -46,7 +46,7 @@ def check_program(program: Program) -> list[Problem]:
             problems += event_problems(program, motion, event, turning, registers)
         problems += _motion_problems(program, motion)
         rejected = program.control.family.validate_operation(operation, turns is not None)
-        problems += [Problem(program.file, line, why.what, why.cure) for line, why in rejected]
+        problems += [Problem(program.file_of(operation), line, why.what, why.cure) for line, why in rejected]
         problems += spindle_problems(program, operation, turns)
         for event in operation.events:
             if isinstance(event, SpindleOn):

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
+from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import Problem, Severity
 from trunnion.model.toolpath import Operation, Tool
 from trunnion.output.program import Program
@@ -21,10 +22,13 @@ _SIZES: Final[Mapping[str, float]] = {
 #: Sizes of which 0 says that the file does not know them.
 _UNKNOWN_AT_ZERO: Final = frozenset({"diameter", "length"})
 
+_OWN_REGISTER: Final = (
+    "give it a register of its own in the CAM, or write setting tool=OPERATION:NUMBER, which takes that of NUMBER"
+)
 _CURE: Final = "number the tools apart in the CAM, or write setting tool=OPERATION:NUMBER for one of them"
 
 
-def tool_conflicts(program: Program, files: Sequence[str]) -> list[Problem]:
+def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Problem]:
     """Return errors where operations call one tool and state different ones; warnings where only the names differ.
 
     The operator puts one cutter under a number or a name: the program would run with it in both operations.
@@ -33,8 +37,8 @@ def tool_conflicts(program: Program, files: Sequence[str]) -> list[Problem]:
     ----------
     program
         Tools of it can be called: it has passed ``check_program``.
-    files
-        The CL file of each operation, for messages.
+    uses_length_numbers
+        The program selects tool lengths by registers: two tools may not have the same one.
 
     Raises
     ------
@@ -43,7 +47,15 @@ def tool_conflicts(program: Program, files: Sequence[str]) -> list[Problem]:
     """
     problems: list[Problem] = []
     known: dict[str, list[Operation]] = {}
-    for (call, operation), file in zip(TemplateValues(program).tool_calls(), files, strict=True):
+    registers: dict[int, str] = {}
+    for call, register, operation in TemplateValues(program).tool_calls():
+        file = program.file_of(operation)
+        other = registers.setdefault(register or tool_number(call) or 0, call)
+        if uses_length_numbers and other != call:
+            what = (
+                f"tool {call} of operation {operation.name} has length register {register or call}, as tool {other} has"
+            )
+            problems.append(Problem(file, operation.line, what, _OWN_REGISTER))
         before = known.setdefault(call, [])
         if operation.tool in (other.tool for other in before):
             continue
