@@ -111,6 +111,29 @@ def test_the_feed_of_a_cycle_is_its_own_and_the_modal_one_comes_back(post: Post)
     assert "G94 G1 Z20. F500." in lines
 
 
+def test_a_cycle_with_the_modal_feed_is_called_again_where_that_changes(post: Post) -> None:
+    text = (
+        HEAD + f"CYCLE/DRILL,{HEIGHTS.rstrip(',')}\nGOTO/10,0,0\nFEDRAT/MMPM,300\nGOTO/20,0,0\nGOTO/30,0,0\nCYCLE/OFF\n"
+    )
+    part = [line.partition(" ")[2] if line.startswith("N") else line for line in post(text + FOOT)]
+    at = part.index("F300.")
+    assert [line.split("(")[0] for line in part[at + 1 : at + 5]] == [
+        "MCALL CYCLE81",
+        "X20. Y0.0",
+        "X30. Y0.0",
+        "MCALL",
+    ]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [f"CYCLE/DRILL,{HEIGHTS}MMPM,100\nGOTO/10,0,0\nCUTCOM/LEFT\n", f"CUTCOM/LEFT\nCYCLE/DRILL,{HEIGHTS}MMPM,100\n"],
+)
+def test_compensation_in_holes_is_refused_with_its_line(lines: str, post: Post) -> None:
+    with pytest.raises(AssertionError, match="CUTCOM/LEFT where the cycle of line"):
+        post(HEAD + lines + "GOTO/20,0,0\nCUTCOM/OFF\nCYCLE/OFF\n" + FOOT)
+
+
 @pytest.mark.parametrize(
     ("words", "what"),
     [

@@ -1,4 +1,4 @@
-"""Radius compensation that the control would make in another plane than across the tool."""
+"""Radius compensation that the control would make in another plane than across the tool, or at holes."""
 
 from typing import Final
 
@@ -8,6 +8,7 @@ from trunnion.errors import Problem
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CutterComp
 from trunnion.output.program import Program
+from trunnion.planning.holes.operations import cycle_row_ranges
 
 #: The axis perpendicular to each plane of CUTCOM; without one the control works in XY.
 _NORMALS: Final = {"": 2, "XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
@@ -17,7 +18,7 @@ _ASKEW: Final = 1e-4
 
 
 def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
-    """Refuse CUTCOM that would offset along the tool, or not by the tool's radius."""
+    """Refuse CUTCOM that would offset along the tool, not by the tool's radius, or the points of holes."""
     by_deltas = motion.mode is MachiningMode.TCP and not program.control.family.COMPENSATES_WITH_TCP
     if motion.mode is MachiningMode.WITHOUT_TCP:
         return []  # refused altogether
@@ -28,6 +29,12 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
     for event, end in zip(events, ends, strict=True):
         axes = operation.moves.axis[event.row : end]
         if event.side == "OFF" or not len(axes):
+            continue
+        if holes := [cycle for cycle, stop in cycle_row_ranges(operation) if cycle.row < end and event.row < stop]:
+            what = f"CUTCOM/{event.side} where the cycle of line {holes[0].line} makes holes: they have no side"
+            problems.append(
+                Problem(program.file, event.line, what, "write CUTCOM/OFF before the cycle, and LEFT behind it")
+            )
             continue
         in_plane = np.delete(axes, _NORMALS.get(event.plane, 2), axis=1)
         if float(np.abs(in_plane).max()) <= _ASKEW and not by_deltas:

@@ -19,6 +19,8 @@ _SAME_AXIS: Final = 1e-7
 def normalize_cycles(operation: Operation) -> Operation:
     """Return the operation with cycles around holes only, a rapid into every hole, and RTRCTO,AUTO as a distance.
 
+    A cycle without a feed of its own is stated again where the modal feed changes.
+
     Raises
     ------
     HoleCycleError
@@ -34,11 +36,13 @@ def normalize_cycles(operation: Operation) -> Operation:
     events: list[Event] = []
     cycle: CycleOn | None = None
     edges = np.flatnonzero(np.diff(holes, prepend=False, append=False)).tolist()
-    for row in sorted({*edges, *here_by_row}):
+    new_feed = set(_feed_change_rows(operation, holes))
+    for row in sorted({*edges, *here_by_row, *new_feed}):
         here = here_by_row[row]
         in_force = next((event for event in reversed(here) if isinstance(event, CycleOn)), in_force)
         is_hole = row < len(moves) and bool(holes[row])
         changes = any(isinstance(event, CycleOn | CycleOff) for event in here)
+        changes = changes or (row in new_feed and in_force is not None and not _has_own_feed(in_force))
         if cycle is not None and (changes or not is_hole):
             events.append(CycleOff(row, cycle.line))
             cycle = None
@@ -58,6 +62,19 @@ def hole_rows(operation: Operation) -> Flags:
     on = np.array([False, *(isinstance(event, CycleOn) for event in switches)])
     is_on = on[np.searchsorted(rows, np.arange(len(operation.moves)), "right")]
     return np.asarray(is_on & (operation.moves.kind != Kind.RAPID))
+
+
+def _feed_change_rows(operation: Operation, holes: Flags) -> list[int]:
+    """Rows of holes whose modal feed is another one than that of the hole before."""
+    feed, per_rev = operation.moves.feed, operation.moves.per_rev
+    changes = (np.diff(feed) != 0.0) & ~(np.isnan(feed[1:]) & np.isnan(feed[:-1]))
+    changes |= per_rev[1:] != per_rev[:-1]
+    return (np.flatnonzero(changes & holes[1:] & holes[:-1]) + 1).tolist()
+
+
+def _has_own_feed(event: CycleOn) -> bool:
+    """Whether a cycle states its feed."""
+    return any(word in ("MMPM", "MMPR") for word, _ in event.values)
 
 
 def _with_retract_distance(operation: Operation, event: CycleOn) -> CycleOn:
