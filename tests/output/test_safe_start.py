@@ -110,7 +110,16 @@ def test_a_tool_frame_of_holes_is_cancelled() -> None:
 def test_rotary_axes_turn_in_the_offset_of_their_operation(
     machine: str, offsets: str, late: str, tmp_path: Path
 ) -> None:
-    assert posted(tmp_path, machine, TILTED + FLAT, work_offset=offsets)
+    program = tmp_path / "program.nc"
+    program.write_text(
+        "\n".join(posted(tmp_path, machine, TILTED + FLAT, work_offset=offsets)) + "\n", encoding="utf-8"
+    )
+    found = trunnion.verify(program, machine=machine, cl=tmp_path / "part.cls", work_offset=offsets)
+    assert found.passed
+    alone = trunnion.verify(program, machine=machine, cl=tmp_path / "part.cls", work_offset=offsets.split(",")[0])
+    assert [check.key for check in alone.checks if not check.passed] == ["offset"]
+    with pytest.raises(trunnion.InputError, match="the program has none of that name"):
+        trunnion.verify(program, machine=machine, cl=tmp_path / "part.cls", work_offset=offsets.replace("FLAT", "F"))
     if late:
         file = tmp_path / "late.toml"
         template = f"approach_three_axis = '''\nG0 {{primary_word}} {{secondary_word}}\n{late}\n'''"

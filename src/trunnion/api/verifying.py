@@ -9,7 +9,7 @@ from trunnion.api.arguments import check_choice, check_observer, check_whole, wr
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
-from trunnion.api.settings import check_tolerance, m_code, set_up_machine, work_offset_setting
+from trunnion.api.settings import check_operation_names, check_tolerance, m_code, set_up_machine, work_offset_setting
 from trunnion.controls import Control, load_control
 from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError
@@ -17,8 +17,15 @@ from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Operation
-from trunnion.verification import ExpectedValues, PrintedDigits, Tolerances, Verification, tolerances_in_planes
+from trunnion.model.toolpath import Operation, Toolpath
+from trunnion.verification import (
+    ExpectedValues,
+    OperationSettings,
+    PrintedDigits,
+    Tolerances,
+    Verification,
+    tolerances_in_planes,
+)
 
 #: How far the tip may be off its CL point, mm; and in a program in inches, half of 0.0001 inch.
 _DEFAULT_TOLERANCE: Final = 0.001
@@ -71,7 +78,8 @@ def verify(
     tool
         Tool that is called in place of the CL file's.
     work_offset
-        Such as ``"G55"``; by default that of the control's definition where there is a CL file.
+        Such as ``"G55"``, or ``"G54,TOP:G55"`` with others for single operations of the CL files; by default that of the
+        control's definition where there is a CL file.
     edge
         Number of the cutting edge (D); by default that of the control's definition where there is a CL file.
     units
@@ -135,14 +143,16 @@ def verify(
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
     if edge is None and toolpaths and "edge" in defaults:
         edge = int(defaults["edge"])
+    offset, by_operation = _work_offsets(work_offset, loaded, control, toolpaths)
     return verification.verify(
         run,
         toolpaths,
         tolerances=_tolerances(run, tolerance, control),
         settings=ExpectedValues(
             tool=tool,
-            work_offset=_work_offset(work_offset, loaded, defaults.get("work_offset", "G54"), bool(toolpaths)),
+            work_offset=offset,
             edge=edge,
+            by_operation={name: OperationSettings(tool, own, edge) for name, own in by_operation.items()},
             span=span,
             span_tip=span_tip,
             absolute=frame == "absolute",
@@ -197,8 +207,17 @@ def rapid_feed_of(machine: Machine) -> float | None:
     return float(feed) if feed else None
 
 
-def _work_offset(text: object, machine: Machine, default: str, with_cl: bool) -> int | None:
-    """The work offset that a program must have; None: any, the same throughout."""
-    if text is None and not with_cl:
-        return None
-    return work_offset_setting(default if text is None else str(text), machine)
+def _work_offsets(
+    text: str | None, machine: Machine, control: Control | None, toolpaths: Sequence[Toolpath]
+) -> tuple[int | None, dict[str, int | None]]:
+    """The work offset that a program must have (None: any, the same throughout), and those of single operations."""
+    if text is None and not toolpaths:
+        return None, {}
+    values = list(control.values_by_operation("work_offset", str(text))) if control and text is not None else []
+    own = {name: work_offset_setting(value, machine) for name, value in values if name}
+    if own:
+        names = [operation.name for toolpath in toolpaths for operation in toolpath.operations]
+        check_operation_names({name: {"work_offset": ""} for name in own}, {}, names)
+        text = next((value for name, value in values if not name), None)
+    default = default_settings(machine).get("work_offset", "G54")
+    return work_offset_setting(default if text is None else str(text), machine), own
