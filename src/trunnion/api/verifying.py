@@ -78,8 +78,8 @@ def verify(
     tool
         Tool that is called in place of the CL file's.
     work_offset
-        Such as ``"G55"``, or ``"G54,TOP:G55"`` with others for single operations of the CL files; by default that of the
-        control's definition where there is a CL file.
+        Such as ``"G55"``, or ``"G54,TOP:G55"`` with others for single operations of the CL files; by default that of
+        the control's definition where there is a CL file.
     edge
         Number of the cutting edge (D); by default that of the control's definition where there is a CL file.
     units

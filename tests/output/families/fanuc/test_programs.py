@@ -106,9 +106,9 @@ N20 G49 G53 G0 Z0.
 N30 G69
 N40 G53 G0 X0. Y0. A0. C0.
 N50 T1 M6
-N60 G0 A-30. C0.
-N70 G05.1 Q1
-N80 G54
+N60 G54
+N70 G0 A-30. C0.
+N80 G05.1 Q1
 N90 S4000 M3
 N100 G0 G43.4 H1 X0. Y0. Z50.
 (CUT)
@@ -143,9 +143,9 @@ GOTO/30,10,50
     text = proven(read(HEAD + statements + END, folder), folder, load_machine("matsuura_mx330"), contour="G05")
     assert "(SPANE)" in text.splitlines()
     assert body(text) == [
+        "G54",
         "G0 A0. C0.",
         "G05 P10000",
-        "G54",
         "S4000 M3",
         "G0 X0. Y0.",
         "G43 H1 Z50.",
@@ -177,8 +177,8 @@ def test_holes_in_two_planes_with_the_plane_off_before_the_axes_turn(folder: Pat
     more = "GOTO/0,0,0,0.6,0.0,0.8\nCYCLE/OFF\n"
     text = proven(read(START + holes + more + END, folder), folder, load_machine("matsuura_mx330"), contour="none")
     assert body(text) == [
-        "G0 A-36.87 C0.",
         "G54",
+        "G0 A-36.87 C0.",
         "G68.2 X0. Y0. Z0. I180. J36.87 K180.",
         "G53.1",
         "S4000 M3",
@@ -212,8 +212,8 @@ def test_without_options_the_slides_are_led_with_inverse_time(folder: Path) -> N
         read(LEANING + END, folder), folder, model, tcp="off", contour="none", tip_tolerance="10", axis_tolerance="5"
     )
     assert body(text) == [
-        "G0 A-30. C0.",
         "G54",
+        "G0 A-30. C0.",
         "S4000 M3",
         "G0 G43 H1 X0. Y-45. Z37.942",
         "G93 G1 X10. Y-27. Z-4. A-36.87 F10.847",
