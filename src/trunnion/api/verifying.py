@@ -31,8 +31,8 @@ from trunnion.verification import (
 _DEFAULT_TOLERANCE: Final = 0.001
 _DEFAULT_INCH_TOLERANCE: Final = 0.0013
 
-#: Chords stand for arcs within this, mm, however small the tolerance of coordinates is.
-_LEAST_CHORD = 0.001
+#: Lines stand for arcs within this, mm, where programs for the control can be read but not written.
+_READ_CHORD: Final = 0.001
 
 
 def verify(
@@ -74,7 +74,8 @@ def verify(
     span
         How far the tool axis may be off its way between points, degrees; by default as the control's definition says.
     span_tip
-        The same for the tip without TCP, mm.
+        The same for the tip without TCP, and for lines that stand for arcs, mm; the latter by default within the chord
+        tolerance of the control's definition.
     tool
         Tool that is called in place of the CL file's.
     work_offset
@@ -147,7 +148,7 @@ def verify(
     return verification.verify(
         run,
         toolpaths,
-        tolerances=_tolerances(run, tolerance, control),
+        tolerances=_tolerances(run, tolerance, span_tip, control),
         settings=ExpectedValues(
             tool=tool,
             work_offset=offset,
@@ -164,9 +165,12 @@ def verify(
     )
 
 
-def _tolerances(run: Run, tolerance: float, control: Control | None) -> Tolerances | Callable[[Operation], Tolerances]:
+def _tolerances(
+    run: Run, tolerance: float, span_tip: float | None, control: Control | None
+) -> Tolerances | Callable[[Operation], Tolerances]:
     """How far coordinates and angles may be off; by default as much more in tilted planes as is rounded there."""
-    chord = max(_LEAST_CHORD, tolerance)
+    chord = control.arcs.chord_tolerance if control else _READ_CHORD
+    chord = max(chord, tolerance) if span_tip is None else span_tip
     if tolerance != _DEFAULT_TOLERANCE:
         return Tolerances(tip=tolerance, angle=tolerance, chord=chord)
     in_inches = bool(run.state.inches.values.any())

@@ -5,7 +5,8 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.verification.context import ComparedContext, Context, ExpectedValues
+from trunnion.verification.checks.arc_chord_faults import arc_chord_faults, chord_heights
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.linearization import LinearizationErrors
 from trunnion.verification.expected.arcs import circle_of
 from trunnion.verification.kinematics.axis_motion import AxisMotion
@@ -37,14 +38,19 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
         places += [
             context.place(r, v, f"{where} the tool axis is {v:.5f} degrees off the great circle") for r, v in rows
         ]
-    if row >= 0 and off_tip > 0.0:
+    faults = list(arc_chord_faults(context)) if isinstance(context, ComparedContext) else []
+    if row >= 0 and off_tip > 0.0 and not (faults and row == deviation_row):
         rows = tip.rows or [(row, off_tip)]
         places += [context.place(r, v, f"between its ends the tip is {v:.5f} mm off") for r, v in rows]
     summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off {where}"
     if axis.row >= 0:
         summary += f", in {context.block_name(axis.row)}"
     summary += f", allowed {_allowed(settings)}"
-    passed = not errors.axis.count + errors.tip.count
+    if faults:
+        summary += f"; {faults[0].block_name}: {faults[0].text}"
+        summary += f", and {len(faults) - 1} more" if len(faults) > 1 else ""
+        places = [*faults[:MAX_PLACES], *places]
+    passed = not errors.axis.count + errors.tip.count + len(faults)
     title = "tool between the points"
     return Check("span", title, passed, summary, axis.value, settings.span, "deg", tuple(places))
 
@@ -65,17 +71,10 @@ def _largest_deviation(context: Context) -> tuple[float, int]:
     if isinstance(context, ComparedContext):
         for segments in context.matching.arc_segments:
             nc = segments.nc
-            off = _heights(context, segments) if segments.pieces is None else _off_helix(context, segments)
+            off = chord_heights(context, segments) if segments.pieces is None else _off_helix(context, segments)
             if len(off) and off.max() > largest:
                 largest, row = float(off.max()), int(nc[min(int(np.argmax(off)), len(nc) - 1)])
     return (0.0, -1) if row < 0 else (largest, row)
-
-
-def _heights(context: ComparedContext, segments: ArcSegments) -> Floats:
-    """Heights of the chords, (k + 1,) mm."""
-    arc = segments.arc
-    fractions = np.concatenate(([0.0], arc.fractions(context.run.positions(segments.nc).tip), [1.0]))
-    return np.asarray(arc.radius * (1.0 - np.cos(0.5 * np.abs(np.diff(fractions)) * arc.sweep)))
 
 
 def _off_helix(context: ComparedContext, segments: ArcSegments) -> Floats:

@@ -53,11 +53,15 @@ class Arc:
         return float(np.linalg.norm(off - (off @ self.normal) * self.normal))
 
     def fractions(self, points: Floats) -> Floats:
-        """Fractions of the arc, (k,), at which points near it lie, (k, 3) mm; the points are in order."""
+        """Fractions of the arc, (k,), at which points near it lie, (k, 3) mm; the points are in order.
+
+        From each point to the next the shorter way round counts, and at the start a quarter turn back is the most:
+        a fraction that is less than the one before it belongs to a point that goes back along the arc.
+        """
         arm = points - self.centre
         across = np.cross(self.normal, self.radial)
         angle = np.unwrap(np.concatenate(([0.0], np.arctan2(arm @ across, arm @ self.radial))))[1:]
-        if len(angle) and angle[0] < -1e-9:
+        if len(angle) and angle[0] < -0.5 * np.pi:
             angle = angle + 2.0 * np.pi
         return np.asarray(angle / self.sweep)
 

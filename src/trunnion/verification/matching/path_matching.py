@@ -264,7 +264,8 @@ class _PathMatcher:
                 off = np.abs(arc.deviation(tips[: ends[0]])).max(axis=1, initial=0.0)
                 if (off > 100.0 * tip + 0.1).any():  # these lines belong to something else
                     return 0
-                self._arc_segments.append(ArcSegments(segments, j, arc))
+                if len(segments):  # a single line is judged by its kind
+                    self._arc_segments.append(ArcSegments(segments, j, arc))
                 return len(segments)
             if len(rows) < window:
                 return 0
