@@ -165,7 +165,10 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         help="how far the tool axis may be off between points; by default the definition's tolerance",
     )
     parser.add_argument(
-        "--span-tip", type=_tolerance, metavar="MM", help="how far the tip may be off between points without TCP"
+        "--span-tip",
+        type=_tolerance,
+        metavar="MM",
+        help="how far the tip may be off between points without TCP, and lines off the arc that they stand for",
     )
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, for programs without TCP")
     parser.add_argument("--tool", default="", metavar="T", help="tool that was called in place of the CL file's")
