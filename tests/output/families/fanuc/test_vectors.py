@@ -49,9 +49,9 @@ def test_a_whole_operation_by_vectors(folder: Path) -> None:
     more = "GOTO/20.0,0.0,5.0\nGOTO/30.0,0.0,5.0,0.48,0.36,0.8\n"
     text = proven(read(LEANING + more + END, folder), folder, load_machine("matsuura_mx330"), **VECTORS)
     assert body(text) == [
+        "G54",
         "G0 A-30. C0.",
         "G05.1 Q1",
-        "G54",
         "S4000 M3",
         "G0 G43.5 H1 X0. Y0. Z50.",
         "G1 X10. Z5. I0. J0.6 K0.8 F500.",
