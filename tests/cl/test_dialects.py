@@ -625,3 +625,11 @@ def test_motion_behind_the_end_needs_an_end_of_its_own(read: Read, fails: Fail) 
     (problem,) = fails(text)
     assert "no FINI" in problem.what
     assert sum(len(operation.moves) for operation in read(text + "END\n").operations) == 2
+
+
+def test_a_unit_other_than_that_of_the_file_is_warned_of(read: Read) -> None:
+    text = "\n".join([*HEADS["apt"], "GOTO/1,2,3", "FINI", ""])
+    (remark,) = read(text, units="inch").remarks
+    assert remark.line == 2
+    assert "states another length unit than inch" in remark.what
+    assert read(text, units="mm").remarks == ()

@@ -84,7 +84,7 @@ def verify(
     edge
         Number of the cutting edge (D); by default that of the control's definition where there is a CL file.
     units
-        Length unit of CL files that do not state it: ``"mm"`` or ``"inch"``.
+        Length unit of the CL files, ``"mm"`` or ``"inch"``; one that states another is warned of.
     dialect
         What the CL files are written in, as ``read_cl`` has it; by default their content decides.
     frame

@@ -140,7 +140,11 @@ class ClInterpreter:
     def unit(self, given: str | None) -> float:
         """Return the length unit of the file in mm: ``given`` by the user, else as UNITS or else the feeds say."""
         if given is not None:
-            return LENGTH_UNITS[given.upper()]
+            unit, stated = LENGTH_UNITS[given.upper()], self._state.length_unit
+            if stated is not None and stated[0] != unit:
+                what = f"the file states another length unit than {given.lower()}, in which it is read"
+                self._diagnostics.remark(stated[1], what, "leave the unit out if the file is right")
+            return unit
         if self._state.length_unit is not None:
             return self._state.length_unit[0]
         mm, inch = self._state.first_mm_feed, self._state.first_inch_feed

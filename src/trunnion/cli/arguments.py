@@ -179,7 +179,7 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         "--edge", type=_edge, metavar="D",
         help="cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
     )  # fmt: skip
-    parser.add_argument("--units", choices=("mm", "inch"), help="length unit of CL files that do not state it")
+    parser.add_argument("--units", choices=("mm", "inch"), help="length unit of the CL files, whatever they state")
     parser.add_argument("--dialect", choices=DIALECTS, help="what the CL files are written in")
     parser.add_argument(
         "--frame", choices=("first", "absolute"), default="first",
@@ -231,7 +231,7 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
 
 def _add_info(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="CL", help="CL file; several are one job in their order")
-    parser.add_argument("--units", choices=("mm", "inch"), help="length unit of files that do not state it")
+    parser.add_argument("--units", choices=("mm", "inch"), help="length unit of the files, whatever they state")
     parser.add_argument("--dialect", choices=DIALECTS, help="what they are written in")
     parser.add_argument("--strict", action="store_true", help="unknown statements are errors")
     parser.add_argument("--json", action="store_true", help="data in place of text")

@@ -140,7 +140,7 @@ def _rates(operation: OperationDescription) -> Iterator[str]:
 
 
 def _tool_name(tool: ToolDescription) -> str:
-    number = "no tool" if tool.number is None else f"T{tool.number}"
+    number = "no number" if tool.number is None else f"T{tool.number}"
     return f"{number} {tool.name}".strip()
 
 
@@ -152,7 +152,7 @@ def _tool_line(tool: ToolDescription) -> str:
             ("r", tool.corner_radius),
             ("upper r", tool.upper_radius),
             ("length", tool.length),
-            ("flutes", tool.flute_length),
+            ("flute length", tool.flute_length),
             ("taper", tool.taper_angle),
             ("tip angle", tool.tip_angle),
             ("stands out", tool.extension),
