@@ -1,5 +1,6 @@
 """What CATIA APTSOURCE and Creo NCL write alike: one coordinate system, CUTTER, flat arcs of less than a turn."""
 
+from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -215,9 +216,9 @@ class AptWriter(ClWriter):
         """The end of the file."""
         return ["FINI"]
 
+    @abstractmethod
     def title_lines(self, number: int, operation: Operation) -> list[str]:
         """The lines that name an operation."""
-        raise NotImplementedError
 
     def tool_lines(self, tool: Tool) -> list[str]:
         """The tool's form and name."""

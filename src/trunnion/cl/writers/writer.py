@@ -7,6 +7,7 @@ A dialect is a subclass. None of it is shared with the readers: what one writes,
 """
 
 import codecs
+from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -64,7 +65,7 @@ class _RowStatements:
     is_point: bool = False
 
 
-class ClWriter:
+class ClWriter(ABC):
     """Writes toolpaths in one dialect.
 
     name      of the dialect
@@ -181,21 +182,21 @@ class ClWriter:
         """The word of feeds."""
         return ("IPR" if per_rev else "IPM") if self.inch else ("MMPR" if per_rev else "MMPM")
 
+    @abstractmethod
     def head(self, comments: Sequence[str]) -> list[str]:
         """The lines at the beginning of the file."""
-        raise NotImplementedError
 
     def foot(self) -> list[str]:
         """The lines at its end."""
         return []
 
+    @abstractmethod
     def begin(self, number: int, operation: Operation) -> list[str]:
         """The lines at the beginning of an operation, the ``number``-th of the file."""
-        raise NotImplementedError
 
+    @abstractmethod
     def end(self, operation: Operation) -> list[str]:
         """The lines at its end."""
-        raise NotImplementedError
 
     def colours(self, operation: Operation) -> list[tuple[int, str]]:
         """Rows, and the statements before them that tell the phase."""
@@ -205,9 +206,9 @@ class ClWriter:
         """The statement of a feed."""
         return self.statement("FEDRAT", number_text(value, 4), self.feed_unit(per_rev=per_rev))
 
+    @abstractmethod
     def arc(self, operation: Operation, index: int) -> tuple[list[str], bool]:
         """The statement of an arc, and whether it has the end point in it."""
-        raise NotImplementedError
 
     def circle(self, arcs: Arcs, index: int) -> list[str]:
         """Centre, normal and radius of an arc as numbers."""
@@ -215,21 +216,21 @@ class ClWriter:
         numbers += [number_text(value, 7) for value in arcs.normal[index].tolist()]
         return [*numbers, number_text(float(arcs.radius[index]), 4)]
 
+    @abstractmethod
     def load_tool(self, event: LoadTool) -> list[str]:
         """The statement that loads a tool."""
-        raise NotImplementedError
 
+    @abstractmethod
     def select_tool(self, event: SelectTool) -> list[str]:
         """The statement that preselects a tool."""
-        raise NotImplementedError
 
     def spindle(self, event: SpindleOn) -> list[str]:
         """The statement that turns the spindle on."""
         return self.statement("SPINDL", "RPM", number_text(event.rpm, 4), event.sense.value)
 
+    @abstractmethod
     def cycle(self, event: CycleOn) -> list[str]:
         """The statement that begins a cycle."""
-        raise NotImplementedError
 
     def message(self, event: Message) -> list[str]:
         """A text in the program, or on the display."""
