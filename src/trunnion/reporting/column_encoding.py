@@ -2,7 +2,7 @@
 
 A column of 32-bit words, float or integer, becomes the differences of its bit patterns. Their bytes are sorted by
 significance, lowest bytes first, deflated, and written in base64. Neighbours on a tool path resemble each other, so the
-upper bytes are nearly all alike. ``unpack`` in page.js does the reverse.
+upper bytes are nearly all alike. ``unpack`` in unpack.js does the reverse.
 """
 
 import base64

@@ -28,7 +28,7 @@ _ASSETS = files("trunnion.reporting")
 def render_page(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
     """Yield the page, piece by piece."""
     levels = list(detail_levels(series))
-    scripts = (_read_vendored("uPlot.iife.min.js"), _read_asset("page.js"))
+    scripts = (_read_vendored("uPlot.iife.min.js"), _read_asset("unpack.js") + _read_asset("page.js"))
     yield _head(content, scripts).encode()
     yield page_body(content).encode()
     yield plot_section(series, levels).encode()

@@ -25,7 +25,7 @@ def render_path_page(title: str, paths: Sequence[PathSeries], tolerance: float) 
     title      of the page
     tolerance  how far points that are left out lie off the lines, mm; 0 if none is
     """
-    style, script = _asset("path_page.css"), _asset("path_page.js")
+    style, script = _asset("path_page.css"), _asset("unpack.js") + _asset("path_page.js")
     policy = (
         f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'; form-action 'none'"
     )
