@@ -1,0 +1,1 @@
+"""Simulation: stock, tools and machine as bodies, and what a program cuts and hits with them."""
