@@ -1,0 +1,23 @@
+"""Triangle meshes: read from files, made from boxes and cylinders, judged, and written.
+
+Units: mm. Vertices are in whatever frame the caller means; a mesh knows none.
+"""
+
+from trunnion.simulation.meshes.findings import MeshFindings, judge_mesh
+from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh, revolved_mesh
+from trunnion.simulation.meshes.reading import MESH_FORMATS, MeshUnit, load_mesh
+from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
+from trunnion.simulation.meshes.writing import save_mesh
+
+__all__ = [
+    "MESH_FORMATS",
+    "MeshFindings",
+    "MeshUnit",
+    "TriangleMesh",
+    "box_mesh",
+    "cylinder_mesh",
+    "judge_mesh",
+    "load_mesh",
+    "revolved_mesh",
+    "save_mesh",
+]

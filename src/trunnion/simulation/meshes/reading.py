@@ -1,0 +1,232 @@
+"""Meshes from files: STL, OBJ, PLY, 3MF and GLB.
+
+In:     a path, and the unit of its numbers.
+Out:    a ``TriangleMesh`` in mm whose facets share their vertices and are seen from outside.
+
+A file is untrusted: it is refused if it is too large, damaged or holds numbers that no body has, and it cannot have
+other files read.
+"""
+
+import io
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.simulation.extras import import_extra
+from trunnion.simulation.meshes.findings import LARGEST_EXTENT, SMALLEST_EXTENT, MeshFindings, judge_mesh
+from trunnion.simulation.meshes.stl import read_stl
+from trunnion.simulation.meshes.three_mf import read_three_mf
+from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
+
+#: Larger files are refused unread, bytes.
+MAX_BYTES: Final = 1_000_000_000
+
+#: Meshes of more facets are refused: their memory and time are more than any body needs.
+MAX_FACETS: Final = 8_000_000
+
+#: No coordinate of a body on a machine is greater, mm.
+MAX_COORDINATE: Final = 1e6
+
+#: Endings of the files that are read.
+MESH_FORMATS: Final = (".stl", ".obj", ".ply", ".3mf", ".glb")
+
+_CAD_FORMATS: Final = (".step", ".stp", ".iges", ".igs", ".brep")
+
+#: glTF counts in metres with Y upwards; a machine has Z there.
+_Y_UP_TO_Z_UP: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+
+
+class MeshUnit(StrEnum):
+    """The unit of the numbers in a file."""
+
+    MM = "mm"
+    INCH = "inch"
+    M = "m"
+
+    @property
+    def in_mm(self) -> float:
+        """Its length, mm."""
+        return {MeshUnit.MM: 1.0, MeshUnit.INCH: 25.4, MeshUnit.M: 1000.0}[self]
+
+
+def load_mesh(
+    path: str | Path,
+    unit: MeshUnit | str | None = None,
+    *,
+    name: str = "",
+    closed: bool = False,
+    warn: Callable[[Problem], None] | None = None,
+) -> TriangleMesh:
+    """Read a mesh.
+
+    Parameters
+    ----------
+    path
+        A file whose name ends in one of ``MESH_FORMATS``.
+    unit
+        Of its numbers; None: what the format says (3MF states one, GLB counts in m), else mm.
+    name
+        What messages call it; empty: the name of the file.
+    closed
+        Refuse a mesh with open edges: it has no inside, so that it can be neither stock nor part.
+    warn
+        Takes what is odd and does not stop the work.
+
+    Returns
+    -------
+    TriangleMesh
+        In mm; facets without area are left out.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is damaged, too large, empty or, with ``closed``, leaks.
+    """
+    file = Path(path)
+    label = str(path)
+    ending = file.suffix.lower()
+    _check_file(file, label, ending)
+    stated = None if unit is None else MeshUnit(unit)
+    data = _bytes(file, label)
+    vertices, faces, own_unit = _READERS[ending](data, label)
+    scale = own_unit if stated is None else stated.in_mm
+    mesh = _shared_vertices(vertices * scale, faces, name or file.name, label)
+    findings = judge_mesh(mesh)
+    problems = list(_problems(mesh, findings, label, scale, refused=closed))
+    refused = [problem for problem in problems if problem.severity is Severity.ERROR]
+    if refused:
+        raise InputError(refused)
+    for problem in problems:
+        if warn is not None:
+            warn(problem)
+    return mesh.turned_out() if findings.inside_out else mesh
+
+
+def _check_file(file: Path, label: str, ending: str) -> None:
+    if ending in _CAD_FORMATS:
+        what = "is a CAD file of exact surfaces, which is not read"
+        raise InputError(Problem(label, 0, what, "export it as STL, 3MF, PLY, OBJ or GLB"))
+    if ending not in MESH_FORMATS:
+        what = f'ends in "{file.suffix}"' if ending else "has no ending that names its format"
+        raise InputError(Problem(label, 0, what, f"give a mesh that ends in one of {', '.join(MESH_FORMATS)}"))
+    unusable = unusable_file(file, "a mesh")
+    if unusable:
+        raise InputError(unusable)
+
+
+def _bytes(file: Path, label: str) -> bytes:
+    try:
+        with file.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise InputError(Problem(label, 0, f"cannot be read: {error.strerror or error}")) from None
+    if len(data) > MAX_BYTES:
+        what = f"has more than {MAX_BYTES // 1_000_000} MB"
+        raise InputError(Problem(label, 0, what, "export it with fewer facets, or as binary STL"))
+    return data
+
+
+def _read_stl(data: bytes, label: str) -> tuple[Floats, Ints, float]:
+    corners = read_stl(data, label, MAX_FACETS)
+    return corners, np.arange(len(corners)).reshape(-1, 3), MeshUnit.MM.in_mm
+
+
+def _read_three_mf(data: bytes, label: str) -> tuple[Floats, Ints, float]:
+    return read_three_mf(data, label, MAX_BYTES // 2, MAX_FACETS)
+
+
+def _read_by_trimesh(ending: str) -> Callable[[bytes, str], tuple[Floats, Ints, float]]:
+    def read(data: bytes, label: str) -> tuple[Floats, Ints, float]:
+        trimesh = import_extra("trimesh", "simulate")
+        try:
+            # Without a resolver no other file is opened, whatever this one names.
+            scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=ending, process=False, maintain_order=True)
+            mesh = scene.to_mesh()
+            vertices = np.array(mesh.vertices, np.float64).reshape(-1, 3)
+            faces = np.array(mesh.faces, np.int64).reshape(-1, 3)
+        except Exception as error:  # whatever a parser raises for a damaged file
+            reason = str(error).strip().split("\n")[0][:100] or type(error).__name__
+            raise InputError(Problem(label, 0, f"is damaged: {reason}", "export it again")) from None
+        if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
+            raise InputError(
+                Problem(label, 0, "is damaged: a facet names a vertex that is not there", "export it again")
+            )
+        if len(faces) > MAX_FACETS:
+            raise InputError(too_many_facets(label, len(faces)))
+        if ending == "glb":
+            return vertices @ _Y_UP_TO_Z_UP.T, faces, MeshUnit.M.in_mm
+        return vertices, faces, MeshUnit.MM.in_mm
+
+    return read
+
+
+def too_many_facets(label: str, facets: int) -> Problem:
+    """Return the problem of a mesh of too many facets."""
+    return Problem(label, 0, f"has {facets} facets, more than {MAX_FACETS}", "export it with a coarser tolerance")
+
+
+_READERS: Final[dict[str, Callable[[bytes, str], tuple[Floats, Ints, float]]]] = {
+    ".stl": _read_stl,
+    ".3mf": _read_three_mf,
+    ".obj": _read_by_trimesh("obj"),
+    ".ply": _read_by_trimesh("ply"),
+    ".glb": _read_by_trimesh("glb"),
+}
+
+
+def _shared_vertices(vertices: Floats, faces: Ints, name: str, label: str) -> TriangleMesh:
+    """The mesh with equal vertices made one, without facets that have no area."""
+    if not np.isfinite(vertices).all():
+        where = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
+        facet = np.flatnonzero((faces == where).any(axis=1))
+        at = f"facet {facet[0] + 1}" if len(facet) else f"vertex {where + 1}"
+        raise InputError(Problem(label, 0, f"holds a coordinate that is no number, at {at}", "export it again"))
+    if len(vertices) and float(np.abs(vertices).max()) > MAX_COORDINATE:
+        what = f"holds a coordinate of {float(np.abs(vertices).max()):g} mm"
+        raise InputError(Problem(label, 0, what, "give the unit of its numbers, or export it again"))
+    # -0.0 and 0.0 are one coordinate.
+    whole = np.ascontiguousarray(vertices + 0.0)
+    order = np.lexsort(whole.T)
+    ordered = whole[order]
+    new = np.ones(len(order), np.bool_)
+    new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    index = np.empty(len(order), np.int64)
+    index[order] = np.cumsum(new) - 1
+    found = index[faces]
+    flat = (found == np.roll(found, -1, axis=1)).any(axis=1)
+    found = found[~flat]
+    if not len(found):
+        raise InputError(Problem(label, 0, "is empty: it holds no facet", "export the body itself"))
+    used = np.zeros(int(new.sum()), np.bool_)
+    used[found] = True
+    return TriangleMesh(ordered[new][used], (np.cumsum(used) - 1)[found], name)
+
+
+def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, scale: float, *, refused: bool) -> list[Problem]:
+    problems = []
+    severity = Severity.ERROR if refused else Severity.WARNING
+    if findings.open_edges:
+        near = "; ".join(f"X{x:.3f} Y{y:.3f} Z{z:.3f}" for x, y, z in findings.places)
+        what = f"leaks: {findings.open_edges} edges of its surface are open, at {near}"
+        problems.append(Problem(label, 0, what, "close the surface in CAD and export it as one solid", severity))
+    if findings.turned:
+        what = f"is not of one piece: at {findings.turned} edges, facets are seen from different sides"
+        problems.append(Problem(label, 0, what, "export it as one solid", severity))
+    if findings.inside_out:
+        what = "is inside out: its facets are seen from inside, and are turned"
+        problems.append(Problem(label, 0, what, "turn its normals in CAD", Severity.WARNING))
+    low, high = mesh.bounds
+    extent = float((high - low).max())
+    if extent < SMALLEST_EXTENT:
+        cure = "give the unit m" if scale == 1.0 else "give the unit of its numbers"
+        what = f"is {extent:.3g} mm large: its numbers look like metres"
+        problems.append(Problem(label, 0, what, cure, Severity.WARNING))
+    elif extent > LARGEST_EXTENT:
+        what = f"is {extent / 1000.0:.3g} m large"
+        problems.append(Problem(label, 0, what, "give the unit of its numbers", Severity.WARNING))
+    return problems

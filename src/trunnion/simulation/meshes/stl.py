@@ -1,0 +1,86 @@
+"""STL, binary and ASCII."""
+
+import array
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import InputError, Problem
+from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
+
+_FACET: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_HEADER: Final = 84
+
+
+def read_stl(data: bytes, label: str, max_facets: int) -> Floats:
+    """Return the corners of all facets, (3 m, 3), in the unit of the file.
+
+    Raises
+    ------
+    InputError
+        If the file is cut short, holds something else, or too many facets.
+    """
+    count = int.from_bytes(data[80:84], "little") if len(data) >= _HEADER else -1
+    if count >= 0 and len(data) == _HEADER + count * _FACET.itemsize:
+        _check_count(count, label, max_facets)
+        facets = np.frombuffer(data, _FACET, count, _HEADER)
+        return facets["corners"].reshape(-1, 3).astype(np.float64)
+    # Binary files may begin with "solid" too: only text holds facets in words.
+    if data[:512].lstrip()[:5].lower() == b"solid" and b"\0" not in data[:512]:
+        return _read_text(data, label, max_facets)
+    if count < 0:
+        what = f"is damaged: it has {len(data)} bytes, fewer than the head of an STL file"
+    else:
+        there = (len(data) - _HEADER) / _FACET.itemsize
+        what = f"is damaged: its head promises {count} facets, and it holds {there:g}"
+    raise InputError(Problem(label, 0, what, "export or copy it again"))
+
+
+def _check_count(count: int, label: str, max_facets: int) -> None:
+    if count > max_facets:
+        what = f"has {count} facets, more than {max_facets}"
+        raise InputError(Problem(label, 0, what, "export it with a coarser tolerance"))
+
+
+def _read_text(data: bytes, label: str, max_facets: int) -> Floats:
+    numbers = array.array("d")
+    facets = ends = 0
+    line = 0
+    last = b""
+    for line, text in enumerate(data.splitlines(), start=1):
+        words = text.split()
+        if not words:
+            continue
+        last = words[0].lower()
+        if last == b"vertex":
+            try:
+                x, y, z = map(float, words[1:])
+            except ValueError:
+                raise InputError(Problem(label, line, "is no vertex of three numbers", "export it again")) from None
+            numbers.extend((x, y, z))
+        elif last == b"facet":
+            facets += 1
+            _check_count(facets, label, max_facets)
+        elif last == b"endfacet":
+            ends += 1
+            if len(numbers) != 9 * ends or ends != facets:
+                raise InputError(Problem(label, line, "ends a facet that has not three corners", "export it again"))
+        elif last not in (b"solid", b"outer", b"endloop", b"endsolid"):
+            raise InputError(Problem(label, line, "is no line of an STL file", "export it again"))
+    if last != b"endsolid" or facets != ends:
+        raise InputError(
+            Problem(label, line, "is cut short: the end of the solid is missing", "export or copy it again")
+        )
+    return np.frombuffer(numbers, np.float64).reshape(-1, 3).copy() if numbers else np.zeros((0, 3))
+
+
+def write_stl(mesh: TriangleMesh) -> bytes:
+    """Return a binary file, lengths in mm."""
+    corners = mesh.vertices[mesh.faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    facets = np.zeros(len(corners), _FACET)
+    facets["normal"] = normal / np.where(length > 0.0, length, 1.0)[:, None]
+    facets["corners"] = corners
+    return b"\0" * 80 + len(facets).to_bytes(4, "little") + facets.tobytes()

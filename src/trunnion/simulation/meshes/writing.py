@@ -1,0 +1,98 @@
+"""Meshes into files: STL, PLY, 3MF and GLB, whole or not at all."""
+
+import json
+import os
+import struct
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion.errors import InputError, Problem
+from trunnion.files import atomic_file
+from trunnion.simulation.meshes.stl import write_stl
+from trunnion.simulation.meshes.three_mf import write_three_mf
+from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
+
+_GLB_ARRAY: Final = 34962
+_GLB_ELEMENTS: Final = 34963
+
+
+def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
+    """Write a mesh; the ending of the name says in which format: .stl, .ply, .3mf or .glb.
+
+    Lengths are mm, in GLB metres with Y upwards, as that format wants them. STL, PLY and GLB have single precision.
+
+    Parameters
+    ----------
+    mesh
+        With at least one facet.
+    path
+        The file; an older one stays if the new one cannot be written whole.
+    inputs
+        Files that are read: none of them is written over.
+
+    Raises
+    ------
+    InputError
+        If the ending is another, the mesh is empty, or the file cannot be written.
+    """
+    ending = Path(path).suffix.lower()
+    if ending not in _WRITERS:
+        what = f'ends in "{Path(path).suffix}"' if ending else "has no ending that names a format"
+        raise InputError(Problem(str(path), 0, what, f"end it in one of {', '.join(_WRITERS)}"))
+    if not len(mesh.faces):
+        raise InputError(Problem(str(path), 0, "would be empty: nothing is left of the body"))
+    data = _WRITERS[ending](mesh)
+    with atomic_file(path, inputs=inputs) as stream:
+        stream.write(data)
+
+
+def _ply(mesh: TriangleMesh) -> bytes:
+    head = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(mesh.vertices)}\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        f"element face {len(mesh.faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    faces = np.empty(len(mesh.faces), [("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, mesh.faces
+    return head.encode("ascii") + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
+
+
+def _glb(mesh: TriangleMesh) -> bytes:
+    x, y, z = mesh.vertices.T / 1000.0
+    points = np.stack((x, z, -y), axis=1).astype("<f4")
+    corners = mesh.faces.astype("<u4")
+    binary = points.tobytes() + corners.tobytes()
+    text = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "name": mesh.name}],
+        "meshes": [{"name": mesh.name, "primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {
+                "bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3",
+                "min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist(),
+            },
+            {"bufferView": 1, "componentType": 5125, "count": corners.size, "type": "SCALAR"},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": points.nbytes, "target": _GLB_ARRAY},
+            {"buffer": 0, "byteOffset": points.nbytes, "byteLength": corners.nbytes, "target": _GLB_ELEMENTS},
+        ],
+        "buffers": [{"byteLength": len(binary)}],
+    }  # fmt: skip
+    head = json.dumps(text, separators=(",", ":")).encode()
+    head += b" " * (-len(head) % 4)
+    chunks = struct.pack("<II", len(head), 0x4E4F534A) + head + struct.pack("<II", len(binary), 0x004E4942) + binary
+    return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
+
+
+_WRITERS: Final[dict[str, Callable[[TriangleMesh], bytes]]] = {
+    ".stl": write_stl,
+    ".ply": _ply,
+    ".3mf": write_three_mf,
+    ".glb": _glb,
+}
