@@ -372,9 +372,9 @@ def test_cycles_in_doubt_are_refused(refused: Callable[..., str], dialect: str, 
 
 
 def test_a_tool_has_the_form_of_its_cutter(apt: Callable[..., Operation]) -> None:
-    mill = apt("apt", "CUTTER/12,2,4,2,0,3,55", "GOTO/1,2,3").tool
+    mill = apt("apt", "GOTO/0,0,0", "CUTTER/12,2,4,2,0,3,55", "GOTO/1,2,3").tool
     assert (mill.kind, mill.diameter, mill.corner_radius, mill.taper_angle, mill.length) == ("MILL", 12, 2, 3, 55)
-    drill = apt("apt", "CUTTER/12.,0,6.,3.605164,31.,0,63.", "GOTO/1,2,3").tool
+    drill = apt("apt", "GOTO/0,0,0", "CUTTER/12.,0,6.,3.605164,31.,0,63.", "GOTO/1,2,3").tool
     assert (drill.kind, drill.diameter, drill.tip_angle, drill.length) == ("DRILL", 12, 118, 63)
 
 
@@ -412,7 +412,7 @@ def test_another_tool_has_not_the_name_of_the_one_before(read: Read) -> None:
     [("LOADTL/7,LENGTH,150.5,OSETNO,12", 12), ("LOADTL/7, 0, 80.5, 3", 3), ("LOAD/7", 0), ("LOADTL/7,2", 2)],
 )
 def test_forms_of_loadtl(apt: Callable[..., Operation], statement: str, adjust: int) -> None:
-    operation = apt("apt", statement, "GOTO/1,0,0")
+    operation = apt("apt", "GOTO/0,0,0", statement, "GOTO/1,0,0")
     assert [(e.number, e.adjust) for e in operation.events if isinstance(e, LoadTool)][-1] == (7, adjust)
 
 

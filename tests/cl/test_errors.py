@@ -37,7 +37,7 @@ GO = "GOTO/0,0,0"
         ((GO, "MSYS/0,0,0,1,0,0,0,1,0"), 4, "MSYS after motion"),
         (("TLDATA/MILL,1,2", GO), 3, "TLDATA/MILL has 2 numbers, expected 5, 7 or 10"),
         (("TLDATA/MILL,-1,0,0,0,0", GO), 3, "negative diameter"),
-        (("TLDATA/MILL,0,0,0,0,0", "SPINDL/SFM,100", GO), 4, "no diameter"),
+        (("SPINDL/SFM,100,DIAMTR,0", GO), 3, "no diameter"),
         (("SPINDL/ON", GO), 3, "before any speed"),
         (("SPINDL/RPM,-5", GO), 3, "negative speed"),
         (("SPINDL/RPM,0,CLW", GO), 3, "speed 0"),

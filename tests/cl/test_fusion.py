@@ -19,7 +19,7 @@ def test_upright_operations_are_read(read: Read) -> None:
     assert [len(operation.moves) for operation in toolpath.operations] == [3, 2]
     assert toolpath.operations[0].arcs.normal.tolist() == [[0, 0, -1]]
     events = [event for operation in toolpath.operations for event in operation.events]
-    assert [(event.number, event.adjust) for event in events if isinstance(event, LoadTool)] == [(5, 5)]
+    assert [(event.number, event.adjust) for event in events if isinstance(event, LoadTool)] == [(5, 5), (5, 5)]
     assert [event.text for event in events if isinstance(event, Message)] == ["1001", "Contour (2)", "Contour (2)"]
     assert ["tilted planes" in problem.what for problem in toolpath.remarks] == [True]
 

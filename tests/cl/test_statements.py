@@ -72,8 +72,8 @@ def test_columns_are_read_only(body: Body) -> None:
         ("BARREL,10.,1.,50.,2.,3.,0,0,85.,0,0", Tool("BARREL", "T1", 10, 1, 50, 2, 3, upper_radius=85)),
     ],
 )
-def test_tldata_becomes_a_tool(body: Body, text: str, tool: Tool) -> None:
-    assert body(f"TLDATA/{text}", GO).tool == tool
+def test_tldata_becomes_a_tool(read: Read, text: str, tool: Tool) -> None:
+    assert read(f"TOOL PATH/A,TOOL,T1\nTLDATA/{text}\n{GO}\nEND-OF-PATH\n").operations[0].tool == tool
 
 
 def test_a_form_of_tldata_that_is_not_known_is_kept_with_a_remark(read: Read) -> None:
@@ -89,10 +89,10 @@ def test_msys_is_made_exactly_unit_and_square(body: Body) -> None:
 
 
 def test_load_select_and_their_registers(body: Body) -> None:
-    assert body("LOAD/TOOL,7,ADJUST,3", "SELECT/TOOL,8", "LOAD/TOOL,9 ", GO).events == (
+    assert body("LOAD/TOOL,7,ADJUST,3", "SELECT/TOOL,8", GO, "LOAD/TOOL,9 ").events == (
         LoadTool(0, 3, 7, 3),
         SelectTool(0, 4, 8),
-        LoadTool(0, 5, 9, 0),
+        LoadTool(1, 6, 9, 0),
     )
 
 

@@ -45,8 +45,8 @@ def tools(tmp_path: Path, dialect: str, text: str) -> list[Tool]:
         ),
         ("solidworks", "INSERT/50MM FACE MILL\n" + SEVEN + "LOAD/TOOL,5\n", {"name": "50MM FACE MILL"}),
         ("clsf", SEVEN, {"name": "MILL_10"}),
-        ("clsf", "TLDATA/MILL,10,1,50,2,0\nCUTTER/3,0\n", {"name": "MILL_10"}),
-        ("clsf", "CUTTER/3,0\nTLDATA/MILL,10,1,50,2,0\n", {"name": "MILL_10"}),
+        ("clsf", "TLDATA/MILL,10,1,50,2,0\nCUTTER/10,0\n", {"name": "MILL_10"}),
+        ("clsf", "CUTTER/10,0\nTLDATA/MILL,10,1,50,2,0\n", {"name": "MILL_10"}),
     ],
     ids=[
         "length", "length by place", "length before the form", "catia", "assembly and holder", "holder", "solidworks",

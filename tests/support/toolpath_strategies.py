@@ -101,7 +101,10 @@ def events(draw: st.DrawFn, rows: int, kinds: dict[str, st.SearchStrategy[Any]])
     found = draw(st.lists(st.tuples(st.integers(0, rows), st.one_of(*kinds.values())), max_size=8))
     # a FROM anywhere but at the beginning would separate arcs from their start
     placed = [(0 if isinstance(event, From) else row, event) for row, event in found]
-    return tuple(replace(event, row=row) for row, event in sorted(placed, key=lambda pair: pair[0]))
+    # an operation begins with one tool, from one point
+    first = {type(event): event for row, event in placed if row == 0 and isinstance(event, From | LoadTool)}
+    kept = [(row, event) for row, event in placed if row or event is first.get(type(event), event)]
+    return tuple(replace(event, row=row) for row, event in sorted(kept, key=lambda pair: pair[0]))
 
 
 @st.composite

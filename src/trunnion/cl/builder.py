@@ -143,6 +143,7 @@ class OperationBuilder:
     axes       statements about the tool axis
     upright    (row, line, word) of statements that are understood for the tool axis (0, 0, 1) only
     tilted     why no row may have another one, empty if it may: what to do instead
+    stated     what is true of the whole operation: the line that states it, and its value
     """
 
     name: str
@@ -164,3 +165,4 @@ class OperationBuilder:
     upright: list[tuple[int, int, str]] = field(default_factory=list)
     tilted: str = ""
     splines: list[SplineStatement] = field(default_factory=list)
+    stated: dict[str, tuple[int, object]] = field(default_factory=dict)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from trunnion.cl.builder import FromStatement, OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics
-from trunnion.model.toolpath import CycleOff, CycleOn, GoHome, LoadTool
+from trunnion.model.toolpath import CycleOff, CycleOn, Event, GoHome, LoadTool
 
 
 def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) -> list[OperationBuilder]:
@@ -25,7 +25,8 @@ def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) ->
         if before is None or not _begins_with_cut(before, builder) or _has_other_tool(before, builder, loads, number):
             joined.append(builder)
         else:
-            if first := next((load for load in loads if load.row == 0), None):
+            register = _register(joined)
+            if first := next((load for load in loads if load.row == 0 and load.adjust != register), None):
                 what = f"tool {first.number} is called with another register where operation {before.name} cuts on"
                 diagnostics.error(first.line, what, "retract by RAPID and GOTO/ before it")
             what = f"operation {builder.name} begins with a cut from where {before.name} ends: they are one operation"
@@ -70,7 +71,7 @@ def _stated_starts(builder: OperationBuilder) -> list[FromStatement]:
 def _append(before: OperationBuilder, builder: OperationBuilder) -> None:
     """Put an operation behind the one before; the smaller tolerances count."""
     shift = builder.first - before.first
-    repeated = [e for e in builder.events if isinstance(e, CycleOn) and e.row == 0 and e.line < builder.line]
+    repeated = [e for e in builder.events if e.row == 0 and _is_repeated(e, builder.line)]
     before.events += [replace(e, row=e.row + shift) for e in builder.events if e not in repeated]
     before.feeds += [feed._replace(row=feed.row + shift) for feed in builder.feeds]
     before.rapids += [row + shift for row in builder.rapids]
@@ -82,6 +83,17 @@ def _append(before: OperationBuilder, builder: OperationBuilder) -> None:
     before.intol = _smaller(before.intol, builder.intol)
     before.outtol = _smaller(before.outtol, builder.outtol)
     before.stop = builder.stop
+
+
+def _is_repeated(event: Event, line: int) -> bool:
+    """Whether an event at the beginning of an operation only says again what is so: its cycle, its tool."""
+    return isinstance(event, LoadTool) or (isinstance(event, CycleOn) and event.line < line)
+
+
+def _register(builders: list[OperationBuilder]) -> int:
+    """The length register of the tool last called."""
+    loads = (event for builder in reversed(builders) for event in reversed(builder.events))
+    return next((event.adjust for event in loads if isinstance(event, LoadTool)), 0)
 
 
 def _smaller(one: float | None, other: float | None) -> float | None:

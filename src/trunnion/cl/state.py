@@ -25,6 +25,10 @@ FEED_UNITS = {
 #: Feed words without a unit of their own: feeds in the length unit of the file.
 FILE_UNIT_FEEDS = {"PERMIN": False, "PERREV": True}
 
+#: What operations state once (``ReaderState.state_once``), and are compared by elsewhere.
+TOOL_NUMBER = "number of the tool"
+LENGTH_REGISTER = "length register"
+
 #: Numbers of a coordinate system are printed with five decimals or more.
 _SAME_SYSTEM = 2e-5
 
@@ -152,23 +156,59 @@ class ReaderState:
         if cycles and isinstance(cycles[-1], CycleOn):
             self.add(replace(cycles[-1], row=0))
         before.stop = self.row
+        self._check_tool(before)
         self.builders.append(before)
 
     def name_operation(self, name: str) -> None:
-        """Begin an operation with a name."""
+        """Begin an operation with a name; what was stated of one without motion counts no more."""
         self.split_operation()
         self.builder.name, self.builder.line = name, self.line
+        self.builder.stated.clear()
+
+    def state_once(self, what: str, value: object) -> None:
+        """Note what is true of the whole operation, also of its rows before this line.
+
+        Raises
+        ------
+        StatementError
+            If the operation has stated another value: nobody knows which of them is meant.
+        """
+        line, before = self.builder.stated.setdefault(what, (self.line, value))
+        if before != value:
+            cure = "write the one that is meant, or begin another operation with the other one"
+            raise StatementError(f"another {what} than in line {line}: an operation has one", cure)
 
     def load_tool(self, number: int, adjust: int) -> None:
         """Load a tool, at the beginning of an operation; a tool that is loaded already is not loaded again."""
         if not self.dialect.in_sections:
-            if self.tool is not None and self.tool.number == number and adjust in (0, self.tool.adjust):
+            is_loaded = self.tool is not None and self.tool.number == number and adjust in (0, self.tool.adjust)
+            adjust = self.tool.adjust if self.tool is not None and is_loaded else adjust
+            if is_loaded and self.operation_row:
                 return
             self.split_operation()
-            events = self.builder.events
-            events[:] = [event for event in events if not isinstance(event, LoadTool) or event.number != number]
+        if self.operation_row == 0:
+            self.state_once(TOOL_NUMBER, number)
+            if adjust:
+                self.state_once(LENGTH_REGISTER, adjust)
+            self._leave_out_tools(number)
         self.tool = LoadTool(self.operation_row, self.line, number, adjust)
         self.add(self.tool)
+
+    def _check_tool(self, builder: OperationBuilder) -> None:
+        """Report an operation that states the number of its tool and cuts with another one."""
+        line, number = builder.stated.get(TOOL_NUMBER, (0, 0))
+        if line and self.tool is not None and self.tool.number != number and not self.dialect.in_sections:
+            what = f"tool {number} is stated and not loaded: tool {self.tool.number} is in the spindle"
+            self.diagnostics.error(line, what, "write LOADTL/ with the number of the tool that is meant")
+
+    def _leave_out_tools(self, number: int) -> None:
+        """Leave out tool changes before this one that belong to no operation, or to one without motion."""
+        events = self.builder.events
+        for event in [event for event in events if isinstance(event, LoadTool)]:
+            events.remove(event)
+            if event.number != number:
+                what = f"tool {event.number} is loaded and does nothing before tool {number}: it is left out"
+                self.diagnostics.remark(event.line, what, "leave out the tool change in the CAM system")
 
     def set_axis(self, axis: tuple[float, float, float] | None, no_axis: NoAxis) -> None:
         """Set the tool axis of the rows that follow, and that of points that give none."""
@@ -215,6 +255,7 @@ class ReaderState:
     def close_operation(self) -> None:
         """Finish the operation being read."""
         self.builder.stop = self.row
+        self._check_tool(self.builder)
         self.builders.append(self.builder)
         self.builder = OperationBuilder("", self.line, self.row)
         self.in_operation = False

@@ -7,8 +7,8 @@ from trunnion.cl.builder import NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import CycleWords, Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
-from trunnion.cl.state import ReaderState
-from trunnion.cl.statement import Statement
+from trunnion.cl.state import TOOL_NUMBER, ReaderState
+from trunnion.cl.statement import Statement, whole_number
 from trunnion.cl.statements import motion
 
 _NAME: Final = re.compile(r"\s*OPERATION NAME\s*:\s*(.*)", re.IGNORECASE)
@@ -47,9 +47,13 @@ def _goto(state: ReaderState, statement: Statement) -> None:
 
 
 def _toolno(state: ReaderState, statement: Statement) -> None:
-    """The number of the tool, which LOADTL has as well, and its kind: turning points are not those of a mill."""
+    """The number of the tool, which LOADTL must have as well, and its kind: turning points are not those of a mill."""
     if "TURN" in statement.words():
         raise StatementError(f"TOOLNO/{statement.listed()} belongs to turning, which is not read", _MILLING)
+    number = whole_number("TOOLNO", statement.values[:1])
+    if state.tool is not None and state.tool.number != number:
+        state.split_operation()
+    state.state_once(TOOL_NUMBER, number)
 
 
 CATIA: Final = Dialect(

@@ -45,6 +45,7 @@ def _csys(state: ReaderState, statement: Statement) -> None:
     """The coordinate system of the operation: Z, its third column, is the tool axis; the points stay in the world's."""
     numbers = statement.numbers(12)
     state.split_operation()
+    state.state_once("coordinate system", numbers)
     z = (numbers[2], numbers[6], numbers[10])
     # A point without an axis is written only where Z is the world's.
     state.set_axis(None, NoAxis.Z if z == _Z else NoAxis.NEVER)

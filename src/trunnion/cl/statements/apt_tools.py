@@ -33,6 +33,8 @@ def cutter(state: ReaderState, statement: Statement) -> None:
     form = Tool(**{field: getattr(now, field) for field in _OF_CUTTER})
     if form != tool:
         state.split_operation()
+    state.state_once("tool", tool)
+    if form != tool:
         if state.name_row == state.row:
             tool = replace(tool, name=now.name, holder=now.holder)
         if state.length_row == state.row:
@@ -44,6 +46,8 @@ def cutter(state: ReaderState, statement: Statement) -> None:
 def cutter_in_section(state: ReaderState, statement: Statement) -> None:
     """Set the form of the tool of an operation in a CLSF, unless its TLDATA has stated it."""
     tool = _form(statement)
+    state.state_once("cutter", statement.values)
+    state.state_once("diameter of the tool", tool.diameter)
     if state.builder.tool.kind == "UNKNOWN":
         state.builder.tool = replace(tool, name=state.builder.tool.name)
 
@@ -72,6 +76,7 @@ def name_tool(state: ReaderState, name: str, holder: str = "") -> None:
     if (name, holder) != (tool.name, tool.holder):
         state.split_operation()
         state.builder.tool = replace(state.builder.tool, name=name, holder=holder)
+    state.state_once("name of the tool", name)
     state.name_row = state.row
 
 
@@ -79,6 +84,7 @@ def set_length_of(state: ReaderState, field: str, statement: Statement) -> None:
     """Set ``flute_length`` or ``extension`` where a tool has just been described."""
     (length,) = statement.numbers(1)
     if state.cutter_row == state.row:
+        state.state_once(field.replace("_", " "), length)
         sizes: dict[str, Any] = {field: length}
         state.builder.tool = replace(state.builder.tool, **sizes)
 
@@ -116,6 +122,7 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
             at += 1
     _load(state, number, adjust)
     if length:
+        state.state_once("length of the tool in the spindle", length)
         state.builder.tool = replace(state.builder.tool, set_length=length)
         state.length_row = state.row
     if unknown:

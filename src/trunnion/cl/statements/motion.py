@@ -52,6 +52,9 @@ def from_(state: ReaderState, statement: Statement) -> None:
     """Note where the path begins."""
     x, y, z, *axis = statement.numbers(3, 6)
     vector = (axis[0], axis[1], axis[2]) if axis else None
+    for start in state.builder.starts:
+        if start.row == state.operation_row and start.tip != (x, y, z):
+            raise StatementError(f"FROM is another point than in line {start.line}", "write the one that is meant")
     state.builder.starts.append(FromStatement(state.operation_row, state.line, (x, y, z), vector))
 
 

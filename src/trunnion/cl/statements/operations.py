@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.state import MM_PER_INCH, ReaderState
+from trunnion.cl.state import LENGTH_REGISTER, MM_PER_INCH, TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.model.toolpath import Frame, Tool
 from trunnion.wording import counted
@@ -51,6 +51,9 @@ def tool_path(state: ReaderState, statement: Statement) -> None:
     state.builder = replace(
         outside, name=name.strip(), line=state.line, first=state.row, colours=[], rapids=[], circles=[], splines=[]
     )
+    # A tool that stands before the operation is only the one before that of the operation.
+    for what in (TOOL_NUMBER, LENGTH_REGISTER):
+        outside.stated.pop(what, None)
     state.builder.tool = replace(outside.tool, name=tool.strip() or outside.tool.name)
     state.in_operation = True
     state.spindle = None
@@ -81,6 +84,8 @@ def tldata(state: ReaderState, statement: Statement) -> None:
     sizes = zip(layouts.get(len(given), ()), given, strict=False)
     fields: dict[str, Any] = {field: number for field, number in sizes if field}
     kind = form if form in _TLDATA_FIELDS else "UNKNOWN"
+    state.state_once("tool", (form, given))
+    state.state_once("diameter of the tool", fields.get("diameter"))
     state.builder.tool = Tool(kind=kind, name=state.builder.tool.name, **fields)
     if form not in _TLDATA_FIELDS:
         what = f"TLDATA/{form} is not a known form of tool"
@@ -91,6 +96,7 @@ def msys(state: ReaderState, statement: Statement) -> None:
     """Set the coordinate system of the operation: origin, X and Y, made exactly unit and square."""
     if state.operation_row:
         raise StatementError("MSYS after motion", "one operation has one frame: write MSYS before its first GOTO")
+    state.state_once("coordinate system", statement.numbers(9))
     ox, oy, oz, *vectors = statement.numbers(9)
     x, y = vectors[:3], vectors[3:]
     for name, vector in (("X", x), ("Y", y)):
@@ -133,13 +139,21 @@ def units(state: ReaderState, statement: Statement) -> None:
 
 
 def intol(state: ReaderState, statement: Statement) -> None:
-    """Set the inner tolerance."""
-    state.builder.intol = statement.numbers(1)[0]
+    """Set the inner tolerance; without sections, another one begins an operation."""
+    (tolerance,) = statement.numbers(1)
+    if state.builder.intol != tolerance:
+        state.split_operation()
+    state.state_once("inner tolerance", tolerance)
+    state.builder.intol = tolerance
 
 
 def outtol(state: ReaderState, statement: Statement) -> None:
-    """Set the outer tolerance."""
-    state.builder.outtol = statement.numbers(1)[0]
+    """Set the outer tolerance; without sections, another one begins an operation."""
+    (tolerance,) = statement.numbers(1)
+    if state.builder.outtol != tolerance:
+        state.split_operation()
+    state.state_once("outer tolerance", tolerance)
+    state.builder.outtol = tolerance
 
 
 def paint(state: ReaderState, statement: Statement) -> None:
