@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 
 from tests.support.machine_mutants import mutants
 from tests.support.machine_strategies import joints, machines
 from trunnion.api.describing_machine import describe_machine
 from trunnion.cli.machine_text import machine_lines
-from trunnion.machines import Machine, forward, load_machine, shipped_machines
+from trunnion.machines import Axis, AxisKind, Machine, Mount, forward, load_machine, shipped_machines
 from trunnion.machines.jog_table import jog_table, rotary_pose
 
 #: What is seen at the shipped machines: for each axis the tool, and the iron.
@@ -54,6 +54,24 @@ SEEN = {
         "B": ("leaning to +X", "the head turns 10° counter-clockwise seen from +Y; the tip of the tool swings to -X"),
     },
 }
+
+
+#: Spindle along X: the head turns about it, so that neither the tip nor what is at +X of the head swings.
+ALONG_X = Machine(
+    "any",
+    "Any machine",
+    tuple(
+        Axis(name, AxisKind.ROTARY if name in "AC" else AxisKind.LINEAR, Mount.TOOL, direction)
+        for name, direction in {
+            "X": (1.0, 0.0, 0.0),
+            "Y": (0.0, 1.0, 0.0),
+            "Z": (0.0, 0.0, 1.0),
+            "C": (0.0, 0.0, 1.0),
+            "A": (1.0, 0.0, 0.0),
+        }.items()  # fmt: skip
+    ),
+    spindle_direction=(1.0, 0.0, 0.0),
+)
 
 
 def shown(machine: Machine) -> list[str]:
@@ -113,6 +131,7 @@ def test_a_pose_of_any_machine_agrees_with_the_forward_map(machine: Machine, val
 
 @settings(deadline=None, max_examples=50)
 @given(machines())
+@example(ALONG_X)
 def test_both_positions_of_the_rotary_axes_point_the_tool_the_same_way(machine: Machine) -> None:
     one, other = jog_table(machine).same_axis
     np.testing.assert_allclose(one.tool_axis, other.tool_axis, rtol=0, atol=1e-7)

@@ -27,6 +27,7 @@ _VALUES: Final = (-90.0, -30.0, 30.0, 90.0)
 _TINY: Final = 1e-9
 
 _X: Final[Vector] = (1.0, 0.0, 0.0)
+_Y: Final[Vector] = (0.0, 1.0, 0.0)
 _Z: Final[Vector] = (0.0, 0.0, 1.0)
 
 
@@ -183,12 +184,18 @@ def _turn_words(machine: Machine, axis: Axis, turn: Vector) -> str:
         return (
             f"{text}; the tip of the tool swings to {named_direction(swing)}"
             if _length(swing) > 0.1
-            else (f"{text}; the tip stays, and what is at +X of the head goes to {named_direction(_cross(turn, _X))}")
+            else (f"{text}; the tip stays, and {_swing_of_mark(turn, 'the head')}")
         )
     rising = _cross(_Z, turn)
     if _length(rising) < 0.1:
-        return f"{text}; what is at +X of it goes to {named_direction(_cross(turn, _X))}"
+        return f"{text}; {_swing_of_mark(turn, 'it')}"
     return f"{text}; its {named_direction(rising)} edge goes to +Z, its {named_direction(_negative(rising))} edge to -Z"
+
+
+def _swing_of_mark(turn: Vector, what: str) -> str:
+    """Where a mark goes that is not on the axis: at +X, or at +Y of what turns about X."""
+    mark = _X if _length(_cross(turn, _X)) > 0.1 else _Y
+    return f"what is at {named_direction(mark)} of {what} goes to {named_direction(_cross(turn, mark))}"
 
 
 def _preferred(machine: Machine) -> str:
