@@ -47,6 +47,19 @@ def test_times_in_comments_agree_with_the_report(settings: dict[str, str], tmp_p
     assert min(seconds) > 10.0
 
 
+def test_a_dwell_at_the_end_of_an_operation_is_part_of_it(tmp_path: Path) -> None:
+    cl, times = tmp_path / "part.cls", []
+    for dwell in ("", "DELAY/7\n"):
+        cl.write_text(
+            OPERATION.format(name="OP1", tool=1, rows=CUT + dwell) + OPERATION.format(name="OP2", tool=1, rows=CUT)
+        )
+        text = trunnion.post(cl, machine="dmu65", columns=False).text
+        assert text is not None
+        times.append([60 * int(m or 0) + float(s) for m, s in re.findall(r"machining time (?:(\d+):)?([\d.]+)", text)])
+    (one, other), (longer, same) = times
+    assert (longer - one, same) == (pytest.approx(7.0, abs=1.0), other)
+
+
 def test_a_program_in_memory_has_its_times(tmp_path: Path) -> None:
     cl = tmp_path / "part.cls"
     cl.write_text(TEXT, encoding="utf-8")

@@ -122,6 +122,9 @@ def test_a_run_waits_where_its_program_does(tmp_path: Path, dwell: str, wait: fl
     waits, passes = (verify(run_program(each, machine), columns=True) for each in (waiting, passing))
     assert waits.seconds.sum() - passes.seconds.sum() == pytest.approx(wait)
     assert np.array_equal(waits.tip_feed, passes.tip_feed)
+    # The tool waits at the end of the row before: a dwell at the end of an operation belongs to it.
+    (event,) = (each for each in waits.run.events if each.kind == "dwell")
+    assert np.flatnonzero(waits.seconds - passes.seconds > 0.1).tolist() == [event.before_row - 1]
 
 
 def test_operations_divide_all_rows_among_them(proven: Verification) -> None:

@@ -1,8 +1,8 @@
 """How long a run takes: what each row asks for, within what the axes can do (``trunnion.machines.motion_time``).
 
 A row at feed takes its length at its feed, and a rapid what its slowest axis needs; accelerations add ramps, with a
-look ahead over corners. A dwell adds its seconds to the row that follows it. How long a tool change or a stop takes is
-not known, but the axes stop for them.
+look ahead over corners. A dwell adds its seconds to the row at whose end the tool waits. How long a tool change or a
+stop takes is not known, but the axes stop for them.
 """
 
 import math
@@ -51,10 +51,9 @@ class RunTimer:
         return seconds, tip_feed
 
     def _dwells(self) -> Iterator[tuple[int, float]]:
-        """The row after each dwell, and its seconds; revolutions of a spindle of unknown speed take none."""
+        """The row before each dwell, and its seconds; revolutions of a spindle of unknown speed take none."""
         last = len(self._run) - 1
         for event in self._run.events:
             if event.kind == "dwell" and isinstance(event.value, float) and math.isfinite(event.value) and last >= 0:
-                row = min(event.before_row, last)
-                rpm = float(self._run.state.rpm[row]) if event.value < 0.0 else 60.0
-                yield row, abs(event.value) * 60.0 / rpm if rpm > 0.0 else 0.0
+                rpm = float(self._run.state.rpm[min(event.before_row, last)]) if event.value < 0.0 else 60.0
+                yield max(event.before_row - 1, 0), abs(event.value) * 60.0 / rpm if rpm > 0.0 else 0.0
