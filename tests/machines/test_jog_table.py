@@ -68,7 +68,7 @@ ALONG_X = Machine(
             "Z": (0.0, 0.0, 1.0),
             "C": (0.0, 0.0, 1.0),
             "A": (1.0, 0.0, 0.0),
-        }.items()  # fmt: skip
+        }.items()
     ),
     spindle_direction=(1.0, 0.0, 0.0),
 )
