@@ -1,16 +1,17 @@
 """The convex pieces of tools: against the volumes and the outlines of solids of revolution."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.support.tools import piece_radius, pieces_volume
+from tests.support.tools import cutter_radius, cutter_sizes, piece_radius, pieces_volume
 from trunnion.simulation.tool_pieces import RevolvedPieces, revolved_pieces
-from trunnion.simulation.tool_shapes import HolderPiece, ball, bull, flat
+from trunnion.simulation.tool_shapes import BodyPiece, ToolKind, ball, bull, flat, tool_shape
 
 SIZES = st.floats(0.5, 80.0)
 SHARES = st.floats(0.05, 1.0)
@@ -55,26 +56,47 @@ def off_corner(pieces: RevolvedPieces, corner: float, core: float) -> float:
     return float(np.abs(np.hypot(piece_radius(pieces, 0, z) - core, z - corner) - corner).max())
 
 
-@given(SIZES, SHARES, st.sampled_from([1e-5, 1e-3, 0.1]), st.lists(SIZES, min_size=2, max_size=6))
-def test_every_piece_is_convex(diameter: float, share: float, tolerance: float, holder: list[float]) -> None:
-    above = tuple(HolderPiece(low, high, 10.0) for low, high in pairwise(holder))
-    shape = bull(
-        diameter, share * diameter / 2, length=100.0, flute_length=20.0, shank_diameter=holder[0], holder=above
+@pytest.mark.parametrize("kind", ToolKind)
+@settings(max_examples=12)
+@given(st.data())
+def test_a_cutter_has_the_volume_that_its_sizes_mean(kind: ToolKind, data: st.DataObject) -> None:
+    sizes = data.draw(cutter_sizes(kind))
+    shape = tool_shape(sizes)
+    pieces, error = revolved_pieces(shape, 1e-4)
+    cuts = pieces_volume(pieces)
+    z = np.linspace(0.0, shape.flute_length, 8001)
+    middles = 0.5 * (z[1:] + z[:-1])
+    meant = float(np.sum(math.pi * cutter_radius(sizes, middles) ** 2)) * (z[1] - z[0])
+    assert error <= 1e-4
+    assert shape.sections[0].top == shape.flute_length
+    assert cuts == pytest.approx(meant, rel=5e-4)
+
+
+@pytest.mark.parametrize("kind", ToolKind)
+@settings(max_examples=12)
+@given(st.data(), st.sampled_from([1e-4, 0.1]), st.lists(SIZES, min_size=2, max_size=6))
+def test_every_piece_is_convex(kind: ToolKind, data: st.DataObject, tolerance: float, above: list[float]) -> None:
+    sizes = data.draw(cutter_sizes(kind))
+    cones = tuple(BodyPiece(low, high, 10.0) for low, high in pairwise(above))
+    shape = tool_shape(
+        replace(sizes, length=400.0, neck_length=390.0 * bool(sizes.neck_diameter), shank=cones[:2], holder=cones)
     )
     pieces, _ = revolved_pieces(shape, tolerance)
+    assert len(pieces.elements) == pieces.first[-1]
     for piece in range(len(pieces.cuts)):
         low, high, widest = pieces.bounds[piece]
-        z = np.sort(np.random.default_rng(1).uniform(low, high, 50))
+        z = np.linspace(low, high, 60)[1:-1]
         r = piece_radius(pieces, piece, z)
         assert r.max() <= widest + 1e-9
-        chord = r[:-2] + (r[2:] - r[:-2]) * (z[1:-1] - z[:-2]) / (z[2:] - z[:-2])
-        assert np.all(r[1:-1] >= chord - 1e-7)
+        assert np.all(r[1:-1] >= 0.5 * (r[:-2] + r[2:]) - 1e-6)
+    # Without gaps, and without an overlap.
+    assert pieces.bounds[1:, 0] == pytest.approx(pieces.bounds[:-1, 1], abs=1e-8)
 
 
 def test_pieces_say_what_they_belong_to() -> None:
     shape = ball(
         10.0, length=60.0, flute_length=20.0, shank_diameter=12.0, neck_diameter=9.0, neck_length=40.0,
-        holder=(HolderPiece(40.0, 40.0, 50.0), HolderPiece(30.0, 60.0, 30.0)),
+        holder=(BodyPiece(40.0, 40.0, 50.0), BodyPiece(30.0, 60.0, 30.0)),
     )  # fmt: skip
     pieces, _ = revolved_pieces(shape, 0.01)
     assert pieces.section.tolist() == [0, 1, 1, 2, 3]

@@ -5,7 +5,7 @@ Out:    ``size_faults``: everything that is wrong with it. Sizes without a fault
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from typing import Final, NamedTuple
@@ -13,8 +13,14 @@ from typing import Final, NamedTuple
 #: Greatest size of a tool, mm: a larger one is in another unit, or a slip.
 GREATEST: Final = 10_000.0
 
-#: How far a corner radius may exceed half the diameter, as a part of the diameter: sizes are rounded, also in inches.
-ROUNDING: Final = 1e-4
+#: How far a corner radius may exceed what fits, as a part of it: sizes are rounded, also in inches.
+ROUNDING: Final = 2e-4
+
+#: Most teeth of a thread mill, one above the other.
+MOST_TEETH: Final = 200
+
+#: Included angle of metric and unified threads, degrees.
+THREAD_ANGLE: Final = 60.0
 
 
 class ToolKind(StrEnum):
@@ -23,11 +29,19 @@ class ToolKind(StrEnum):
     FLAT = "flat"
     BALL = "ball"
     BULL = "bull"
+    TAPER = "taper"
+    TAPER_BALL = "taper_ball"
+    DRILL = "drill"
+    CHAMFER = "chamfer"
+    LOLLIPOP = "lollipop"
+    T_SLOT = "t_slot"
+    THREAD_MILL = "thread_mill"
+    BARREL = "barrel"
 
 
 @dataclass(frozen=True, slots=True)
-class HolderPiece:
-    """A piece of a holder: a cylinder, or a cone where the diameters differ, mm."""
+class BodyPiece:
+    """A piece of a shank or a holder: a cylinder, or a cone where the diameters differ, mm."""
 
     lower_diameter: float
     upper_diameter: float
@@ -38,26 +52,48 @@ class HolderPiece:
 class ToolSizes:
     """A tool as its sizes, mm and degrees; 0 is a size that nothing states.
 
-    corner_radius   of a bull nose mill
+    diameter        of a taper where its side and its bottom would meet, of a taper ball that of the ball, of a barrel
+                    the greatest, of a thread mill at the crests of its teeth
+    corner_radius   between bottom and side
+    upper_radius    between side and top of a T-slot cutter
+    side_angle      of the side from the tool axis
+    tip_angle       whole angle of a drill's tip
+    tip_diameter    where a chamfer mill ends flat; not stated: it ends in a point
+    profile_radius  of the side of a barrel
+    widest_height   from the tip to where a barrel is or would be widest
+    pitch           from tooth to tooth of a thread mill
+    crest           height of the flat on a tooth of a thread mill; not stated: the tooth is sharp
+    thread_angle    whole angle of a tooth of a thread mill; not stated: 60
     flute_length    from the tip to where it stops cutting; not stated: all of the tool below its holder cuts
     length          from the tip to the lower end of the holder; not stated: ``flute_length``
     shank_diameter  above cutter and neck; not stated: that of the cutter where it ends
     neck_diameter   between cutter and shank; not stated: that of the shank
     neck_length     from the tip to where the shank begins; not stated: the neck goes up to the holder
     gauge_length    from the tip to the gauge point; not stated: where the holder ends
-    holder          its pieces from below to above
+    shank           pieces of the shank from below to above, before the rest of it, which is as ``shank_diameter`` says
+    holder          its pieces from below to above; the last one ends at the gauge point
     """
 
     kind: ToolKind
     diameter: float
     corner_radius: float = 0.0
+    upper_radius: float = 0.0
+    side_angle: float = 0.0
+    tip_angle: float = 0.0
+    tip_diameter: float = 0.0
+    profile_radius: float = 0.0
+    widest_height: float = 0.0
+    pitch: float = 0.0
+    crest: float = 0.0
+    thread_angle: float = 0.0
     flute_length: float = 0.0
     length: float = 0.0
     shank_diameter: float = 0.0
     neck_diameter: float = 0.0
     neck_length: float = 0.0
     gauge_length: float = 0.0
-    holder: tuple[HolderPiece, ...] = ()
+    shank: tuple[BodyPiece, ...] = ()
+    holder: tuple[BodyPiece, ...] = ()
 
 
 class SizeFault(NamedTuple):
@@ -68,48 +104,166 @@ class SizeFault(NamedTuple):
     cure: str
 
 
-#: The sizes that a kind must state, and those that it may state besides; all may state those of ``_OF_BODY``.
-_OF_KIND: Final[dict[ToolKind, tuple[tuple[str, ...], tuple[str, ...]]]] = {
-    ToolKind.FLAT: (("diameter",), ()),
-    ToolKind.BALL: (("diameter",), ()),
-    ToolKind.BULL: (("diameter", "corner_radius"), ()),
+class SizesOfKind(NamedTuple):
+    """The sizes that a kind of tool must state, and those that it may state besides."""
+
+    needed: tuple[str, ...]
+    others: tuple[str, ...] = ()
+
+
+#: Sizes of the body above the cutter, which every kind may state.
+OF_BODY: Final = ("flute_length", "length", "shank_diameter", "neck_diameter", "neck_length", "gauge_length")
+
+OF_KIND: Final[Mapping[ToolKind, SizesOfKind]] = {
+    ToolKind.FLAT: SizesOfKind(("diameter",)),
+    ToolKind.BALL: SizesOfKind(("diameter",)),
+    ToolKind.BULL: SizesOfKind(("diameter", "corner_radius")),
+    ToolKind.TAPER: SizesOfKind(("diameter", "side_angle"), ("corner_radius",)),
+    ToolKind.TAPER_BALL: SizesOfKind(("diameter", "side_angle")),
+    ToolKind.DRILL: SizesOfKind(("diameter", "tip_angle"), ("corner_radius",)),
+    ToolKind.CHAMFER: SizesOfKind(("diameter", "side_angle"), ("tip_diameter",)),
+    ToolKind.LOLLIPOP: SizesOfKind(("diameter", "neck_diameter")),
+    ToolKind.T_SLOT: SizesOfKind(("diameter", "flute_length", "neck_diameter"), ("corner_radius", "upper_radius")),
+    ToolKind.THREAD_MILL: SizesOfKind(("diameter", "pitch", "flute_length"), ("crest", "thread_angle")),
+    ToolKind.BARREL: SizesOfKind(("diameter", "profile_radius", "widest_height", "flute_length"), ("corner_radius",)),
 }
 
-_OF_BODY: Final = ("flute_length", "length", "shank_diameter", "neck_diameter", "neck_length", "gauge_length")
+#: Angles, and what they must stay below, degrees.
+_ANGLES: Final = {"side_angle": 90.0, "tip_angle": 180.0, "thread_angle": 180.0}
+
+
+def corner_room(half: float, bottom: float, side: float) -> float:
+    """The greatest radius of a corner between a bottom from the tool axis and a side, mm.
+
+    half    radius where bottom and side would meet, mm
+    bottom  angle of the bottom from the horizontal, radians
+    side    angle of the side from the tool axis, radians
+    """
+    return half * (1.0 + math.sin(bottom + side)) / (math.cos(bottom + side) * math.cos(bottom))
+
+
+def ball_height(sizes: ToolSizes) -> float:
+    """The height of the ball of a lollipop up to its neck, mm."""
+    radius, neck = 0.5 * sizes.diameter, 0.5 * sizes.neck_diameter
+    return radius + math.sqrt(radius**2 - neck**2)
+
+
+def groove_depth(sizes: ToolSizes) -> float:
+    """How deep the grooves between the teeth of a thread mill are where the flanks meet, mm."""
+    return 0.5 * (sizes.pitch - sizes.crest) / math.tan(math.radians(0.5 * (sizes.thread_angle or THREAD_ANGLE)))
+
+
+def tooth_count(sizes: ToolSizes) -> int:
+    """The whole teeth of a thread mill, one above the other."""
+    return math.floor(sizes.flute_length / sizes.pitch + 1e-6)
 
 
 def size_faults(sizes: ToolSizes) -> tuple[SizeFault, ...]:
     """Return everything that is impossible about the sizes of a tool."""
     faults = tuple(_out_of_range(sizes))
-    return faults or tuple(_contradictions(sizes))
+    return faults or (*_cutter_contradictions(sizes), *_body_contradictions(sizes))
 
 
 def _out_of_range(sizes: ToolSizes) -> Iterator[SizeFault]:
     """Sizes that are missing, not those of the kind, or no sizes at all."""
-    needed, others = _OF_KIND[sizes.kind]
+    needed, others = OF_KIND[sizes.kind]
     for field in fields(sizes):
         value = getattr(sizes, field.name)
         if not isinstance(value, float | int):
             continue
+        below = _ANGLES.get(field.name)
         if field.name in needed and value == 0.0:
             yield SizeFault(field.name, "is not stated", f"a tool of the kind {sizes.kind} needs it")
-        elif value != 0.0 and field.name not in (*needed, *others, *_OF_BODY):
+        elif value != 0.0 and field.name not in (*needed, *others, *OF_BODY):
             yield SizeFault(field.name, f"is no size of a tool of the kind {sizes.kind}", "leave it out")
+        elif below and not 0.0 <= value < below:
+            yield SizeFault(field.name, f"is {value:g}", f"write an angle above 0 and below {below:g} degrees")
         elif not 0.0 <= value <= GREATEST:
             yield SizeFault(field.name, f"is {value:g}", f"write a number above 0, at most {GREATEST:g}")
-    for number, piece in enumerate(sizes.holder, 1):
-        for value in (piece.lower_diameter, piece.upper_diameter, piece.height):
-            if not 0.0 < value <= GREATEST:
-                what = f"has {value:g} in piece {number}"
-                yield SizeFault("holder", what, f"write diameters and heights above 0, at most {GREATEST:g}")
+    for name, pieces in (("shank", sizes.shank), ("holder", sizes.holder)):
+        for number, piece in enumerate(pieces, 1):
+            for value in (piece.lower_diameter, piece.upper_diameter, piece.height):
+                if not 0.0 < value <= GREATEST:
+                    what = f"has {value:g} in piece {number}"
+                    yield SizeFault(name, what, f"write diameters and heights above 0, at most {GREATEST:g}")
 
 
-def _contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
-    """Sizes that cannot be together."""
-    if sizes.corner_radius > 0.5 * sizes.diameter + ROUNDING * sizes.diameter:
-        what = f"is {sizes.corner_radius:g}, more than half the diameter"
-        yield SizeFault("corner_radius", what, f"write at most {0.5 * sizes.diameter:g}")
-    yield from _body_contradictions(sizes)
+def _cutter_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
+    """Sizes of a cutter that cannot be together."""
+    half = 0.5 * sizes.diameter
+    if sizes.kind in (ToolKind.BULL, ToolKind.TAPER, ToolKind.DRILL):
+        bottom = 90.0 - 0.5 * sizes.tip_angle if sizes.tip_angle else 0.0
+        room = corner_room(half, math.radians(bottom), math.radians(sizes.side_angle))
+        yield from _at_most(sizes, "corner_radius", room, "what fits between bottom and side")
+    elif sizes.kind is ToolKind.CHAMFER and sizes.tip_diameter >= sizes.diameter:
+        yield SizeFault("tip_diameter", f"is {sizes.tip_diameter:g}", f"write less than {sizes.diameter:g}")
+    elif sizes.kind is ToolKind.LOLLIPOP:
+        yield from _lollipop_contradictions(sizes)
+    elif sizes.kind is ToolKind.T_SLOT:
+        yield from _t_slot_contradictions(sizes)
+    elif sizes.kind is ToolKind.THREAD_MILL:
+        yield from _thread_contradictions(sizes)
+    elif sizes.kind is ToolKind.BARREL:
+        yield from _barrel_contradictions(sizes)
+
+
+def _at_most(sizes: ToolSizes, name: str, most: float, what: str) -> Iterator[SizeFault]:
+    value = getattr(sizes, name)
+    if value > most * (1.0 + ROUNDING):
+        yield SizeFault(name, f"is {value:g}, more than {what}", f"write at most {most:.6g}")
+
+
+def _lollipop_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
+    if sizes.neck_diameter >= sizes.diameter:
+        yield SizeFault("neck_diameter", f"is {sizes.neck_diameter:g}", f"write less than {sizes.diameter:g}")
+    else:
+        yield from _at_most(sizes, "flute_length", ball_height(sizes), "the ball up to its neck")
+
+
+def _t_slot_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
+    half = 0.5 * sizes.diameter
+    if sizes.neck_diameter >= sizes.diameter:
+        yield SizeFault("neck_diameter", f"is {sizes.neck_diameter:g}", f"write less than {sizes.diameter:g}")
+    yield from _at_most(sizes, "corner_radius", half, "half the diameter")
+    yield from _at_most(sizes, "upper_radius", half, "half the diameter")
+    if sizes.corner_radius + sizes.upper_radius > sizes.flute_length * (1.0 + ROUNDING):
+        what = f"is {sizes.flute_length:g}, less than both corners together"
+        yield SizeFault("flute_length", what, "it is the height of the cutting disc")
+
+
+def _thread_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
+    if sizes.crest >= sizes.pitch:
+        yield SizeFault("crest", f"is {sizes.crest:g}", f"write less than the pitch, {sizes.pitch:g}")
+    elif groove_depth(sizes) >= 0.5 * sizes.diameter:
+        what = (
+            f"is {sizes.pitch:g}: its grooves would be {groove_depth(sizes):.4g} mm deep, more than the tool is thick"
+        )
+        yield SizeFault("pitch", what, "write the distance from tooth to tooth")
+    if sizes.neck_diameter >= sizes.diameter:
+        yield SizeFault("neck_diameter", f"is {sizes.neck_diameter:g}", f"write less than {sizes.diameter:g}")
+    if not 1 <= tooth_count(sizes) <= MOST_TEETH:
+        what = f"is {sizes.flute_length:g}, which is {tooth_count(sizes)} teeth"
+        yield SizeFault("flute_length", what, f"write 1 to {MOST_TEETH} times the pitch")
+
+
+def _barrel_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
+    profile, widest, corner = sizes.profile_radius, sizes.widest_height, sizes.corner_radius
+    off_axis = 0.5 * sizes.diameter - profile
+    farthest = max(0.0 if corner else widest, abs(sizes.flute_length - widest))
+    if farthest >= profile or off_axis + math.sqrt(profile**2 - farthest**2) <= 0.0:
+        what = f"is {profile:g}: the side would reach the tool axis"
+        yield SizeFault("profile_radius", what, "write the radius of the side, which is longer than the flutes")
+    elif corner and not _corner_fits(sizes, off_axis):
+        yield SizeFault("corner_radius", f"is {corner:g}, more than fits below the side", "write a smaller one")
+
+
+def _corner_fits(sizes: ToolSizes, off_axis: float) -> bool:
+    """Whether a corner of a barrel touches its side below the end of the flutes, and its bottom off the tool axis."""
+    profile, widest, corner = sizes.profile_radius, sizes.widest_height, sizes.corner_radius
+    if corner > widest or widest >= profile:
+        return False
+    reach = off_axis + math.sqrt((profile - corner) ** 2 - (widest - corner) ** 2)
+    return reach >= 0.0 and corner * (profile - widest) / (profile - corner) < sizes.flute_length
 
 
 def _body_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
@@ -117,15 +271,17 @@ def _body_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     if sizes.length and sizes.flute_length > sizes.length:
         what = f"is {sizes.flute_length:g}, more than the length {sizes.length:g}"
         yield SizeFault("flute_length", what, "the length counts from the tip to the holder")
-    above = [name for name in ("shank_diameter", "neck_diameter", "holder") if getattr(sizes, name)]
+    above = [name for name in ("shank_diameter", "neck_length", "shank", "holder") if getattr(sizes, name)]
     if above and not sizes.length:
         yield SizeFault("length", "is not stated", f"write it: {above[0].replace('_', ' ')} has no place without it")
     if sizes.neck_length and not sizes.neck_diameter:
         yield SizeFault("neck_diameter", "is not stated, but the neck's length is", "write both or none")
+    if sizes.neck_diameter and (sizes.shank_diameter or sizes.shank) and not sizes.neck_length:
+        yield SizeFault("neck_length", "is not stated", "write where the neck ends and the shank begins")
     if sizes.neck_length and not sizes.flute_length <= sizes.neck_length <= (sizes.length or math.inf):
         what = f"is {sizes.neck_length:g}, not between flute length and length"
         yield SizeFault("neck_length", what, "it counts from the tip to where the shank begins")
     top = below_holder + sum(piece.height for piece in sizes.holder)
-    if sizes.gauge_length and sizes.gauge_length < top:
+    if sizes.gauge_length and sizes.gauge_length < top * (1.0 - ROUNDING):
         what = f"is {sizes.gauge_length:g}, but the tool with its holder is {top:g} long"
         yield SizeFault("gauge_length", what, "it counts from the tip to the gauge point, above the holder")

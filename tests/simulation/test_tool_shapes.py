@@ -1,0 +1,194 @@
+"""Tools from their sizes and from CL files: what they are, and what is refused with a cure."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from trunnion.errors import InputError
+from trunnion.model.toolpath import Tool
+from trunnion.simulation.tool_pieces import revolved_pieces
+from trunnion.simulation.tool_shapes import (
+    BodyPiece,
+    ProfileArc,
+    ProfileLine,
+    Role,
+    ToolKind,
+    ToolShape,
+    ToolSizes,
+    ball,
+    bull,
+    cl_tool_shape,
+    flat,
+    tool_shape,
+)
+
+
+def radii(shape: ToolShape) -> list[list[float]]:
+    """Lowest z, highest z and greatest r of each convex piece."""
+    return [[round(value, 6) for value in row] for row in revolved_pieces(shape, 0.01)[0].bounds.tolist()]
+
+
+def test_a_tool_has_its_sections_from_below_to_above() -> None:
+    shape = bull(
+        16.0, 3.0, flute_length=25.0, length=80.0, neck_diameter=14.0, neck_length=50.0, shank_diameter=16.0,
+        shank=(BodyPiece(14.0, 16.0, 5.0),), holder=(BodyPiece(30.0, 40.0, 20.0), BodyPiece(40.0, 40.0, 30.0)),
+    )  # fmt: skip
+    assert [section.role for section in shape.sections] == [Role.CUTTER, Role.SHANK, Role.HOLDER, Role.HOLDER]
+    assert shape.sections[0].outline == (
+        ProfileLine((0.0, 0.0), (5.0, 0.0)),
+        ProfileArc((5.0, 0.0), (8.0, 3.0), (5.0, 3.0)),
+        ProfileLine((8.0, 3.0), (8.0, 25.0)),
+    )
+    assert radii(shape)[1:] == [
+        [25.0, 50.0, 7.0], [50.0, 80.0, 8.0], [80.0, 100.0, 20.0], [100.0, 130.0, 20.0],
+    ]  # fmt: skip
+    assert (shape.length, shape.flute_length, shape.top, shape.remarks) == (130.0, 25.0, 130.0, ())
+
+
+def test_where_the_flutes_end_below_the_corner_the_rest_of_it_does_not_cut() -> None:
+    shape = ball(10.0, flute_length=3.0, length=30.0)
+    assert [(section.role, section.bottom, section.top) for section in shape.sections] == [
+        (Role.CUTTER, 0.0, 3.0), (Role.SHANK, 3.0, 30.0),
+    ]  # fmt: skip
+
+
+def test_a_lollipop_ends_where_its_neck_begins() -> None:
+    shape = tool_shape(ToolSizes(ToolKind.LOLLIPOP, 10.0, neck_diameter=6.0, length=40.0))
+    assert radii(shape) == [[0.0, 9.0, 5.0], [9.0, 40.0, 3.0]]
+    assert shape.flute_length == 9.0
+
+
+def test_what_is_taken_for_granted_is_said() -> None:
+    assert flat(10.0).remarks == ("the length is not stated: the tool is 100 mm of flutes without shank and holder",)
+    assert flat(10.0, length=40.0).remarks == (
+        "the flute length is not stated: all 40 mm of the tool below its holder cut",
+    )
+    assert flat(80.0).top == 160.0
+
+
+#: Sizes, the size that is wrong, and what is said of it.
+IMPOSSIBLE: dict[str, tuple[dict[str, Any], str, str]] = {
+    "none": ({"diameter": 0.0}, "diameter", "is not stated"),
+    "negative": ({"diameter": -4.0}, "diameter", "above 0"),
+    "NaN": ({"diameter": float("nan")}, "diameter", "is nan"),
+    "endless": ({"diameter": 10.0, "length": float("inf")}, "length", "is inf"),
+    "metres": ({"diameter": 20_000.0}, "diameter", "at most 10000"),
+    "of another kind": ({"diameter": 10.0, "pitch": 1.0}, "pitch", "no size of a tool of the kind flat"),
+    "corner": ({"kind": "bull", "diameter": 10.0, "corner_radius": 5.1}, "corner_radius", "write at most 5"),
+    "no corner": ({"kind": "bull", "diameter": 10.0}, "corner_radius", "needs it"),
+    "level side": ({"kind": "taper", "diameter": 10.0, "side_angle": 90.0}, "side_angle", "below 90"),
+    "no tip": ({"kind": "drill", "diameter": 10.0}, "tip_angle", "needs it"),
+    "tip": ({"kind": "chamfer", "diameter": 6.0, "side_angle": 45.0, "tip_diameter": 6.0}, "tip_diameter", "than 6"),
+    "neck of a ball": ({"kind": "lollipop", "diameter": 6.0, "neck_diameter": 6.0}, "neck_diameter", "less than 6"),
+    "flutes of a ball": (
+        {"kind": "lollipop", "diameter": 10.0, "neck_diameter": 6.0, "flute_length": 9.5}, "flute_length", "at most 9",
+    ),
+    "disc": (
+        {"kind": "t_slot", "diameter": 20.0, "flute_length": 3.0, "neck_diameter": 8.0, "corner_radius": 2.0,
+         "upper_radius": 2.0}, "flute_length", "both corners",
+    ),
+    "thread": ({"kind": "thread_mill", "diameter": 6.0, "pitch": 4.0, "flute_length": 8.0}, "pitch", "3.464 mm deep"),
+    "half a tooth": (
+        {"kind": "thread_mill", "diameter": 6.0, "pitch": 2.0, "flute_length": 1.0}, "flute_length", "0 teeth",
+    ),
+    "too many teeth": (
+        {"kind": "thread_mill", "diameter": 6.0, "pitch": 0.01, "flute_length": 100.0}, "flute_length", "10000 teeth",
+    ),
+    "barrel": (
+        {"kind": "barrel", "diameter": 10.0, "profile_radius": 20.0, "widest_height": 19.0, "flute_length": 24.0},
+        "profile_radius", "reach the tool axis",
+    ),
+    "corner of a barrel": (
+        {"kind": "barrel", "diameter": 10.0, "profile_radius": 90.0, "widest_height": 12.0, "flute_length": 24.0,
+         "corner_radius": 8.0}, "corner_radius", "more than fits",
+    ),
+    "flutes": ({"diameter": 10.0, "flute_length": 30.0, "length": 20.0}, "flute_length", "more than the length 20"),
+    "short": ({"kind": "ball", "diameter": 10.0, "length": 4.0}, "length", "its tip alone is 5 high"),
+    "shank": ({"diameter": 10.0, "shank_diameter": 8.0}, "length", "shank diameter has no place without it"),
+    "neck": ({"diameter": 10.0, "neck_length": 8.0, "length": 20.0}, "neck_diameter", "write both or none"),
+    "shank and neck": (
+        {"diameter": 10.0, "neck_diameter": 8.0, "shank_diameter": 10.0, "length": 20.0}, "neck_length", "not stated",
+    ),
+    "neck above": (
+        {"diameter": 10.0, "neck_diameter": 8.0, "neck_length": 30.0, "length": 20.0}, "neck_length", "not between",
+    ),
+    "holder": ({"diameter": 10.0, "length": 20.0, "holder": (BodyPiece(40.0, 0.0, 5.0),)}, "holder", "0 in piece 1"),
+    "gauge": (
+        {"diameter": 10.0, "length": 20.0, "holder": (BodyPiece(40.0, 40.0, 50.0),), "gauge_length": 60.0},
+        "gauge_length", "is 70 long",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", IMPOSSIBLE)
+def test_impossible_sizes_are_refused_with_a_cure(name: str) -> None:
+    sizes, size, said = IMPOSSIBLE[name]
+    with pytest.raises(InputError) as raised:
+        tool_shape(ToolSizes(**{"kind": ToolKind(sizes.get("kind", "flat")), **_without_kind(sizes)}))
+    problem = next(problem for problem in raised.value.problems if problem.file == size)
+    assert said in f"{problem.what}; {problem.cure}"
+    assert problem.cure
+
+
+def _without_kind(sizes: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in sizes.items() if name != "kind"}
+
+
+MILL = Tool("MILL", "R5", 10.0, 1.0, 70.0)
+
+
+@pytest.mark.parametrize(
+    ("tool", "kind"),
+    [
+        (replace(MILL, corner_radius=0.0), flat(10.0, length=70.0)),
+        (replace(MILL, corner_radius=5.0), ball(10.0, length=70.0)),
+        (replace(MILL, corner_radius=5.0001), ball(10.0, length=70.0)),
+        (replace(MILL, flute_length=20.0, extension=50.0), bull(10.0, 1.0, length=50.0, flute_length=20.0)),
+        (
+            replace(MILL, taper_angle=3.0),
+            tool_shape(ToolSizes(ToolKind.TAPER, 10.0, 1.0, side_angle=3.0, length=70.0)),
+        ),
+        (
+            Tool("DRILL", "", 8.0, 0.0, 50.0, tip_angle=118.0, flute_length=35.0),
+            tool_shape(ToolSizes(ToolKind.DRILL, 8.0, tip_angle=118.0, length=50.0, flute_length=35.0)),
+        ),
+        (
+            replace(MILL, tip_angle=10.0),
+            tool_shape(ToolSizes(ToolKind.DRILL, 10.0, 1.0, tip_angle=160.0, length=70.0)),
+        ),
+    ],
+    ids=["flat", "ball", "rounded ball", "bull", "taper", "drill", "conical bottom"],
+)
+def test_a_cutter_of_a_cl_file_is_a_body(tool: Tool, kind: ToolShape) -> None:
+    shape = cl_tool_shape(tool, 3, file="part.cls", line=7)
+    assert (shape.number, shape.name) == (3, tool.name)
+    assert (shape.sections, shape.flute_length, shape.remarks) == (kind.sections, kind.flute_length, kind.remarks)
+
+
+def test_the_length_of_the_tool_change_is_the_gauge_length() -> None:
+    assert cl_tool_shape(replace(MILL, set_length=180.0), 3, file="part.cls", line=7).length == 180.0
+
+
+@pytest.mark.parametrize(
+    ("tool", "dialect", "said"),
+    [
+        (Tool(), "clsf", "tool 3 is known by number or name only"),
+        (Tool("MILL"), "clsf", "tool 3 is known by number or name only"),
+        (Tool("TCUTTER", "", 20.0, 1.0, 60.0), "clsf", "is a TCUTTER, whose numbers"),
+        (Tool("BARREL", "", 20.0, 1.0, 60.0), "clsf", "is a BARREL, whose numbers"),
+        (replace(MILL, upper_radius=1.0), "clsf", "upper corner"),
+        (replace(MILL, taper_angle=3.0, tip_angle=3.0), "clsf", "tapered and has a conical bottom"),
+        (replace(MILL, taper_angle=3.0, corner_radius=5.0), "clsf", "tapered ball mill"),
+        (Tool("MILL", "", 3.0), "ncl", "Creo does not write the form of its end"),
+        (replace(MILL, corner_radius=6.0), "clsf", "its corner radius is 6, more than"),
+        (replace(MILL, taper_angle=-3.0), "clsf", "its side angle is -3"),
+        (Tool("DRILL", "", 8.0), "clsf", "its tip angle is not stated"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_form_that_is_not_settled_is_refused(tool: Tool, dialect: str, said: str) -> None:
+    with pytest.raises(InputError, match=r"part\.cls:7: error: tool 3") as raised:
+        cl_tool_shape(tool, 3, file="part.cls", line=7, dialect=dialect)
+    assert said in str(raised.value)
+    assert "state the tool itself" in str(raised.value)
