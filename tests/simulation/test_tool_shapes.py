@@ -106,6 +106,7 @@ IMPOSSIBLE: dict[str, tuple[dict[str, Any], str, str]] = {
     "flutes": ({"diameter": 10.0, "flute_length": 30.0, "length": 20.0}, "flute_length", "more than the length 20"),
     "short": ({"kind": "ball", "diameter": 10.0, "length": 4.0}, "length", "its tip alone is 5 high"),
     "shank": ({"diameter": 10.0, "shank_diameter": 8.0}, "length", "shank diameter has no place without it"),
+    "shank of no height": ({"diameter": 10.0, "shank_diameter": 8.0, "length": 50.0}, "flute_length", "but the shank"),
     "neck": ({"diameter": 10.0, "neck_length": 8.0, "length": 20.0}, "neck_diameter", "write both or none"),
     "shank and neck": (
         {"diameter": 10.0, "neck_diameter": 8.0, "shank_diameter": 10.0, "length": 20.0}, "neck_length", "not stated",

@@ -126,13 +126,14 @@ class ToolShape:
 
 
 def divide(outline: tuple[Element, ...], z: float) -> tuple[tuple[Element, ...], tuple[Element, ...]]:
-    """The parts of an outline below and above a height."""
+    """The parts of an outline below and above a height; ends that are nearly there are."""
     below: list[Element] = []
     above: list[Element] = []
+    slack = _SAME * (1.0 + abs(z))
     for element in outline:
-        if element.end[1] <= z:
+        if element.end[1] <= z + slack:
             below.append(element)
-        elif element.start[1] >= z:
+        elif element.start[1] >= z - slack:
             above.append(element)
         else:
             at = (element.radius_at(z), z)

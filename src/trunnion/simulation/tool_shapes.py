@@ -21,6 +21,9 @@ from trunnion.simulation.tool_profile import (
 )
 from trunnion.simulation.tool_sizes import ROUNDING, BodyPiece, SizeFault, ToolKind, ToolSizes, size_faults
 
+#: A part of a tool lower than this, mm, is none: sizes are computed.
+_NO_HEIGHT: Final = 1e-8
+
 #: How long a tool is taken to be that states no length, mm, or so many times its diameter if that is more.
 UNSTATED_LENGTH: Final = 100.0
 _UNSTATED_DIAMETERS: Final = 2.0
@@ -70,7 +73,7 @@ def tool_shape(sizes: ToolSizes, number: int | None = None, name: str = "", desc
     cutting, rest = divide(outline, flute_length)
     sections = [Section(Role.CUTTER, cutting, "cutter")]
     shank = rest + _shank(sizes, outline[-1].end, length)
-    if shank and shank[-1].end[1] > flute_length:
+    if shank and shank[-1].end[1] - shank[0].start[1] > _NO_HEIGHT:
         sections.append(Section(Role.SHANK, shank, "shank"))
     sections += _holder(sizes, length)
     gauge_length = sizes.gauge_length or (sections[-1].top if sizes.holder else 0.0)
@@ -89,8 +92,9 @@ def tool_faults(sizes: ToolSizes) -> tuple[SizeFault, ...]:
 
 def _lengths(sizes: ToolSizes, top: float) -> tuple[float, float, tuple[str, ...]]:
     """Length and flute length of a tool whose outline ends at ``top``, and what was taken for granted."""
-    ends = side_slope(sizes) is None
-    flute_length = min(sizes.flute_length or top, top) if ends else sizes.flute_length
+    flute_length = sizes.flute_length
+    if side_slope(sizes) is None and (flute_length == 0.0 or flute_length > top - _NO_HEIGHT):
+        flute_length = top
     if flute_length and sizes.length:
         return sizes.length, flute_length, ()
     if sizes.length:

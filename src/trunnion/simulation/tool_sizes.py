@@ -19,6 +19,9 @@ ROUNDING: Final = 2e-4
 #: Most teeth of a thread mill, one above the other.
 MOST_TEETH: Final = 200
 
+#: Most pieces of a shank or a holder.
+MOST_PIECES: Final = 100
+
 #: Included angle of metric and unified threads, degrees.
 THREAD_ANGLE: Final = 60.0
 
@@ -129,7 +132,7 @@ OF_KIND: Final[Mapping[ToolKind, SizesOfKind]] = {
 }
 
 #: Angles, and what they must stay below, degrees.
-_ANGLES: Final = {"side_angle": 90.0, "tip_angle": 180.0, "thread_angle": 180.0}
+ANGLE_LIMITS: Final = {"side_angle": 90.0, "tip_angle": 180.0, "thread_angle": 180.0}
 
 
 def corner_room(half: float, bottom: float, side: float) -> float:
@@ -171,7 +174,7 @@ def _out_of_range(sizes: ToolSizes) -> Iterator[SizeFault]:
         value = getattr(sizes, field.name)
         if not isinstance(value, float | int):
             continue
-        below = _ANGLES.get(field.name)
+        below = ANGLE_LIMITS.get(field.name)
         if field.name in needed and value == 0.0:
             yield SizeFault(field.name, "is not stated", f"a tool of the kind {sizes.kind} needs it")
         elif value != 0.0 and field.name not in (*needed, *others, *OF_BODY):
@@ -181,6 +184,9 @@ def _out_of_range(sizes: ToolSizes) -> Iterator[SizeFault]:
         elif not 0.0 <= value <= GREATEST:
             yield SizeFault(field.name, f"is {value:g}", f"write a number above 0, at most {GREATEST:g}")
     for name, pieces in (("shank", sizes.shank), ("holder", sizes.holder)):
+        if len(pieces) > MOST_PIECES:
+            yield SizeFault(name, f"has {len(pieces)} pieces", f"write at most {MOST_PIECES}")
+            return
         for number, piece in enumerate(pieces, 1):
             for value in (piece.lower_diameter, piece.upper_diameter, piece.height):
                 if not 0.0 < value <= GREATEST:
@@ -274,6 +280,9 @@ def _body_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     above = [name for name in ("shank_diameter", "neck_length", "shank", "holder") if getattr(sizes, name)]
     if above and not sizes.length:
         yield SizeFault("length", "is not stated", f"write it: {above[0].replace('_', ' ')} has no place without it")
+    elif above and above != ["holder"] and not sizes.flute_length and sizes.kind is not ToolKind.LOLLIPOP:
+        what = f"is not stated, but the {above[0].replace('_', ' ')} is"
+        yield SizeFault("flute_length", what, "write where the flutes end")
     if sizes.neck_length and not sizes.neck_diameter:
         yield SizeFault("neck_diameter", "is not stated, but the neck's length is", "write both or none")
     if sizes.neck_diameter and (sizes.shank_diameter or sizes.shank) and not sizes.neck_length:

@@ -1,0 +1,62 @@
+"""What a tool library holds: tools as bodies, and those that cannot be made one, with the reason."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from trunnion.errors import InputError, Problem
+from trunnion.simulation.tool_profile import ToolShape
+
+
+@dataclass(frozen=True, slots=True)
+class UnusableTool:
+    """A tool of a library that has no body here: its kind is not known, or its sizes are impossible.
+
+    number    by which programs call it; None if it has none
+    problems  why, with the file
+    """
+
+    number: int | None
+    name: str
+    problems: tuple[Problem, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ToolLibrary:
+    """The tools of a file.
+
+    unusable   is no mistake until a program calls one of them
+    diameters  of tools by their number, mm, of which nothing else is known
+    """
+
+    file: str
+    tools: tuple[ToolShape, ...] = ()
+    unusable: tuple[UnusableTool, ...] = ()
+    diameters: Mapping[int, float] = field(default_factory=dict)
+
+    def tool(self, number: int | None = None, name: str = "") -> ToolShape:
+        """Return the tool of a number, or if there is none, of a name.
+
+        Raises
+        ------
+        InputError
+            If there is none, or several, or one that has no body.
+        """
+        for called, what in ((number, "number"), (name or None, "name")):
+            if called is None:
+                continue
+            found = [tool for tool in self.tools if getattr(tool, what) == called]
+            unusable = [tool for tool in self.unusable if getattr(tool, what) == called]
+            if unusable:
+                raise InputError(unusable[0].problems)
+            if len(found) > 1:
+                same = ", ".join(dict.fromkeys(tool.name or str(tool.number) for tool in found))
+                cure = "number and name them apart, or state the tool itself: its kind and its sizes"
+                raise InputError(Problem(self.file, 0, f"{len(found)} tools have the {what} {called}: {same}", cure))
+            if found:
+                return found[0]
+        called_by = f"number {number}" if number is not None else f'name "{name}"'
+        if number is not None and number in self.diameters:
+            what = f"tool {number} has a diameter of {self.diameters[number]:g} mm, and nothing says its form"
+            raise InputError(Problem(self.file, 0, what, "say its kind: 3=ball takes the diameter from the table"))
+        cure = "add it to the library, or state the tool itself: its kind and its sizes"
+        raise InputError(Problem(self.file, 0, f"has no tool of the {called_by}", cure))
