@@ -36,7 +36,6 @@ GO = "GOTO/0,0,0"
         (("MSYS/0,0,0,1,0,0,0.6,0.8,0", GO), 3, "not square"),
         ((GO, "MSYS/0,0,0,1,0,0,0,1,0"), 4, "MSYS after motion"),
         (("TLDATA/MILL,1,2", GO), 3, "TLDATA/MILL has 2 numbers, expected 5, 7 or 10"),
-        (("TLDATA/MILL,-1,0,0,0,0", GO), 3, "negative diameter"),
         (("SPINDL/SFM,100,DIAMTR,0", GO), 3, "no diameter"),
         (("SPINDL/ON", GO), 3, "before any speed"),
         (("SPINDL/RPM,-5", GO), 3, "negative speed"),

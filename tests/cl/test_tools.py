@@ -74,3 +74,49 @@ def test_lengths_are_in_mm_and_info_shows_them(tmp_path: Path, capsys: pytest.Ca
     assert (tool.holder, tool.diameter, tool.extension, tool.set_length) == ("H1", 25.4, 50.8, 101.6)
     assert main(["info", str(file)]) == 0
     assert "T5 MILL  MILL d 25.4 stands out 50.8 length in the spindle 101.6; holder H1;" in capsys.readouterr().out
+
+
+BARREL = "10,85,-80,20,0,0,50"
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text"),
+    [
+        ("apt", f"CUTTER/{BARREL}\nLOADTL/5\n"),
+        ("catia", f"CUTTER/{BARREL}\nLOADTL/5\n"),
+        ("ncl", f"$$-> CUTTER / {BARREL}\nLOADTL / 5\n"),
+        ("solidworks", f"CUTTER/{BARREL}\nLOAD/TOOL,5\n"),
+        ("clsf", "TLDATA/MILL,10,85,50,0,0,-80,20\n"),
+        ("clsf", f"CUTTER/{BARREL}\n"),
+    ],
+)
+def test_the_centre_of_a_corner_is_kept_and_written(tmp_path: Path, dialect: str, text: str) -> None:
+    (tool,) = tools(tmp_path, dialect, text + "RAPID\nGOTO/1,2,3\n")
+    assert (tool.corner_radius, tool.corner_centre) == (85.0, (-80.0, 20.0))
+    for written in ("clsf", "catia", "ncl"):
+        folder = tmp_path / written
+        folder.mkdir()
+        result = trunnion.convert(tmp_path / "part.txt", to_cl=True, dialect=written, output=folder / "again.cls")
+        assert read_cl(result.output).operations[0].tool.corner_centre == (-80.0, 20.0)
+
+
+def test_a_second_corner_is_kept_and_written_with_its_centre(tmp_path: Path) -> None:
+    (tool,) = tools(tmp_path, "clsf", "TLDATA/BARREL,10,1,50,0,0,4,1,85,-80,20\nGOTO/1,2,3\n")
+    assert (tool.corner_centre, tool.upper_radius, tool.upper_centre) == (None, 85.0, (-80.0, 20.0))
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text", "line"),
+    [
+        ("clsf", "TLDATA/MILL,10,7,75,0,0\n", 2),
+        ("apt", "LOADTL/5\nCUTTER/10,7\n", 4),
+        ("catia", "CUTTER/10,7\nLOADTL/5\n", 2),
+        ("ncl", "LOADTL / 5\n$$-> CUTTER / 10, 7\n", 4),
+        ("solidworks", "CUTTER/10,7\nLOAD/TOOL,5\n", 4),
+    ],
+)
+def test_an_impossible_tool_is_refused_with_its_line(tmp_path: Path, dialect: str, text: str, line: int) -> None:
+    with pytest.raises(trunnion.InputError) as caught:
+        tools(tmp_path, dialect, text + "GOTO/1,2,3\n")
+    (problem,) = caught.value.problems
+    assert (problem.line, "more than half its diameter" in problem.what) == (line, True)

@@ -151,7 +151,9 @@ def operations(draw: st.DrawFn, kinds: dict[str, st.SearchStrategy[Any]], axes: 
     diameter = draw(DECIMAL)
     return Operation(
         name=draw(TEXT.filter(lambda text: ",TOOL," not in text)),
-        tool=Tool("MILL", draw(NAME), diameter, draw(st.sampled_from([diameter / 2, 0.5])), draw(DECIMAL)),
+        tool=Tool(
+            "MILL", draw(NAME), diameter, draw(st.sampled_from([diameter / 2, min(0.5, diameter / 2)])), draw(DECIMAL)
+        ),
         frame=Frame(),
         moves=Moves(tip, axis, kind, draw(phases(rows, rapids)), feed, per_rev, np.arange(1, rows + 1, dtype=np.int32)),
         arcs=Arcs(

@@ -11,6 +11,7 @@ from trunnion.api.path_measures import Range, extents, kind_and_planes, measure
 from trunnion.api.reading import ToolpathLike, read_toolpaths
 from trunnion.cl import DIALECTS, other_system, unknown_statements
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import (
     CycleOn,
@@ -66,6 +67,8 @@ class ToolDescription:
     holder      its name, empty if none is stated
     extension   how far it stands out of the holder
     set_length  its length in the spindle as the tool change states it
+    apt         its form by APT's parameters d, r, e, f, a, b, h; empty if no size is stated
+    upper_centre  centre of the upper corner: distance from the axis, height above the tip; None if it is not stated
     operations  those that it works in, by their places from 0
     """
 
@@ -83,6 +86,8 @@ class ToolDescription:
     holder: str
     extension: float
     set_length: float
+    apt: tuple[float, ...]
+    upper_centre: tuple[float, float] | None
     operations: tuple[int, ...]
 
 
@@ -325,6 +330,8 @@ class _Description:
                 corner_radius=tool.corner_radius, length=tool.length, flute_length=tool.flute_length,
                 taper_angle=tool.taper_angle, tip_angle=tool.tip_angle, upper_radius=tool.upper_radius,
                 holder=tool.holder, extension=tool.extension, set_length=tool.set_length,
+                apt=tuple(apt_cutter(tool)) if tool.diameter or tool.corner_radius else (),
+                upper_centre=tool.upper_centre,
                 operations=tuple(operations),
             )
             for (number, register, tool), operations in self._tools.items()

@@ -16,6 +16,8 @@ from trunnion.cl.builder import FeedChange, MoveColumns, OperationBuilder, Surfa
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.cl.tool_axes import fill_tool_axes
+from trunnion.errors import Severity
+from trunnion.model.tool_faults import tool_faults
 from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Frame, From, Kind, Moves, Operation, SpindleOn, Tool
 
 #: No machine reaches farther, mm: a coordinate beyond it is a mistake in the file.
@@ -61,6 +63,7 @@ def assemble_operation(
     report_open_ends(arcs, circles, tip, kind, diagnostics)
     _inverse_to_per_minute(builder, feed, tip, arcs, columns.line[rows], kind, starts, diagnostics)
     tool = _tool_in_mm(builder.tool, unit)
+    _report_tool(builder, tool, diagnostics)
     events = [*(_event_in_mm(event, unit, tool, diagnostics) for event in builder.events), *starts]
     return Operation(
         name=builder.name,
@@ -183,7 +186,21 @@ def _tool_in_mm(tool: Tool, unit: float) -> Tool:
         upper_radius=tool.upper_radius * unit,
         extension=tool.extension * unit,
         set_length=tool.set_length * unit,
+        corner_centre=_in_mm(tool.corner_centre, unit),
+        upper_centre=_in_mm(tool.upper_centre, unit),
     )
+
+
+def _in_mm(centre: tuple[float, float] | None, unit: float) -> tuple[float, float] | None:
+    return None if centre is None else (centre[0] * unit, centre[1] * unit)
+
+
+def _report_tool(builder: OperationBuilder, tool: Tool, diagnostics: Diagnostics) -> None:
+    """Report sizes of a tool that cannot be, with the line that states them."""
+    line, _ = builder.stated.get("tool", (builder.line, None))
+    for what, cure, severity in tool_faults(tool):
+        report = diagnostics.error if severity is Severity.ERROR else diagnostics.remark
+        report(line, what, cure)
 
 
 def _frame_in_mm(frame: Frame, unit: float) -> Frame:

@@ -160,6 +160,8 @@ def _tool_line(tool: ToolDescription) -> str:
         )
         if value
     ]
+    if tool.apt and tool.apt[1] and tool.apt[2:4] != (0.5 * tool.diameter - tool.corner_radius, tool.corner_radius):
+        sizes.append(f"corner centre {tool.apt[2]:g} from the axis, {tool.apt[3]:g} above the tip")
     register = [f"length register {tool.register}"] if tool.register else []
     if tool.holder:
         register.append(f"holder {tool.holder}")

@@ -9,7 +9,9 @@ from typing import Final
 COMMON_TEMPLATE_FIELDS: Final = frozenset(
     {
         "primary", "secondary", "primary_word", "secondary_word", "operation", "tool", "tool_name", "tool_type",
-        "length_number", "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "machine",
+        "length_number", "tool_diameter", "tool_length", "tool_corner_radius", "tool_flute_length", "tool_taper_angle",
+        "tool_tip_angle", "tool_upper_radius", "tool_corner_e", "tool_corner_f", "tool_holder", "tool_extension",
+        "tool_set_length", "intol", "outtol", "machine",
         "gauge_length",
         "zero_x", "zero_y", "zero_z", "time", "total_time", "time_shown", "total_time_shown",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
@@ -25,7 +27,8 @@ INCH: Final = "inch"
 #: Fields that are lengths, besides settings; and words of motion blocks that are lengths or feeds.
 LENGTH_FIELDS: Final = frozenset(
     {
-        "tool_diameter", "tool_length", "tool_corner_radius", "intol", "outtol", "gauge_length", "zero_x", "zero_y",
+        "tool_diameter", "tool_length", "tool_corner_radius", "tool_flute_length", "tool_upper_radius", "tool_corner_e",
+        "tool_corner_f", "tool_extension", "tool_set_length", "intol", "outtol", "gauge_length", "zero_x", "zero_y",
         "zero_z", "home_x", "home_y", "home_z", "plane_x", "plane_y", "plane_z",
     }
 )  # fmt: skip

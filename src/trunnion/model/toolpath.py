@@ -268,14 +268,17 @@ class UnknownStatement(Event):
 class Tool:
     """The cutter, mm and degrees; 0 is a size that nothing states.
 
-    kind          its form in TLDATA: MILL, TCUTTER, BARREL, DRILL or UNKNOWN
-    length        of the cutter itself
-    taper_angle   of its side from the axis
-    tip_angle     whole angle of a drill's tip; of a mill, that of its bottom from the horizontal
-    upper_radius  second corner radius of a TCUTTER or a BARREL
-    holder        what the CL file calls its holder
-    extension     how far it stands out of the holder
-    set_length    its length in the spindle as the tool change states it
+    kind           its form in TLDATA: MILL, TCUTTER, BARREL, DRILL or UNKNOWN
+    length         of the cutter itself
+    taper_angle    of its side from the axis
+    tip_angle      whole angle of a drill's tip; of a mill, that of its bottom from the horizontal
+    upper_radius   second corner radius of a TCUTTER or a BARREL
+    holder         what the CL file calls its holder
+    extension      how far it stands out of the holder
+    set_length     its length in the spindle as the tool change states it
+    corner_centre  distance of the corner's centre from the axis, negative beyond it, and its height above the tip;
+                   None: not stated, or that of a corner that touches a level bottom and an upright side
+    upper_centre   the same of the second corner
     """
 
     kind: str = "UNKNOWN"
@@ -290,6 +293,8 @@ class Tool:
     holder: str = ""
     extension: float = 0.0
     set_length: float = 0.0
+    corner_centre: tuple[float, float] | None = None
+    upper_centre: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

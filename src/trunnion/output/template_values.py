@@ -16,6 +16,7 @@ from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Axis, inverse
 from trunnion.machines.motion_time import format_duration
+from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn, Tool
 from trunnion.output.coordinates.extents import cut_extents
@@ -220,6 +221,15 @@ class TemplateValues:
             "tool_diameter": tool.diameter if known else None,
             "tool_length": tool.length if known else None,
             "tool_corner_radius": tool.corner_radius if known else None,
+            "tool_corner_e": apt_cutter(tool).e if known else None,
+            "tool_corner_f": apt_cutter(tool).f if known else None,
+            "tool_flute_length": tool.flute_length or None,
+            "tool_taper_angle": tool.taper_angle or None,
+            "tool_tip_angle": tool.tip_angle or None,
+            "tool_upper_radius": tool.upper_radius or None,
+            "tool_extension": tool.extension or None,
+            "tool_set_length": tool.set_length or None,
+            "tool_holder": tool.holder or None,
         }
 
     def tool_call(self, operation: Operation, loaded: LoadedTool) -> str:
@@ -292,8 +302,18 @@ def tool_text(call: str, tool: Tool, unit: float = 1.0) -> str:
     known = tool.kind != "UNKNOWN"
     lengths = ("diameter", tool.diameter), ("corner", tool.corner_radius), ("length", tool.length)
     data = "".join(f", {what} {length / unit:g}" for what, length in lengths) if known else ""
+    others = (
+        ("upper corner", tool.upper_radius / unit),
+        ("taper", tool.taper_angle),
+        ("tip", tool.tip_angle),
+        ("flutes", tool.flute_length / unit),
+        ("stands out", tool.extension / unit),
+        ("in the spindle", tool.set_length / unit),
+    )
+    data += "".join(f", {what} {value:g}" for what, value in others if value)
+    holder = f", holder {tool.holder}" if tool.holder else ""
     name = f" {tool.name}" if tool.name and tool.name != call.strip('"') else ""
-    return f"T{call}{name}{data}"
+    return f"T{call}{name}{data}{holder}"
 
 
 def _time_token(number: int) -> str:

@@ -7,6 +7,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.cl.statements import events
+from trunnion.model.apt_cutter import stated_centre
 from trunnion.model.toolpath import SelectTool, Tool
 
 #: A tip flatter than this, degrees from the horizontal, is that of a mill.
@@ -16,7 +17,7 @@ _FLATTEST_DRILL: Final = 1.0
 _AT_EDGE: Final = 1e-3
 
 #: What CUTTER says of a tool; all else, other statements say.
-_OF_CUTTER: Final = ("kind", "diameter", "corner_radius", "length", "taper_angle", "tip_angle")
+_OF_CUTTER: Final = ("kind", "diameter", "corner_radius", "length", "taper_angle", "tip_angle", "corner_centre")
 
 #: Words of LOADTL with a number that is the register of the tool's length.
 _REGISTERS: Final = frozenset({"OSETNO", "OFFSET", "ADJUST"})
@@ -56,9 +57,7 @@ def _form(statement: Statement) -> Tool:
     """The tool that a CUTTER describes."""
     values = statement.values[:-1] if statement.values[-1:] == ("",) else statement.values
     given = statement._replace(values=values).numbers(1, 2, 7)
-    if any(number < 0 for number in given[:2]):
-        raise StatementError("CUTTER has a negative size", "write the diameter of the tool")
-    d, r, e, _, a, b, h = (*given, *(0.0,) * (7 - len(given)))
+    d, r, e, f, a, b, h = (*given, *(0.0,) * (7 - len(given)))
     is_drill = r == 0.0 and a > _FLATTEST_DRILL and abs(e - 0.5 * d) <= _AT_EDGE * d
     return Tool(
         kind="DRILL" if is_drill else "MILL",
@@ -67,6 +66,7 @@ def _form(statement: Statement) -> Tool:
         length=h,
         taper_angle=0.0 if is_drill else b,
         tip_angle=180.0 - 2.0 * a if is_drill else a,
+        corner_centre=stated_centre(d, r, e, f),
     )
 
 

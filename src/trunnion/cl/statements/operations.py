@@ -8,6 +8,7 @@ from typing import Any
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import LENGTH_REGISTER, MM_PER_INCH, TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
+from trunnion.model.apt_cutter import stated_centre
 from trunnion.model.toolpath import Frame, Tool
 from trunnion.wording import counted
 
@@ -26,10 +27,10 @@ _TCUTTER = ("diameter", "corner_radius", "upper_radius", "length", "flute_length
 
 #: Forms of TLDATA: for each possible count of numbers, the fields of ``Tool`` that they are; empty where there is none.
 _TLDATA_FIELDS: dict[str, dict[int, tuple[str, ...]]] = {
-    "MILL": {5: _MILL, 7: (*_MILL, "", ""), 10: (*_MILL, "", "", "upper_radius", "", "")},
+    "MILL": {5: _MILL, 7: _MILL, 10: (*_MILL, "", "", "upper_radius")},
     "DRILL": {5: _DRILL},
     "TCUTTER": {5: _TCUTTER},
-    "BARREL": {5: _MILL, 7: (*_MILL, "", ""), 10: (*_MILL, "", "", "upper_radius", "", "")},
+    "BARREL": {5: _MILL, 7: _MILL, 10: (*_MILL, "", "", "upper_radius")},
 }
 
 
@@ -72,8 +73,6 @@ def tldata(state: ReaderState, statement: Statement) -> None:
     """Set the tool of the operation."""
     words = statement.words()
     given = numbers("TLDATA", statement.values[len(words) :])
-    if any(number < 0 for number in given[:1]):
-        raise StatementError("TLDATA has a negative diameter", "write the diameter of the tool")
     form = words[0] if words else ""
     layouts = _TLDATA_FIELDS.get(form, {})
     if form in _TLDATA_FIELDS and len(given) not in layouts:
@@ -83,6 +82,10 @@ def tldata(state: ReaderState, statement: Statement) -> None:
         raise StatementError(what, "write TLDATA as NX does")
     sizes = zip(layouts.get(len(given), ()), given, strict=False)
     fields: dict[str, Any] = {field: number for field, number in sizes if field}
+    if len(given) in (7, 10):
+        fields["corner_centre"] = stated_centre(given[0], given[1], *given[5:7])
+    if len(given) == 10:
+        fields["upper_centre"] = None if given[8] == given[9] == 0.0 else given[8:]
     kind = form if form in _TLDATA_FIELDS else "UNKNOWN"
     state.state_once("tool", (form, given))
     state.state_once("diameter of the tool", fields.get("diameter"))

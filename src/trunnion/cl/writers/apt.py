@@ -14,6 +14,7 @@ from trunnion.cl.writers.lengths import INCH
 from trunnion.cl.writers.points import number_text
 from trunnion.cl.writers.writer import UNSETTLED_SYSTEM, ClWriter
 from trunnion.errors import Problem
+from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.arcs import FLAT_ARC
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import (
@@ -52,7 +53,6 @@ _BARE_WORDS: Final = frozenset({("RTRCTO", "AUTO"), ("DWELL", "REV")})
 
 #: A tip flatter than this, degrees from the horizontal, is that of a mill.
 _FLATTEST_DRILL: Final = 1.0
-_NO_CONE: Final = 180.0
 
 
 class AptWriter(ClWriter):
@@ -274,8 +274,4 @@ def _cutter_numbers(tool: Tool) -> list[float]:
     """The numbers of CUTTER: d, r, e, f, a, b, h; none for an unknown tool without sizes."""
     if tool.kind == "UNKNOWN" and not tool.diameter:
         return []
-    d, r = tool.diameter, tool.corner_radius
-    if tool.kind == "DRILL":
-        tip = 0.5 * (_NO_CONE - tool.tip_angle) if tool.tip_angle else 0.0
-        return [d, 0.0, 0.5 * d, 0.0, tip, 0.0, tool.length]
-    return [d, r, 0.5 * d - r, r, tool.tip_angle, tool.taper_angle, tool.length]
+    return list(apt_cutter(tool))

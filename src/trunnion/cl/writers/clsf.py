@@ -135,8 +135,10 @@ def _tldata(tool: Tool) -> list[str]:
     """The statement of the tool; none for an unknown tool."""
     if tool.kind in ("MILL", "BARREL"):
         numbers = [tool.diameter, tool.corner_radius, tool.length, tool.taper_angle, tool.tip_angle]
+        if tool.upper_radius or tool.corner_centre:
+            numbers += tool.corner_centre or (0.0, 0.0)
         if tool.upper_radius:
-            numbers += [0.0, 0.0, tool.upper_radius, 0.0, 0.0]
+            numbers += [tool.upper_radius, *(tool.upper_centre or (0.0, 0.0))]
     elif tool.kind == "DRILL":
         numbers = [tool.diameter, tool.corner_radius, tool.length, tool.tip_angle, tool.flute_length]
     elif tool.kind == "TCUTTER":

@@ -26,6 +26,9 @@ def in_unit(operation: Operation, unit: float) -> Operation:
     def all_of(values: Floats) -> Floats:
         return np.asarray(np.round(values / unit, _DECIMALS), np.float64)
 
+    def pair(centre: tuple[float, float] | None) -> tuple[float, float] | None:
+        return None if centre is None else (one(centre[0]), one(centre[1]))
+
     def scaled(event: Event) -> Event:
         if isinstance(event, From):
             x, y, z = (one(value) for value in event.tip)
@@ -50,6 +53,8 @@ def in_unit(operation: Operation, unit: float) -> Operation:
             upper_radius=one(tool.upper_radius),
             extension=one(tool.extension),
             set_length=one(tool.set_length),
+            corner_centre=pair(tool.corner_centre),
+            upper_centre=pair(tool.upper_centre),
         ),
         frame=replace(frame, origin=(x, y, z)),
         events=tuple(map(scaled, operation.events)),
