@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
+from trunnion.wording import one_line
+
 
 class Severity(StrEnum):
     """Whether a problem stops the work."""
@@ -47,7 +49,7 @@ class Problem:
         """Return ``file:line: severity: what; cure``."""
         place = f"{self.file}:{self.line}" if self.line else self.file
         cure = f"; {self.cure}" if self.cure else ""
-        return f"{place}: {self.severity}: {self.what}{cure}"
+        return one_line(f"{place}: {self.severity}: {self.what}{cure}")
 
 
 def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:

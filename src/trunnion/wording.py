@@ -1,4 +1,27 @@
-"""Parts of sentences that messages of all layers share."""
+"""Parts of sentences that messages of all layers share, and names of any origin in them."""
+
+import re
+from typing import Final
+
+#: Characters that a terminal obeys, that turn the order of a line round, or that no file can hold.
+_UNPRINTABLE: Final = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff\ud800-\udfff]"
+)
+_LINES: Final = re.compile(r"[\t\n]")
+
+
+def printable(text: str) -> str:
+    """Return a text with U+FFFD for each character that is no part of it: it may come from any file or archive.
+
+    >>> printable("hub\\x1b[31m 轮毂")
+    'hub\ufffd[31m 轮毂'
+    """
+    return text if text.isprintable() else _UNPRINTABLE.sub("\ufffd", text)
+
+
+def one_line(text: str) -> str:
+    """Return a text as a part of a line: printable, and with blanks for tabs and line ends."""
+    return text if text.isprintable() else _LINES.sub(" ", printable(text))
 
 
 def counted(count: int, thing: str) -> str:

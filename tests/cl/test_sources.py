@@ -13,6 +13,7 @@ import trunnion
 from tests.support.cl_dialects import WRITERS, Step
 from trunnion.cl import read_cl, read_cl_files, sources
 from trunnion.cl.surface_normals import with_normals
+from trunnion.cli import main
 
 PATH = [
     Step("TOOL", (5.0, 10.0, 5.0)),
@@ -139,6 +140,34 @@ def test_no_damage_ends_in_a_traceback(tmp_path: Path) -> None:
         except trunnion.InputError:
             refused += 1
     assert refused > 100
+
+
+def test_names_in_archives_are_read_and_cannot_act_on_a_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "part.zip"
+    gbk = zipped({"a____.cls": CLSF}).replace(b"a____.cls", b"a" + "中文".encode("gbk") + b".cls")
+    file.write_bytes(gbk)
+    assert read_cl(file).file == f"{file}/a中文.cls"
+    file.write_bytes(zipped({"a\nb\x1b[31m\u202e.cls": CLSF.replace("GOTO", "GOTP", 1)}))
+    assert main(["info", str(file)]) == 0
+    assert main(["post", str(file), "--machine", "yl569", "--output", "-"]) == 2
+    told = "".join(capsys.readouterr())
+    assert f"{file}/a b\ufffd[31m\ufffd.cls:" in told
+    assert "\x1b" not in told
+
+
+def test_names_in_cl_files_cannot_act_on_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, plot = tmp_path / "part.cls", tmp_path / "part.html"
+    evil = "A\x9b31m\u202eB"
+    file.write_text(CLSF.replace("TOOL PATH/OP5", f"TOOL PATH/{evil}"), encoding="utf-8")
+    assert read_cl(file).operations[0].name == evil
+    assert main(["info", str(file), "--plot", str(plot)]) == 0
+    assert main(["info", str(file), "--json"]) == 0
+    told = "".join(capsys.readouterr()) + plot.read_text(encoding="utf-8")
+    assert "A\ufffd31m\ufffdB" in told
+    assert "\x9b" not in told
+    assert "\u202e" not in told
 
 
 def test_a_password_and_two_files_of_one_name_are_refused(tmp_path: Path) -> None:

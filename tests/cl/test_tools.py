@@ -96,8 +96,8 @@ def test_the_centre_of_a_corner_is_kept_and_written(tmp_path: Path, dialect: str
     for written in ("clsf", "catia", "ncl"):
         folder = tmp_path / written
         folder.mkdir()
-        result = trunnion.convert(tmp_path / "part.txt", to_cl=True, dialect=written, output=folder / "again.cls")
-        assert read_cl(result.output).operations[0].tool.corner_centre == (-80.0, 20.0)
+        trunnion.convert(tmp_path / "part.txt", to_cl=True, dialect=written, output=folder / "again.cls")
+        assert read_cl(folder / "again.cls").operations[0].tool.corner_centre == (-80.0, 20.0)
 
 
 def test_a_second_corner_is_kept_and_written_with_its_centre(tmp_path: Path) -> None:

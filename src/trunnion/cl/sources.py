@@ -21,7 +21,9 @@ from pathlib import Path
 from typing import BinaryIO, Final, cast
 
 from trunnion.cl.dialects import recognize_dialect
+from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.wording import one_line
 
 #: A text that is longer than this may be no more than so many times as long as its archive. CL files are some 3 to 25
 #: times as long; what is made to fill the memory, 1000 times and more.
@@ -62,6 +64,9 @@ _HEAD: Final = 1 << 16
 _MOTION: Final = re.compile(rb"^[ \t]*(?:GOTO|GODLTA|TLON)[ \t]*[/,]", re.MULTILINE | re.IGNORECASE)
 
 _CUT_OFF = "it is damaged or cut off: fetch or write it again"
+
+#: The flag of a name in UTF-8 in a ZIP archive.
+_NAMES_IN_UTF8: Final = 1 << 11
 
 #: Ways of packing that are read in a ZIP archive.
 _METHODS: Final = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2})
@@ -179,8 +184,8 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
         raise InputError(Problem(name, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
     _check_infos(name, infos, size)
     sources, left_out = [], []
-    for info in sorted(infos, key=lambda info: _by_numbers(info.filename)):
-        inside = f"{name}/{info.filename}"
+    for info in sorted(infos, key=lambda info: _by_numbers(_member_name(info))):
+        inside = f"{name}/{one_line(_member_name(info))}"
         opened = _member_opener(inside, open_packed, info.filename, size)
         why = _why_no_cl_file(inside, info, opened)
         if why:
@@ -201,15 +206,15 @@ def _check_infos(name: str, infos: Iterable[zipfile.ZipInfo], size: int) -> None
         raise InputError(
             Problem(name, 0, f"has {len(files)} files, more than {MAX_FILES}", "post them in several jobs")
         )
-    names = [info.filename for info in files]
+    names = [_member_name(info) for info in files]
     if twice := next((each for each in names if names.count(each) > 1), ""):
         raise InputError(Problem(name, 0, f"has two files named {twice}", "rename one of them"))
     for info in files:
         if info.flag_bits & 1:
-            what, cure = f"{info.filename} in it has a password", "pack it without a password"
+            what, cure = f"{_member_name(info)} in it has a password", "pack it without a password"
             raise InputError(Problem(name, 0, what, cure))
         if info.compress_type not in _METHODS:
-            what = f"{info.filename} in it is packed in a way that is not read"
+            what = f"{_member_name(info)} in it is packed in a way that is not read"
             raise InputError(Problem(name, 0, what, "pack it as other ZIP archives (deflate)"))
     _check_size(name, sum(info.file_size for info in files), size)
 
@@ -223,6 +228,17 @@ def _check_size(name: str, unpacked: int, packed: int) -> None:
     else:
         return
     raise InputError(Problem(name, 0, what, "give the CL file itself"))
+
+
+def _member_name(info: zipfile.ZipInfo) -> str:
+    """The name of a file in an archive, also where it is in UTF-8 or GBK and the archive does not say so."""
+    if info.flag_bits & _NAMES_IN_UTF8 or info.filename.isascii():
+        return info.filename
+    raw = info.filename.encode("cp437")
+    detector = EncodingDetector()
+    detector.add(raw)
+    encoding = detector.encoding()
+    return info.filename if encoding == "latin-1" else raw.decode(encoding, "replace")
 
 
 def _by_numbers(name: str) -> list[tuple[int, int, str]]:

@@ -2,7 +2,6 @@
 
 import argparse
 import shlex
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
@@ -10,6 +9,7 @@ from typing import Final
 from trunnion.api.converting import convert
 from trunnion.api.reading import load_machine
 from trunnion.cli.cl_files import cl_inputs, result_stem
+from trunnion.cli.results import tell
 from trunnion.cli.terminal import ConversionTerminal, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.wording import counted
@@ -40,11 +40,11 @@ def run(arguments: argparse.Namespace) -> int:
         observer=ConversionTerminal(),
     )
     if arguments.to_cl and converted.settings:
-        print(_post_hint(target, arguments.machine, converted.settings), file=sys.stderr)
+        tell(_post_hint(target, arguments.machine, converted.settings))
     if target != "-":
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
-        print(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}", file=sys.stderr)
+        tell(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}")
     return 0 if converted.passed else 1
 
 

@@ -4,6 +4,7 @@ import argparse
 
 from trunnion.api.comparing import diff
 from trunnion.cli.results import print_result
+from trunnion.wording import one_line
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -19,5 +20,5 @@ def run(arguments: argparse.Namespace) -> int:
         tolerance=arguments.tolerance,
         path=arguments.path,
     )
-    print_result(*found.lines())
+    print_result(*map(one_line, found.lines()))
     return 0 if found.same else 1

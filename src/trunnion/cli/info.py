@@ -12,7 +12,7 @@ from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.machines.motion_time import format_duration
 from trunnion.model.toolpath import Frame
-from trunnion.wording import counted
+from trunnion.wording import counted, one_line
 
 _INDENT: Final = "  "
 
@@ -41,7 +41,7 @@ def info(arguments: argparse.Namespace) -> int:
     terminal.problems(found.remarks)
     if arguments.plot is not None:
         write_plot(found, arguments.plot)
-    print_result(*([as_json(info_data(found))] if arguments.json else info_lines(found)))
+    print_result(*([as_json(info_data(found))] if arguments.json else map(one_line, info_lines(found))))
     return 0
 
 

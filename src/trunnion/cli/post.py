@@ -1,7 +1,6 @@
 """``trunnion post``: CL files in, one proven NC program out (or one each, into a folder)."""
 
 import argparse
-import sys
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
@@ -11,6 +10,7 @@ from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.reading import load_machine
 from trunnion.cli.cl_files import named_files, result_stem
+from trunnion.cli.results import tell
 from trunnion.cli.terminal import Terminal, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
@@ -59,7 +59,7 @@ def _with_dialects(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:
     for toolpaths in files:
         for toolpath in toolpaths:
             if toolpath.dialect != "clsf" or len(toolpaths) > 1:
-                print(f"{toolpath.file}: read as {toolpath.recognized}", file=sys.stderr)
+                tell(f"{toolpath.file}: read as {toolpath.recognized}")
         yield toolpaths
 
 
@@ -69,9 +69,9 @@ def _print_summary(target: str, result: PostResult) -> None:
         return
     rows = sum(len(motion.operation.moves) for motion in result.motions)
     operations = sum(motion.starts_operation for motion in result.motions)
-    print(f"{target}: {counted(rows, 'point')}, {counted(operations, 'operation')}", file=sys.stderr)
+    tell(f"{target}: {counted(rows, 'point')}, {counted(operations, 'operation')}")
     for subprogram in result.subprograms:
-        print(f"{subprogram}: a subprogram of {result.output.name}", file=sys.stderr)
+        tell(f"{subprogram}: a subprogram of {result.output.name}")
 
 
 def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[str, list[str]]:

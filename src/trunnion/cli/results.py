@@ -4,10 +4,17 @@ import json
 import sys
 
 from trunnion.errors import InputError, Problem
+from trunnion.wording import one_line, printable
+
+
+def tell(*lines: str) -> None:
+    """Print lines to stderr, each as one line: names in them may come from any file."""
+    for line in lines:
+        print(one_line(line), file=sys.stderr)
 
 
 def print_result(*lines: str, end: str = "\n") -> None:
-    """Print lines to stdout.
+    """Print lines to stdout, without characters that a terminal obeys.
 
     Raises
     ------
@@ -17,7 +24,7 @@ def print_result(*lines: str, end: str = "\n") -> None:
         If its reader has gone away.
     """
     try:
-        print(*lines, sep="\n", end=end)
+        print(*map(printable, lines), sep="\n", end=end)
         sys.stdout.flush()
     except BrokenPipeError:
         raise

@@ -9,6 +9,7 @@ from typing import BinaryIO
 
 from trunnion.api.observer import Observer
 from trunnion.cli.progress import progress
+from trunnion.cli.results import tell
 from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.errors import InputError, Problem
 from trunnion.model.motion import Plan
@@ -32,22 +33,21 @@ class Terminal(Observer):
     def problems(self, problems: Sequence[Problem]) -> None:
         """Print problems, one a line."""
         for problem in problems:
-            print(problem_line(problem), file=sys.stderr)
+            tell(problem_line(problem))
 
     def planned(self, plan: Plan) -> None:
         """Print the decisions of the planner."""
         self._explained = self._recorded and bool(plan.decisions)
         if self._explain:
-            print(*(in_command_words(str(decision)) for decision in plan.decisions), sep="\n", file=sys.stderr)
+            tell(*(in_command_words(str(decision)) for decision in plan.decisions))
 
     def verified(self, verification: Verification) -> None:
         """Print one line a check, the places of failed checks, and times."""
         places = place_lines(verification, failed_only=True)
-        for line in (*check_lines(verification), *places, *time_lines(verification)):
-            print(line, file=sys.stderr)
+        tell(*check_lines(verification), *places, *time_lines(verification))
         if not self._explained and _exceeds_rotary_speed(verification):
             what = "a rotary axis cannot follow the feed everywhere; --explain says where, and what helps"
-            print(f"{verification.program}: {what}", file=sys.stderr)
+            tell(f"{verification.program}: {what}")
 
     def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
         """Show a progress bar."""
@@ -66,7 +66,7 @@ class ConversionTerminal(Terminal):
         most = len(problems) if self._is_planned else _MOST_PRINTED
         super().problems(problems[:most])
         if len(problems) > most:
-            print(f"and {len(problems) - most} more", file=sys.stderr)
+            tell(f"and {len(problems) - most} more")
 
     def planned(self, plan: Plan) -> None:
         """From here on warnings are about the plan."""

@@ -1,7 +1,6 @@
 """``trunnion verify``: an NC program, read back by an independent reader, run, and compared with its CL files."""
 
 import argparse
-import sys
 from typing import Final
 
 from trunnion.api.input_files import definition_files
@@ -9,12 +8,12 @@ from trunnion.api.reading import load_machine
 from trunnion.api.reports import check_report, write_report
 from trunnion.api.verifying import verify
 from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import print_result
+from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
-from trunnion.wording import counted
+from trunnion.wording import counted, one_line
 
 #: Fewer errors do not suggest that the program is for another control.
 _MANY_ERRORS: Final = 5
@@ -46,8 +45,9 @@ def run(arguments: argparse.Namespace) -> int:
         observer=Terminal(),
     )
     if hint := _control_hint(verification):
-        print(hint, file=sys.stderr)
-    print_result(*check_lines(verification), *place_lines(verification), *time_lines(verification))
+        tell(hint)
+    lines = (*check_lines(verification), *place_lines(verification), *time_lines(verification))
+    print_result(*map(one_line, lines))
     if arguments.report is not None:
         write_report(verification, arguments.report)
     return 0 if verification.passed else 1

@@ -19,6 +19,7 @@ from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
 from trunnion.planning.holes.cycles import HoleCycleError, cycle_from_event
 from trunnion.planning.holes.operations import hole_rows
 from trunnion.planning.linearization.arc_chords import lines_for_arcs
+from trunnion.reporting.text import clean
 
 #: Points that a page can hold and a browser can turn.
 MAX_POINTS: Final = 1_000_000
@@ -74,7 +75,7 @@ def collect_paths(
         drawn = [(details, operation, *_thinned(points, rapid, step)) for details, operation, points, rapid in drawn]
         passes += 1
     paths = [
-        PathSeries(operation.name, details, points.astype(np.float32), rapid.astype(np.int32))
+        PathSeries(clean(operation.name), details, points.astype(np.float32), rapid.astype(np.int32))
         for details, operation, points, rapid in drawn
     ]
     return paths, tolerance

@@ -4,19 +4,17 @@ Escaping is left to each form.
 """
 
 import math
-import re
 
-#: Control characters except tab and line feed: not every form can hold them.
-_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff]")
+from trunnion.wording import printable
 
 
 def clean(text: str) -> str:
-    """Return the text with U+FFFD for each character that UTF-8, HTML or JSON cannot hold.
+    """Return the text with U+FFFD for each character that is no part of it, or that UTF-8, HTML or JSON cannot hold.
 
     >>> clean("hub\\x00 \\udcff 轮毂")
     'hub\ufffd \ufffd 轮毂'
     """
-    return _CONTROL.sub("\ufffd", text.encode("utf-16", "surrogatepass").decode("utf-16", "replace"))
+    return printable(text.encode("utf-16", "surrogatepass").decode("utf-16", "replace"))
 
 
 def finite_or_none(value: float | None) -> float | None:

@@ -92,6 +92,6 @@ def _differences(one: Tool, two: Tool) -> Iterator[str]:
         # Angles of different forms are different angles.
         if is_stated and abs(a - b) > tolerance and (one.kind == two.kind or not size.endswith("angle")):
             yield f"{size.replace('_', ' ')} {a:g} and {b:g}"
-    centres = one.corner_centre, two.corner_centre
-    if centres[0] and centres[1] and math.dist(*centres) > _SIZES["corner_radius"]:
-        yield f"corner centre {centres[0][0]:g},{centres[0][1]:g} and {centres[1][0]:g},{centres[1][1]:g}"
+    here, there = one.corner_centre, two.corner_centre
+    if here and there and math.dist(here, there) > _SIZES["corner_radius"]:
+        yield f"corner centre {here[0]:g},{here[1]:g} and {there[0]:g},{there[1]:g}"
