@@ -1,12 +1,10 @@
 """Tools from their sizes and from CL files: what they are, and what is refused with a cure."""
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from trunnion.errors import InputError
-from trunnion.model.toolpath import Tool
 from trunnion.simulation.tool_pieces import revolved_pieces
 from trunnion.simulation.tool_shapes import (
     BodyPiece,
@@ -18,7 +16,6 @@ from trunnion.simulation.tool_shapes import (
     ToolSizes,
     ball,
     bull,
-    cl_tool_shape,
     flat,
     tool_shape,
 )
@@ -134,62 +131,3 @@ def test_impossible_sizes_are_refused_with_a_cure(name: str) -> None:
 
 def _without_kind(sizes: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in sizes.items() if name != "kind"}
-
-
-MILL = Tool("MILL", "R5", 10.0, 1.0, 70.0)
-
-
-@pytest.mark.parametrize(
-    ("tool", "kind"),
-    [
-        (replace(MILL, corner_radius=0.0), flat(10.0, length=70.0)),
-        (replace(MILL, corner_radius=5.0), ball(10.0, length=70.0)),
-        (replace(MILL, corner_radius=5.0001), ball(10.0, length=70.0)),
-        (replace(MILL, flute_length=20.0, extension=50.0), bull(10.0, 1.0, length=50.0, flute_length=20.0)),
-        (
-            replace(MILL, taper_angle=3.0),
-            tool_shape(ToolSizes(ToolKind.TAPER, 10.0, 1.0, side_angle=3.0, length=70.0)),
-        ),
-        (
-            Tool("DRILL", "", 8.0, 0.0, 50.0, tip_angle=118.0, flute_length=35.0),
-            tool_shape(ToolSizes(ToolKind.DRILL, 8.0, tip_angle=118.0, length=50.0, flute_length=35.0)),
-        ),
-        (
-            replace(MILL, tip_angle=10.0),
-            tool_shape(ToolSizes(ToolKind.DRILL, 10.0, 1.0, tip_angle=160.0, length=70.0)),
-        ),
-    ],
-    ids=["flat", "ball", "rounded ball", "bull", "taper", "drill", "conical bottom"],
-)
-def test_a_cutter_of_a_cl_file_is_a_body(tool: Tool, kind: ToolShape) -> None:
-    shape = cl_tool_shape(tool, 3, file="part.cls", line=7)
-    assert (shape.number, shape.name) == (3, tool.name)
-    assert (shape.sections, shape.flute_length, shape.remarks) == (kind.sections, kind.flute_length, kind.remarks)
-
-
-def test_the_length_of_the_tool_change_is_the_gauge_length() -> None:
-    assert cl_tool_shape(replace(MILL, set_length=180.0), 3, file="part.cls", line=7).length == 180.0
-
-
-@pytest.mark.parametrize(
-    ("tool", "dialect", "said"),
-    [
-        (Tool(), "clsf", "tool 3 is known by number or name only"),
-        (Tool("MILL"), "clsf", "tool 3 is known by number or name only"),
-        (Tool("TCUTTER", "", 20.0, 1.0, 60.0), "clsf", "is a TCUTTER, whose numbers"),
-        (Tool("BARREL", "", 20.0, 1.0, 60.0), "clsf", "is a BARREL, whose numbers"),
-        (replace(MILL, upper_radius=1.0), "clsf", "upper corner"),
-        (replace(MILL, taper_angle=3.0, tip_angle=3.0), "clsf", "tapered and has a conical bottom"),
-        (replace(MILL, taper_angle=3.0, corner_radius=5.0), "clsf", "tapered ball mill"),
-        (Tool("MILL", "", 3.0), "ncl", "Creo does not write the form of its end"),
-        (replace(MILL, corner_radius=6.0), "clsf", "its corner radius is 6, more than"),
-        (replace(MILL, taper_angle=-3.0), "clsf", "its side angle is -3"),
-        (Tool("DRILL", "", 8.0), "clsf", "its tip angle is not stated"),
-    ],
-    ids=lambda value: value if isinstance(value, str) else "",
-)
-def test_a_form_that_is_not_settled_is_refused(tool: Tool, dialect: str, said: str) -> None:
-    with pytest.raises(InputError, match=r"part\.cls:7: error: tool 3") as raised:
-        cl_tool_shape(tool, 3, file="part.cls", line=7, dialect=dialect)
-    assert said in str(raised.value)
-    assert "state the tool itself" in str(raised.value)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
 from trunnion.simulation.tool_pieces import RevolvedPieces
-from trunnion.simulation.tool_shapes import ToolKind, ToolSizes, tool_faults
+from trunnion.simulation.tool_shapes import ToolKind, ToolSizes, shape_faults
 
 
 def pieces_volume(pieces: RevolvedPieces) -> float:
@@ -121,5 +121,5 @@ def cutter_sizes(draw: st.DrawFn, kind: ToolKind) -> ToolSizes:
         sizes["widest_height"] = sizes["flute_length"] * draw(st.floats(0.1, 1.2))
         sizes["corner_radius"] = 0.25 * diameter * draw(st.sampled_from([0.0, 0.2, 0.9]))
     found = ToolSizes(kind, diameter, **sizes)
-    assume(not tool_faults(found))
+    assume(not shape_faults(found))
     return found

@@ -6,8 +6,7 @@ Frame of the tool: origin at the tip, z up the tool axis, from the tip to the ho
 from itertools import accumulate, pairwise
 from typing import Final, TypedDict, Unpack
 
-from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.model.toolpath import Tool
+from trunnion.errors import InputError, argument_problem
 from trunnion.simulation.tool_outlines import cutter_outline, side_slope
 from trunnion.simulation.tool_profile import (
     Element,
@@ -65,7 +64,7 @@ def tool_shape(sizes: ToolSizes, number: int | None = None, name: str = "", desc
     InputError
         If sizes are impossible, with all of them.
     """
-    if faults := tool_faults(sizes):
+    if faults := shape_faults(sizes):
         raise InputError([argument_problem(size, what, cure) for size, what, cure in faults])
     outline = cutter_outline(sizes)
     length, flute_length, remarks = _lengths(sizes, outline[-1].end[1])
@@ -80,7 +79,7 @@ def tool_shape(sizes: ToolSizes, number: int | None = None, name: str = "", desc
     return ToolShape(tuple(sections), name, number, gauge_length, flute_length, description, remarks)
 
 
-def tool_faults(sizes: ToolSizes) -> tuple[SizeFault, ...]:
+def shape_faults(sizes: ToolSizes) -> tuple[SizeFault, ...]:
     """Return everything that is impossible about the sizes of a tool; ``tool_shape`` takes those without a fault."""
     if faults := size_faults(sizes):
         return faults
@@ -118,7 +117,7 @@ def _shank(sizes: ToolSizes, start: Point, length: float) -> tuple[Element, ...]
     shank = 0.5 * sizes.shank_diameter or (0.5 * sizes.shank[-1].upper_diameter if sizes.shank else start[0])
     neck = 0.5 * sizes.neck_diameter or shank
     neck_end = max(sizes.neck_length or (length if sizes.neck_diameter and not sizes.shank else 0.0), start[1])
-    corners = [start, (neck, start[1]), (neck, neck_end)]
+    corners = [start, (neck, start[1]), (neck, neck_end)] if neck_end > start[1] else [start]
     for piece in sizes.shank:
         low, high = 0.5 * piece.lower_diameter, 0.5 * piece.upper_diameter
         corners += [(low, corners[-1][1]), (high, corners[-1][1] + piece.height)]
@@ -141,72 +140,6 @@ def _holder(sizes: ToolSizes, length: float) -> list[Section]:
     ]
 
 
-#: A corner radius that is so near to half the diameter, as a part of it, makes a ball.
-_BALL: Final = 1.0 - ROUNDING
-
-_SAY_IT: Final = "state the tool itself: its kind and its sizes"
-
-
-def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, dialect: str = "clsf") -> ToolShape:
-    """Return the body of a cutter that a CL file describes.
-
-    number      by which programs call it, if they do
-    file, line  where it is described, for messages
-    dialect     that of the CL file, ``Toolpath.dialect``
-
-    Raises
-    ------
-    InputError
-        If the CL file does not say all of its form, or says it in a way whose meaning is not settled.
-    """
-    called = f"tool {number}" if number is not None else f"tool {tool.name}" if tool.name else "its tool"
-    if unsettled := _unsettled(tool, dialect):
-        raise InputError(Problem(file, line, f"{called} {unsettled}", _SAY_IT))
-    sizes = _cl_sizes(tool)
-    if faults := tool_faults(sizes):
-        whats = ((f"{called}: its {size.replace('_', ' ')} {what}", cure) for size, what, cure in faults)
-        raise InputError([Problem(file, line, what, f"{cure}, or {_SAY_IT}") for what, cure in whats])
-    return tool_shape(sizes, number, tool.name, tool.holder)
-
-
-def _unsettled(tool: Tool, dialect: str) -> str:
-    """Why nothing can be said of the form of a cutter; empty if it can."""
-    if tool.kind == "UNKNOWN" or tool.diameter == 0.0:
-        return "is known by number or name only: the CL file does not say its form"
-    if tool.kind not in ("MILL", "DRILL"):
-        return f"is a {tool.kind}, whose numbers in a CL file have a meaning that is not confirmed"
-    if tool.upper_radius:
-        return "is a mill with an upper corner, whose numbers in a CL file have a meaning that is not confirmed"
-    if tool.taper_angle and tool.tip_angle:
-        return "is tapered and has a conical bottom, which is no kind that is known here"
-    if tool.taper_angle and tool.corner_radius >= 0.5 * tool.diameter * _BALL:
-        return "is a tapered ball mill, of which it is not settled where its diameter counts"
-    if dialect == "ncl" and not tool.corner_radius and not tool.length:
-        return f"has a diameter of {tool.diameter:g} mm, and Creo does not write the form of its end"
-    return ""
-
-
-def _cl_sizes(tool: Tool) -> ToolSizes:
-    """The sizes of a cutter whose form is settled."""
-    half, corner = 0.5 * tool.diameter, tool.corner_radius
-    kind, side_angle, tip_angle = ToolKind.FLAT, tool.taper_angle, 0.0
-    if tool.kind == "DRILL" or tool.tip_angle:
-        kind = ToolKind.DRILL
-        tip_angle = tool.tip_angle if tool.kind == "DRILL" else 180.0 - 2.0 * tool.tip_angle
-    elif side_angle:
-        kind = ToolKind.TAPER
-    elif half * _BALL <= corner <= half * (1.0 + ROUNDING):
-        kind, corner = ToolKind.BALL, 0.0
-    elif corner:
-        kind = ToolKind.BULL
-    top = tool.extension or tool.length
-    return ToolSizes(
-        kind, tool.diameter, corner, side_angle=side_angle, tip_angle=tip_angle,
-        flute_length=tool.flute_length, length=top,
-        gauge_length=tool.set_length if tool.set_length >= (top or tool.flute_length) else 0.0,
-    )  # fmt: skip
-
-
 __all__ = [
     "BodyPiece",
     "BodySizes",
@@ -219,8 +152,7 @@ __all__ = [
     "ToolSizes",
     "ball",
     "bull",
-    "cl_tool_shape",
     "flat",
-    "tool_faults",
+    "shape_faults",
     "tool_shape",
 ]

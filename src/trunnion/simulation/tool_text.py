@@ -14,7 +14,7 @@ from typing import Any, Final
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.simulation.tool_profile import ToolShape
-from trunnion.simulation.tool_shapes import tool_faults, tool_shape
+from trunnion.simulation.tool_shapes import shape_faults, tool_shape
 from trunnion.simulation.tool_sizes import OF_BODY, OF_KIND, BodyPiece, ToolKind, ToolSizes
 
 #: Longer texts are no tool.
@@ -90,7 +90,7 @@ def parse_tool(text: str, diameters: Mapping[int, float] | None = None) -> ToolS
     except _TextError as error:
         what, cure = error.args
         raise InputError(_problem(shown, what, cure)) from None
-    if faults := tool_faults(sizes):
+    if faults := shape_faults(sizes):
         named = ((_NAME_OF.get(size, size), what, cure) for size, what, cure in faults)
         raise InputError([_problem(shown, f"{name} {what}", cure) for name, what, cure in named])
     if _TOOL_NUMBER.fullmatch(called):

@@ -14,10 +14,19 @@ from trunnion.errors import InputError, Problem
 from trunnion.simulation.tool_library.json_text import JsonObject, finite, short_text
 from trunnion.simulation.tool_library.library import ToolLibrary, UnusableTool
 from trunnion.simulation.tool_profile import ToolShape
-from trunnion.simulation.tool_shapes import tool_faults, tool_shape
-from trunnion.simulation.tool_sizes import MOST_PIECES, BodyPiece, ToolKind, ToolSizes, ball_height
+from trunnion.simulation.tool_shapes import shape_faults, tool_shape
+from trunnion.simulation.tool_sizes import (
+    ANGLE_LIMITS,
+    MOST_PIECES,
+    MOST_TEETH,
+    BodyPiece,
+    ToolKind,
+    ToolSizes,
+    ball_height,
+    groove_depth,
+)
 
-_Form: TypeAlias = Callable[[JsonObject], ToolSizes]
+_Form: TypeAlias = Callable[[JsonObject, JsonObject], ToolSizes]
 
 _UNITS: Final[Mapping[str, float]] = {"millimeters": 1.0, "inches": 25.4}
 
@@ -64,7 +73,7 @@ def _read_tool(file: str, place: str, tool: JsonObject) -> ToolShape | UnusableT
     name = short_text(tool.values.get("description")) or short_text(tool.values.get("product-id"))
     found = _sizes(tool)
     if not tool.faults and found:
-        faults = tool_faults(found)
+        faults = shape_faults(found)
         tool.faults.extend(f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in faults)
     if tool.faults or not found:
         shown = " ".join(filter(None, ("tool", "" if called is None else str(called), name)))
@@ -86,7 +95,7 @@ def _sizes(tool: JsonObject) -> ToolSizes | None:
         tool.faults.append(f'its unit is {unit}, not "millimeters" or "inches"' if unit else "it has no unit")
         return None
     geometry = tool.child("geometry", _UNITS[unit])
-    found = _with_body(_FORMS[kind](geometry), tool, geometry)
+    found = _with_body(_FORMS[kind](tool, geometry), tool, geometry)
     if found.kind is ToolKind.LOLLIPOP and 0.0 < found.neck_diameter < found.diameter:
         found = replace(found, flute_length=min(found.flute_length, ball_height(found)))
     return found
@@ -95,32 +104,62 @@ def _sizes(tool: JsonObject) -> ToolSizes | None:
 def _with_body(form: ToolSizes, tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     """A cutter with what stands above it."""
     length = geometry.length("LB")
-    holder_unit = short_text(tool.child("holder").values.get("unit"))
-    if holder_unit and holder_unit not in _UNITS:
-        tool.faults.append(f'its holder has the unit {holder_unit}, not "millimeters" or "inches"')
-    holder = tool.child("holder", _UNITS.get(holder_unit, geometry.scale))
-    pieces = _pieces(holder)
+    pieces, gauge = _holder(tool, geometry)
     if not length:
         length = geometry.length("OAL")
         if pieces:
             geometry.faults.append("geometry.LB is missing: nothing says where its holder begins")
-    flute_length = min(geometry.length("LCF"), length or math.inf)
+    flute_length = form.flute_length or min(geometry.length("LCF"), length or math.inf)
     shank = _pieces(tool.child("shaft", geometry.scale))
-    neck_length = min(geometry.length("shoulder-length"), length)
-    neck_diameter = geometry.length("shoulder-diameter") or (0.0 if form.kind is ToolKind.TAPER else form.diameter)
-    if form.kind in (ToolKind.LOLLIPOP, ToolKind.T_SLOT):
-        neck_length = max(neck_length, flute_length)
-    elif neck_length < flute_length or not neck_diameter:
-        neck_length = neck_diameter = 0.0
-    gauge = holder.length("gaugeLength")
-    if pieces and gauge:
-        pieces = _below(pieces, gauge)
-    return replace(
+    found = replace(
         form, flute_length=flute_length, length=length, shank=shank, holder=pieces,
         shank_diameter=0.0 if shank else geometry.length("SFDM"),
-        neck_length=neck_length, neck_diameter=neck_diameter,
         gauge_length=length + gauge if pieces and gauge else 0.0,
     )  # fmt: skip
+    return _with_shoulder(found, geometry)
+
+
+def _with_shoulder(found: ToolSizes, geometry: JsonObject) -> ToolSizes:
+    """A tool with its shoulder, which goes from the cutter to the shank."""
+    diameter = geometry.length("shoulder-diameter") or (0.0 if found.kind is ToolKind.TAPER else found.diameter)
+    top = min(geometry.length("shoulder-length"), found.length)
+    if found.kind is ToolKind.THREAD_MILL:
+        # Below LCF it is as thick as the grooves.
+        root, flutes = found.diameter - 2.0 * groove_depth(found) if found.pitch else 0.0, geometry.length("LCF")
+        return _with_pieces(found, [(root, flutes - found.flute_length), (diameter, top - flutes)])
+    if found.kind is ToolKind.CHAMFER and 0.0 < diameter < found.diameter and found.side_angle:
+        return _with_return_flank(found, diameter, top)
+    if found.kind in (ToolKind.LOLLIPOP, ToolKind.T_SLOT):
+        return replace(found, neck_diameter=diameter, neck_length=max(top, found.flute_length))
+    if top < found.flute_length or not diameter:
+        return found
+    return replace(found, neck_diameter=diameter, neck_length=top)
+
+
+def _with_return_flank(found: ToolSizes, neck: float, top: float) -> ToolSizes:
+    """A chamfer mill on a neck: above its cone it narrows as it widened, whatever LCF says."""
+    slope = math.tan(math.radians(found.side_angle))
+    peak = 0.5 * max(found.diameter - found.tip_diameter, 0.0) / slope
+    back = 0.5 * (found.diameter - neck) / slope
+    flank = BodyPiece(found.diameter, neck, back)
+    pieces = (flank, BodyPiece(neck, neck, top - peak - back)) if top > peak + back else (flank,)
+    return replace(found, flute_length=peak, shank=pieces + found.shank)
+
+
+def _with_pieces(found: ToolSizes, cylinders: list[tuple[float, float]]) -> ToolSizes:
+    """A tool with cylinders below its shank: diameters and heights; those of no height are none."""
+    pieces = tuple(BodyPiece(diameter, diameter, height) for diameter, height in cylinders if height > 0.0)
+    return replace(found, shank=pieces + found.shank)
+
+
+def _holder(tool: JsonObject, geometry: JsonObject) -> tuple[tuple[BodyPiece, ...], float]:
+    """The pieces of a holder up to the gauge point, and how far that is above its lower end; 0 if nothing says it."""
+    unit = short_text(tool.child("holder").values.get("unit"))
+    if unit and unit not in _UNITS:
+        tool.faults.append(f'its holder has the unit {unit}, not "millimeters" or "inches"')
+    holder = tool.child("holder", _UNITS.get(unit, geometry.scale))
+    pieces, gauge = _pieces(holder), holder.length("gaugeLength")
+    return (_below(pieces, gauge) if gauge else pieces), gauge
 
 
 def _pieces(owner: JsonObject) -> tuple[BodyPiece, ...]:
@@ -151,65 +190,93 @@ def _refuse(geometry: JsonObject, key: str, why: str) -> None:
         geometry.faults.append(f"{geometry.path}.{key} is {str(geometry.values[key])[:40]}: {why}")
 
 
-def _flat(geometry: JsonObject) -> ToolSizes:
+def _flat(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     _refuse(geometry, "RE", "a flat end mill has no corner radius")
     return ToolSizes(ToolKind.FLAT, geometry.length("DC"))
 
 
-def _ball(geometry: JsonObject) -> ToolSizes:
+def _ball(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     diameter, radius = geometry.length("DC"), geometry.length("RE")
     if radius and abs(radius - 0.5 * diameter) > _SAME * diameter:
         _refuse(geometry, "RE", f"half the diameter is {0.5 * diameter / geometry.scale:g}")
     return ToolSizes(ToolKind.BALL, diameter)
 
 
-def _bull(geometry: JsonObject) -> ToolSizes:
-    return ToolSizes(ToolKind.BULL, geometry.length("DC"), geometry.length("RE"))
-
-
-def _face(geometry: JsonObject) -> ToolSizes:
-    _refuse(geometry, "TA", "where the diameter of a tapered face mill counts is not confirmed")
+def _bull(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     radius = geometry.length("RE")
     return ToolSizes(ToolKind.BULL if radius else ToolKind.FLAT, geometry.length("DC"), radius)
 
 
-def _taper(geometry: JsonObject) -> ToolSizes:
-    diameter, radius = geometry.length("DC"), geometry.length("RE")
-    if diameter and radius >= 0.5 * diameter * (1.0 - _SAME):
-        geometry.faults.append("it is a tapered ball mill, of which it is not confirmed where its diameter counts")
-    return ToolSizes(ToolKind.TAPER, diameter, radius, side_angle=geometry.angle("TA"))
+def _face(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """A straight one is a bull nose; an upper radius means nothing without an angle."""
+    _refuse(geometry, "TA", "a face mill with an angle is not read")
+    return _bull(tool, geometry)
 
 
-def _chamfer(geometry: JsonObject) -> ToolSizes:
+def _taper(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """DC is where side and bottom would meet, also where a ball stands there."""
+    diameter, radius, angle = geometry.length("DC"), geometry.length("RE"), geometry.angle("TA")
+    form = short_text(tool.values.get("tapered-type"))
+    if form not in ("tapered_bull_nose", "tapered_ball") and radius:
+        geometry.faults.append(f"its tapered-type is {form or 'missing'}, not tapered_bull_nose or tapered_ball")
+    if not angle:
+        return _bull(tool, geometry)
+    if form != "tapered_ball" or angle >= ANGLE_LIMITS["side_angle"]:
+        return ToolSizes(ToolKind.TAPER, diameter, radius, side_angle=angle)
+    b = math.radians(angle)
+    meeting = 2.0 * radius * (1.0 - math.sin(b)) / math.cos(b)
+    if abs(meeting - diameter) > _SAME * diameter:
+        shown = f"{meeting / geometry.scale:.6g}"
+        _refuse(geometry, "DC", f"a ball of this RE with this TA has {shown} where side and bottom would meet")
+    return ToolSizes(ToolKind.TAPER_BALL, 2.0 * radius, side_angle=angle)
+
+
+def _chamfer(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     _refuse(geometry, "RE", "a rounded tip of a chamfer mill is not read")
     tip = geometry.length("tip-diameter")
     return ToolSizes(ToolKind.CHAMFER, geometry.length("DC"), tip_diameter=tip, side_angle=geometry.angle("TA"))
 
 
-def _countersink(geometry: JsonObject) -> ToolSizes:
+def _countersink(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     tip, angle = geometry.length("tip-diameter"), 0.5 * geometry.angle("SIG")
     return ToolSizes(ToolKind.CHAMFER, geometry.length("DC"), tip_diameter=tip, side_angle=angle)
 
 
-def _drill(geometry: JsonObject) -> ToolSizes:
+def _drill(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     _refuse(geometry, "tip-diameter", "a drill ends in a point")
     angle = geometry.angle("SIG")
-    if angle == 180.0:
+    if angle == ANGLE_LIMITS["tip_angle"]:
         return ToolSizes(ToolKind.FLAT, geometry.length("DC"))
     return ToolSizes(ToolKind.DRILL, geometry.length("DC"), tip_angle=angle)
 
 
-def _cylinder(geometry: JsonObject) -> ToolSizes:
-    return _drill(geometry) if geometry.angle("SIG") else ToolSizes(ToolKind.FLAT, geometry.length("DC"))
+def _cylinder(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    return _drill(tool, geometry) if geometry.angle("SIG") else ToolSizes(ToolKind.FLAT, geometry.length("DC"))
 
 
-def _lollipop(geometry: JsonObject) -> ToolSizes:
+def _lollipop(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     return ToolSizes(ToolKind.LOLLIPOP, geometry.length("DC"))
 
 
-def _slot(geometry: JsonObject) -> ToolSizes:
-    _refuse(geometry, "RE", "which corners of a slot mill are round is not confirmed")
-    return ToolSizes(ToolKind.T_SLOT, geometry.length("DC"))
+def _slot(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """Both corners are round; a head lower than they are is as high."""
+    radius = geometry.length("RE")
+    height = max(geometry.length("LCF"), 2.0 * radius)
+    return ToolSizes(ToolKind.T_SLOT, geometry.length("DC"), radius, radius, flute_length=height)
+
+
+def _thread_mill(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """Teeth begin at the tip, as many as NT says and LCF holds."""
+    if geometry.values.get("thread-tip-type") != "point":
+        geometry.faults.append("the crest of its teeth is not a point, which is not read")
+    pitch, angle = geometry.length("TP"), geometry.angle("thread-profile-angle")
+    teeth = geometry.number("NT", MOST_TEETH)
+    if pitch:
+        teeth = min(teeth, geometry.length("LCF") / pitch + _SAME)
+    return ToolSizes(
+        ToolKind.THREAD_MILL, geometry.length("DC"), pitch=pitch, thread_angle=angle,
+        flute_length=math.floor(teeth) * pitch,
+    )  # fmt: skip
 
 
 _FORMS: Final[Mapping[str, _Form]] = {
@@ -229,6 +296,7 @@ _FORMS: Final[Mapping[str, _Form]] = {
     "tap left hand": _cylinder,
     "lollipop mill": _lollipop,
     "slot mill": _slot,
+    "thread mill": _thread_mill,
 }
 
 #: Types that are no cylinders, but cut one nearly.

@@ -9,8 +9,8 @@ from typing import Any, Final
 from trunnion.errors import Problem
 from trunnion.simulation.tool_library.json_text import finite, short_text
 from trunnion.simulation.tool_library.library import ToolLibrary, UnusableTool
-from trunnion.simulation.tool_shapes import tool_faults, tool_shape
-from trunnion.simulation.tool_sizes import ToolKind, ToolSizes
+from trunnion.simulation.tool_shapes import shape_faults, tool_shape
+from trunnion.simulation.tool_sizes import ANGLE_LIMITS, BodyPiece, ToolKind, ToolSizes
 
 #: mm to a unit of length, degrees to a unit of angle; a parameter without a unit is in mm or degrees.
 _LENGTHS: Final[Mapping[str, float]] = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
@@ -22,7 +22,7 @@ _VALUE: Final = re.compile(r"(\d{1,12}(?:\.\d{0,20})?)\s*([^\d.,\s]{0,5})", re.A
 _KINDS: Final[Mapping[str, ToolKind]] = {
     "endmill": ToolKind.FLAT,
     "reamer": ToolKind.FLAT,
-    "tap": ToolKind.FLAT,
+    "tap": ToolKind.DRILL,
     "ballend": ToolKind.BALL,
     "bullnose": ToolKind.BULL,
     "torus": ToolKind.BULL,
@@ -32,9 +32,6 @@ _KINDS: Final[Mapping[str, ToolKind]] = {
     "taperedballnose": ToolKind.TAPER_BALL,
     "threadmill": ToolKind.THREAD_MILL,
 }
-
-#: How far two sizes that say the same may differ, as a part of the larger one.
-_SAME: Final = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,33 +76,35 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
     shape = short_text(root.get("shape-type")) or short_text(root.get("shape")).removesuffix(".fcstd")
     given = root.get("parameter")
     parameters = _Parameters(given if isinstance(given, dict) else {})
-    kind = _KINDS.get(re.split(r"[/\\]", shape)[-1].casefold().replace("-", "").replace("_", ""))
+    known = re.split(r"[/\\]", shape)[-1].casefold().replace("-", "").replace("_", "")
     whats = []
     sizes = None
-    if kind is None:
+    if known not in _KINDS:
         whats = [f"{shape or 'none'} is a shape that is not read"]
     else:
-        sizes = _sizes(kind, parameters)
+        sizes = _sizes(known, parameters)
         whats = parameters.faults or [
-            f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in tool_faults(sizes)
+            f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in shape_faults(sizes)
         ]
     if whats or sizes is None:
         cure = "state the tool itself: its kind and its sizes"
         problems = tuple(Problem(file, 0, f"tool bit {name}: {what}", cure) for what in whats)
         return ToolLibrary(file, (), (UnusableTool(None, name, problems),))
-    return ToolLibrary(file, (tool_shape(sizes, None, name, shape),))
+    remarks = ("is a tap: simulated without its thread",) if known == "tap" else ()
+    found = tool_shape(sizes, None, name, shape)
+    return ToolLibrary(file, (replace(found, remarks=(*found.remarks, *remarks)),))
 
 
-def _sizes(kind: ToolKind, bit: _Parameters) -> ToolSizes:
+def _sizes(shape: str, bit: _Parameters) -> ToolSizes:
     """The sizes of a tool bit. Its holder is not in it: all of its length stands free."""
     form = ToolSizes(
-        kind,
+        _KINDS[shape],
         bit.length("Diameter"),
         flute_length=min(bit.length("CuttingEdgeHeight"), bit.length("Length")),
         length=bit.length("Length"),
         shank_diameter=bit.length("ShankDiameter"),
     )
-    return _FORMS[kind](form, bit) if kind in _FORMS else form
+    return _FORMS[shape](form, bit) if shape in _FORMS else form
 
 
 def _bull(form: ToolSizes, bit: _Parameters) -> ToolSizes:
@@ -118,28 +117,46 @@ def _drill(form: ToolSizes, bit: _Parameters) -> ToolSizes:
     return replace(form, tip_angle=bit.angle("TipAngle"))
 
 
+def _tap(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    """CuttingEdgeLength counts from where the tip ends."""
+    angle = bit.angle("TipAngle")
+    tip = _cone(0.5 * form.diameter, 0.5 * angle)
+    return replace(form, tip_angle=angle, flute_length=tip + bit.length("CuttingEdgeLength"))
+
+
+def _cone(radius: float, angle: float) -> float:
+    """The height of a cone of a radius with an angle from its axis; 0 if it has none."""
+    return radius / math.tan(math.radians(angle)) if angle else 0.0
+
+
 def _chamfer(form: ToolSizes, bit: _Parameters) -> ToolSizes:
-    """It cuts along its cone; CuttingEdgeAngle is the whole angle."""
+    """It is as wide as its cone, which is as high as the cutting edge; Diameter is that of no part of it."""
     tip, side_angle = bit.length("TipDiameter"), 0.5 * bit.angle("CuttingEdgeAngle")
-    slope = math.tan(math.radians(side_angle))
-    cone = 0.5 * (form.diameter - tip) / slope if slope else 0.0
-    return replace(form, tip_diameter=tip, side_angle=side_angle, flute_length=max(min(cone, form.length), 0.0))
+    diameter = tip + 2.0 * form.flute_length * math.tan(math.radians(side_angle))
+    return replace(form, diameter=diameter, tip_diameter=tip, side_angle=side_angle)
+
+
+def _v_bit(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    """Its cone is as wide as Diameter; CuttingEdgeHeight is that of the cylinder above."""
+    tip, side_angle = bit.length("TipDiameter"), 0.5 * bit.angle("CuttingEdgeAngle")
+    cone = _cone(0.5 * (form.diameter - tip), side_angle)
+    return replace(form, tip_diameter=tip, side_angle=side_angle, flute_length=cone + bit.length("CuttingEdgeHeight"))
 
 
 def _taper_ball(form: ToolSizes, bit: _Parameters) -> ToolSizes:
-    """TaperAngle is the whole angle; TaperDiameter, where the cutting edge ends, has to agree."""
-    b, radius = math.radians(0.5 * bit.angle("TaperAngle")), 0.5 * form.diameter
-    top = 2.0 * (radius / math.cos(b) + (form.flute_length - radius) * math.tan(b)) if b < 1.5 else 0.0
-    stated = bit.length("TaperDiameter")
-    if stated and abs(stated - top) > _SAME * stated:
-        bit.faults.append(f"TaperDiameter is {stated:g} mm, but a ball with this angle has {top:.4g} mm there")
-    return replace(form, side_angle=math.degrees(b))
+    """TaperAngle is the whole angle. The cone goes on above the cutting edge up to TaperDiameter."""
+    side_angle, radius = 0.5 * bit.angle("TaperAngle"), 0.5 * form.diameter
+    b = math.radians(side_angle)
+    edge = radius / math.cos(b) + (form.flute_length - radius) * math.tan(b)
+    rest = 0.5 * bit.length("TaperDiameter") - edge
+    pieces = (BodyPiece(2.0 * edge, 2.0 * (edge + rest), _cone(rest, side_angle)),) if rest > 0.0 and b else ()
+    return replace(form, side_angle=side_angle, shank=pieces)
 
 
 def _thread_mill(form: ToolSizes, bit: _Parameters) -> ToolSizes:
     """One tooth at the tip, on a neck."""
     crest, neck, angle = bit.length("Crest"), bit.length("NeckDiameter"), bit.angle("cuttingAngle")
-    if not (neck and 0.0 < angle < 180.0):
+    if not (neck and 0.0 < angle < ANGLE_LIMITS["thread_angle"]):
         bit.faults.append("a tooth needs NeckDiameter and cuttingAngle")
         return form
     height = crest + max(form.diameter - neck, 0.0) * math.tan(math.radians(0.5 * angle))
@@ -149,10 +166,13 @@ def _thread_mill(form: ToolSizes, bit: _Parameters) -> ToolSizes:
     )  # fmt: skip
 
 
-_FORMS: Final[Mapping[ToolKind, Callable[[ToolSizes, _Parameters], ToolSizes]]] = {
-    ToolKind.BULL: _bull,
-    ToolKind.DRILL: _drill,
-    ToolKind.CHAMFER: _chamfer,
-    ToolKind.TAPER_BALL: _taper_ball,
-    ToolKind.THREAD_MILL: _thread_mill,
+_FORMS: Final[Mapping[str, Callable[[ToolSizes, _Parameters], ToolSizes]]] = {
+    "bullnose": _bull,
+    "torus": _bull,
+    "drill": _drill,
+    "tap": _tap,
+    "chamfer": _chamfer,
+    "vbit": _v_bit,
+    "taperedballnose": _taper_ball,
+    "threadmill": _thread_mill,
 }

@@ -7,7 +7,7 @@ from typing import Any, Final
 from trunnion.definitions import Table, load_table
 from trunnion.simulation.tool_library.library import ToolLibrary
 from trunnion.simulation.tool_profile import ToolShape
-from trunnion.simulation.tool_shapes import tool_faults, tool_shape
+from trunnion.simulation.tool_shapes import shape_faults, tool_shape
 from trunnion.simulation.tool_sizes import ANGLE_LIMITS, GREATEST, OF_BODY, OF_KIND, BodyPiece, ToolKind, ToolSizes
 
 #: Greatest number of a tool.
@@ -65,7 +65,7 @@ def _read_tool(table: Table, number: int | None, name: str) -> list[ToolShape]:
     if len(table.problems) > before:
         return []
     found = ToolSizes(kind, **sizes)
-    faults = tool_faults(found)
+    faults = shape_faults(found)
     for size, what, cure in faults:
         table.add_problem(size if size in _PIECES else _key(size), what, cure)
     return [] if faults else [tool_shape(found, number, name, description)]
