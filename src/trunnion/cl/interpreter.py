@@ -29,6 +29,14 @@ _GIVE_POINTS = (
     "output arcs as CIRCLE/, or in APT as INDIRV and TLON,GOFWD/(CIRCLE/…),ON,(LINE/…), or points in their place"
 )
 
+#: Coordinate systems that turn and shift nothing: nine numbers, three more for the origin, or rows of four.
+_NO_SYSTEMS = (
+    (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+    (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
+    (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+    (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
+)
+
 #: What stands for a word that is none.
 _NUMBER = re.compile(r"[-+.]?[0-9]")
 
@@ -185,8 +193,16 @@ class ClInterpreter:
         if drives_tool(statement.major):
             self._state.direction = None
             raise StatementError(f"{statement.major} is motion that cannot be read", _GIVE_POINTS)
+        why = why or _why_a_system(statement)
         what = f"{statement.major} {why if why.startswith('may') else 'is not known'}"
         self._state.note_unknown(statement, what, acts=bool(why))
+
+
+def _why_a_system(statement: Statement) -> str:
+    """Why a statement that nobody knows may turn or shift the points behind it; empty if nothing suggests it."""
+    if len(statement.values) not in (9, 12) or statement.words():
+        return ""
+    return "" if statement.values in _NO_SYSTEMS else "may be the coordinate system of the points behind it"
 
 
 def _refuse_no_word(statement: Statement) -> None:

@@ -1,6 +1,8 @@
-"""Operations of files without sections that are one path: the second begins with a cut from where the first ends.
+"""Operations of files without sections that are one path.
 
-Between two operations the tool goes home. Where the file has no rapid there, that way would take the place of a cut.
+The second begins with a cut from where the first ends: between two operations the tool goes home, and where the file
+has no rapid there, that way would take the place of a cut. Or the first goes to the point where the first tool is
+loaded, and nothing else: it has no tool of its own.
 """
 
 from collections.abc import Iterable
@@ -34,6 +36,39 @@ def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) ->
             _append(before, builder)
         number = loads[-1].number if loads else number
     return joined
+
+
+def join_first_tool(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) -> list[OperationBuilder]:
+    """Return the operations, a way to the point of the first tool change joined to the operation of that tool.
+
+    Such a way stands before the first tool and has rapids only. It is done with that tool, as a remark says. Anything
+    else before the first tool stays an operation without a tool.
+    """
+    found = list(builders)
+    if len(found) < 2 or not _is_way(found[0]) or not found[1].continues:
+        return found
+    way, behind = found[:2]
+    first = next((event for event in behind.events if isinstance(event, LoadTool) and event.row == 0), None)
+    if first is None or first.line < way.line:
+        return found
+    what = f"the way before the first tool is done with tool {first.number}, at rapid"
+    diagnostics.remark(way.line, what, "check that it only leads to the point where the tool is changed")
+    way.rapids = list(range(way.stop - way.first))
+    _append(way, behind)
+    way.events = [replace(event, row=0) if event.line == first.line else event for event in way.events]
+    way.name, way.line, way.tool = behind.name, behind.line, behind.tool
+    return [way, *found[2:]]
+
+
+def _is_way(builder: OperationBuilder) -> bool:
+    """Whether an operation only goes somewhere: no tool, rapids alone, and nothing done on the way.
+
+    Its first point needs no RAPID if there is no feed: a cut would have a point to begin from.
+    """
+    only_moves = not builder.circles and not builder.upright and all(event.row == 0 for event in builder.events)
+    no_tool = not any(isinstance(event, LoadTool | CycleOn | GoHome) for event in builder.events)
+    first = set() if builder.feeds else {0}
+    return only_moves and no_tool and set(range(builder.stop - builder.first)) <= first | set(builder.rapids)
 
 
 def _begins_with_cut(before: OperationBuilder, builder: OperationBuilder) -> bool:

@@ -17,7 +17,7 @@ from trunnion.cl.builder import MoveColumns
 from trunnion.cl.diagnostics import Diagnostics
 from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
-from trunnion.cl.joining import join_cuts
+from trunnion.cl.joining import join_cuts, join_first_tool
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.splines import with_spline_points
@@ -160,7 +160,7 @@ def read_source(
     unit = interpreter.unit(units)
     if unit != 1.0:
         columns.tip[: scanner.rows] *= unit
-    builders = join_cuts(interpreter.builders, diagnostics)
+    builders = join_cuts(join_first_tool(interpreter.builders, diagnostics), diagnostics)
     columns = with_spline_points(builders, columns, scanner.rows, unit, spline_tolerance, diagnostics)
     modal_axis = np.array([0.0, 0.0, 1.0])
     operations = tuple(assemble_operation(builder, columns, unit, modal_axis, diagnostics) for builder in builders)

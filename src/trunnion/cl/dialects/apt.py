@@ -32,6 +32,7 @@ APT_HANDLERS: Final[Mapping[str, Handler]] = {
     "AUTOPS": operations.ignore,
     "PSIS": operations.ignore,
     "INDIRV": apt_arcs.indirv,
+    "TLON": apt_arcs.tlon,
     "TLON,GOFWD": apt_arcs.gofwd,
     "GOFWD": apt_arcs.gofwd,
     "REWIND": operations.ignore,

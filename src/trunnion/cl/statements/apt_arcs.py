@@ -8,7 +8,7 @@ from typing import Final
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ArcDirection, ReaderState
 from trunnion.cl.statement import Statement, numbers
-from trunnion.cl.statements import motion
+from trunnion.cl.statements import apt_refused, motion
 
 _Vector = tuple[float, float, float]
 
@@ -38,6 +38,12 @@ def indirv(state: ReaderState, statement: Statement) -> None:
     if state.direction is not None:
         state.direction.report_lost_arc(state.diagnostics)
     state.direction = ArcDirection(state.row, state.line, statement.numbers(3))
+
+
+def tlon(state: ReaderState, statement: Statement) -> None:
+    """Take TLON on a line of its own, before GOFWD: the tool is on the circle, as it always is here."""
+    if statement.values:
+        apt_refused.part_program(state, statement)
 
 
 def gofwd(state: ReaderState, statement: Statement) -> None:

@@ -9,7 +9,7 @@ from trunnion.cl.statement import Statement
 #: Statements that the APT processor executes, and that CL data never have.
 PART_PROGRAM_WORDS: Final = (
     "MACRO", "TERMAC", "CALL", "LOOPST", "LOOPND", "JUMPTO", "RESERV", "IF", "DO", "ZSURF", "GO", "GOLFT",
-    "GORGT", "GOUP", "GODOWN", "GOBACK", "TLLFT", "TLRGT", "TLON", "TLONPS", "TLOFPS", "THICK", "INDIRP", "CUT",
+    "GORGT", "GOUP", "GODOWN", "GOBACK", "TLLFT", "TLRGT", "TLONPS", "TLOFPS", "THICK", "INDIRP", "CUT",
     "DNTCUT", "POCKET", "SCURV", "POINT", "LINE", "PLANE", "VECTOR",
 )  # fmt: skip
 
