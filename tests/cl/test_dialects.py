@@ -24,6 +24,7 @@ from trunnion.model.toolpath import (
 from trunnion.planning.holes.cycles import HoleMethod, cycle_from_event
 
 HEADS = {
+    "clt": ["UNITS/ MM", "CUTTER/ 10.0,1.0", "OPFEATSTART/Mill1", "ROTABL/ 0.0,AAXIS,TABLE,CCLW"],
     "apt": ["PARTNO A", "UNITS/MM", "CUTTER/10,1", "LOADTL/5"],
     "ncl": ["$$* Pro/CLfile Version 8.0", "UNITS / MM", "LOADTL / 5", "$$-> CUTTER / 10.0"],
     "solidworks": [

@@ -38,7 +38,7 @@ _UNITS: Final = {1.0: "mm", 25.4: "inch"}
 class ClFileDescription:
     """One CL file.
 
-    dialect       ``clsf``, ``ncl``, ``solidworks``, ``catia`` or ``apt``
+    dialect       ``clsf``, ``ncl``, ``solidworks``, ``clt``, ``catia``, ``fusion`` or ``apt``
     title         its name in words
     recognized    by what the dialect was recognized
     units         ``mm`` or ``inch``

@@ -81,6 +81,8 @@ class ReaderState:
     system           the coordinate system of the points as the file gives it, empty if it gives none
     matrix           lines of a coordinate system in comments, while they are collected
     note             line and text of the last note
+    setup_axis       where the Z of a setup points in the model, empty if it is not known
+    turned           angles by which an operation turns its setup, as far as they are read
     """
 
     columns: MoveColumns
@@ -118,6 +120,8 @@ class ReaderState:
     system: tuple[float, ...] = ()
     matrix: list[str] | None = None
     note: tuple[int, str] | None = None
+    setup_axis: tuple[float, ...] = ()
+    turned: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         self.no_axis, self.vectors = self.dialect.no_axis, self.dialect.vectors

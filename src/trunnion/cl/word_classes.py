@@ -28,8 +28,8 @@ _MACHINE_WORDS: Final = frozenset({
 
 #: Words of the dialects that say nothing about the machine: texts, names, listings.
 _SAY_NOTHING: Final = frozenset({
-    "AUTOPS", "CLPRNT", "DISPLAY", "DISPLY", "END", "FINI", "LEADER", "MACHIN", "PAINT", "PARTNO", "PPRINT", "PPWORD",
-    "PSIS", "REMARK", "REWIND", "SETUP", "TPRINT",
+    "AUTOPS", "BOX", "CLPRNT", "DISPLAY", "DISPLY", "END", "FINI", "LEADER", "MACHIN", "OPFEATEND", "OPFEATSTART",
+    "PAINT", "PARTNO", "PPRINT", "PPWORD", "PSIS", "REMARK", "REWIND", "SETUP", "TPRINT",
 })  # fmt: skip
 
 #: Words of motion: a statement that begins or ends with one has lost its slash or its line end.

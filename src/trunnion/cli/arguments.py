@@ -37,7 +37,7 @@ class _Setting(argparse.Action):
 
 
 #: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
-DIALECTS = ("clsf", "ncl", "solidworks", "catia", "fusion", "apt")
+DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
 
 #: Those that are written.
 WRITTEN_DIALECTS = ("clsf", "catia", "ncl")

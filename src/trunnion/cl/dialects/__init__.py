@@ -4,6 +4,7 @@ from typing import Final
 
 from trunnion.cl.dialect import Dialect
 from trunnion.cl.dialects.apt import APT
+from trunnion.cl.dialects.camworks import CAMWORKS
 from trunnion.cl.dialects.catia import CATIA
 from trunnion.cl.dialects.clsf import CLSF
 from trunnion.cl.dialects.fusion import FUSION
@@ -14,9 +15,11 @@ from trunnion.cl.dialects.solidworks import SOLIDWORKS
 __all__ = ["DIALECTS", "Dialect", "Recognition", "recognize_dialect"]
 
 #: By their names. The last one is told by words that the others have as well.
-DIALECTS: Final[dict[str, Dialect]] = {dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CATIA, FUSION, APT)}
+DIALECTS: Final[dict[str, Dialect]] = {
+    dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CAMWORKS, CATIA, FUSION, APT)
+}
 
 
 def recognize_dialect(head: bytes) -> Recognition:
     """The dialect of a file by the lines at its head; a file without any mark is taken as an NX CLSF."""
-    return recognize(head, (CLSF, NCL, SOLIDWORKS, CATIA, FUSION), APT, CLSF)
+    return recognize(head, (CLSF, NCL, SOLIDWORKS, CAMWORKS, CATIA, FUSION), APT, CLSF)
