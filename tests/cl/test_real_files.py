@@ -1,14 +1,18 @@
 """Files that CAM systems wrote, where they are at hand beside the project."""
 
+import csv
+import hashlib
+import os
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from tests.support.locations import SHARED, TESTS
+from tests.support.plain_cl_scan import counts_of, plain_scan
 from trunnion.cl import read_cl
-from trunnion.model.toolpath import CycleOff, CycleOn, Kind, LoadTool, Operation, Phase
+from trunnion.errors import InputError
+from trunnion.model.toolpath import Kind, Phase
 
 FILES = sorted([*SHARED.glob("golden/*/*.cls"), *SHARED.glob("data/nx/*.cls")])
 
@@ -63,56 +67,52 @@ def test_the_phases_are_those_that_the_machine_s_program_names() -> None:
     assert operation.moves.kind.tolist().count(Kind.ARC) == len(operation.arcs.row)
 
 
-APT_FILES = sorted(
-    [*SHARED.glob("data/creo/*"), *SHARED.glob("data/solidworks/*.apt"), *(TESTS / "cl" / "real").glob("*.ncl.*")]
+ALL_FILES = sorted(
+    [
+        *FILES,
+        *SHARED.glob("data/creo/*"),
+        *SHARED.glob("data/solidworks/*.apt"),
+        *(TESTS / "cl" / "real").glob("*.ncl.*"),
+    ]
 )
-_NUMBER = re.compile(r"[-+]?[0-9]*\.?[0-9]+")
+DIALECT_OF = {".cls": "clsf", ".apt": "solidworks"}
 
 
-def plain_scan(path: Path) -> dict[str, object]:
-    """Points, arcs, holes and tools of an APT file, counted with a few lines of text."""
-    text = re.sub(r"\$[ \t]*\r?\n", " ", path.read_text(encoding="latin-1"))
-    points: list[list[float]] = []
-    loaded: list[int] = []
-    arcs, holes, is_hole = 0, 0, False
-    for line in text.splitlines():
-        word = re.sub(r"\s", "", line.partition("/")[0]).upper()
-        rest = line.partition("/")[2]
-        if word == "GOTO":
-            points.append([float(number) for number in _NUMBER.findall(rest)[:3]])
-            holes += is_hole
-        elif word == "CIRCLE":
-            arcs += 1
-        elif word == "CYCLE":
-            is_hole = not re.match(r"\s*(OFF|INIT|CLEAR)", rest)
-        elif word in ("LOAD", "LOADTL"):
-            number = int(_NUMBER.findall(rest)[0])
-            if loaded[-1:] != [number]:
-                loaded.append(number)
-    low, high = np.min(points, axis=0).tolist(), np.max(points, axis=0).tolist()
-    return {"points": len(points), "arcs": arcs, "holes": holes, "tools": loaded, "extents": (low, high)}
-
-
-def hole_rows(operation: Operation) -> int:
-    """Rows of an operation that are holes."""
-    count, row, is_hole = 0, 0, False
-    for event in [*operation.events, CycleOff(len(operation.moves), 0)]:
-        if isinstance(event, CycleOn | CycleOff):
-            count += is_hole * int((operation.moves.kind[row : event.row] != Kind.RAPID).sum())
-            row, is_hole = event.row, isinstance(event, CycleOn)
-    return count
-
-
-@pytest.mark.parametrize("path", APT_FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
-def test_a_real_apt_file_is_read_whole(path: Path) -> None:
+@pytest.mark.parametrize("path", ALL_FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_a_real_file_is_read_whole(path: Path) -> None:
+    """Points, arcs, holes, tools and extents are those of a scan that shares nothing with the reader."""
     toolpath = read_cl(path, strict=True)
-    assert toolpath.dialect == ("ncl" if ".ncl" in path.name else "solidworks")
-    tip = np.concatenate([operation.moves.tip for operation in toolpath.operations])
-    events = [event for operation in toolpath.operations for event in operation.events]
-    assert plain_scan(path) == {
-        "points": len(tip),
-        "arcs": sum(len(operation.arcs.row) for operation in toolpath.operations),
-        "holes": sum(hole_rows(operation) for operation in toolpath.operations),
-        "tools": [event.number for event in events if isinstance(event, LoadTool)],
-        "extents": (tip.min(axis=0).tolist(), tip.max(axis=0).tolist()),
-    }
+    assert toolpath.dialect == DIALECT_OF.get(path.suffix, "ncl")
+    assert counts_of(toolpath) == plain_scan(path)
+
+
+LISTED = list(csv.DictReader((TESTS / "cl" / "real" / "others.csv").open(encoding="utf-8", newline="")))
+
+
+@pytest.mark.skipif(
+    "TRUNNION_REAL_CL" not in os.environ, reason="TRUNNION_REAL_CL names no folder with the files of the list"
+)
+def test_the_files_of_the_list_are_read_as_it_says() -> None:
+    """Each file of the list that is anywhere in the folder, told by its content."""
+    found = {}
+    names = {Path(row["path"]).name for row in LISTED}
+    for path in Path(os.environ["TRUNNION_REAL_CL"]).rglob("*"):
+        if path.name in names and path.is_file():
+            found[hashlib.sha256(path.read_bytes()).hexdigest()] = path
+    rows = [row for row in LISTED if row["sha256"] in found]
+    assert rows, "no file of the list is in the folder"
+    for row in rows:
+        path = found[row["sha256"]]
+        scanned = plain_scan(path)
+        assert {name: str(scanned[name]) for name in ("points", "arcs", "holes")} == {
+            name: row[name] for name in ("points", "arcs", "holes")
+        }, path
+        if row["read as"]:
+            toolpath = read_cl(path)
+            assert toolpath.dialect == row["read as"], path
+            counts = counts_of(toolpath)
+            assert counts.pop("extents") == pytest.approx(scanned.pop("extents"), abs=1e-6), path
+            assert counts == scanned, path
+        else:
+            with pytest.raises(InputError):
+                read_cl(path)

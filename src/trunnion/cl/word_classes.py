@@ -16,14 +16,15 @@ from trunnion.cl.statements.apt_refused import part_program
 #: Words of APT systems and post-processors (ISO 4343 and later ones) that act on the machine, and which no dialect here
 #: follows.
 _MACHINE_WORDS: Final = frozenset({
-    "ABSOL", "ADJUST", "ARCDAT", "ARCMOD", "ARCSLP", "AUXFUN", "BARFED", "CALL", "CALSUB", "CHUCK", "CLAMP", "CLEARP",
-    "CLRSRF", "COLLET", "COPY", "COUPLE", "CSYS", "DEFSUB", "DITTO", "DRESS", "DWELL", "ENDSUB", "FEDMOD", "FEEDMOD",
-    "FIXTUR", "GCODE", "GEAR", "HEAD", "HEADNO", "INCR", "INDEX", "LATHE", "LINEAR", "LINTOL", "LOCK", "MAGAZN",
-    "MAXIPM", "MAXRPM", "MCHTOL", "MCODE", "MIRROR", "MOVETO", "OFFSET", "OFSTNO", "ORIENT", "ORIGIN", "PALLET",
-    "PITCH", "PIVOTZ", "POD", "POSITN", "PPFUN", "PREFUN", "PROBE", "RANGE", "RESET", "RETRCT", "ROTABL", "ROTATE",
-    "ROTAXS", "ROTHED", "ROTREF", "SADDLE", "SAFPOS", "SCALE", "SLIDE", "SLOWDN", "SMOOTH", "STDYRST", "STEADY",
-    "SYNC", "SYNCTL", "TABLE", "TAILST", "THREAD", "TILT", "TILTTB", "TLAXIS", "TLVEC", "TOOLCHG", "TOOLNO", "TRACUT",
-    "TRANS", "TURRET", "UNCLAMP", "UNLDTL", "UNLOAD", "UNLOCK", "UNLODTL", "VTLAXS", "WAIT", "WCS", "ZERO", "ZEROPT",
+    "ABSOL", "ADJUST", "ARCDAT", "ARCMOD", "ARCSLP", "AUXFUN", "BARFED", "CALL", "CALSUB", "CATMAT", "CHUCK", "CLAMP",
+    "CLEARP", "CLRSRF", "COLLET", "COPY", "COUPLE", "CSYS", "DEFSUB", "DITTO", "DRESS", "DWELL", "ENDSUB", "FEDMOD",
+    "FEEDMOD", "FIXTUR", "GCODE", "GEAR", "HEAD", "HEADNO", "INCR", "INDEX", "LATHE", "LINEAR", "LINTOL", "LOCK",
+    "MAGAZN", "MAXIPM", "MAXRPM", "MCHTOL", "MCODE", "MIRROR", "MOVETO", "OFFSET", "OFSTNO", "ORIENT", "ORIGIN",
+    "PALLET", "PITCH", "PIVOTZ", "POD", "POSITN", "PPFUN", "PREFUN", "PROBE", "RANGE", "RESET", "RETRCT", "ROTABL",
+    "ROTATE", "ROTAXS", "ROTHED", "ROTREF", "SADDLE", "SAFPOS", "SCALE", "SLIDE", "SLOWDN", "SMOOTH", "STDYRST",
+    "STEADY", "SYNC", "SYNCTL", "TABLE", "TAILST", "THREAD", "TILT", "TILTTB", "TLAXIS", "TLCOMP", "TLVEC", "TOOLCHG",
+    "TOOLNO", "TRACUT", "TRANS", "TURRET", "UNCLAMP", "UNLDTL", "UNLOAD", "UNLOCK", "UNLODTL", "VTLAXS", "WAIT", "WCS",
+    "WPLANE", "ZERO", "ZEROPT",
 })  # fmt: skip
 
 #: Words of the dialects that say nothing about the machine: texts, names, listings.
