@@ -18,8 +18,8 @@ MACHINES = ("yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt")
 STATEMENTS = (
     "ROTATE/TABLE,AAXIS,90", "ROTABL/ATANGL,90,CLW", "TLAXIS/0,1,0", "AUXFUN/31", "PREFUN/91", "CLAMP/ON",
     "TURRET/3", "HEAD/2", "PIVOTZ/100", "COOLNT/MIST,HIGH", "SPINDL/RPM,800,CLW,RANGE,2",
-    "LOAD/TOOL,1,LENGTH,90", "MULTAX/OFF", "OPSKIP/ON,2", "CLRSRF/50", "TOOLNO/3,TURN", "TLCOMP/ON,LEFT", "WPLANE/XYPLAN",
-    "MCS/1,0,0,0,0,1,0,-1,0,0,0,0",
+    "LOAD/TOOL,1,LENGTH,90", "MULTAX/OFF", "OPSKIP/ON,2", "CLRSRF/50", "TOOLNO/3,TURN", "TLCOMP/ON,LEFT",
+    "WPLANE/XYPLAN", "MCS/1,0,0,0,0,1,0,-1,0,0,0,0",
 )  # fmt: skip
 
 #: Damaged statements: a letter is wrong, missing or too many, a slash or a line end is lost.
