@@ -349,6 +349,18 @@ def test_later_pecks_of_solidworks_are_of_one_length(apt: Callable[..., Operatio
     assert dict(cycle(apt("solidworks", statement, "GOTO/0,0,0")).values)["STEP"] == (5, 3, 2)
 
 
+def test_pecks_that_grow_are_all_as_long_as_the_first(read: Read) -> None:
+    lines = [
+        *HEADS["solidworks"],
+        "CYCLE/DEEP2,FEDTO,45,1STPECK,5.,SUBPECK,30.,MMPM,9,RAPTO,3.,RTRCTO,27",
+        "GOTO/0,0,0",
+    ]
+    toolpath = read("\n".join([*lines, "CYCLE/OFF", "FINI"]) + "\n")
+    assert dict(cycle(toolpath.operations[-1]).values)["STEP"] == (5,)
+    (remark,) = toolpath.remarks
+    assert remark.what == "pecks of 30 behind a first one of 5: all are made as long as the first"
+
+
 @pytest.mark.parametrize(
     ("dialect", "statement", "what"),
     [
@@ -362,7 +374,7 @@ def test_later_pecks_of_solidworks_are_of_one_length(apt: Callable[..., Operatio
         ("catia", "CYCLE/DRILL, 3, 5, 6, 7", "numbers without words"),
         ("catia", "CYCLE/DRILL, 3, 5, 6", "a feed without a unit"),
         ("solidworks", "CYCLE/DEEP2,FEDTO,5,1STPECK,1,RAPTO,1", "one of 1STPECK and SUBPECK"),
-        ("solidworks", "CYCLE/DEEP2,FEDTO,5,1STPECK,1,SUBPECK,2,RAPTO,1", "longer than 1STPECK"),
+        ("solidworks", "CYCLE/DEEP2,FEDTO,5,1STPECK,1,SUBPECK,0,RAPTO,1", "SUBPECK that is not above 0"),
     ],
 )
 def test_cycles_in_doubt_are_refused(refused: Callable[..., str], dialect: str, statement: str, what: str) -> None:

@@ -11,7 +11,10 @@ _NUMBER = re.compile(r"[-+]?[0-9]*\.?[0-9]+")
 
 
 def plain_scan(path: Path) -> dict[str, object]:
-    """Count the statements of a CL file in any of the dialects."""
+    """Count the statements of a CL file in any of the dialects; its extents in mm.
+
+    Of splines, whose points are not in the file, it gives neither points nor extents.
+    """
     text = re.sub(r"\$[ \t]*\r?\n", " ", path.read_text(encoding="latin-1"))
     points: list[list[float]] = []
     loaded: list[int] = []
@@ -19,9 +22,9 @@ def plain_scan(path: Path) -> dict[str, object]:
     for line in text.splitlines():
         word = re.sub(r"\s", "", line.partition("/")[0]).upper()
         rest = line.partition("/")[2]
-        if word == "GOTO":
+        if word == "GOTO" or (word == "GOHOME" and rest):
             points.append([float(number) for number in _NUMBER.findall(rest)[:3]])
-            holes += is_hole
+            holes += is_hole and word == "GOTO"
         elif word == "CIRCLE":
             arcs += 1
         elif word in ("GOFWD", "TLON,GOFWD"):
@@ -33,8 +36,12 @@ def plain_scan(path: Path) -> dict[str, object]:
             number = int(_NUMBER.findall(rest)[0])
             if loaded[-1:] != [number]:
                 loaded.append(number)
-    low, high = np.min(points, axis=0).tolist(), np.max(points, axis=0).tolist()
-    return {"points": len(points), "arcs": arcs, "holes": holes, "tools": loaded, "extents": (low, high)}
+    found: dict[str, object] = {"points": len(points), "arcs": arcs, "holes": holes, "tools": loaded}
+    if re.search(r"^ *NURBS", text, re.MULTILINE):
+        return found | {"points": None, "extents": None}
+    unit = 25.4 if re.search(r"^ *UNITS? */ *(INCH|IN)", text, re.MULTILINE) else 1.0
+    mm = np.array(points) * unit
+    return found | {"extents": (mm.min(axis=0).tolist(), mm.max(axis=0).tolist()) if points else None}
 
 
 def counts_of(toolpath: Toolpath) -> dict[str, object]:

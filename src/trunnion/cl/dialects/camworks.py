@@ -8,11 +8,10 @@ from trunnion.cl.builder import NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS
-from trunnion.cl.dialects.solidworks import SOLIDWORKS
+from trunnion.cl.dialects.solidworks import SOLIDWORKS, pecking_cycle
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.cl.statements import events, motion, operations
-from trunnion.cl.statements.cycles import cycle
 
 _AXES: Final = ("AAXIS", "BAXIS", "CAXIS")
 #: Angles, radians, and unit vectors are printed with six decimals.
@@ -107,7 +106,7 @@ def _cycle(state: ReaderState, statement: Statement) -> None:
                 "RTRCTO", height, *(("DWELL", dwell) if dwell else ()),
             )
         )  # fmt: skip
-    cycle(state, statement)
+    pecking_cycle(state, statement)
 
 
 def _cutcom(state: ReaderState, statement: Statement) -> None:

@@ -65,7 +65,17 @@ def _circle(state: ReaderState, statement: Statement) -> None:
 def _cycle(state: ReaderState, statement: Statement) -> None:
     """CYCLE/INIT and CYCLE/CLEAR announce a cycle, and say nothing about it."""
     if statement.values not in (("INIT",), ("CLEAR",)):
-        cycle(state, statement)
+        pecking_cycle(state, statement)
+
+
+def pecking_cycle(state: ReaderState, statement: Statement) -> None:
+    """A cycle with pecks, and a remark where the later ones are longer than the first."""
+    cycle(state, statement)
+    pecks = dict(zip(statement.values, statement.values[1:], strict=False))
+    first, others = pecks.get("1STPECK", 0.0), pecks.get("SUBPECK", 0.0)
+    if isinstance(first, float) and isinstance(others, float) and others > first > 0.0:
+        what = f"pecks of {others:g} behind a first one of {first:g}: all are made as long as the first"
+        state.diagnostics.remark(state.line, what, "write a first peck that is the longest if that takes too long")
 
 
 def _flute_length(state: ReaderState, statement: Statement) -> None:
@@ -77,12 +87,15 @@ def _extension(state: ReaderState, statement: Statement) -> None:
 
 
 def _settle_cycle(found: CycleParts) -> None:
-    """The first peck, and then pecks of one length: as first, decrease and minimum."""
+    """The first peck, and then pecks of one length: as first, decrease and minimum.
+
+    Pecks that grow cannot be said so; shorter ones are kind to the drill.
+    """
     first, others = found.take("1STPECK"), found.take("SUBPECK")
     if first is not None and others is not None:
-        if others[0] > first[0]:
-            raise StatementError("CYCLE with a SUBPECK longer than 1STPECK", "write a first peck that is the longest")
-        alike = first == others
+        if not others[0] > 0.0:
+            raise StatementError("CYCLE with a SUBPECK that is not above 0", "write the length of the pecks")
+        alike = others[0] >= first[0]
         found.couplets.append(("STEP", first if alike else (first[0], first[0] - others[0], others[0])))
     elif first is not None or others is not None:
         raise StatementError("CYCLE has one of 1STPECK and SUBPECK", "write both")
