@@ -90,6 +90,8 @@ SIDE = (((0.0, "AAXIS"), (1.570796, "BAXIS"), (0.0, "CAXIS")), "1.0,0.0,0.0")
         (written(operation("A", *POINTS, turns=[(0.5, "AAXIS"), (0.5, "BAXIS"), (0.0, "CAXIS")])), "several axes"),
         (written(operation("A", *POINTS, turns=())), "without ROTABL"),
         (written(operation("A", "ROTABL/ 90.0", *POINTS)), "ROTABL/90 is not known"),
+        (written(operation("A", *POINTS, turns=UPRIGHT[::-1])), "A, B and C, in this order"),
+        (written(operation("A", *POINTS, "CIRCLE/ ")), "is not known"),
         (written(operation("A", *POINTS, "GOTO/ 1.0,2.0,3.0,0.0,1.0,0.0 ")), "a tilted tool axis"),
         (written(operation("A", *POINTS, "CIRCLE/ 0.0,0.0,0.0,0.0,0.0,1.0,5.0,LEFT ")), "is not known"),
         (written(operation("A", CYCLE.replace("25.0 25.0", "25.0 24.0"), *POINTS)), "two heights"),

@@ -10,7 +10,7 @@ from trunnion.cl.dialect import Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS
 from trunnion.cl.dialects.solidworks import SOLIDWORKS, pecking_cycle
 from trunnion.cl.state import ReaderState
-from trunnion.cl.statement import Statement
+from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements import events, motion, operations
 
 _AXES: Final = ("AAXIS", "BAXIS", "CAXIS")
@@ -46,13 +46,17 @@ def _tlaxis(state: ReaderState, statement: Statement) -> None:
 def _rotabl(state: ReaderState, statement: Statement) -> None:
     """Turn the setup in the model by radians: three axes at the beginning of an operation, and back at its end."""
     values = statement.values
-    if len(values) != 4 or isinstance(values[0], str) or values[1] not in _AXES or values[2:] != ("TABLE", "CCLW"):
+    if len(values) != 4 or values[1] not in _AXES or values[2:] != ("TABLE", "CCLW"):
         what = f"ROTABL/{statement.listed()} is not known"
         raise StatementError(what, "write ROTABL/radians,AAXIS,TABLE,CCLW, with BAXIS and CAXIS behind it")
-    state.turned += (float(values[0]),)
-    if len(state.turned) != len(_AXES):
-        return
-    state.set_system(_setup(state.turned, state.setup_axis))
+    angles = numbers("ROTABL", values[:1], 1)
+    if len(state.turned) == len(_AXES):
+        return  # the setup is turned back
+    if values[1] != _AXES[len(state.turned)]:
+        raise StatementError("ROTABL turns other axes than A, B and C, in this order", "output the file again")
+    state.turned += angles
+    if len(state.turned) == len(_AXES):
+        state.set_system(_setup(state.turned, state.setup_axis))
 
 
 def _setup(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, ...]:
@@ -78,11 +82,11 @@ def _setup(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, .
 
 def _circle(state: ReaderState, statement: Statement) -> None:
     """An arc by centre, axis and radius; a word gives its sense."""
-    *given, sense = statement.values
-    if sense not in ("CLOCKWISE", "COUNTERCLOCKWISE") or any(isinstance(value, str) for value in given):
+    given, sense = statement.values[:-1], statement.values[-1:]
+    if sense not in (("CLOCKWISE",), ("COUNTERCLOCKWISE",)):
         raise StatementError(f"CIRCLE/{statement.listed()} is not known", "write CLOCKWISE or COUNTERCLOCKWISE")
-    x, y, z, i, j, k, r = statement._replace(values=tuple(given)).numbers(7)
-    turn = -1.0 if sense == "CLOCKWISE" else 1.0
+    x, y, z, i, j, k, r = numbers("CIRCLE", given, 7)
+    turn = -1.0 if sense == ("CLOCKWISE",) else 1.0
     motion.begin_circle(state, (x, y, z, turn * i, turn * j, turn * k, r), 1)
 
 
