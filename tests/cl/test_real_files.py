@@ -105,9 +105,8 @@ def test_the_files_of_the_list_are_read_as_it_says() -> None:
     for row in rows:
         path = found[row["sha256"]]
         scanned = plain_scan(path)
-        assert {name: str(scanned[name]) for name in ("points", "arcs", "holes")} == {
-            name: row[name] for name in ("points", "arcs", "holes")
-        }, path
+        for name in ("points", "arcs", "holes"):
+            assert row[name] == ("" if scanned[name] is None else str(scanned[name])), (path, name)
         if not row["read as"]:
             with pytest.raises(InputError):
                 read_cl(path)
