@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.support.cl_reading import Read
+from tests.support.cl_reading import Fail, Read
 from trunnion.model.toolpath import UnknownStatement
 
 HEAD = ["PARTNO/1", "UNITS/MM", "CUTTER/10,1", "LOADTL/3"]
@@ -30,3 +30,18 @@ def test_a_matrix_that_turns_or_shifts_is_never_left_out(read: Read, dialect: st
     (event,) = (event for event in operation.events if isinstance(event, UnknownStatement))
     assert event.acts == acts
     assert event.what == ("MCS may be the coordinate system of the points behind it" if acts else "MCS is not known")
+
+
+def test_an_alias_of_creo_for_its_system_is_taken_for_it(read: Read) -> None:
+    """A real file has it; points are in the machine's system, whatever that of the model."""
+    head = ["$$* Pro/CLfile Version 8.0", "UNITS / MM", "LOADTL / 5", "FEDRAT / 100.0,  MMPM"]
+    system = "CAMERA/ 1,0,0,$\n-106.609375,  $\n0,1,0,$\n-121.28125,0,0,1,40.5"
+    toolpath = read("\n".join([*head, system, "GOTO / 1,2,3", "FINI"]) + "\n")
+    assert toolpath.system == (1, 0, 0, -106.609375, 0, 1, 0, -121.28125, 0, 0, 1, 40.5)
+    assert [remark.what for remark in toolpath.remarks] == ["CAMERA is taken for CSYS, under an alias"]
+
+
+def test_another_system_under_an_alias_is_refused(fails: Fail) -> None:
+    head = ["$$* Pro/CLfile Version 8.0", "UNITS / MM", "LOADTL / 5", "CAMERA/1,0,0,0,0,1,0,0,0,0,1,0", "GOTO / 1,2,3"]
+    (problem,) = fails("\n".join([*head, "CAMERA/0,1,0,0,1,0,0,0,0,0,-1,0", "GOTO / 4,2,3", "FINI"]) + "\n")
+    assert (problem.line, "changes within the file" in problem.what) == (6, True)

@@ -68,6 +68,7 @@ class Dialect:
     no_axis      the tool axis of a point that gives none, before any statement about it
     multax_off   the same after MULTAX/OFF
     vectors      points may give tool axes before any MULTAX, and after MULTAX/OFF
+    alias        takes twelve numbers behind a word that nobody knows: the coordinate system under another name
     upright      points with a tilted tool axis are in coordinates that the file does not give: what to do instead
     """
 
@@ -77,6 +78,7 @@ class Dialect:
     handlers: Mapping[str, Handler]
     cycles: CycleWords
     comment: Callable[[ReaderState, str], None] | None = None
+    alias: Handler | None = None
     in_sections: bool = False
     no_axis: NoAxis = NoAxis.MODAL
     multax_off: NoAxis = NoAxis.DOUBTFUL

@@ -193,16 +193,18 @@ class ClInterpreter:
         if drives_tool(statement.major):
             self._state.direction = None
             raise StatementError(f"{statement.major} is motion that cannot be read", _GIVE_POINTS)
-        why = why or _why_a_system(statement)
+        if not why and self._dialect.alias is not None and _is_system(statement, 12) and not self._state.strict:
+            self._dialect.alias(self._state, statement)
+            return
+        if not why and _is_system(statement, 9, 12) and statement.values not in _NO_SYSTEMS:
+            why = "may be the coordinate system of the points behind it"
         what = f"{statement.major} {why if why.startswith('may') else 'is not known'}"
         self._state.note_unknown(statement, what, acts=bool(why))
 
 
-def _why_a_system(statement: Statement) -> str:
-    """Why a statement that nobody knows may turn or shift the points behind it; empty if nothing suggests it."""
-    if len(statement.values) not in (9, 12) or statement.words():
-        return ""
-    return "" if statement.values in _NO_SYSTEMS else "may be the coordinate system of the points behind it"
+def _is_system(statement: Statement, *counts: int) -> bool:
+    """Whether a statement has the numbers of a coordinate system, and nothing else."""
+    return len(statement.values) in counts and not statement.words()
 
 
 def _refuse_no_word(statement: Statement) -> None:

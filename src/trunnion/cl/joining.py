@@ -49,13 +49,13 @@ def join_first_tool(builders: Iterable[OperationBuilder], diagnostics: Diagnosti
         return found
     way, behind = found[:2]
     first = next((event for event in behind.events if isinstance(event, LoadTool) and event.row == 0), None)
-    if first is None or first.line < way.line:
+    if first is None or any(event.row == 0 and event.line < first.line for event in behind.events):
         return found
     what = f"the way before the first tool is done with tool {first.number}, at rapid"
     diagnostics.remark(way.line, what, "check that it only leads to the point where the tool is changed")
     way.rapids = list(range(way.stop - way.first))
     _append(way, behind)
-    way.events = [replace(event, row=0) if event.line == first.line else event for event in way.events]
+    way.events.append(first)
     way.name, way.line, way.tool = behind.name, behind.line, behind.tool
     return [way, *found[2:]]
 

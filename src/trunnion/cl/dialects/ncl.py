@@ -16,6 +16,13 @@ def _csys(state: ReaderState, statement: Statement) -> None:
     state.set_system(statement.numbers(12))
 
 
+def _alias(state: ReaderState, statement: Statement) -> None:
+    """The coordinate system under a name of the shop's own: an NC alias may stand for ``$$-> CSYS``."""
+    what = f"{statement.major} is taken for CSYS, under an alias"
+    state.diagnostics.remark(state.line, what, "make sure of it: [cl.words] may say what the word is")
+    _csys(state, statement)
+
+
 def _featno(state: ReaderState, statement: Statement) -> None:
     """The number of the sequence names the operation."""
     state.name_operation(f"FEATNO {statement.listed()}")
@@ -101,6 +108,7 @@ NCL: Final = Dialect(
         refused=dict.fromkeys(("THRU", "BORE", "CSINK", "TIMES", "BACK", "TPI"), _UNCONFIRMED),
         settle=_settle_cycle,
     ),
+    alias=_alias,
     # The tool axis is written only where it is not parallel to Z.
     no_axis=NoAxis.Z,
 )
