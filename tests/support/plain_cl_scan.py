@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from trunnion.model.toolpath import CycleOff, CycleOn, Kind, LoadTool, Operation
 _NUMBER = re.compile(r"[-+]?[0-9]*\.?[0-9]+")
 
 
-def plain_scan(path: Path) -> dict[str, object]:
+def plain_scan(path: Path) -> dict[str, Any]:
     """Count the statements of a CL file in any of the dialects; its extents in mm.
 
     Of splines, whose points are not in the file, it gives neither points nor extents.
@@ -36,7 +37,7 @@ def plain_scan(path: Path) -> dict[str, object]:
             number = int(_NUMBER.findall(rest)[0])
             if loaded[-1:] != [number]:
                 loaded.append(number)
-    found: dict[str, object] = {"points": len(points), "arcs": arcs, "holes": holes, "tools": loaded}
+    found: dict[str, Any] = {"points": len(points), "arcs": arcs, "holes": holes, "tools": loaded}
     if re.search(r"^ *NURBS", text, re.MULTILINE):
         return found | {"points": None, "extents": None}
     unit = 25.4 if re.search(r"^ *UNITS? */ *(INCH|IN)", text, re.MULTILINE) else 1.0
@@ -44,7 +45,7 @@ def plain_scan(path: Path) -> dict[str, object]:
     return found | {"extents": (mm.min(axis=0).tolist(), mm.max(axis=0).tolist()) if points else None}
 
 
-def counts_of(toolpath: Toolpath) -> dict[str, object]:
+def counts_of(toolpath: Toolpath) -> dict[str, Any]:
     """The same of what was read."""
     tip = np.concatenate([operation.moves.tip for operation in toolpath.operations])
     loaded: list[int] = []
