@@ -471,6 +471,7 @@ def test_the_matrix_of_catia_is_read_in_its_lines(read: Read, refused: Callable[
         ("5.0, 6.0, 7.0", "numbers without a word"),
         ("MODE/INCR,ON", "would count from each other"),
         ("MOVE/1,2,3", "MOVE is motion"),
+        ("HELICAL/CENTER,0,0,0,INDIRV,0,1,0,AXIS,0,0,1,PITCH,1,RADIUS,5,ANGLE,90,END,0,5,1", "HELICAL is motion"),
         ("SCALE/2", "SCALE repeats, shifts or turns"),
         ("RETRCT", "without a clearance plane"),
         ("CLRSRF/YZPLAN,5", "not a plane of constant Z"),

@@ -35,6 +35,7 @@ REFUSED_WORDS: Final = {
     "MOVE": _MOTION,
     "CONT": _MOTION,
     "ARC": _MOTION,
+    **dict.fromkeys(("HELICAL", "HELIX", "SPLINE", "BSPLINE"), _MOTION),
     "TURRET": _TURNING,
     "THREAD": _TURNING,
     "SWITCH": _TURNING,
