@@ -87,3 +87,22 @@ def test_stops_come_back_from_a_conversion(posted: tuple[str, Path, str], tmp_pa
     program.write_text(text)
     again = trunnion.convert(program, machine=machine, to_machine=machine, settings={"numbers": "off"}).text or ""
     assert switches(again) == switches(text)
+
+
+def test_a_stop_or_a_tool_change_of_its_own_is_away_from_the_part(
+    posted: tuple[str, Path, str], tmp_path: Path
+) -> None:
+    machine, cl, text = posted
+    program, lines = tmp_path / "part.nc", text.splitlines()
+    at_part = max(k for k, block in enumerate(lines) if re.search(r"(X.?-30|Y\+?70|Z\+?50)\.?\b", block)) + 1
+    away = next(k for k in range(at_part, len(lines)) if re.search(r"SUPA.*Z|Z.*M91|G53|M242", lines[k])) + 1
+    for word, line, passes in [
+        ("M0", at_part, False),
+        ("M1", at_part, False),
+        ("M6", at_part, False),
+        ("M0", away, True),
+    ]:
+        program.write_text("\n".join([*lines[:line], word, *lines[line:]]))
+        failed = [check.key for check in trunnion.verify(program, cl=cl, machine=machine).checks if not check.passed]
+        assert bool(failed) is not passes, (word, failed)
+        assert passes or word == "M6" or "stops" in failed, (word, failed)

@@ -19,6 +19,7 @@ from trunnion.controls.vocabulary import (
     HOLE_APPROACH_HEIGHTS,
     INCH,
     MM,
+    NEW_SPEED_WITH_TCP,
     PHASES,
     RADIUS_ARC_WORDS,
     REQUIRED_TEMPLATES,
@@ -331,7 +332,7 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     retracts the tool where a tilted plane is taken from the rotary position: without it the tool always goes home.
     """
     plane_parts = ("approach", "plane_on", "next_plane", "operation_end")
-    groups: list[tuple[str, ...]] = [(SPINDLE_ON,)]
+    groups: list[tuple[str, ...]] = [(SPINDLE_ON,), (NEW_SPEED_WITH_TCP,)]
     groups += [
         tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in (FIVE_AXIS, WITHOUT_TCP)
     ]

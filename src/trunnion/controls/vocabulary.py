@@ -109,6 +109,9 @@ PROGRAM_START_TEMPLATES: Final = ("program_start", "subprogram_start")
 #: The template that starts the spindle, on controls where that takes blocks of its own.
 SPINDLE_ON: Final = "spindle_on"
 
+#: The same for a new speed while TCP is on, on controls where the block of a speed wants TCP off.
+NEW_SPEED_WITH_TCP: Final = "spindle_on_with_tcp"
+
 #: Templates for a program with subprograms: the call, the start of a subprogram, the start of one that continues an
 #: operation, and the end.
 SUBPROGRAM_TEMPLATES: Final = ("subprogram_call", "subprogram_start", "subprogram_part", "subprogram_end")

@@ -10,8 +10,8 @@ from itertools import takewhile
 from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
-from trunnion.controls.vocabulary import SPINDLE_ON
-from trunnion.model.motion import Motion
+from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, SPINDLE_ON
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -229,7 +229,15 @@ class EventWriter:
 
     def _start_spindle(self, event: SpindleOn) -> None:
         self._blocks.spindle = event
-        self._templates.write(SPINDLE_ON, spindle_values(self._program, event), self._motion)
+        program, values = self._program, spindle_values(self._program, event)
+        with_tcp = self._motion.mode is MachiningMode.TCP and NEW_SPEED_WITH_TCP in self._control.templates
+        if not (with_tcp and self._templates.speed_changes(event.rpm)):
+            self._templates.write(SPINDLE_ON, values, self._motion)
+            return
+        settings = {**self._control.settings, **program.settings_of(self._motion.operation)}
+        words = {**self._family.template_values(settings, None), **values}
+        self._templates.write(NEW_SPEED_WITH_TCP, words, self._motion)
+        self._blocks.writer.forget()  # what X, Y and Z mean has changed between
 
     def _is_switched_in(self, lines: Sequence[str], event: WordEvent) -> bool:
         """Whether lines begin with the words of an event, among other M words and settings."""

@@ -41,6 +41,10 @@ class TemplateWriter:
         self.write(name, values, motion, notices)
         writer.set_block_skip(skips)
 
+    def speed_changes(self, speed: float) -> bool:
+        """Whether a speed is another one than was printed last."""
+        return speed != self._speed
+
     def forget_speed(self) -> None:
         """Print the spindle speed again, even if it is unchanged."""
         self._speed = None

@@ -33,7 +33,7 @@ def escape_comment(text: str) -> str:
 
 def tool_call(number: int, name: str, by_name: bool) -> str:
     if by_name:
-        raise UnsupportedFeatureError(f"the toy calls tools by number, and not as {name}", "write --set tool=NUMBER")
+        raise UnsupportedFeatureError(f"tools are called by number, and not as {name}", "write --set tool=NUMBER")
     return str(number)
 
 

@@ -53,7 +53,8 @@ def tool_problems(program: Program, operation: Operation, in_spindle: str) -> li
         try:
             program.control.family.tool_call(0, name, by_name=True)
         except UnsupportedFeatureError as why:
-            problems.append(Problem(program.file_of(operation), operation.line, why.what, why.cure))
+            what = f"{program.control.name}: {why.what}"
+            problems.append(Problem(program.file_of(operation), operation.line, what, why.cure))
     return problems
 
 

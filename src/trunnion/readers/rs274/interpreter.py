@@ -20,6 +20,7 @@ from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
 from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.program.word_values import Values, fault_of_value
 from trunnion.readers.rs274.block import Block, g_code_text, split_line
 from trunnion.readers.rs274.control import CLOCKWISE, COUNTER_CLOCKWISE, Rs274Control
 from trunnion.readers.rs274.expressions import BlockError
@@ -197,6 +198,14 @@ class Rs274Interpreter(Interpreter[A]):
             self._note(f"{g_code_text(code)}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
         elif code not in without_path_effect:
             self._note(f"unknown word {g_code_text(code)}", Severity.ERROR)
+
+    def _report_values(self, block: Block, values: Mapping[tuple[int, str], Values]) -> None:
+        """Report values that a word cannot have; ``values`` by G code in tenths and letter."""
+        for (code, letter), known in values.items():
+            if code in block.g and letter in block.words:
+                fault = fault_of_value(g_code_text(code), letter, block.words[letter].value, known)
+                if fault:
+                    self._note(fault, Severity.ERROR)
 
     def _take_radius(self, code: int, block: Block) -> None:
         """Note the register D of G41 and G42; without one, the radius is that of the tool."""

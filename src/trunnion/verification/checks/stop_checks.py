@@ -12,6 +12,7 @@ import numpy as np
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Stop
 from trunnion.verification.checks.restarts import Restarts
+from trunnion.verification.checks.turns_at_the_part import stands_away
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
@@ -51,8 +52,8 @@ class _ExpectedStop:
 def check_stops(context: ComparedContext) -> Check:
     """Each dwell and stop is between its two points, and there are no others within an operation.
 
-    Between operations, where tools are changed, a program may have stops of its own. Dwells in holes belong to the
-    check of holes.
+    Between operations, where tools are changed, a program may have stops of its own, away from the part. Dwells in
+    holes belong to the check of holes.
     """
     expected = _expected_stops(context)
     found: defaultdict[int, list[_FoundStop]] = defaultdict(list)
@@ -108,7 +109,9 @@ def _compare(
     """What is wrong before one pair."""
     run = context.run
     if not _is_within_operation(context, pair):
-        stops = _asked_for(run, stops, expected)
+        every, stops = stops, _asked_for(run, stops, expected)
+        asked_for = {stop.place for stop in stops}
+        yield from _at_the_part(context, [stop for stop in every if stop.place not in asked_for])
     for wanted, stop in zip_longest(expected, stops):
         if wanted is None:
             if not _follows_insert(context, pair):
@@ -123,6 +126,18 @@ def _compare(
             if text:
                 place = context.place_of_event(stop.event, 0.0, text)
                 yield replace(place, cl_file=wanted.file, cl_line=wanted.line)
+
+
+def _at_the_part(context: ComparedContext, stops: list[_FoundStop]) -> Iterator[Place]:
+    """Stops of the program's own while the tool is at the part, where nobody expects it to wait."""
+    away = None
+    for stop in stops:
+        if stop.event.kind == "dwell":
+            continue
+        away = away or stands_away(context)
+        if not away(stop.place):
+            text = f"{_words(stop.event.kind, 0.0)} at the part, which the CL file does not ask for: retract first"
+            yield context.place_of_event(stop.event, 0.0, text)
 
 
 def _asked_for(run: Run, stops: list[_FoundStop], expected: list[_ExpectedStop]) -> list[_FoundStop]:

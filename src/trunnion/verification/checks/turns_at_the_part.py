@@ -6,6 +6,7 @@ the part turns to, so the workpiece zero must be known. One turn needs less: the
 constant tilt, in a program that has no machine positions at all, turns the part about its own zero.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -17,7 +18,11 @@ from trunnion.model.run import Run
 from trunnion.verification.checks.home_checks import home_tolerance
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.machine_positions import MachinePositions
-from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, rotary_positioning_flags
+from trunnion.verification.kinematics.positioning_moves import (
+    ROTARY_WORDS,
+    only_positions_rotary_axes,
+    rotary_positioning_flags,
+)
 from trunnion.verification.kinematics.worked_part import worked_part
 from trunnion.verification.results import Place
 from trunnion.verification.row_ranges import chunk_bounds
@@ -54,6 +59,15 @@ def turn_flags(run: Run, rows: Ints) -> Flags:
     columns = list(run.machine.rotary)
     before, after = run.positions(rows - 1).joints[:, columns], run.positions(rows).joints[:, columns]
     return np.asarray((np.abs(after - before) > STILL).any(axis=1))
+
+
+def stands_away(context: Context) -> Callable[[int], bool]:
+    """Whether the tool is away from the part at an event of the run: at home along the spindle, or behind a retract.
+
+    The function takes the place of the event among those of the run.
+    A program that has neither is not judged: it is away everywhere.
+    """
+    return _Judge(context).stands_away
 
 
 def turns_at_the_part(context: Context) -> TurnsAtThePart:
@@ -99,6 +113,20 @@ class _Judge:
                 self._judge_by_number(row, found)
         del found.places[MAX_PLACES:]
         return found
+
+    def stands_away(self, place: int) -> bool:
+        """Whether the tool is away from the part at an event, as far as the program shows it."""
+        if self._safe_height is None and not len(self._retracts):
+            return True
+        before = self._run.events[place].before_row - 1
+        while (
+            before >= 0 and not self._is_home(before) and only_positions_rotary_axes(self._run, np.array([before]))[0]
+        ):
+            before -= 1
+        if before < 0 or self._is_home(before):
+            return True
+        last = next((event for event in reversed(self._run.events[:place]) if event.kind == "retract"), None)
+        return last is not None and last.before_row >= before + (not self._run.state.machine_frame[before])
 
     def _is_retracted(self, before: int, row: int) -> bool:
         """Whether a word has retracted the tool between two rows; if that word is a motion, it is ``before``."""

@@ -123,6 +123,21 @@ def test_planes_that_nothing_can_stand_on_and_other_forms_are_named(run: Runner)
     assert [finding.line for finding in got.errors] == [2, 4, 5]
 
 
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ("G68.2 X0 Y0 Z0 I0 J20. K0\nG53.1\nG43 H1 Z50.\nG49 G53 G0 Z0\nG69", []),
+        ("G43 H1 Z50.\nG69\nG68 X0 Y0 R30.\nG69\nG49 G53 G0 Z0", []),
+        ("G68.2 X0 Y0 Z0 I0 J20. K0\nG53.1\nG43 H1 Z50.\nG53 G0 Z0\nG69\nG49", ["G69"]),
+        ("G43 H1 Z50.\nG68.2 X0 Y0 Z0 I0 J20. K0\nG53.1\nG49 G53 G0 Z0\nG69", ["G68.2"]),
+        ("G43.4 H1 Z50.\nG68 X0 Y0 Z0 I1. J0 K0 R30.\nG69\nG49 G53 G0 Z0", ["G68", "G69"]),
+    ],
+)
+def test_the_tool_length_is_switched_inside_a_plane(lines: str, words: list[str], run: Runner) -> None:
+    errors = fanuc(run, f"G90 G54 G0 X0 Y0 Z60.\n{lines}\n").errors
+    assert [error.text.split()[0] for error in errors] == words, errors
+
+
 def test_the_axes_turn_to_a_plane_inside_their_travel_by_whole_turns(run: Runner) -> None:
     nutated = load_machine("generic_nutated_b45_c", {"control": CONTROL})  # B goes from 0 to 200 degrees
     got = run("G54 G0 B195.792 C44.844\nG68.2 X0 Y0 Z0 I55.941 J88.919 K-1.599\nG53.1\nG69\n", nutated)

@@ -68,6 +68,18 @@ def test_inches(run: Runner) -> None:
     close(found.arcs.centre, [[50.8, 0, 0]])
 
 
+def test_m6_changes_the_tool_where_the_tool_has_moved_since_its_call(run: Runner) -> None:
+    found = run("TOOL CALL 3 Z S900\nM6\nM3\nL X+1 F100\nL X+2 M6\nL X+3")
+    assert found.diagnostics == ()
+    assert [event.before_row for event in found.events if event.kind == "tool_change"] == [0, 2]
+    assert found.spindle.tolist() == [1, 1, 0]
+
+
+def test_a_speed_with_tcp_on_is_an_error(run: Runner) -> None:
+    found = run("TOOL CALL 3 Z S900\nM128\nTOOL CALL Z S1000\nM129\nTOOL CALL Z S900\nM128\nL X+1 F100")
+    assert [error.line for error in found.errors] == [3]
+
+
 # Motion
 
 

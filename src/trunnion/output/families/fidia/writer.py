@@ -74,7 +74,7 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T.``: a number, for tools have no names."""
     if by_name:
-        raise UnsupportedFeatureError(f"a Fidia calls tools by number, and not as {name}", "write setting tool=NUMBER")
+        raise UnsupportedFeatureError(f"tools are called by number, and not as {name}", "write setting tool=NUMBER")
     return str(number)
 
 

@@ -43,6 +43,7 @@ class FanucControl(Rs274Control):
         self.preset = np.zeros(3)
         self.local = np.zeros(3)
         self.rotation = AffineMap()
+        self._rotated_in_space = False
         self.vectors = False
         self.plane_of_pose = False
         self.count_in(settings.unit)
@@ -99,12 +100,16 @@ class FanucControl(Rs274Control):
 
     def rotate(self, centre: Floats, direction: Floats, angle: float) -> None:
         """G68: rotate by an angle, degrees, about an axis through a point, mm, both (3,), on top of a G68 in force."""
+        if abs(abs(float(direction[self.plane_axis])) - 1.0) > 1e-12:
+            self._report_length("G68")
+            self._rotated_in_space = True
         linear = _rotation(direction, angle)
         self.rotation = self.rotation.compose(AffineMap(linear, centre - linear @ centre))
         self.update_frame()
 
     def tilt(self, origin: Floats, euler: tuple[float, float, float]) -> None:
         """G68.2: tilt the plane by its origin (3,), mm, and Euler angles Z, X, Z, degrees, in the work offset."""
+        self._report_length("G68.2")
         if self.tilted:
             self.note("G68.2 while a plane is tilted: the old one is given up", Severity.WARNING)
         first, second, third = euler
@@ -117,11 +122,19 @@ class FanucControl(Rs274Control):
         else:
             self.preconditions.require("G53.1", "moves in the plane of G68.2 before G53.1 has turned the tool to it")
 
+    def _report_length(self, word: str) -> None:
+        """Report a word that switches a plane inside a tool length: the length must be switched inside the plane."""
+        if self.length_active and not self.plane_of_pose:
+            self.note(f"{word} with a tool length in force: an alarm (PS0049); G49 comes before it", Severity.ERROR)
+
     def cancel_rotation(self) -> None:
-        """G69: cancel rotations and the tilted plane."""
+        """G69: cancel rotations and the tilted plane; one that follows the rotary position stays."""
+        if self.tilted or self._rotated_in_space:
+            self._report_length("G69")
         self.rotation = AffineMap()
+        self._rotated_in_space = False
         self.preconditions.meet("G53.1")
-        if self.tilted:
+        if self.tilted and not self.plane_of_pose:
             self.set_plane(None)
             self.add_event("tilt", "")
         self.update_frame()

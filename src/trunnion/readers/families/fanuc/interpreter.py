@@ -34,6 +34,7 @@ class FanucInterpreter(CycleInterpreter):
         super().__init__(path, machine, options)
         # The last H, -1 before the first.
         self._length_number = -1
+        self._needs_number = self.control.settings.needs_program_number
         self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
 
     @property
@@ -45,7 +46,7 @@ class FanucInterpreter(CycleInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        in_doubt = self._spindle_stands or self._not_stated
+        in_doubt = self._spindle_stands or self._not_stated or self._needs_number
         return self._stack[-1].modal is None and not in_doubt and super()._may_scan(source)
 
     def _system_value(self, key: int) -> float | None:
@@ -67,8 +68,12 @@ class FanucInterpreter(CycleInterpreter):
 
     def _execute_block(self, active: ActiveProgram, line: int, text: str) -> None:
         if text[0] in "O:":
+            self._needs_number = False
             self._program_number(active, line, text)
             return
+        if self._needs_number:
+            self._needs_number = False
+            self._note("the program begins without its number: write O and digits first", Severity.ERROR)
         reader = block_reader(text, ARITHMETIC, self._variables)
         if self._flow.accept(active, line, reader):
             return
@@ -139,11 +144,13 @@ class FanucInterpreter(CycleInterpreter):
         if words.DWELL not in block.g:
             angles = "IJKR" if words.TILT in block.g else ""
             mode, inches = control.modal.feed_mode.current, control.length_unit != 1.0
-            control.settings.scale(block, mode, inches, angles=angles)
+            plain = {letter for code, letter in words.VALUES if code in block.g}
+            control.settings.scale(block, mode, inches, angles=angles, plain=plain)
 
     def _g_codes(self, block: Block) -> int | None:
         """Execute the modal G codes; returns the one that takes the axis words, if any."""
         with_axis_words = None
+        self._report_values(block, words.VALUES)
         for code in block.g:
             if code in words.TAKING_AXIS_WORDS:
                 if with_axis_words is not None:
@@ -157,7 +164,7 @@ class FanucInterpreter(CycleInterpreter):
 
     def _g_code(self, code: int, block: Block) -> None:
         control = self.control
-        if code == words.CONTOUR and ((mode := block.take("Q")) is None or mode < 0.0):
+        if code == words.CONTOUR and "Q" not in block.words:
             self._note("G5.1 needs Q1 for on, or Q0 for off", Severity.ERROR)
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)

@@ -12,6 +12,7 @@ from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.calls import CallInterpreter
 from trunnion.readers.families.fanuc.work_offsets import extended_offset, offset_name
+from trunnion.readers.program.word_values import fault_of_value
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
 
@@ -69,6 +70,8 @@ class OffsetInterpreter(CallInterpreter):
         for letter in "XU":
             block.take(letter)
         milliseconds = block.take("P")
+        if (milliseconds or 0.0) < 0.0 or (number is not None and number.value < 0.0):
+            raise BlockError("a dwell below zero")
         if number is not None:
             unit = self.control.settings.seconds if number.whole else 1.0
             self.control.add_event("dwell", number.value * unit)
@@ -105,6 +108,12 @@ class OffsetInterpreter(CallInterpreter):
         """G10: set a work offset, or data of tools."""
         control = self.control
         kind, number = block.take("L"), block.take("P")
+        known = words.DATA_NUMBERS.get(int(kind)) if kind is not None and kind == int(kind) else None
+        fault = "" if known is None or number is None else fault_of_value(f"G10 L{kind:g}", "P", number, known)
+        if fault:
+            for letter in "RXYZQDH":
+                block.take(letter)
+            raise BlockError(fault)
         if kind in (10.0, 11.0, 12.0, 13.0, 1.0, 3.0):
             for letter in "RXYZQDH":
                 block.take(letter)
@@ -119,8 +128,6 @@ class OffsetInterpreter(CallInterpreter):
                 block.take(letter)
             raise BlockError("G10 with this L and P is not simulated")
         values = self._point(block)
-        if kind == 2.0 and not 1 <= number <= 6:
-            raise BlockError("G10 L2 with this P is not simulated")
         system = int(number) if kind == 2.0 else 6 + int(number)
         old = control.offset_of(system)
         added = [

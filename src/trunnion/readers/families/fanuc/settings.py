@@ -1,5 +1,6 @@
 """Settings of a Fanuc: how numbers without a decimal point count."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Final
 
@@ -35,6 +36,7 @@ class Settings:
     m_codes_last       M codes act at the end of their block, which may have one
     repeat_letter      the letter of how often a cycle drills: K, or L where I, J and K describe pecks
     program_digits     digits of program numbers in M98 P; more say how often
+    needs_program_number  a main program begins with its O number
     threads_stop_spindle  the spindle stands still after threads, until M3 or M4
     extended_offsets  the highest P of G54.1, or of the word that the control has in its place
     whole_feeds_count  whole numbers of F count in least increments, whatever the feed mode
@@ -48,6 +50,7 @@ class Settings:
     m_codes_last: bool = False
     repeat_letter: str = "K"
     program_digits: int = 4
+    needs_program_number: bool = False
     threads_stop_spindle: bool = False
     whole_feeds_count: bool = False
     extended_offsets: int = HIGHEST_EXTENDED
@@ -80,12 +83,17 @@ class Settings:
             return self.length(inches)
         return 1.0 if self.calculator else _FEEDS.get((mode, inches), 1.0)
 
-    def scale(self, block: Block, mode: int, inches: bool, *, angles: str = "") -> None:
-        """Scale the whole numbers of a block by their units; the letters ``angles`` are angles besides A, B and C."""
+    def scale(
+        self, block: Block, mode: int, inches: bool, *, angles: str = "", plain: Collection[str] = frozenset()
+    ) -> None:
+        """Scale the whole numbers of a block by their units.
+
+        The letters ``angles`` are angles besides A, B and C; those in ``plain`` count as they are written.
+        """
         if self.calculator:
             return
         for letter, number in block.words.items():
-            if not number.whole:
+            if not number.whole or letter in plain:
                 continue
             if letter in ANGLES or letter in angles:
                 factor = self.angle
@@ -119,6 +127,7 @@ def settings_of(machine: Machine) -> Settings:
         m_codes_last=table.text("m_codes", "each", one_of=("each", "last")) == "last",
         repeat_letter=table.text("cycles_repeat_with", "K", one_of=("K", "L")),
         program_digits=table.integer("program_digits", 4, at_least=4, at_most=8),
+        needs_program_number=table.flag("needs_program_number", False),
         threads_stop_spindle=table.flag("threads_stop_spindle", False),
         whole_feeds_count=table.text("whole_feeds", "feeds", one_of=("feeds", "increments")) == "increments",
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),

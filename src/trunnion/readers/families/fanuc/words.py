@@ -2,6 +2,8 @@
 
 from typing import Final
 
+from trunnion.readers.program.word_values import one_of, whole
+
 #: Work offsets G54 to G59.
 OFFSETS: Final = (540, 550, 560, 570, 580, 590)
 MORE_OFFSETS: Final = 541
@@ -118,6 +120,24 @@ WORDS_OF_CODE: Final = {
     921: "XYZABC",
     960: "PRS",
 }
+
+#: What the values of these words may be, by G code and letter. They count as written, also without a point. G5.1 Q2 and
+#: Q3 (smooth interpolation, nano smoothing) round within the tolerance of the control.
+VALUES: Final = {
+    (50, "P"): one_of(0, 10000),
+    (CONTOUR, "Q"): whole(0, 3),
+    (CONTOUR, "R"): whole(1, 10),
+    (80, "P"): one_of(0, 1),
+    (430, "H"): whole(0, 999),
+    (440, "H"): whole(0, 999),
+    (410, "D"): whole(0, 999),
+    (420, "D"): whole(0, 999),
+    (ALIGN_TOOL, "P"): whole(0, 2),
+    (OTHER_HOME, "P"): whole(2, 4),
+}
+
+#: G10: what P may be, by L. Those besides L2 and L20 are data of tools.
+DATA_NUMBERS: Final = {2: whole(1, 6), 20: whole(1, 300), **dict.fromkeys((1, 3, 10, 11, 12, 13), whole(1, 999))}
 
 #: M codes that act after the motion of their block.
 AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198})

@@ -76,6 +76,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
     def _execute_words(self, block: Block, tool: str | None) -> None:
         control = self.control
         selected = False
+        self._report_values(block, words.VALUES)
         for code in block.g:
             if code in MOTIONS or code in cycles.CYCLES or code == CANCEL:
                 selected = True
@@ -139,6 +140,8 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         seconds = block.take("H")
         if seconds is None:
             self._note("G4 without a time HD", Severity.WARNING)
+        elif seconds < 0.0:
+            raise BlockError("a dwell below zero")
         else:
             self.control.add_event("dwell", seconds)
 

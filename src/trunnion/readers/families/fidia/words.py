@@ -2,6 +2,8 @@
 
 from typing import Final
 
+from trunnion.readers.program.word_values import one_of
+
 OFFSET: Final = 550
 #: The value of the column ``work_offset`` for O0, which there is not: O1 is one more.
 OFFSET_BASE: Final = 500
@@ -31,6 +33,9 @@ NO_MOTION: Final = frozenset({200, 210, 220, 230})
 
 #: Words that belong to a G code and have no effect here.
 WORDS_OF_CODE: Final = {170: "Q", 180: "Q", 190: "Q", 210: "XYZ", 220: "XYZIJKP", 230: "XYZIJKP", 410: "D", 420: "D"}
+
+#: What the values of these words may be, by G code and letter: Q1 is the tool along the positive axis.
+VALUES: Final = {(code, "Q"): one_of(1) for code in (170, 180, 190)}
 
 #: M codes: the tool change with its offset, and the retract of Z.
 TOOL: Final = 306

@@ -37,6 +37,8 @@ class HeidenhainControl(PlaneControl):
         self.pole: Floats | None = None
         # A tool has been called: its length counts where positions are those of the slides.
         self._length_active = False
+        # The row before which the last tool was fetched.
+        self._fetched_from = -1
         # The first row from which on ``columns.xyz`` has the present meaning.
         self._comparable_from = 0
         super().__init__(machine, note, shortest=shortest)
@@ -109,6 +111,8 @@ class HeidenhainControl(PlaneControl):
 
     def call_tool(self, name: str | None, tool_axis: int | None) -> None:
         """TOOL CALL: another tool, or None; and another tool axis, which is normal to the working plane, or None."""
+        if self.tcp and name is None:
+            self.note("TOOL CALL with M128 on: switch it off before (M129), and on again after", Severity.ERROR)
         if name is not None:
             self.select_tool(name)
         active = self._length_active if name is None else name.strip("0") != ""
@@ -119,6 +123,13 @@ class HeidenhainControl(PlaneControl):
         else:
             self._length_active, self.plane_axis = active, along
         if name is not None:
+            self.end_operation("changes the tool")
+            self.change_tool()
+            self._fetched_from = self.row
+
+    def fetch_tool(self) -> None:
+        """M6: change to the tool that TOOL CALL has called, unless the tool has not moved since then."""
+        if self._fetched_from != self.row:
             self.end_operation("changes the tool")
             self.change_tool()
 

@@ -38,7 +38,9 @@ from trunnion.readers.families.heidenhain.words import (
     SCALING,
     TILT,
     TOLERANCE,
+    TOLERANCE_WORDS,
 )
+from trunnion.readers.program.word_values import Values
 
 _NUMBER = re.compile(r"[ \t]*([0-9]{1,4})(?:\.([0-9]{1,2}))?(?![0-9.])")
 _ASSIGNED = re.compile(
@@ -215,6 +217,13 @@ class Definitions:
 
     def _tolerance(self, line: int, block_words: list[Word], parameters: Parameters) -> None:
         """Cycle 32: the tolerance T of its first line; without one the machine's own holds again."""
+        for word in block_words:
+            known = TOLERANCE_WORDS.get((line, word.name))
+            value = None if word.operand is None else value_of(word.operand, parameters)
+            if known is None or value is None:
+                raise KlartextError(f"unknown word {word.name} in line {line} of cycle 32")
+            if value < 0.0 or (isinstance(known, Values) and value not in known):
+                raise KlartextError(f"{word.name}{value:g} in line {line} of cycle 32: the control does not know it")
         if line == 1:
             operands = [word.operand for word in block_words if word.name == "T" and word.operand is not None]
             tolerance = value_of(operands[0], parameters) if operands else 0.0

@@ -10,12 +10,16 @@ from typing import Final
 
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion, finite
+from trunnion.readers.program.word_values import one_of
 
 #: How far the tool moves off the wall of a bored hole, mm: a fixed value of the control.
 BORING_LIFT_OFF: Final = 0.2
 
 #: Q parameters of feeds that may be rapid, which is infinite here.
 MAY_BE_RAPID: Final = frozenset({208})
+
+#: Values of Q parameters: the depth counts from the tip of the tool (Q395), and the sense of bore milling (Q351).
+Q_VALUES: Final = {395: one_of(0), 351: one_of(-1, 0, 1)}
 
 #: Directions of Q214 in the first and second axis of the plane.
 _LIFT_DIRECTIONS: Final = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
@@ -85,6 +89,9 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
     rpm
         Spindle speed, for rigid taps.
     """
+    for parameter, known in Q_VALUES.items():
+        if parameter in values and values[parameter] not in known:
+            raise CycleExecutionError(f"has Q{parameter}={values[parameter]:g}, and is known with {known} only")
     hole = Hole(values, rpm)
     motions = [
         replace(motion, rapid=True, feed=None) if motion.feed == math.inf else motion for motion in CYCLES[number](hole)

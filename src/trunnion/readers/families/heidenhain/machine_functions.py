@@ -28,9 +28,12 @@ from trunnion.readers.families.heidenhain.words import (
     M_SHORTEST,
     M_TCP,
     M_TCP_OFF,
+    M_TOOL_CHANGE,
+    M_VALUES,
     M_WITHOUT_PATH_EFFECT,
 )
 from trunnion.readers.program.interpreter import ProgramEnd
+from trunnion.readers.program.word_values import fault_of_value
 
 #: M functions that are executed elsewhere, or that the path does not depend on.
 _HANDLED_ELSEWHERE: Final = frozenset({M_MACHINE, M_SECOND_MACHINE, M_CALL, *M_EVENTS, *M_WITHOUT_PATH_EFFECT})
@@ -69,6 +72,10 @@ class MFunctions:
 
     def _execute(self, code: int, arguments: dict[str, float | None]) -> None:
         control = self._control
+        for (owner, letter), known in M_VALUES.items():
+            given = arguments.get(letter) if owner == code else None
+            if given is not None and (fault := fault_of_value(f"M{code}", letter, given, known)):
+                self._note(fault, Severity.ERROR)
         for kind, value in M_EVENTS.get(code, ()):
             control.add_event(kind, value)
         if code in (M_SHORTEST, M_NOT_SHORTEST):
@@ -84,6 +91,9 @@ class MFunctions:
             control.feed_at_tip(code == M_FEED_AT_TIP)
         elif code == M_RETRACT:
             self._retract(arguments)
+        elif code == M_TOOL_CHANGE:
+            control.add_event("spindle", "off")
+            control.fetch_tool()
         elif code == M_CALL_MODAL:
             self.modal_call = True
         elif code in M_PROGRAM_ENDS:

@@ -2,6 +2,8 @@
 
 from typing import Final
 
+from trunnion.readers.program.word_values import one_of, whole
+
 
 def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
@@ -46,6 +48,7 @@ M_PER_TURN: Final = 136
 M_PER_MINUTE: Final = 137
 M_FEED_AT_TIP: Final = 116
 M_FEED_IN_DEGREES: Final = 117
+M_TOOL_CHANGE: Final = 6
 M_PROGRAM_ENDS: Final = frozenset({2, 30})
 
 #: M functions that make events: kinds and values, in order.
@@ -63,7 +66,9 @@ M_EVENTS: Final = {
 }
 
 #: M functions that act after the motion of their block.
-M_AFTER_MOTION: Final = frozenset({0, 1, 5, 9, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_CALL}) | M_PROGRAM_ENDS
+M_AFTER_MOTION: Final = M_PROGRAM_ENDS | {
+    0, 1, 5, 9, M_TOOL_CHANGE, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_CALL,
+}  # fmt: skip
 
 #: M functions that the path does not depend on.
 M_WITHOUT_PATH_EFFECT: Final = {
@@ -131,6 +136,12 @@ TILT: Final = 19
 AXIS_SCALING: Final = 26
 TOLERANCE: Final = 32
 PRESET: Final = 247
+
+#: Words of cycle 32 by line, with what their values may be; True: any that is not below zero.
+TOLERANCE_WORDS: Final = {(1, "T"): True, (2, "HSC-MODE"): one_of(0, 1), (2, "TA"): True}
+
+#: Values of the words that belong to an M function.
+M_VALUES: Final = {(120, "LA"): whole(0, 99)}
 
 #: Its path is simulated without the tool radius.
 BORE_MILLING: Final = 208

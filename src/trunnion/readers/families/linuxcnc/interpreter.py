@@ -15,6 +15,7 @@ from trunnion.readers.families.linuxcnc.flow import ActiveProgram
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC
 from trunnion.readers.families.linuxcnc.text import LinuxcncText
 from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.program.word_values import fault_of_value
 from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
@@ -129,6 +130,7 @@ class LinuxcncInterpreter(CycleInterpreter):
     def _g_codes(self, block: Block) -> int | None:
         """Execute the G codes of a block other than motions; returns that of ``words.SPECIAL``, if any."""
         special = None
+        self._report_values(block, words.VALUES)
         for code in block.g:
             if code in words.SPECIAL:
                 special = code
@@ -165,8 +167,9 @@ class LinuxcncInterpreter(CycleInterpreter):
             control.set_offset(_offset_code(control.system), f"G{code / 10:g}")
             control.update_frame()
         elif code == words.CONTINUOUS:
-            tolerance = block.take("P")
-            block.take("Q")
+            tolerance, naive = block.take("P"), block.take("Q")
+            if (tolerance or 0.0) < 0.0 or (naive or 0.0) < 0.0:
+                self._note("G64 with a tolerance below zero", Severity.ERROR)
             # P0 is no tolerance: the control keeps its speed, as without P.
             control.add_tolerance(tolerance * control.length_unit if tolerance else np.inf)
         elif code in (610, 611):
@@ -208,7 +211,10 @@ class LinuxcncInterpreter(CycleInterpreter):
     def _m_code(self, code: int, block: Block) -> None:
         control = self.control
         for letter in words.WITHOUT_PATH_EFFECT_M.get(code, "") or words.WORDS_OF_M_CODE.get(code, ""):
-            block.take(letter)
+            value, known = block.take(letter), words.VALUES_M.get((code, letter))
+            fault = "" if value is None or known is None else fault_of_value(f"M{code}", letter, value, known)
+            if fault:
+                self._note(fault, Severity.ERROR)
         if code in (words.TCP_ON, words.TCP_OFF):
             control.set_tcp(code == words.TCP_ON)
         elif code == 61:

@@ -2,6 +2,8 @@
 
 from typing import Final
 
+from trunnion.readers.program.word_values import one_of, whole
+
 #: Work offsets, in the order of their numbers in G10 and ``#5220``.
 OFFSETS: Final = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 
@@ -100,6 +102,18 @@ WITHOUT_PATH_EFFECT_M: Final = {
     66: "PELQ",
     67: "EQ",
     68: "EQ",
+}
+
+#: What the values of these words may be, by G code or M code, and letter.
+VALUES: Final = {(430, "H"): whole(0, 99999), (410, "D"): whole(0, 99999), (420, "D"): whole(0, 99999)}
+VALUES_M: Final = {
+    **{(code, "P"): one_of(0, 1) for code in (50, 51, 52, 53)},
+    **{(code, "P"): whole(0, 63) for code in (62, 63, 64, 65)},
+    **{(66, letter): whole(0, 63) for letter in "PE"},
+    (66, "L"): whole(0, 4),
+    (67, "E"): whole(0, 63),
+    (68, "E"): whole(0, 63),
+    (19, "P"): whole(0, 2),
 }
 
 #: Words that belong to other M codes and have no effect here.

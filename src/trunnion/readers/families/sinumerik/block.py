@@ -19,6 +19,7 @@ from trunnion.readers.families.sinumerik.words import (
     FRAMES,
     NOT_SIMULATED,
     ORIENTATION,
+    OTHER_FEEDS,
     POSITION_MODES,
     TOLERANCES,
     TOOL_DELTAS,
@@ -291,6 +292,8 @@ class BlockReader:
             block.deltas[name] = _number(value)
         elif name in TOLERANCES:
             block.tolerances.append(_number(value))
+        elif name in OTHER_FEEDS and value != OTHER_FEEDS[name]:
+            raise ExpressionError(f"{name} changes the feed: not simulated")
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read and report a word that is not simulated, with everything that belongs to it."""

@@ -6,6 +6,7 @@ from trunnion.errors import Severity
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
+from trunnion.readers.families.sinumerik.words import SWIVEL_DIRECTIONS, SWIVEL_RETRACTS, SWIVEL_STYLES
 
 #: Larger values are mistakes of the program.
 MAX_ARGUMENT = 1e7
@@ -41,6 +42,14 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     if any(abs(value) > MAX_ARGUMENT for value in numbers):
         note("CYCLE800 with numbers that no machine has: it is not executed", Severity.ERROR)
         return
+    wanted = (
+        ("_FR", retract, SWIVEL_RETRACTS),
+        ("_ST", style % 10, SWIVEL_STYLES),
+        ("_DIR", direction, SWIVEL_DIRECTIONS),
+    )
+    for name, value, known in wanted:
+        if value not in known:
+            note(f"CYCLE800 with {name} {value:g}: the control knows {known} there", Severity.ERROR)
     if control.modal.edge.current == 0:
         note("CYCLE800 works with the tool length, and D0 is in force: write D1 before it", Severity.ERROR)
     if retract:

@@ -11,6 +11,7 @@ from typing import Final
 
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion
+from trunnion.readers.families.sinumerik.words import CYCLE_VALUES
 
 #: How far a chip-breaking peck backs off by default, mm.
 CHIP_BREAK: Final = 1.0
@@ -144,6 +145,9 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
 
     plane_axis   the axis along which it drills here: that perpendicular to the working plane
     """
+    for place, known in CYCLE_VALUES.get(name, {}).items():
+        if (value := _or(arguments, place)) not in known:
+            raise CycleExecutionError(f"has {value:g} as its value {place}: the control knows {known} there")
     place = _AXIS_PLACES.get(name, 0)
     axis = _or(arguments, place) if place else 0.0
     if axis and axis != plane_axis + 1:

@@ -16,6 +16,7 @@ from trunnion.readers.families.sinumerik.block import Block, BlockReader, Call
 from trunnion.readers.families.sinumerik.calls import CallInterpreter
 from trunnion.readers.families.sinumerik.control import CLOCKWISE, COUNTER_CLOCKWISE, THROUGH, SinumerikControl
 from trunnion.readers.families.sinumerik.cycle800 import swivel
+from trunnion.readers.families.sinumerik.cycle832 import smooth
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader, Value
 from trunnion.readers.families.sinumerik.flow import ActiveProgram
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement
@@ -23,7 +24,6 @@ from trunnion.readers.families.sinumerik.text import SinumerikText
 from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Token, TokenKind, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
-    CONSTANTS,
     FRAMES,
     G_FEEDS,
     G_LIMITS,
@@ -330,7 +330,7 @@ class SinumerikInterpreter(CallInterpreter):
         if name in cycles.CYCLES:
             self._drill(call)
         elif name == "CYCLE832":
-            self._smooth(call)
+            smooth(control, call)
         elif name == "CYCLE800":
             swivel(control, call)
         elif name == "MSG":
@@ -339,18 +339,6 @@ class SinumerikInterpreter(CallInterpreter):
         else:
             assert name == "SETAL"
             control.add_event("message", f"SETAL({', '.join(call.argument_texts)})")
-
-    def _smooth(self, call: Call) -> None:
-        """CYCLE832: within the first value; the ones of the second are the machining type, 0 for off."""
-        control = self.control
-        values = zip(call.argument_texts, call.arguments, strict=True)
-        control.add_event("cycle832", tuple(text if text in CONSTANTS else value for text, value in values))
-        tolerance, mode = (*call.arguments, None, None)[:2]
-        given = tolerance if isinstance(tolerance, float) else 0.0
-        if given < 0.0 or (given == 0.0 and isinstance(mode, float) and int(mode) % 10):
-            text = f"CYCLE832 smooths within {given:g}: give its first value, such as 0.02, or _OFF"
-            self._note(text, Severity.ERROR)
-        control.add_tolerance(given * control.length_unit)
 
     def _drill(self, call: Call) -> None:
         try:

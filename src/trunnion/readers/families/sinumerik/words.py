@@ -3,6 +3,7 @@
 from typing import Final
 
 from trunnion.readers.control.iso_m_codes import PROGRAM_ENDS
+from trunnion.readers.program.word_values import Values, one_of, whole
 
 
 def _words(text: str) -> frozenset[str]:
@@ -136,6 +137,27 @@ TOLERANCES: Final = frozenset({"ADIS", "CTOL", "ATOL"})
 
 #: Those that add to the length or the radius of the tool.
 TOOL_DELTAS: Final = frozenset({"TOFFL", "TOFFR", "TOFF", "TOFFLR"})
+
+#: Those that put another feed in place of F, or a share of it: their value where they change nothing, percent.
+OTHER_FEEDS: Final = {"OVR": 100.0, "FB": None, "FD": None, "FDA": None, "FZ": None}
+
+#: Mode of CYCLE832: the machining type, in tens whether the second tolerance is that of the orientation, in millions
+#: the smoothing of surfaces. The digits in between are those of older software.
+SMOOTHING_TYPES: Final = whole(0, 4)
+SMOOTHING_ORIENTATION: Final = one_of(0, 1)
+SMOOTHING_SURFACES: Final = whole(0, 2)
+
+#: CYCLE800: what the retract (_FR), the last digit of _ST and the direction (_DIR) may be.
+SWIVEL_RETRACTS: Final = whole(0, 8)
+SWIVEL_STYLES: Final = one_of(0, 1)
+SWIVEL_DIRECTIONS: Final = one_of(-1, 0, 1)
+
+#: Values of drilling cycles by their place in the list, from 1: the kinds of pecks (VARI), units of pitches (_PITA).
+CYCLE_VALUES: Final[dict[str, dict[int, Values]]] = {
+    "CYCLE83": {12: one_of(0, 1)},
+    "CYCLE84": {14: whole(0, 4), 16: whole(0, 2)},
+    "CYCLE840": {13: whole(0, 4)},
+}
 
 #: Words with arguments that the path does not depend on.
 WITHOUT_PATH_EFFECT_CALLS: Final = _words("""

@@ -1,0 +1,44 @@
+"""CYCLE832: within what tolerance the control may smooth the path."""
+
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.readers.families.sinumerik.block import Call
+from trunnion.readers.families.sinumerik.control import SinumerikControl
+from trunnion.readers.families.sinumerik.words import (
+    CONSTANTS,
+    SMOOTHING_ORIENTATION,
+    SMOOTHING_SURFACES,
+    SMOOTHING_TYPES,
+)
+
+#: The cycle takes no more values.
+_MOST_ARGUMENTS: Final = 3
+
+
+def smooth(control: SinumerikControl, call: Call) -> None:
+    """Execute a call: within the first value; the ones of the second are the machining type, 0 for off."""
+    values = zip(call.argument_texts, call.arguments, strict=True)
+    control.add_event("cycle832", tuple(text if text in CONSTANTS else value for text, value in values))
+    tolerance, mode, orientation = (*call.arguments, None, None, None)[:3]
+    if len(call.arguments) > _MOST_ARGUMENTS or (isinstance(orientation, float) and orientation < 0.0):
+        text = "CYCLE832 takes a tolerance, a mode, and a tolerance of the orientation that is not below zero"
+        control.note(text, Severity.ERROR)
+    if isinstance(mode, float) and not _is_mode(mode):
+        control.note(f"CYCLE832 with the mode {mode:g}, which the control does not have", Severity.ERROR)
+    given = tolerance if isinstance(tolerance, float) else 0.0
+    if given < 0.0 or (given == 0.0 and isinstance(mode, float) and int(mode) % 10):
+        text = f"CYCLE832 smooths within {given:g}: give its first value, such as 0.02, or _OFF"
+        control.note(text, Severity.ERROR)
+    control.add_tolerance(given * control.length_unit)
+
+
+def _is_mode(mode: float) -> bool:
+    """Whether a mode is one that the control has."""
+    if not 0.0 <= mode == int(mode):
+        return False
+    rest, kind = divmod(int(mode), 10)
+    surfaces, rest = divmod(rest, 100_000)
+    older = rest > 9  # digits of older software, which say what else is switched
+    known = kind in SMOOTHING_TYPES and surfaces in SMOOTHING_SURFACES and rest % 10 in SMOOTHING_ORIENTATION
+    return known and not (older and surfaces)

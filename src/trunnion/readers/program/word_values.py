@@ -1,0 +1,36 @@
+"""What the value of a word may be on a control; another one has no meaning, or one that the reader does not know."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """Values that a word may have: those of ``single``, and all from ``least`` to ``greatest``, whole ones only."""
+
+    single: tuple[float, ...] = ()
+    least: float = 0.0
+    greatest: float = -1.0
+
+    def __contains__(self, value: float) -> bool:
+        return value in self.single or (self.least <= value <= self.greatest and value == int(value))
+
+    def __str__(self) -> str:
+        parts = [f"{value:g}" for value in self.single]
+        if self.least <= self.greatest:
+            parts.append(f"whole numbers from {self.least:g} to {self.greatest:g}")
+        return " or ".join(parts)
+
+
+def one_of(*values: float) -> Values:
+    """Return single values."""
+    return Values(values)
+
+
+def whole(least: float, greatest: float) -> Values:
+    """Return the whole numbers between two, both included."""
+    return Values((), least, greatest)
+
+
+def fault_of_value(word: str, letter: str, value: float, known: Values) -> str:
+    """Return what is wrong with the value of a word; empty if it is known."""
+    return "" if value in known else f"{word} {letter}{value:g}: the control knows {known} there"
