@@ -234,11 +234,11 @@ def test_klartext_keeps_radius_compensation(tmp_path: Path) -> None:
 
 
 def test_fanuc_keeps_the_register_of_radius_compensation(tmp_path: Path) -> None:
-    text = "G21 G90 G94\nT5 M6\nG54 S500 M3\nG43 H5 G0 X0. Y0. Z50.\nG41 D{d} G1 X1. F100.\nX2.\nG40 X3.\nM30\n"
+    text = "O1\nG21 G90 G94\nT5 M6\nG54 S500 M3\nG43 H5 G0 X0. Y0. Z50.\nG41 D{d} G1 X1. F100.\nX2.\nG40 X3.\nM30\n"
     for number, register in ((15, 15), (5, 0)):
         found = converted(text.format(d=number), load_machine("matsuura_mx330"), tmp_path)
         (operation,) = found.toolpath.operations
-        assert CutterComp(1, 5, "LEFT", "", register) in operation.events
+        assert CutterComp(1, 6, "LEFT", "", register) in operation.events
 
 
 @pytest.mark.parametrize(

@@ -44,6 +44,10 @@ def test_a_program_that_was_proven_is_verified_and_a_digit_more_is_found(
     found = trunnion.verify(nc, machine=machine, cl=cl, columns=False, **at)  # type: ignore[arg-type]
     failed = [check.summary for check in found.checks if not check.passed]
     assert not failed
+    twin = tmp_path / "twin.nc"
+    if units == "inch":
+        trunnion.post(cl, machine=machine, output=twin, settings={"zero": "0,0,0", "tool_length": "100"})
+        assert trunnion.diff(nc, twin, machine=machine).same
     # The last coordinate of a cut in the plane, by some digits.
     text = nc.read_text()
     k = next(match.start() for match in re.finditer(r"-?33\.3353|-?33\.335(?!\d)|-?1\.3124\d?", text))
@@ -52,3 +56,4 @@ def test_a_program_that_was_proven_is_verified_and_a_digit_more_is_found(
     nc.write_text(text[:k] + changed + text[k + len(number) :])
     found = trunnion.verify(nc, machine=machine, cl=cl, columns=False, **at)  # type: ignore[arg-type]
     assert "tip" in [check.key for check in found.checks if not check.passed]
+    assert units == "mm" or not trunnion.diff(nc, twin, machine=machine).same

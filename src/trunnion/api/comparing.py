@@ -1,6 +1,7 @@
 """Comparison of two NC programs by what they make the tool do."""
 
 from collections.abc import Sequence
+from typing import Final
 
 from trunnion import readers
 from trunnion.api.reading import FilePath, MachineLike, as_machine, as_run
@@ -11,6 +12,10 @@ from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.verification import Comparison, compare, restore_rapids
 
+#: How far tips may be apart, mm: the last digit of most programs; and that of programs in inches.
+_DEFAULT_TOLERANCE: Final = 0.001
+_INCH_TOLERANCE: Final = 0.0026
+
 
 def diff(
     first: FilePath | Run,
@@ -20,7 +25,7 @@ def diff(
     to_machine: MachineLike | None = None,
     subprograms: Sequence[FilePath] = (),
     to_subprograms: Sequence[FilePath] = (),
-    tolerance: float = 0.001,
+    tolerance: float = _DEFAULT_TOLERANCE,
     path: bool = False,
 ) -> Comparison:
     """Compare what two NC programs make the tool do, whatever their words.
@@ -36,7 +41,8 @@ def diff(
     subprograms, to_subprograms
         Files of the subprograms that each program calls. No others are opened.
     tolerance
-        How far tips may be apart, mm, and tool axes, degrees.
+        How far tips may be apart, mm, and tool axes, degrees. The default is 0.0026 mm for tips if one of the programs
+        is in inches: their last digit is 0.0001 inch.
     path
         Compare where the tool goes, and whether at rapid, but not feed, spindle, tool and coolant.
 
@@ -67,7 +73,8 @@ def diff(
         _run(first, one, subprograms, ("first", "subprograms")),
         _run(second, two, to_subprograms, ("second", "to_subprograms")),
     )
-    return compare(*runs, tolerance, path=path)
+    coarse = tolerance == _DEFAULT_TOLERANCE and any(run.state.inches.values.any() for run in runs)
+    return compare(*runs, _INCH_TOLERANCE if coarse else tolerance, axis_tolerance=tolerance, path=path)
 
 
 def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath], names: tuple[str, str]) -> Run:

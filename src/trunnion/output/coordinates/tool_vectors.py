@@ -23,6 +23,9 @@ _SAME_DISTANCE: Final = 1e-9
 #: By how much they must differ where the last digit of a vector may have turned an axis, degrees.
 _DIGIT_MARGIN: Final = 1e-4
 
+#: An axis is at its limit within this, degrees.
+_AT_LIMIT: Final = 1e-7
+
 #: The position of an axis that cannot get there, degrees.
 _UNREACHABLE: Final = 1e9
 
@@ -109,7 +112,9 @@ def leading_axis_pose_is_planned(
 
     Of two positions it takes the one to which the leading axis turns less, and if that is equal, the one to which the
     other axis turns less. Only the choice between the two counts: what a vector leaves open near the pole does not
-    change the tool axis. Axis limits do not count, for the control may not know them.
+    change the tool axis. Axis limits do not count for the other position, for the control may not know them. The planned
+    one must be inside them as the printed vector has it: the last digit may turn an axis beyond the limit at which it
+    is planned, and a control that knows the limit takes the other position.
 
     Parameters
     ----------
@@ -127,6 +132,7 @@ def leading_axis_pose_is_planned(
     """
     solutions, pole = _rotary_solutions(machine, vectors, before)
     right = np.all(np.abs(_distance_to_plan(machine, solutions, rotary)) <= 0.5 * _CLEAR_MARGIN, axis=2)
+    inside = _inside_travel(machine, solutions)
     steps = np.abs(solutions - before)
     planned = np.zeros(len(vectors), np.bool_)
     slack = np.where(placed, _SAME_DISTANCE, -_DIGIT_MARGIN)
@@ -136,8 +142,19 @@ def leading_axis_pose_is_planned(
         nearer = (more[:, leading] < -_CLEAR_MARGIN) | (
             (more[:, leading] <= slack) & (more[:, 1 - leading] < -_CLEAR_MARGIN)
         )
-        planned |= np.asarray(right[this] & nearer, np.bool_)
+        planned |= np.asarray(right[this] & nearer & inside[this], np.bool_)
     return planned & ~pole
+
+
+def _inside_travel(machine: Machine, solutions: Floats) -> Flags:
+    """Which positions (2, n, 2) are inside the travel of both axes, (2, n) bool."""
+    inside = np.ones(solutions.shape[:2], np.bool_)
+    for k, column in enumerate(machine.rotary):
+        axis = machine.axes[column]
+        if not axis.endless:
+            angle = solutions[:, :, k]
+            inside &= (angle >= axis.low - _AT_LIMIT) & (angle <= axis.high + _AT_LIMIT)
+    return inside
 
 
 def _rotary_solutions(machine: Machine, vectors: Floats, before: Floats) -> tuple[Floats, Flags]:

@@ -36,14 +36,14 @@ _KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "line", Kind.ARC: "circle"}
 class Comparer:
     """Follows both programs together; ``i`` and ``j`` count their motions."""
 
-    def __init__(self, one: Run, two: Run, tolerance: float, path: bool) -> None:
+    def __init__(self, one: Run, two: Run, tolerance: float, axis_tolerance: float, path: bool) -> None:
         coolants: dict[str, int] = {}
         tools: dict[str, int] = {}
         same_machine = one.machine is two.machine or one.machine.key == two.machine.key
         self._one = MovingRows(one, same_machine, coolants, tools)
         self._two = MovingRows(two, same_machine, coolants, tools)
         self._path_only = path
-        self._tolerances = PointTolerances(tolerance, float(np.radians(tolerance)))
+        self._tolerances = PointTolerances(tolerance, float(np.radians(axis_tolerance)))
         self._largest_tip = self._largest_axis = 0.0
         self._points = 0
         self._found: list[Difference] = []

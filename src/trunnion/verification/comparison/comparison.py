@@ -13,14 +13,18 @@ from trunnion.verification.comparison.comparer import Comparer
 from trunnion.verification.comparison.result import Comparison
 
 
-def compare(one: Run, two: Run, tolerance: float = 0.001, *, path: bool = False) -> Comparison:
+def compare(
+    one: Run, two: Run, tolerance: float = 0.001, *, axis_tolerance: float | None = None, path: bool = False
+) -> Comparison:
     """Compare two runs.
 
     Parameters
     ----------
     tolerance
         How far tips, mm, and tool axes, degrees, may be apart.
+    axis_tolerance
+        Another tolerance for tool axes, degrees.
     path
         Compare only where the tool goes, and whether at rapid; not feed, spindle, tool and coolant.
     """
-    return Comparer(one, two, tolerance, path).compare()
+    return Comparer(one, two, tolerance, tolerance if axis_tolerance is None else axis_tolerance, path).compare()

@@ -79,6 +79,25 @@ def test_circles_become_lines_where_their_letters_are_those_of_vectors(folder: P
     assert len(by_vectors) > 40
 
 
+def leaning_to(angles: tuple[float, ...], turned: float) -> Toolpath:
+    """A cut whose tool leans by angles, towards one side of the workpiece."""
+    n, tilts, side = len(angles), np.radians(angles), np.radians(turned)
+    axis = np.column_stack([np.sin(tilts) * np.cos(side), np.sin(tilts) * np.sin(side), np.cos(tilts)])
+    tip, lines = np.outer(np.arange(n), (20.0, 0.0, 0.0)), np.arange(n, dtype=np.int32)
+    rapid, cut = np.array([0] + [1] * (n - 1), np.uint8), np.array([1] + [4] * (n - 1), np.uint8)
+    return toolpath_of(Moves(tip, axis, rapid, cut, np.full(n, 100.0), np.zeros(n, np.bool_), lines, None))
+
+
+@pytest.mark.parametrize(
+    ("last", "turned", "by_vectors"), [(-11, 277.4, False), (-11, 299.3, False), (-10.9, 299.3, True)]
+)
+def test_a_vector_that_its_last_digit_turns_beyond_a_limit_is_not_used(
+    last: float, turned: float, by_vectors: bool, folder: Path
+) -> None:
+    text = proven(leaning_to((-5, -8, last), turned), folder, machine("yl569"), mode="tcp", **VECTORS)
+    assert ("G43.5" in text) is by_vectors
+
+
 PATHS = st.one_of(
     smooth_paths(60.0),
     short_paths(12),
@@ -205,10 +224,10 @@ def test_the_reader_chooses_as_the_manual_says(
     words = " ".join(f"{letter}{value:.3f}" for letter, value in zip(letters, before, strict=True))
     program = tmp_path_factory.getbasetemp() / "chosen.nc"
     components = " ".join(f"{letter}{value:.9f}" for letter, value in zip("IJK", vector, strict=True))
-    program.write_text(f"G54 G0 {words}\nG43.5 H1 X0. Y0. Z0.\nG1 {components} F100.\nG49 G53 Z0.\nM30\n")
+    program.write_text(f"O1\nG54 G0 {words}\nG43.5 H1 X0. Y0. Z0.\nG1 {components} F100.\nG49 G53 Z0.\nM30\n")
     run = run_program(program, model)
     assert run.errors == ()
-    row = int(np.flatnonzero(run.line == 3)[0])
+    row = int(np.flatnonzero(run.line == 4)[0])
     stood = run.rotary[row - 1]
     goes, wanted = run.rotary[row] - stood, chosen(model, vector, stood, True) - stood
     # Half a turn is as far either way.
@@ -248,14 +267,14 @@ def test_words_of_the_reader_for_vectors(tmp_path: Path) -> None:
     model = load_machine("matsuura_mx330")
     program = tmp_path / "p.nc"
     program.write_text(
-        "G54 G0 A-30. C0.\nG43.5 H1 P1 X0. Y0. Z50. I0 J0 K1.\nG1 X10. J.6 K.8 F100.\nG43.4 X11.\nG49 G53 Z0.\n"
+        "O1 (VECTORS)\nG54 G0 A-30. C0.\nG43.5 H1 P1 X0. Y0. Z50. I0 J0 K1.\nG1 X10. J.6 K.8 F100.\nG43.4 X11.\nG49 G53 Z0.\n"
         "G43.5 P2 H1 Z1.\nG49 G53 G0 Z0.\nM30\n"
     )
     run = run_program(program, model)
     assert [(finding.line, str(finding.severity)) for finding in run.diagnostics] == [
-        (2, "error"),
-        (4, "warning"),
-        (6, "error"),
+        (3, "error"),
+        (5, "warning"),
+        (7, "error"),
     ]
-    assert run.orientation[run.line == 3].tolist() == [Orientation.GREAT_CIRCLE]
-    assert run.orientation[run.line == 4].tolist() == [Orientation.ANGLES]
+    assert run.orientation[run.line == 4].tolist() == [Orientation.GREAT_CIRCLE]
+    assert run.orientation[run.line == 5].tolist() == [Orientation.ANGLES]
