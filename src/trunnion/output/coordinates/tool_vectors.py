@@ -112,9 +112,9 @@ def leading_axis_pose_is_planned(
 
     Of two positions it takes the one to which the leading axis turns less, and if that is equal, the one to which the
     other axis turns less. Only the choice between the two counts: what a vector leaves open near the pole does not
-    change the tool axis. Axis limits do not count for the other position, for the control may not know them. The planned
-    one must be inside them as the printed vector has it: the last digit may turn an axis beyond the limit at which it
-    is planned, and a control that knows the limit takes the other position.
+    change the tool axis. Axis limits do not count for the other position, for the control may not know them. The
+    planned one must be inside them as the printed vector has it: the last digit may turn an axis beyond the limit at
+    which it is planned, and a control that knows the limit takes the other position.
 
     Parameters
     ----------

@@ -267,7 +267,8 @@ def test_words_of_the_reader_for_vectors(tmp_path: Path) -> None:
     model = load_machine("matsuura_mx330")
     program = tmp_path / "p.nc"
     program.write_text(
-        "O1 (VECTORS)\nG54 G0 A-30. C0.\nG43.5 H1 P1 X0. Y0. Z50. I0 J0 K1.\nG1 X10. J.6 K.8 F100.\nG43.4 X11.\nG49 G53 Z0.\n"
+        "O1\nG54 G0 A-30. C0.\nG43.5 H1 P1 X0. Y0. Z50. I0 J0 K1.\nG1 X10. J.6 K.8 F100.\nG43.4 X11.\n"
+        "G49 G53 Z0.\n"
         "G43.5 P2 H1 Z1.\nG49 G53 G0 Z0.\nM30\n"
     )
     run = run_program(program, model)
