@@ -418,10 +418,8 @@ def test_a_tool_table_gives_diameters_and_no_form(tmp_path: Path) -> None:
     found = table(tmp_path, text, "inch")
     assert found.diameters == {1: 12.7, 99999: 6.35}
     assert found.tools == ()
-    with pytest.raises(InputError, match=r"tool 1 has a diameter of 12\.7 mm, and nothing says its form; say its kind"):
+    with pytest.raises(InputError, match="has no tool of the number 1"):
         found.tool(1)
-    with pytest.raises(InputError, match="has no tool of the number 2"):
-        found.tool(2)
 
 
 def test_mistakes_of_a_tool_table_are_told_with_their_lines(tmp_path: Path) -> None:

@@ -33,13 +33,13 @@ class ToolLibrary:
     unusable: tuple[UnusableTool, ...] = ()
     diameters: Mapping[int, float] = field(default_factory=dict)
 
-    def tool(self, number: int | None = None, name: str = "") -> ToolShape:
-        """Return the tool of a number, or if there is none, of a name.
+    def find(self, number: int | None = None, name: str = "") -> ToolShape | None:
+        """Return the tool of a number, or if there is none, of a name; None if there is none of both.
 
         Raises
         ------
         InputError
-            If there is none, or several, or one that has no body.
+            If there are several, or one that has no body.
         """
         for called, what in ((number, "number"), (name or None, "name")):
             if called is None:
@@ -54,9 +54,19 @@ class ToolLibrary:
                 raise InputError(Problem(self.file, 0, f"{len(found)} tools have the {what} {called}: {same}", cure))
             if found:
                 return found[0]
+        return None
+
+    def tool(self, number: int | None = None, name: str = "") -> ToolShape:
+        """Return the tool of a number, or if there is none, of a name.
+
+        Raises
+        ------
+        InputError
+            If there is none, or several, or one that has no body.
+        """
+        found = self.find(number, name)
+        if found is not None:
+            return found
         called_by = f"number {number}" if number is not None else f'name "{name}"'
-        if number is not None and number in self.diameters:
-            what = f"tool {number} has a diameter of {self.diameters[number]:g} mm, and nothing says its form"
-            raise InputError(Problem(self.file, 0, what, "say its kind: 3=ball takes the diameter from the table"))
         cure = "add it to the library, or state the tool itself: its kind and its sizes"
         raise InputError(Problem(self.file, 0, f"has no tool of the {called_by}", cure))
