@@ -39,6 +39,14 @@ MILL = Tool("MILL", "R5", 10.0, 1.0, 70.0)
             tool_shape(ToolSizes(ToolKind.TAPER_BALL, 2.0, side_angle=3.0, length=70.0)),
         ),
         (
+            replace(MILL, corner_radius=0.0, taper_angle=3.0, tip_angle=10.0),
+            tool_shape(ToolSizes(ToolKind.DRILL, 10.0, tip_angle=160.0, side_angle=3.0, length=70.0)),
+        ),
+        (
+            replace(MILL, taper_angle=3.0, tip_angle=10.0, corner_centre=(4.043, 1.7283)),
+            tool_shape(ToolSizes(ToolKind.DRILL, 10.0, 1.0, tip_angle=160.0, side_angle=3.0, length=70.0)),
+        ),
+        (
             Tool("DRILL", "", 8.0, 0.0, 50.0, tip_angle=118.0, flute_length=35.0),
             tool_shape(ToolSizes(ToolKind.DRILL, 8.0, tip_angle=118.0, length=50.0, flute_length=35.0)),
         ),
@@ -47,8 +55,20 @@ MILL = Tool("MILL", "R5", 10.0, 1.0, 70.0)
             tool_shape(ToolSizes(ToolKind.DRILL, 10.0, 1.0, tip_angle=160.0, length=70.0)),
         ),
     ],
-    ids=["flat", "ball", "rounded ball", "bull", "taper", "round taper", "taper ball", "drill", "conical bottom"],
-)
+    ids=[
+        "flat",
+        "ball",
+        "rounded ball",
+        "bull",
+        "taper",
+        "round taper",
+        "taper ball",
+        "two cones",
+        "two cones with a corner",
+        "drill",
+        "conical bottom",
+    ],
+)  # fmt: skip
 def test_a_cutter_of_a_cl_file_is_a_body(tool: Tool, kind: ToolShape) -> None:
     shape = cl_tool_shape(tool, 3, file="part.cls", line=7)
     assert (shape.number, shape.name) == (3, tool.name)
@@ -68,7 +88,8 @@ def test_the_length_of_the_tool_change_is_the_gauge_length() -> None:
         (Tool("TCUTTER", "", 20.0, 1.0, 60.0), "clsf", "is a TCUTTER, whose numbers"),
         (Tool("BARREL", "", 20.0, 1.0, 60.0), "clsf", "is a BARREL, whose numbers"),
         (replace(MILL, upper_radius=1.0), "clsf", "upper corner"),
-        (replace(MILL, taper_angle=3.0, tip_angle=3.0), "clsf", "tapered and has a conical bottom"),
+        (replace(MILL, taper_angle=3.0, tip_angle=3.0), "clsf", "a corner whose centre is not stated"),
+        (replace(MILL, taper_angle=3.0, tip_angle=3.0, corner_centre=(4.0, 1.0)), "clsf", "it is a form of its own"),
         (replace(MILL, taper_angle=3.0), "clsf", "a corner whose centre is not stated"),
         (
             replace(MILL, taper_angle=3.0, corner_centre=(3.0, 1.0)),

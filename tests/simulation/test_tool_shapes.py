@@ -75,6 +75,9 @@ IMPOSSIBLE: dict[str, tuple[dict[str, Any], str, str]] = {
     "corner": ({"kind": "bull", "diameter": 10.0, "corner_radius": 5.1}, "corner_radius", "write at most 5"),
     "no corner": ({"kind": "bull", "diameter": 10.0}, "corner_radius", "needs it"),
     "level side": ({"kind": "taper", "diameter": 10.0, "side_angle": 90.0}, "side_angle", "below 90"),
+    "side and tip": (
+        {"kind": "drill", "diameter": 10.0, "tip_angle": 60.0, "side_angle": 30.0}, "side_angle", "never meet",
+    ),
     "no tip": ({"kind": "drill", "diameter": 10.0}, "tip_angle", "needs it"),
     "tip": ({"kind": "chamfer", "diameter": 6.0, "side_angle": 45.0, "tip_diameter": 6.0}, "tip_diameter", "than 6"),
     "neck of a ball": ({"kind": "lollipop", "diameter": 6.0, "neck_diameter": 6.0}, "neck_diameter", "less than 6"),

@@ -105,6 +105,7 @@ def cutter_sizes(draw: st.DrawFn, kind: ToolKind) -> ToolSizes:
         sizes["tip_diameter"] = diameter * draw(st.floats(0.0, 0.9))
     if kind is ToolKind.DRILL:
         sizes["tip_angle"] = draw(st.floats(60.0, 179.0))
+        sizes["side_angle"] = draw(st.sampled_from([0.0, 1.0, 25.0]))
     if kind in (ToolKind.LOLLIPOP, ToolKind.T_SLOT):
         sizes["neck_diameter"] = diameter * draw(share)
     if kind is ToolKind.LOLLIPOP:

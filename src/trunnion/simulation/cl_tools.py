@@ -6,7 +6,8 @@ from typing import Final
 from trunnion.errors import InputError, Problem
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.toolpath import Tool
-from trunnion.simulation.tool_profile import ToolShape
+from trunnion.simulation.tool_outlines import rounded_corner
+from trunnion.simulation.tool_profile import Point, ProfileArc, ToolShape
 from trunnion.simulation.tool_shapes import shape_faults, tool_shape
 from trunnion.simulation.tool_sizes import ROUNDING, ToolKind, ToolSizes
 
@@ -49,8 +50,6 @@ def _unsettled(tool: Tool, dialect: str) -> str:
         return f"is a {tool.kind}, whose numbers in a CL file have a meaning that is not confirmed"
     if tool.upper_radius:
         return "is a mill with an upper corner, whose numbers in a CL file have a meaning that is not confirmed"
-    if tool.taper_angle and tool.tip_angle:
-        return "is tapered and has a conical bottom, which is no kind that is known here"
     if dialect == "ncl" and not tool.corner_radius and not tool.length:
         return f"has a diameter of {tool.diameter:g} mm, and Creo does not write the form of its end"
     return _unsettled_corner(tool)
@@ -58,17 +57,28 @@ def _unsettled(tool: Tool, dialect: str) -> str:
 
 def _unsettled_corner(tool: Tool) -> str:
     """Why nothing can be said of the corner of a cutter; empty if it can."""
-    _, radius, e, f, _, side, _ = apt_cutter(tool)
-    slack = _SAME * tool.diameter
-    if tool.taper_angle and radius:
-        if tool.corner_centre is None:
-            return "is tapered and has a corner whose centre is not stated: where its diameter counts is not settled"
+    diameter, radius, e, f, bottom, side, _ = apt_cutter(tool)
+    slack = _SAME * diameter
+    where = f"has the centre of its corner {e:g} from the axis and {f:g} above the tip"
+    if not radius:
+        return ""
+    if side and tool.corner_centre is None:
+        return "is tapered and has a corner whose centre is not stated: where its diameter counts is not settled"
+    if side and not bottom:
         widths = (2.0 * (e + radius), _meeting(e, radius, side))
-        if abs(f - radius) > slack or min(abs(width - tool.diameter) for width in widths) > slack or e < -slack:
-            return f"has the centre of its corner {e:g} from the axis and {f:g} above the tip, where none can be"
-    elif tool.corner_centre is not None and not tool.tip_angle:
-        return f"has the centre of its corner {e:g} from the axis and {f:g} above the tip: it is a form of its own"
+        if abs(f - radius) > slack or min(abs(width - diameter) for width in widths) > slack or e < -slack:
+            return f"{where}, where none can be"
+    elif tool.corner_centre is not None and not (bottom and _touches_both(diameter, radius, (e, f), bottom, side)):
+        return f"{where}: it is a form of its own"
     return ""
+
+
+def _touches_both(diameter: float, radius: float, centre: Point, bottom: float, side: float) -> bool:
+    """Whether a corner touches a conical bottom and a side that would meet at a diameter."""
+    if bottom + side >= 90.0:
+        return False
+    corner = rounded_corner(0.5 * diameter, radius, bottom, side)[-1]
+    return isinstance(corner, ProfileArc) and math.dist(corner.centre, centre) <= _SAME * diameter
 
 
 def _meeting(e: float, radius: float, side: float) -> float:

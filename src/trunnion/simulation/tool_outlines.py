@@ -18,7 +18,7 @@ def side_slope(sizes: ToolSizes) -> float | None:
     """Return how much the radius grows by mm of height above the outline of a cutter; None if the cutter ends there."""
     if sizes.kind in (ToolKind.LOLLIPOP, ToolKind.T_SLOT, ToolKind.THREAD_MILL, ToolKind.BARREL):
         return None
-    return math.tan(math.radians(sizes.side_angle)) if sizes.kind in (ToolKind.TAPER, ToolKind.TAPER_BALL) else 0.0
+    return 0.0 if sizes.kind is ToolKind.CHAMFER else math.tan(math.radians(sizes.side_angle))
 
 
 def rounded_corner(half: float, radius: float, bottom: float, side: float) -> tuple[Element, ...]:
@@ -65,7 +65,7 @@ def _taper_ball(sizes: ToolSizes) -> tuple[Element, ...]:
 
 
 def _drill(sizes: ToolSizes) -> tuple[Element, ...]:
-    return rounded_corner(0.5 * sizes.diameter, sizes.corner_radius, 90.0 - 0.5 * sizes.tip_angle, 0.0)
+    return rounded_corner(0.5 * sizes.diameter, sizes.corner_radius, 90.0 - 0.5 * sizes.tip_angle, sizes.side_angle)
 
 
 def _chamfer(sizes: ToolSizes) -> tuple[Element, ...]:

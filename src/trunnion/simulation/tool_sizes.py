@@ -123,7 +123,7 @@ OF_KIND: Final[Mapping[ToolKind, SizesOfKind]] = {
     ToolKind.BULL: SizesOfKind(("diameter", "corner_radius")),
     ToolKind.TAPER: SizesOfKind(("diameter", "side_angle"), ("corner_radius",)),
     ToolKind.TAPER_BALL: SizesOfKind(("diameter", "side_angle")),
-    ToolKind.DRILL: SizesOfKind(("diameter", "tip_angle"), ("corner_radius",)),
+    ToolKind.DRILL: SizesOfKind(("diameter", "tip_angle"), ("corner_radius", "side_angle")),
     ToolKind.CHAMFER: SizesOfKind(("diameter", "side_angle"), ("tip_diameter",)),
     ToolKind.LOLLIPOP: SizesOfKind(("diameter", "neck_diameter")),
     ToolKind.T_SLOT: SizesOfKind(("diameter", "flute_length", "neck_diameter"), ("corner_radius", "upper_radius")),
@@ -197,7 +197,10 @@ def _out_of_range(sizes: ToolSizes) -> Iterator[SizeFault]:
 def _cutter_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     """Sizes of a cutter that cannot be together."""
     half = 0.5 * sizes.diameter
-    if sizes.kind in (ToolKind.BULL, ToolKind.TAPER, ToolKind.DRILL):
+    if sizes.kind is ToolKind.DRILL and sizes.side_angle >= 0.5 * sizes.tip_angle:
+        what = f"is {sizes.side_angle:g}: side and tip never meet"
+        yield SizeFault("side_angle", what, f"write less than half the angle of the tip, {0.5 * sizes.tip_angle:g}")
+    elif sizes.kind in (ToolKind.BULL, ToolKind.TAPER, ToolKind.DRILL):
         bottom = 90.0 - 0.5 * sizes.tip_angle if sizes.tip_angle else 0.0
         room = corner_room(half, math.radians(bottom), math.radians(sizes.side_angle))
         yield from _at_most(sizes, "corner_radius", room, "what fits between bottom and side")
