@@ -104,6 +104,7 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
         if not _is_file(found.location):
             names = definition_names(library)
             cure = did_you_mean(name, names) or "write one of " + ", ".join(names)
+            cure = cure if names else "write the path of a .toml file in the same folder or below it"
             raise InputError(Problem(file, line, f'extends: nothing shipped is called "{name}"', cure))
         return found
     cure = "write the name of a shipped definition, or the path of a .toml file in the same folder or below it"

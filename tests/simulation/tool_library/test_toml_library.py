@@ -126,9 +126,10 @@ def test_every_mistake_is_told_at_once_with_its_line(tmp_path: Path) -> None:
         ('[[tool]]\nnumber = 1\nkind = "flat"\ndiameter_mm = 1e9\n', "diameter_mm is 1000000000"),
         ('[[tool]]\nnumber = 1\nkind = "drill"\ndiameter_mm = 8\ntip_angle_deg = 180\n', "tip_angle_deg is 180"),
         ('extends = "/etc/x.toml"', "is not a file that a definition may read"),
+        ('extends = "shop"', 'nothing shipped is called "shop"; write the path of a .toml file'),
         ("[[tool]", "is not TOML"),
     ],
-    ids=["empty", "no tables", "NaN", "too large", "flat tip", "another file", "no TOML"],
+    ids=["empty", "no tables", "NaN", "too large", "flat tip", "another file", "nothing shipped", "no TOML"],
 )
 def test_what_is_no_library_is_refused(text: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(InputError) as raised:
@@ -139,3 +140,8 @@ def test_what_is_no_library_is_refused(text: str, said: str, tmp_path: Path) -> 
 def test_a_file_that_is_not_there_is_said_to_be_none(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="file not found; give the path of a tool library"):
         read_tools(tmp_path / "none.toml")
+
+
+def test_a_library_may_extend_another_one_beside_it(tmp_path: Path) -> None:
+    (tmp_path / "shop.toml").write_text(LIBRARY, encoding="utf-8")
+    assert library(tmp_path, 'extends = "./shop.toml"\n').tool(3).number == 3
