@@ -18,7 +18,7 @@ from trunnion.machines.loading import machine_library, read_machine
 DOCUMENT = (DOCS / "definitions.md").read_text(encoding="utf-8")
 
 #: Keys that merging takes out before the loader sees them.
-MERGED = {"extends", "axis.remove", "control.extends"}
+MERGED = {"extends", "axis.remove", "body.remove", "control.extends"}
 
 #: Tables of a control whose keys are names and not keys of the schema.
 NAMES = {
@@ -84,7 +84,8 @@ def examples(folder: Path) -> list[Machine]:
 
 
 def test_every_example_of_the_reference_is_a_machine(tmp_path: Path) -> None:
-    changed, words, declares, worded, whole = examples(tmp_path)
+    changed, bodies, words, declares, worded, whole = examples(tmp_path)
+    assert [body.name for body in bodies.bodies[-2:]] == ["head", "vise"]
     assert words.cl_words["SHOPCL/1"] == "COOLNT/AIR"
     assert "G234" in worded.control.table("reading").table("words")
     assert "M202" in declares.control.table("known")

@@ -36,7 +36,17 @@ MachineLike: TypeAlias = str | os.PathLike[str] | Machine
 ToolpathLike: TypeAlias = FilePath | BinaryIO | Toolpath
 
 #: Fields of a ``Machine`` that do not say how it moves: its names, its setup, and its control, which is a table.
-_NO_CONTENT: Final = {"key", "name", "description", "files", "workpiece_zero", "tool_length", "control", "cl_words"}
+_NO_CONTENT: Final = {
+    "key",
+    "name",
+    "description",
+    "files",
+    "workpiece_zero",
+    "tool_length",
+    "control",
+    "cl_words",
+    "bodies",
+}
 
 
 def read_cl(

@@ -118,14 +118,14 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
         raise InputError(Problem(file, line, f'extends: "{name}" is not a file that a definition may read', cure))
     location = child.folder / pure
     # A link may lead out of the folder although its name does not.
-    if not _is_within(location, child.folder):
+    if not is_within(location, child.folder):
         raise InputError(Problem(file, line, f'extends: "{name}" leads out of the folder of the definition', cure))
     if not _is_file(location):
         raise InputError(Problem(file, line, f'extends: there is no file "{pure}" beside the definition', cure))
     return _DefinitionFile(location, str(location), location.parent)
 
 
-def _is_within(location: Path, folder: Path) -> bool:
+def is_within(location: Path, folder: Path) -> bool:
     """Whether a path leads into a folder, wherever links go; links that go round lead nowhere."""
     try:
         return location.resolve().is_relative_to(folder.resolve())

@@ -4,6 +4,7 @@
 Kernels of other packages use ``kinematic_parameters`` with the kernels of ``trunnion.machines.inverse``.
 """
 
+from trunnion.machines.bodies import BodyBox, BodyCylinder, BodyFile, MachineBody
 from trunnion.machines.forward import forward, tool_axes
 from trunnion.machines.inverse import (
     InverseSolutions,
@@ -12,6 +13,7 @@ from trunnion.machines.inverse import (
     kinematic_parameters,
     slide_positions,
 )
+from trunnion.machines.links import link_transforms
 from trunnion.machines.loading import load_machine, shipped_machines
 from trunnion.machines.machine import (
     AngleOutput,
@@ -31,9 +33,13 @@ __all__ = [
     "AngleOutput",
     "Axis",
     "AxisKind",
+    "BodyBox",
+    "BodyCylinder",
+    "BodyFile",
     "InverseSolutions",
     "KinematicParameters",
     "Machine",
+    "MachineBody",
     "MachineFacts",
     "Mount",
     "PositiveDirection",
@@ -42,6 +48,7 @@ __all__ = [
     "forward",
     "inverse",
     "kinematic_parameters",
+    "link_transforms",
     "load_machine",
     "shipped_machines",
     "slide_positions",

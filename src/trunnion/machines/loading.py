@@ -14,6 +14,7 @@ from typing import Final, NamedTuple
 
 from trunnion.definitions import Table, definition_names, load_table
 from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.machines.body_tables import read_bodies
 from trunnion.machines.chain_checks import check_chain
 from trunnion.machines.machine import (
     AngleOutput,
@@ -85,6 +86,7 @@ def read_machine(table: Table, key: str) -> Machine:
     axes = tuple(_axis(entry) for entry in axis_tables)
     if "axis" in table and axis_tables:
         check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
+    bodies = read_bodies(table, [axis.name for axis in axes])
     cl_words = {word: words.text(word) for word in list(words.keys())}
     report_twins(words, statement_form)
     for part in (spindle, workpiece, words, cl, table):
@@ -103,6 +105,7 @@ def read_machine(table: Table, key: str) -> Machine:
         control=control.unread_copy(),
         files=tuple(table.files()),
         cl_words=cl_words,
+        bodies=bodies,
     )
 
 

@@ -13,8 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.definitions import LocatedValue, Table
-
-Vector = tuple[float, float, float]
+from trunnion.machines.bodies import MachineBody, Vector
 
 
 class AxisKind(StrEnum):
@@ -147,6 +146,7 @@ class Machine:
     control             the ``[control]`` table of the definition, unread
     files               definition files that the machine comes from
     cl_words            words of the shop's own in its CL files, and the statements of CL files that they are
+    bodies              the iron on its links, as the simulation sees it; nothing else looks at it
     """
 
     key: str
@@ -162,6 +162,7 @@ class Machine:
     control: Table = field(default_factory=_no_control)
     files: tuple[str, ...] = ()
     cl_words: Mapping[str, str] = field(default_factory=dict)
+    bodies: tuple[MachineBody, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -1,0 +1,133 @@
+"""Reads the ``[[body]]`` tables of a machine definition, and notes every mistake with its line."""
+
+import math
+import re
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+from typing import Final
+
+from trunnion.definitions import Table
+from trunnion.machines.bodies import PLAIN_COLOUR, BodyBox, BodyCylinder, BodyFile, MachineBody, Vector
+from trunnion.machines.links import FIXED_LINKS
+
+#: More bodies make no machine clearer, and the pairs of them grow with their square.
+MAX_BODIES: Final = 64
+
+SHAPES: Final = ("box", "cylinder", "file")
+
+#: Endings of meshes that a body may be.
+MESH_ENDINGS: Final = (".stl", ".obj", ".ply", ".3mf", ".glb")
+
+_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
+
+#: The keys of each shape besides those that every body has.
+_OF_SHAPE: Final = {
+    "box": {"size_mm", "centre_mm", "turn_deg"},
+    "cylinder": {"diameter_mm", "length_mm", "centre_mm", "direction"},
+    "file": {"file", "unit", "origin_mm", "turn_deg"},
+}
+
+
+def read_bodies(table: Table, axis_names: Sequence[str]) -> tuple[MachineBody, ...]:
+    """Return the bodies of a definition; mistakes become problems of the table."""
+    entries = table.tables("body")
+    if len(entries) > MAX_BODIES:
+        table.add_problem("body", f"has {len(entries)} tables", f"write at most {MAX_BODIES}")
+        return ()
+    bodies = [_body(entry, axis_names) for entry in entries]
+    seen: dict[str, int] = {}
+    for k, body in enumerate(bodies):
+        if body.name and body.name.casefold() in seen:
+            file, line = entries[seen[body.name.casefold()]].location("name")
+            what = f'is "{body.name}", the name of another body too ({file}:{line})'
+            entries[k].add_problem("name", what, "give every body its own name")
+        seen.setdefault(body.name.casefold(), k)
+    return tuple(bodies)
+
+
+def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
+    name = entry.text("name")
+    if name != name.strip() or any(not letter.isprintable() for letter in name):
+        entry.add_problem(
+            "name", "begins or ends with blanks, or has letters that cannot be printed", "write it plainly"
+        )
+    link = entry.text("link", one_of=(*axis_names, *FIXED_LINKS))
+    colour = entry.text("colour", PLAIN_COLOUR)
+    if not _COLOUR.fullmatch(colour):
+        entry.add_problem("colour", f'is "{colour}"', 'write "#rrggbb", such as "#9aa0a6"')
+    shape = entry.text("shape", one_of=SHAPES)
+    file, unit = entry.text("file", None), entry.text("unit", None, one_of=("mm", "inch", "m"))
+    size, centre = entry.vector("size_mm", 3, None), entry.vector("centre_mm", 3, None)
+    diameter, length = entry.number("diameter_mm", None, above=0), entry.number("length_mm", None, above=0)
+    direction, origin = entry.vector("direction", 3, None), entry.vector("origin_mm", 3, None)
+    turn = _vector(entry.vector("turn_deg", 3, (0.0, 0.0, 0.0)))
+    entry.report_unread_keys()
+    for key in _foreign_keys(entry, shape):
+        entry.add_problem(
+            key, f'is given for shape = "{shape}"', "remove it; a body of another shape needs a name of its own"
+        )
+    made: BodyBox | BodyCylinder | BodyFile
+    if shape == "cylinder":
+        _need(entry, "diameter_mm", "length_mm", "centre_mm")
+        made = BodyCylinder(diameter or 1.0, length or 1.0, _vector(centre), _unit_vector(entry, direction))
+    elif shape == "file":
+        _need(entry, "file")
+        _check_file(entry, file)
+        made = BodyFile(file or "", entry.location("file")[0], _vector(origin), turn, unit)
+    else:
+        if shape:
+            _need(entry, "size_mm", "centre_mm")
+        if size is not None and min(size) <= 0.0:
+            entry.add_problem(
+                "size_mm", "has a side that is not above 0", "write [x, y, z], all above 0, in millimetres"
+            )
+        made = BodyBox(_vector(size), _vector(centre), turn)
+    return MachineBody(name, link, made, colour, entry.location("name"))
+
+
+def _foreign_keys(entry: Table, shape: str) -> list[str]:
+    """The keys of an entry that belong to other shapes."""
+    if shape not in _OF_SHAPE:
+        return []
+    others = set().union(*_OF_SHAPE.values()) - _OF_SHAPE[shape]
+    return [key for key in entry.keys() if key in others]  # noqa: SIM118 -- a table is no dict
+
+
+def _need(entry: Table, *keys: str) -> None:
+    for key in keys:
+        if key not in entry:
+            cures = {
+                "diameter_mm": "a number above 0",
+                "length_mm": "a number above 0",
+                "file": "the name of a mesh file",
+            }
+            entry.add_problem(key, "is missing", f"write {cures.get(key, '[x, y, z]')}")
+
+
+def _check_file(entry: Table, file: str | None) -> None:
+    if not file:
+        return
+    pure = PurePosixPath(file)
+    cure = f"write the path of a mesh ({', '.join(MESH_ENDINGS)}) in the folder of the definition or below it"
+    if pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", file) or len(file) > 1000:
+        entry.add_problem("file", "leads out of the folder of the definition", cure)
+    elif pure.suffix.lower() not in MESH_ENDINGS:
+        entry.add_problem("file", f'is "{file}"', cure)
+
+
+def _unit_vector(entry: Table, numbers: Sequence[float] | None) -> Vector:
+    """The unit vector along a direction; Z where there is none."""
+    if numbers is None:
+        return 0.0, 0.0, 1.0
+    largest = max(map(abs, numbers))
+    if largest == 0.0:
+        entry.add_problem("direction", "is [0, 0, 0]", "write a vector that has a direction")
+        return 0.0, 0.0, 1.0
+    x, y, z = (number / largest for number in numbers)
+    length = math.sqrt(x * x + y * y + z * z)
+    return x / length, y / length, z / length
+
+
+def _vector(numbers: Sequence[float] | None) -> Vector:
+    x, y, z = numbers or (0.0, 0.0, 0.0)
+    return x, y, z
