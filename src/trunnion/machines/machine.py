@@ -13,7 +13,8 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.definitions import LocatedValue, Table
-from trunnion.machines.bodies import MachineBody, Vector
+from trunnion.machines.bodies import MachineBody
+from trunnion.machines.bodies import Vector as Vector
 
 
 class AxisKind(StrEnum):
