@@ -35,6 +35,10 @@ MILL = Tool("MILL", "R5", 10.0, 1.0, 70.0)
             tool_shape(ToolSizes(ToolKind.TAPER, 10.0, 1.0, side_angle=3.0, length=70.0)),
         ),
         (
+            replace(MILL, taper_angle=3.0, corner_centre=(4.0, 1.0)),
+            tool_shape(ToolSizes(ToolKind.TAPER, 8.0 + 2 * tan(radians(43.5)), 1.0, side_angle=3.0, length=70.0)),
+        ),
+        (
             replace(MILL, diameter=2 * tan(radians(43.5)), taper_angle=3.0, corner_centre=(0.0, 1.0)),
             tool_shape(ToolSizes(ToolKind.TAPER_BALL, 2.0, side_angle=3.0, length=70.0)),
         ),

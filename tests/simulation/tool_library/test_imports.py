@@ -202,9 +202,17 @@ def test_a_tool_has_the_contour_that_its_cam_draws(name: str) -> None:
     assert found == [pytest.approx(point, abs=1e-4) for point in meant]
 
 
-def test_what_cuts_nearly_as_a_cylinder_says_so() -> None:
-    (remark,) = autodesk(entry("tap right hand")).tool(3).remarks
-    assert remark == "is a tap right hand: simulated as a cylinder"
+def test_what_is_taken_for_granted_of_an_import_is_said() -> None:
+    tool = {**entry("tap right hand", LB=0.0), "holder": {"description": "ER 32"}}
+    assert autodesk(tool).tool(3).remarks == (
+        "it is a tap right hand: simulated as a cylinder",
+        "its length below the holder (LB) is missing: all of it (OAL) stands free",
+        "its holder has no form (segments): none is simulated",
+    )
+    assert bit("tap.fcstd", TipAngle=90, CuttingEdgeLength=20).tool(None, "bit").remarks == (
+        "a tool bit has no holder: all of its length, 50 mm, stands free",
+        "it is a tap: simulated without its thread",
+    )
 
 
 @pytest.mark.parametrize(

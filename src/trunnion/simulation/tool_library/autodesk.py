@@ -6,7 +6,7 @@ SFDM shank diameter.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Final, TypeAlias
 
@@ -81,8 +81,17 @@ def _read_tool(file: str, place: str, tool: JsonObject) -> ToolShape | UnusableT
         return UnusableTool(called, name, tuple(problems))
     kind = short_text(tool.values.get("type"))
     shape = tool_shape(found, called, name, kind)
-    remarks = (f"is a {kind}: simulated as a cylinder",) if kind in _AS_CYLINDERS else ()
-    return replace(shape, remarks=(*shape.remarks, *remarks)) if remarks else shape
+    return replace(shape, remarks=(*shape.remarks, *_remarks(kind, tool)))
+
+
+def _remarks(kind: str, tool: JsonObject) -> Iterator[str]:
+    """What was taken for granted of a tool."""
+    if kind in _AS_CYLINDERS:
+        yield f"it is a {kind}: simulated as a cylinder"
+    if not tool.child("geometry").length("LB"):
+        yield "its length below the holder (LB) is missing: all of it (OAL) stands free"
+    if tool.values.get("holder") and not tool.child("holder").children("segments", MOST_PIECES):
+        yield "its holder has no form (segments): none is simulated"
 
 
 def _sizes(tool: JsonObject) -> ToolSizes | None:

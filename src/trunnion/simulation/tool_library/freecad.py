@@ -90,8 +90,9 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
         cure = "state the tool itself: its kind and its sizes"
         problems = tuple(Problem(file, 0, f"tool bit {name}: {what}", cure) for what in whats)
         return ToolLibrary(file, (), (UnusableTool(None, name, problems),))
-    remarks = ("is a tap: simulated without its thread",) if known == "tap" else ()
     found = tool_shape(sizes, None, name, shape)
+    remarks = [f"a tool bit has no holder: all of its length, {sizes.length:g} mm, stands free"] if sizes.length else []
+    remarks += ["it is a tap: simulated without its thread"] if known == "tap" else []
     return ToolLibrary(file, (replace(found, remarks=(*found.remarks, *remarks)),))
 
 
