@@ -10,9 +10,11 @@ from hypothesis import strategies as st
 
 import trunnion
 from tests.support.cl_reading import Body, Fail, Read
+from tests.support.naive.splines import points_of
 from trunnion.arrays import Floats
 from trunnion.cl.splines import evaluate
 from trunnion.cli import main
+from trunnion.model.splines import Spline
 from trunnion.model.toolpath import Coolant, Kind, Operation, Phase
 
 START = ("FEDRAT/MMPM,100", "GOTO/0,0,5,0,0.6,0.8")
@@ -21,24 +23,10 @@ ARCH = ("NURBS/", "KNOT/0.25,0.5", "KNOT/1.0000000", "CNTRL/0,10,5", "CNTRL/10,2
 POLES = np.array([[0, 0, 5], [0, 10, 5], [10, 20, 5], [20, 20, 5], [30, 10, 6], [30, 0, 5]], float)
 
 
-def share(full: list[float], i: int, degree: int, at: float) -> float:
-    """The part of a control point at a place of the curve, by the recursion of Cox and de Boor."""
-    if degree == 0:
-        return float(full[i] <= at < full[i + 1] or (at == 1.0 and full[i] < at == full[i + 1]))
-    first = second = 0.0
-    if full[i + degree] > full[i]:
-        first = (at - full[i]) / (full[i + degree] - full[i]) * share(full, i, degree - 1, at)
-    if full[i + degree + 1] > full[i + 1]:
-        rest = (full[i + degree + 1] - at) / (full[i + degree + 1] - full[i + 1])
-        second = rest * share(full, i + 1, degree - 1, at)
-    return first + second
-
-
 def curve(knots: Iterable[float], poles: Floats, places: Iterable[float]) -> Floats:
     """Points of a cubic spline; ``knots`` without 0."""
-    full = [0.0] * 4 + list(knots) + [1.0] * 3
-    shares = [[share(full, i, 3, at) for i in range(len(poles))] for at in places]
-    return np.asarray(np.array(shares) @ poles)
+    full = np.array([0.0] * 4 + list(knots) + [1.0] * 3)
+    return points_of(Spline(3, full, poles, np.ones(len(poles))), places)
 
 
 CURVE = curve((0.25, 0.5, 1.0), POLES, np.linspace(0.0, 1.0, 400).tolist())
@@ -93,6 +81,12 @@ def test_what_stands_around_a_spline_keeps_its_place(body: Body) -> None:
         (len(moves), "OFF"),
     ]
     assert moves.kind[-1] == Kind.RAPID
+    splines = operation.splines
+    assert [rows.last for rows in (splines[0], splines[1])] == [first, len(moves) - 3]
+    assert [rows.first for rows in (splines[0], splines[1])] == [1, first + 2]
+    assert splines[0].spline.poles.tolist() == POLES.tolist()
+    assert splines[0].spline.knots.tolist() == [0, 0, 0, 0, 0.25, 0.5, 1, 1, 1, 1]
+    assert splines[1].spline.poles[0].tolist() == [30, -1, 5]
 
 
 def test_inches_from_and_the_number_of_points(read: Read) -> None:
@@ -105,7 +99,7 @@ def test_inches_from_and_the_number_of_points(read: Read) -> None:
     assert moves.tip[-1] == pytest.approx([30, 0, 5])
     (remark,) = (each for each in toolpath.remarks if "NURBS" in each.what)
     assert remark.line == 5
-    assert f"1 spline (NURBS) with 5 control points become {len(moves)} points within 0.001 mm" in remark.what
+    assert f"1 spline (NURBS) with 5 control points: {len(moves)} points within 0.001 mm stand for them" in remark.what
 
 
 @settings(max_examples=25, deadline=None)
@@ -161,6 +155,9 @@ def test_other_splines_are_refused_once(name: str, body_fails: Fail) -> None:
 def test_dialects_without_such_splines_refuse_them(fails: Fail) -> None:
     text = "\n".join(("PARTNO A", "UNITS/MM", *START, *ARCH))
     assert any("NURBS is motion that cannot be read" in problem.what for problem in fails(text, dialect="apt"))
+    creo = ("MOVNRB/ON,4,8,0,4,30", "MOVNRB/1,0,0,0,0,1,1,1,1", "MOVNRB/NEXT", START[1], "MOVNRB/OFF", "FINI")
+    (problem,) = fails("\n".join(("PARTNO / A", "UNITS / MM", *START, *creo)), dialect="ncl")
+    assert (problem.line, problem.what) == (5, "MOVNRB is motion that cannot be read")
 
 
 def test_the_tolerance_is_a_setting_of_the_post_too(tmp_path: Path) -> None:

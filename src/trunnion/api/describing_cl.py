@@ -101,6 +101,7 @@ class OperationDescription:
     tool                its place in the list of tools
     system              place of its coordinate system in the list of these
     points, arcs, holes  its motions: rapids and lines, arcs, and points of cycles
+    splines             how many splines some of its points stand for
     cycles              kinds of its holes, such as ``DRILL,DEEP``
     cutting_length      at feed, that of holes included
     cutting_seconds     at the programmed feeds, with dwells
@@ -120,6 +121,7 @@ class OperationDescription:
     points: int
     arcs: int
     holes: int
+    splines: int
     cycles: tuple[str, ...]
     cutting_length: float
     cutting_seconds: float
@@ -309,6 +311,7 @@ class _Description:
                 points=len(operation.moves) - arcs - int(holes.sum()),
                 arcs=arcs,
                 holes=int(holes.sum()),
+                splines=len(operation.splines),
                 cycles=tuple(dict.fromkeys(",".join(e.mode) for e in operation.events if isinstance(e, CycleOn))),
                 cutting_length=measured.cutting_length,
                 cutting_seconds=measured.cutting_seconds,

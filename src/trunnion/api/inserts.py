@@ -19,6 +19,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Motion
 from trunnion.model.run import Run
+from trunnion.model.splines import Splines
 from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, SpindleOff, SpindleOn
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
@@ -137,7 +138,11 @@ def _with_texts(motion: Motion, texts: Sequence[str]) -> Motion:
     return replace(
         motion,
         operation=replace(
-            operation, moves=replace(moves, feed=feed, kind=kind), arcs=Arcs.empty(), events=tuple(events)
+            operation,
+            moves=replace(moves, feed=feed, kind=kind),
+            arcs=Arcs.empty(),
+            splines=Splines.empty(),
+            events=tuple(events),
         ),
         rotary=motion.rotary[rows],
         deviations=Deviations.none(),

@@ -17,6 +17,7 @@ from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.cl.tool_axes import fill_tool_axes
 from trunnion.errors import Severity
+from trunnion.model.splines import Splines
 from trunnion.model.tool_faults import tool_faults
 from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Frame, From, Kind, Moves, Operation, SpindleOn, Tool
 
@@ -76,6 +77,7 @@ def assemble_operation(
         intol=None if builder.intol is None else builder.intol * unit,
         outtol=None if builder.outtol is None else builder.outtol * unit,
         file=diagnostics.file,
+        splines=Splines.of(builder.curves),
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Lines
 from trunnion.cl.scan import PointColumns
+from trunnion.model.splines import SplineRows
 from trunnion.model.toolpath import Event, Frame, Sense, Tool
 
 
@@ -144,6 +145,7 @@ class OperationBuilder:
     upright    (row, line, word) of statements that are understood for the tool axis (0, 0, 1) only
     tilted     why no row may have another one, empty if it may: what to do instead
     stated     what is true of the whole operation: the line that states it, and its value
+    curves     the splines in mm, once their points are known, with the rows of these
     """
 
     name: str
@@ -166,3 +168,4 @@ class OperationBuilder:
     tilted: str = ""
     splines: list[SplineStatement] = field(default_factory=list)
     stated: dict[str, tuple[int, object]] = field(default_factory=dict)
+    curves: list[SplineRows] = field(default_factory=list)

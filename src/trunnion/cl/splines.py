@@ -1,22 +1,22 @@
 """Splines become points: as many that the chords between them stay within a tolerance.
 
 In:     operations as they were read, in which each control point has a row; lengths in mm.
-Out:    the same with the points of the splines in place of their control points, the last of which is their end.
-
-No control gets splines: their points are lines like all others.
+Out:    the same with the points of the splines in place of their control points, the last of which is their end; and
+        the splines themselves beside these points.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.cl.builder import MoveColumns, OperationBuilder, SplineStatement
 from trunnion.cl.diagnostics import Diagnostics
+from trunnion.model.splines import Spline, SplineRows
 from trunnion.wording import counted
 
 #: Where a file states no tolerance, mm; and the largest that is taken from INTOL and OUTTOL, and the smallest.
@@ -43,7 +43,7 @@ def with_spline_points(
     tolerance: float | None,
     diagnostics: Diagnostics,
 ) -> MoveColumns:
-    """The columns with points in place of control points; rows of ``builders`` are changed to theirs.
+    """The columns with points in place of control points; ``builders`` get their rows, and the splines as curves.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def with_spline_points(
     diagnostics
         Takes splines that cannot be evaluated, and a remark on how many points come of the others.
     """
-    blocks: list[tuple[int, int, Floats]] = []
+    blocks: list[_Block] = []
     finest, poles, total, line = math.inf, 0, 0, 0
     for builder in builders:
         if not builder.splines:
@@ -68,17 +68,17 @@ def with_spline_points(
         within = _tolerance(builder, unit) if tolerance is None else tolerance
         finest = min(finest, within)
         for spline in builder.splines:
-            points = _points_of(builder, spline, columns, unit, within, diagnostics)
-            if points is not None:
-                blocks.append((builder.first + spline.row, spline.points, points))
-                poles, total, line = poles + spline.points, total + len(points), line or spline.line
+            block = _block_of(builder, spline, columns, unit, within, diagnostics)
+            if block is not None:
+                blocks.append(block)
+                poles, total, line = poles + spline.points, total + len(block.points), line or spline.line
             if total > _MAX_POINTS:
                 what = f"splines that take more than {_MAX_POINTS} points within {within:g} mm"
                 raise diagnostics.fatal(spline.line, what, "give a coarser tolerance, or several files")
     if not blocks or diagnostics.has_errors:
         return columns
     what = f"{counted(len(blocks), 'spline')} (NURBS) with {counted(poles, 'control point')}"
-    what += f" become {counted(total, 'point')} within {finest:g} mm"
+    what += f": {counted(total, 'point')} within {finest:g} mm stand for them"
     diagnostics.remark(line, what, "setting spline_tolerance=MM makes more of them, or fewer")
     return _insert(builders, columns, rows, blocks)
 
@@ -89,15 +89,27 @@ def _tolerance(builder: OperationBuilder, unit: float) -> float:
     return min(max(min(given), _MIN_TOLERANCE), _MAX_TOLERANCE) if given else _TOLERANCE
 
 
-def _points_of(
+class _Block(NamedTuple):
+    """A spline of ``builder``: the row of the file of its first control point behind its start, and its points (m, 3)
+    behind the start, mm.
+    """
+
+    builder: OperationBuilder
+    row: int
+    poles: Floats
+    knots: Floats
+    points: Floats
+
+
+def _block_of(
     builder: OperationBuilder,
     spline: SplineStatement,
     columns: MoveColumns,
     unit: float,
     tolerance: float,
     diagnostics: Diagnostics,
-) -> Floats | None:
-    """(m, 3) the points of a spline behind its start; None if it has none, which is reported."""
+) -> _Block | None:
+    """A spline with its points; None if it has none, which is reported."""
     fault = _fault(builder, spline)
     first = builder.first + spline.row
     if not fault:
@@ -107,7 +119,7 @@ def _points_of(
         knots = np.array(spline.knots)
         counts = _counts(poles, knots, tolerance)
         if float(counts.sum()) <= _MAX_POINTS_OF_ONE:
-            return evaluate(poles, knots, counts.astype(np.int64))
+            return _Block(builder, first, poles, knots, evaluate(poles, knots, counts.astype(np.int64)))
         fault = f"a spline that takes more than {_MAX_POINTS_OF_ONE} points within {tolerance:g} mm"
     diagnostics.error(spline.line, fault, _CURE)
     return None
@@ -183,21 +195,26 @@ def _insert(
     builders: Sequence[OperationBuilder],
     columns: MoveColumns,
     rows: int,
-    blocks: Sequence[tuple[int, int, Floats]],
+    blocks: Sequence[_Block],
 ) -> MoveColumns:
-    """New columns with points in place of the control points, and the builders with their rows."""
+    """New columns with points in place of the control points, and the builders with their rows and curves."""
     counts = np.ones(rows, np.int64)
-    for first, poles, points in blocks:
-        counts[first : first + poles - 1] = 0
-        counts[first + poles - 1] = len(points)
+    for _, first, poles, _, points in blocks:
+        last = first + len(poles) - 2
+        counts[first:last] = 0
+        counts[last] = len(points)
     moved = np.concatenate(([0], np.cumsum(counts)))
     source = np.repeat(np.arange(rows), counts)
     new = MoveColumns.allocate(len(source))
     new.tip[:], new.axis[:], new.line[:] = columns.tip[source], columns.axis[source], columns.line[source]
-    for first, _, points in blocks:
+    for _, first, _, _, points in blocks:
         new.tip[moved[first] : moved[first] + len(points)] = points
     for builder in builders:
         _move_rows(builder, moved)
+    for builder, first, poles, knots, points in blocks:
+        begin = int(moved[first]) - builder.first
+        curve = Spline(_DEGREE, _clamped(knots), poles, np.ones(len(poles)))
+        builder.curves.append(SplineRows(begin, begin + len(points) - 1, curve))
     return new
 
 

@@ -78,10 +78,7 @@ def info_lines(found: ClDescription) -> Iterator[str]:
         yield f"{file.file}: {file.title} ({file.recognized}); lengths in {unit}{part}"
         if file.system:
             yield f"{_INDENT}coordinate system of the points: {' '.join(f'{number:g}' for number in file.system)}"
-    points, arcs, holes = (
-        sum(getattr(operation, name) for operation in found.operations) for name in ("points", "arcs", "holes")
-    )
-    yield f"{counted(len(found.operations), 'operation')}: {_motions(points, arcs, holes)}"
+    yield f"{counted(len(found.operations), 'operation')}: {_motions(found.operations)}"
     yield f"cutting {_lengths(found)}; rapids {found.rapid_length:.0f} mm"
     if found.extents is not None:
         yield f"points from {_vector(found.extents[0])} to {_vector(found.extents[1])} mm"
@@ -104,7 +101,7 @@ def info_lines(found: ClDescription) -> Iterator[str]:
 
 def _operation_lines(number: int, operation: OperationDescription, found: ClDescription) -> Iterator[str]:
     tool = found.tools[operation.tool]
-    motions = _motions(operation.points, operation.arcs, operation.holes)
+    motions = _motions([operation])
     yield f"{_INDENT}{number}  {operation.name}  {operation.kind}  {_tool_name(tool)}  {motions}"
     details = [f"cutting {_lengths(operation)}", *operation.cycles, *_rates(operation)]
     if len(found.systems) > 1:
@@ -118,8 +115,13 @@ def _operation_lines(number: int, operation: OperationDescription, found: ClDesc
         yield f"{_INDENT * 3}points from {_vector(operation.extents[0])} to {_vector(operation.extents[1])} mm"
 
 
-def _motions(points: int, arcs: int, holes: int) -> str:
-    return f"{counted(points, 'point')}, {counted(arcs, 'arc')}, {counted(holes, 'hole')}"
+def _motions(operations: Sequence[OperationDescription]) -> str:
+    """How many motions of each kind operations have together."""
+    points, arcs, holes, splines = (
+        sum(getattr(operation, name) for operation in operations) for name in ("points", "arcs", "holes", "splines")
+    )
+    of_splines = f" (some for {counted(splines, 'spline')})" if splines else ""
+    return f"{counted(points, 'point')}{of_splines}, {counted(arcs, 'arc')}, {counted(holes, 'hole')}"
 
 
 def _lengths(found: ClDescription | OperationDescription) -> str:

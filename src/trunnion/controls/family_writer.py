@@ -13,6 +13,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.template import Value
 from trunnion.controls.words import NumberFormat
 from trunnion.model.motion import Motion
+from trunnion.model.splines import Spline
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, SpindleOff, SpindleOn, Stop
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
@@ -195,6 +196,18 @@ class FamilyWriter(Protocol):
             Of the definition.
         by_radius
             Program circles by their radius where that is safe; only for families with ``RADIUS_ARC_WORDS``.
+        """
+
+    def takes_spline(self, spline: Spline) -> bool:
+        """Whether the control has words for a spline; the setting ``splines`` lets ``spline_lines`` write them."""
+
+    def spline_lines(self, spline: Spline, formats: Formats) -> list[str]:
+        """Return the lines that lead along a spline, a block each, from its start; the feed is said before.
+
+        Raises
+        ------
+        WordRangeError
+            If a number is beyond the limits of its format.
         """
 
     def template_values(self, settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:

@@ -246,7 +246,7 @@ def _read_setting_rules(table: Table, settings: Table, family: FamilyWriter) -> 
         name: SettingRule(SettingKind.CHOICE, one_of=words, optional=False)
         for name, words in family.SETTING_CHOICES.items()
     }
-    return read_setting_rules(table, settings) | choices
+    return choices | read_setting_rules(table, settings)
 
 
 def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) -> dict[str, str]:

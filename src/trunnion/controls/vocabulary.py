@@ -145,12 +145,17 @@ RADIUS_ARC_WORDS: Final = ("arc_by_radius", "arc_radius")
 HOLES_SETTING: Final = "holes"
 HOLES_IN_PLANES: Final = "planes"
 
+#: The setting for splines of controls that have words for them, and the value that all of these have: their points
+#: become lines.
+SPLINES_SETTING: Final = "splines"
+LINES_FOR_SPLINES: Final = "linearize"
+
 #: Settings that a program has only once: those of its head and its files, and those by which all of it is planned.
 #: All others can differ by operation, unless the templates of the head or the end of the program print them.
 PROGRAM_SETTINGS: Final = frozenset(
     {
         "title", "part", "date", "program", "series", "blank", "call", "call_folder", "normals", "rapid_feed",
-        "rotary_feed", "orientation", "plane", HOLES_SETTING, "bore_lift", "disengage", "rigid_tap",
+        "rotary_feed", "orientation", "plane", HOLES_SETTING, SPLINES_SETTING, "bore_lift", "disengage", "rigid_tap",
     }
 )  # fmt: skip
 

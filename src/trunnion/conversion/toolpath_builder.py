@@ -33,6 +33,7 @@ from trunnion.conversion.unsupported import (
     warn_of_park_positions,
     warn_of_poses,
     warn_of_register_changes,
+    warn_of_splines,
 )
 from trunnion.conversion.workpiece_rows import without_turns_in_place, workpiece_stretches
 from trunnion.errors import Problem, Severity
@@ -188,6 +189,7 @@ class _ToolpathBuilder:
         refuse_unsimulated_motions(run, self._warn)
         warn_of_park_positions(run, self._warn)
         warn_of_normals(run, self._warn)
+        warn_of_splines(run, self._warn)
         warn_of_register_changes(run, rows, "G" if self._headers.offset_is_word else "work offset ", self._warn)
         warn_of_interpolation(run, rows, by_vectors, self._warn)
         warn_of_poses(run, zip(rows, (operation.moves for operation in operations), strict=True), self._warn)

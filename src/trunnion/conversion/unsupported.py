@@ -184,6 +184,13 @@ def warn_of_normals(run: Run, warn: Warnings) -> None:
         _warn_at_rows(run, run.normals.row, what, "a CL file has contact points of the CAM system instead", warn)
 
 
+def warn_of_splines(run: Run, warn: Warnings) -> None:
+    """Warn of splines, of which only their points are carried over."""
+    if len(run.splines):
+        what = f"{counted(len(run.splines), 'spline')} of the program as the lines of their points, within 0.001 mm"
+        _warn_at_rows(run, run.splines.first, what, "convert the CL file where the splines come from instead", warn)
+
+
 def _warn_at_rows(run: Run, rows: Ints, what: str, cure: str, warn: Warnings) -> None:
     """Warn of something in ``rows``, at the first of them."""
     warn(int(run.line[rows[0]]), what, cure, int(run.file[rows[0]]))

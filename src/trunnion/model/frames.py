@@ -63,12 +63,15 @@ def _transformed(operation: Operation, turn: Floats, shift: Floats) -> Operation
     moves, arcs = operation.moves, operation.arcs
     normal = None if moves.normal is None else moves.normal @ turn.T
     tip, centre = moves.tip @ turn.T + shift, arcs.centre @ turn.T + shift
+    poles = operation.splines.poles @ turn.T + shift
     if not np.array_equal(turn, np.eye(3)):
         tip, centre = without_turning_noise(tip), without_turning_noise(centre)
+        poles = without_turning_noise(poles)
     return replace(
         operation,
         moves=replace(moves, tip=tip, axis=moves.axis @ turn.T, normal=normal),
         arcs=replace(arcs, centre=centre, normal=arcs.normal @ turn.T),
+        splines=operation.splines.with_poles(poles),
         events=tuple(
             replace(event, tip=tuple(turn @ event.tip + shift), axis=tuple(turn @ event.axis))
             if isinstance(event, From)

@@ -24,6 +24,7 @@ from trunnion.errors import Severity
 from trunnion.machines import KinematicParameters, Machine, forward, kinematic_parameters, tool_axes
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
+from trunnion.model.splines import Splines
 from trunnion.model.toolpath import Arcs
 
 #: Rows computed at a time: a few megabytes, and long enough that handing over to the other thread costs nothing.
@@ -237,6 +238,7 @@ class Run:
                                    ``state.xyz_is_tip``, else the positions of the slides X, Y and Z
     rotary         (n, 2) float64  positions of the rotary axes with all their turns, deg, order of ``machine.rotary``
     start          (5,)   float64  axis values before row 0
+    splines                        the splines for which rows stand, tips in the workpiece frame
     normals                        a ``SurfaceNormals``: those of blocks that program them (LN)
     units_from                     row from which on the program has said mm or inches, or its control is known to
                                    count so; None: never
@@ -281,6 +283,7 @@ class Run:
     start: Floats
     arcs: Arcs
     normals: SurfaceNormals = field(default_factory=SurfaceNormals.empty)
+    splines: Splines = field(default_factory=Splines.empty)
     tools: tuple[str, ...] = ("",)
     comments: list[Comment] = field(default_factory=list)
     events: list[RunEvent] = field(default_factory=list)

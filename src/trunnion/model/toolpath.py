@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import Problem
+from trunnion.model.splines import Splines
 
 
 class Kind(IntEnum):
@@ -313,7 +314,10 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operation:
-    """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH in ``file``."""
+    """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH in ``file``.
+
+    ``splines`` are those for which rows of ``moves`` stand.
+    """
 
     name: str
     tool: Tool
@@ -325,6 +329,7 @@ class Operation:
     intol: float | None = None
     outtol: float | None = None
     file: str = ""
+    splines: Splines = field(default_factory=Splines.empty)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,8 +5,9 @@ from collections.abc import Mapping
 from typing import Final
 
 from trunnion.controls import Control
-from trunnion.controls.vocabulary import UNKNOWN_FEED
+from trunnion.controls.vocabulary import LINES_FOR_SPLINES, SPLINES_SETTING, UNKNOWN_FEED
 from trunnion.model.motion import MachiningMode
+from trunnion.model.splines import Spline
 from trunnion.output.validation import unsupported_cycle_reasons
 from trunnion.planning import ControlCapabilities
 
@@ -32,7 +33,18 @@ def control_capabilities(control: Control, settings: Mapping[str, str]) -> Contr
         plane_x_from_machine=control.plane_x_from_machine,
         turns_between_holes=control.turns_between_holes(settings),
         cycle_objection=unsupported_cycle_reasons(control, settings),
+        takes_spline=_takes_no_spline if _lines_for_splines(control, settings) else control.family.takes_spline,
     )
+
+
+def _lines_for_splines(control: Control, settings: Mapping[str, str]) -> bool:
+    """Whether all splines become lines: as the settings ask, or because rows must fill files of a size."""
+    written = {**control.settings, **settings}.get(SPLINES_SETTING, LINES_FOR_SPLINES)
+    return written == LINES_FOR_SPLINES or "split" in settings
+
+
+def _takes_no_spline(spline: Spline) -> bool:
+    return False
 
 
 def _negligible_tilt(control: Control) -> float:

@@ -29,6 +29,7 @@ from trunnion.model.toolpath import (
     Stop,
 )
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.output.blocks.spline_blocks import write_rows_and_splines
 from trunnion.output.holes.hole_blocks import write_holes
 from trunnion.output.program import Program
 from trunnion.output.template_values import spindle_values
@@ -264,7 +265,8 @@ class EventWriter:
         """Write the rows up to ``last`` (excluded): motion, or the holes of the present cycle."""
         first = self._next_row
         if self._cycle is None or first >= last:
-            self._phase = self._blocks.write_rows(self._motion, first, last, self._joining_events, self._phase)
+            joining = self._joining_events
+            self._phase = write_rows_and_splines(self._blocks, self._motion, first, last, joining, self._phase)
         else:
             self._phase = write_holes(
                 self._blocks, self._motion, first, last, self._joining_events, self._phase, self._cycle

@@ -11,6 +11,7 @@ from typing import Final, TypeAlias
 
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.motion import MachiningMode, PoleStrategy
+from trunnion.model.splines import Spline
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 from trunnion.planning.retracts.clearance import Clearance
 
@@ -82,6 +83,10 @@ def _supports_every_cycle(cycle: Cycle, spindle: SpindleState | None) -> str:
     return ""
 
 
+def _takes_every_spline(spline: Spline) -> bool:
+    return True
+
+
 @dataclass(frozen=True, slots=True)
 class ControlCapabilities:
     """What the control can be told; by default everything.
@@ -98,6 +103,7 @@ class ControlCapabilities:
     plane_x_from_machine  X of a tilted plane is that of the machine after turning, unless the CL file gives an X
     turns_between_holes   the tool axis may change between holes of one cycle with TCP: no plane for each axis is needed
     cycle_objection       why it has no cycle for a hole
+    takes_spline          whether it takes a spline; others become lines
     """
 
     modes: frozenset[MachiningMode] = frozenset(MachiningMode)
@@ -112,3 +118,4 @@ class ControlCapabilities:
     plane_x_from_machine: bool = False
     turns_between_holes: bool = False
     cycle_objection: CycleObjection = _supports_every_cycle
+    takes_spline: Callable[[Spline], bool] = _takes_every_spline

@@ -1,5 +1,5 @@
-"""First stage: every operation in the program's coordinate system, in its machining mode, with arcs and cycles that the
-control takes.
+"""First stage: every operation in the program's coordinate system, in its machining mode, with arcs, splines and cycles
+that the control takes.
 
 In:     operations as their CL files have them.
 Out:    ``PreparedOperation``: other arcs are lines now, other cycles are rows of motion.
@@ -23,6 +23,7 @@ from trunnion.planning.linearization.arc_chords import (
     lines_for_arcs,
     single_turns,
 )
+from trunnion.planning.linearization.spline_rows import with_splines_kept
 from trunnion.planning.machining_mode import (
     mode_conflicts,
     mode_of,
@@ -57,7 +58,7 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
         try:
             operation, conflicts = _in_mode(_in_frame(request, file, original, frame))
             errors += conflicts
-            prepared.append(_with_holes(_with_lines_for_arcs(operation), spindle))
+            prepared.append(_with_holes(_with_lines_for_arcs(_with_lines_for_splines(operation)), spindle))
         except HoleCycleError as error:
             errors.append(Problem(file, error.line, error.what, error.cure))
         spindle = SpindleStates(original.events, spindle).at(len(original.moves))
@@ -102,6 +103,12 @@ def _with_lines_for_arcs(prepared: PreparedOperation) -> PreparedOperation:
     if not capabilities.multi_turn_arcs:
         operation, keep = single_turns(operation, keep)
     return prepared.with_operation(lines_for_arcs(operation, keep, prepared.request.chord_tolerance))
+
+
+def _with_lines_for_splines(prepared: PreparedOperation) -> PreparedOperation:
+    """The operation without the splines that must be the lines of their points."""
+    operation, capabilities = prepared.operation, prepared.request.capabilities
+    return prepared.with_operation(with_splines_kept(operation, prepared.mode, capabilities))
 
 
 def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> PreparedOperation:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -38,6 +39,7 @@ from trunnion.verification.kinematics.rapid_feeds import restore_rapids
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.matching.path_matching import match_by_count, match_by_position
+from trunnion.verification.matching.spline_matching import written_splines
 from trunnion.verification.results import Check, OperationRows, Verification
 
 
@@ -75,7 +77,10 @@ def verify(
     run = restore_rapids(run, settings.rapid_feed)
     analyzer = AxisMotionAnalyzer(run, MAX_PLACES, times=columns)
     if toolpaths:
-        expected = ExpectedPath(toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation)
+        path = partial(ExpectedPath, toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation)
+        expected = path()
+        if written := written_splines(run, expected):
+            expected = path(written)
         checked = _check_against(expected, run, settings, analyzer)
     else:
         checked = _check_alone(run, settings, analyzer)
@@ -208,6 +213,8 @@ def _cl_lines(context: Context) -> Lines:
             lines[nc] = context.expected.line(cl)
         for segments in context.matching.arc_segments:
             lines[segments.nc] = context.expected.point(segments.cl).line
+        for spline in context.expected.written_splines:
+            lines[spline.first : spline.last] = lines[spline.last]
     return lines
 
 

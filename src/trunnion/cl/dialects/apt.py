@@ -38,7 +38,7 @@ APT_HANDLERS: Final[Mapping[str, Handler]] = {
     "REWIND": operations.ignore,
     "TPRINT": apt_tools.tprint,
     "PPRINT": events.quoted_message,
-    **dict.fromkeys(("NURBS", "KNOT", "CNTRL"), motion.unsupported),
+    **dict.fromkeys(("NURBS", "KNOT", "CNTRL", "MOVNRB"), motion.unsupported),
 }
 
 _POST: Final = "its meaning differs from post-processor to post-processor"

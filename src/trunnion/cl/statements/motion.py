@@ -108,8 +108,8 @@ def begin_circle(
 
 def unsupported(state: ReaderState, statement: Statement) -> None:
     """Refuse motion that is neither lines nor circles in the coordinates of the operation."""
-    if statement.major in ("KNOT", "CNTRL") and state.spline_reported:
-        return  # part of a NURBS that was refused already
+    if statement.major in ("KNOT", "CNTRL", "MOVNRB") and state.spline_reported:
+        return  # part of a spline that was refused already
     state.spline_reported = True
     raise StatementError(
         f"{statement.major} is motion that cannot be read",

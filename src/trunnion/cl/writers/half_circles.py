@@ -47,7 +47,8 @@ def with_half_circles(operation: Operation) -> tuple[Operation, int]:
         full_turns=arcs.full_turns[twice],
     )  # fmt: skip
     events = tuple(replace(event, row=int(_moved(np.array([event.row]), rows)[0])) for event in operation.events)
-    return replace(operation, moves=inserted, arcs=halves, events=events), len(full)
+    moved = operation.splines.at_rows(_moved(operation.splines.first, rows), _moved(operation.splines.last, rows))
+    return replace(operation, moves=inserted, arcs=halves, splines=moved, events=events), len(full)
 
 
 def _opposite(operation: Operation, index: int) -> Floats:

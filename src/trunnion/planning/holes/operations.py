@@ -135,4 +135,5 @@ def extract_rows(operation: Operation, first: int, end: int) -> Operation:
         events.insert(0, replace(before[-1], row=0))
     here = (arcs.row >= first) & (arcs.row < end)
     kept = Arcs(arcs.row[here] - first, arcs.centre[here], arcs.normal[here], arcs.radius[here], arcs.full_turns[here])
-    return replace(operation, moves=moves.select(slice(first, end)), arcs=kept, events=tuple(events))
+    splines = operation.splines.inside(first, end)
+    return replace(operation, moves=moves.select(slice(first, end)), arcs=kept, splines=splines, events=tuple(events))

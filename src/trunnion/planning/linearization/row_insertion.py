@@ -1,4 +1,4 @@
-"""New rows before the rows of an operation: columns, arcs and events move along."""
+"""New rows before the rows of an operation: columns, arcs, splines and events move along."""
 
 from dataclasses import replace
 
@@ -32,6 +32,7 @@ def insert_rows(operation: Operation, copies: Ints, tip: Floats, axis: Floats, k
             None if moves.normal is None else _at(last, moves.normal, len(source)),
         ),
         arcs=replace(operation.arcs, row=last[operation.arcs.row]),
+        splines=operation.splines.at_rows(first[operation.splines.first], last[operation.splines.last]),
         events=tuple(replace(event, row=int(first[event.row])) for event in operation.events),
     )
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, slide_positions
+from trunnion.model.splines import Splines
 from trunnion.model.toolpath import CutterComp, Event, Kind, Message, Moves, Operation, Phase
 from trunnion.planning.axis_limits import limits_of, outside_limits
 from trunnion.planning.poses.decision_log import ChosenPoses
@@ -129,6 +130,7 @@ def insert_rewinds(
             operation,
             moves=_with_rows(operation.moves, rewinds, reengage_feed_share),
             arcs=replace(operation.arcs, row=np.asarray(_new_row(rows, operation.arcs.row))),
+            splines=Splines.empty(),  # operations with rewinds are simultaneous, and their splines lines
             events=tuple(sorted([*shifted, *messages], key=lambda event: event.row)),
         ),
         np.insert(rotary, np.repeat(rows, ROWS_PER_REWIND), poses, axis=0),

@@ -35,6 +35,7 @@ from trunnion.model.run import (
     SpindleWork,
     SurfaceNormals,
 )
+from trunnion.model.splines import SplineRows, Splines
 from trunnion.model.toolpath import Arcs, Kind
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
@@ -72,6 +73,9 @@ class ScannedRows(NamedTuple):
     feed_values: Floats
 
 
+#: Splines that are recorded before they become columns.
+_SPLINES_AT_A_TIME: Final = 4096
+
 #: Normals of planes that differ by less are the same.
 _SAME_NORMAL: Final = 1e-9
 
@@ -108,6 +112,8 @@ class RowRecorder:
         self._tool_names = [""]
         self._selected_tool = 0
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
+        self._splines: list[SplineRows] = []
+        self._spline_columns: list[Splines] = []
         self._spindle_holes: list[SpindleHole] = []
         self._compensation_planes: list[Floats] = []
         self._planes: dict[bytes, Floats] = {}
@@ -217,6 +223,28 @@ class RowRecorder:
         self._rotary_unresolved |= bool(bits & _ROTARY_WORDS)
         return True
 
+    def add_lines(self, ends: Floats, bits: int) -> bool:
+        """Add lines of one block to programmed positions (k, 3); the rest is as ``add_row`` has it."""
+        if not within_limits(ends):
+            self.note("a position is farther away than any machine reaches: the block is not executed", Severity.ERROR)
+            return False
+        c, begin = self.columns, 0
+        tips = ends @ self.position_map[:, :3].T + self.position_map[:, 3]
+        while begin < len(ends):
+            self._clear_if_full()
+            stop = min(begin + c.free, len(ends))
+            c.reserve(stop - begin)
+            rows, pending = slice(c.n, c.n + stop - begin), slice(c.n - c.base, c.n - c.base + stop - begin)
+            c.line[pending], c.block_number[pending] = self.line, self.block_number
+            c.kind[rows], c.programmed[rows] = Kind.LINEAR, bits
+            c.xyz[rows], c.rotary[rows] = tips[begin:stop], math.nan
+            c.turn_rule[pending], c.vector[pending] = NO_ROTARY.turn_rule, math.nan
+            self.modal.feed.set(c.n, self.programmed_feed)
+            c.n += stop - begin
+            begin = stop
+        self.programmed_position = ends[-1]
+        return True
+
     def _mapped(self, position: Floats) -> Floats:
         """Return a programmed position as a tool tip or slide positions, (3,) mm."""
         return np.asarray(self.position_map[:, :3] @ position + self.position_map[:, 3])
@@ -224,6 +252,17 @@ class RowRecorder:
     def add_arc(self, row: int, centre: Floats, normal: Floats, radius: float, turns: int) -> None:
         """Record the circle of a row of kind ``Kind.ARC``, in the workpiece frame."""
         self._arcs.append((row, centre, normal, radius, turns))
+
+    def add_spline(self, rows: SplineRows) -> None:
+        """Record the spline in the workpiece frame for which rows stand."""
+        self._splines.append(rows)
+        if len(self._splines) >= _SPLINES_AT_A_TIME:
+            self._collect_splines()
+
+    def _collect_splines(self) -> None:
+        """Put the splines so far into columns, which take a tenth of the memory."""
+        self._spline_columns.append(Splines.of(self._splines))
+        self._splines.clear()
 
     def add_spindle_hole(self, first: int, work: SpindleWork) -> None:
         """Record that the rows from ``first`` on are a hole whose cycle drives the spindle."""
@@ -332,6 +371,7 @@ class RowRecorder:
         c = self.columns
         c.clear()
         n = c.n
+        self._collect_splines()
         return Run(
             machine=self.machine,
             files=tuple(files),
@@ -344,6 +384,7 @@ class RowRecorder:
             state=self.modal.state(n),
             start=self.start,
             arcs=self._arc_columns(),
+            splines=Splines.joined(self._spline_columns),
             normals=self._normal_columns(),
             tools=tuple(self.tools),
             comments=comments,

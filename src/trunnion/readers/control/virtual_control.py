@@ -16,6 +16,7 @@ from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.model import axis_positions
 from trunnion.model.run import ProgrammedWord, SpindleWork
+from trunnion.model.splines import Spline, SplineRows
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import affine_matrix
@@ -264,6 +265,23 @@ class VirtualControl(CoordinateControl, ABC):
         bits = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
         self.move_axes(Kind.RAPID, self.machine.home[self._slides].copy(), bits=bits)
         self.modal.machine_frame.set(self.row, False)
+
+    def move_along_spline(self, spline: Spline, points: Floats, bits: int) -> None:
+        """Execute a spline in programmed positions, mm, whose ``points`` (k, 3) behind its start stand for it.
+
+        ``bits`` are the ``ProgrammedWord`` bits of its words.
+        """
+        self.preconditions.report_motion()
+        for axis in range(3):
+            self._increment_base.pop(axis, None)
+        slides = None if self.tip_programmed else self._slides_to_tip()
+        first = self.row
+        if not self.add_lines(points, bits):
+            return
+        poles = np.array([self._mapped(pole) for pole in spline.poles])
+        if slides is not None:
+            poles = poles @ slides[:, :3].T + slides[:, 3]
+        self.add_spline(SplineRows(first, self.row - 1, spline._replace(poles=poles)))
 
     # Circles
 

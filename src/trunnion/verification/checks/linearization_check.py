@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.verification.checks.arc_chord_faults import arc_chord_faults, chord_heights
+from trunnion.verification.checks.spline_faults import SplineFaults, spline_faults
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.linearization import LinearizationErrors
 from trunnion.verification.expected.arcs import circle_of
@@ -31,6 +32,9 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     tip = errors.tip if asked else motion.tip_deviation
     where = "on the way" if axis is errors.axis else "half-way"
     deviation, deviation_row = _largest_deviation(context)
+    splines = spline_faults(context) if isinstance(context, ComparedContext) else SplineFaults()
+    if splines.deviation > max(deviation, _NOISE):
+        deviation, deviation_row = splines.deviation, splines.row
     off_tip, row = (tip.value, tip.row) if tip.value > deviation else (deviation, deviation_row)
     places = []
     if axis.row >= 0:
@@ -38,7 +42,7 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
         places += [
             context.place(r, v, f"{where} the tool axis is {v:.5f} degrees off the great circle") for r, v in rows
         ]
-    faults = list(arc_chord_faults(context)) if isinstance(context, ComparedContext) else []
+    faults = [*arc_chord_faults(context), *splines.places] if isinstance(context, ComparedContext) else []
     if row >= 0 and off_tip > 0.0 and not (faults and row == deviation_row):
         rows = tip.rows or [(row, off_tip)]
         places += [context.place(r, v, f"between its ends the tip is {v:.5f} mm off") for r, v in rows]

@@ -29,6 +29,7 @@ def transform_to_frame(frame: Frame, operation: Operation) -> Operation:
             normal=None if moves.normal is None else moves.normal @ turn.T,
         ),
         arcs=replace(arcs, centre=arcs.centre @ turn.T + shift, normal=arcs.normal @ turn.T),
+        splines=operation.splines.with_poles(operation.splines.poles @ turn.T + shift),
     )
 
 

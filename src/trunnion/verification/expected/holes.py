@@ -97,15 +97,23 @@ def without_holes(operation: Operation) -> tuple[Operation, Flags]:
         if isinstance(event, CycleOn):
             holes[event.row : following.row if following else None] = True
     holes &= moves.kind != Kind.RAPID
-    if not holes.any():
-        return operation, holes
-    kept = ~holes
+    return without_rows(operation, holes), holes
+
+
+def without_rows(operation: Operation, gone: Flags) -> Operation:
+    """The operation without some rows (n,); arcs that end there go too, and splines that have no other row."""
+    if not gone.any():
+        return operation
+    moves, kept = operation.moves, ~gone
     new_row = np.concatenate(([0], np.cumsum(kept)))
     arcs = operation.arcs
     stay = kept[arcs.row] if len(arcs.row) else np.zeros(0, bool)
     left = Arcs(new_row[arcs.row[stay]], arcs.centre[stay], arcs.normal[stay], arcs.radius[stay], arcs.full_turns[stay])
     events = tuple(replace(event, row=int(new_row[event.row])) for event in operation.events)
-    return replace(operation, moves=moves.select(kept), arcs=left, events=events), holes
+    splines = operation.splines
+    first, last = new_row[splines.first], new_row[splines.last + 1] - 1
+    splines = splines.at_rows(first, last).select(last >= first)
+    return replace(operation, moves=moves.select(kept), arcs=left, splines=splines, events=events)
 
 
 def holes_of_operation(

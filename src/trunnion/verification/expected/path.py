@@ -28,7 +28,7 @@ from trunnion.model.toolpath import (
     Toolpath,
 )
 from trunnion.verification.expected.frames import transform_to_frame
-from trunnion.verification.expected.holes import Hole, holes_of_operation, without_holes
+from trunnion.verification.expected.holes import Hole, holes_of_operation, without_holes, without_rows
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedSpindles, ExpectedTool
 from trunnion.verification.expected.tolerances import Tolerances
 
@@ -74,10 +74,27 @@ class Point:
     line: int
 
 
+@dataclass(frozen=True, slots=True)
+class WrittenSpline:
+    """A spline of the CL files that a program writes as such, by splines ``begin`` to ``begin + count - 1`` of the run.
+
+    section, number  of the section, and of the spline in it
+    first, last      rows of the run from the first point behind its start to its end
+    """
+
+    section: int
+    number: int
+    begin: int
+    count: int
+    first: int
+    last: int
+
+
 class ExpectedPath:
     """All operations of a program end to end: rows are counted through them, and holes are kept apart.
 
-    ``hole_ends`` has, for each section, how many holes there are up to its end.
+    ``hole_ends`` has, for each section, how many holes there are up to its end. ``written_splines`` are those that the
+    program writes as such: each has one row here, that of its end, as an arc has.
 
     The columns of an operation are not copied; ``tip``, ``axis`` and the like gather some rows of them.
     """
@@ -88,6 +105,7 @@ class ExpectedPath:
         tolerances: Tolerances | Sequence[Tolerances] | Callable[[Operation], Tolerances],
         absolute: bool = False,
         settings_of: Callable[[str], OperationSettings] = lambda name: OperationSettings(),
+        written_splines: Sequence[WrittenSpline] = (),
     ) -> None:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
@@ -115,12 +133,14 @@ class ExpectedPath:
             spindle = ExpectedSpindles(placed, spindle).at(len(placed.moves))
             if limit.deviations is not None and hole_rows.any():
                 limit = replace(limit, deviations=limit.deviations.without_rows(hole_rows))
+            operation, limit = _with_ends_of_splines(operation, limit, written_splines, len(sections))
             sections.append(Section(path.file, operation, first, limit, settings))
             hole_ends.append(len(found))
             first += len(operation.moves)
         self.sections: tuple[Section, ...] = tuple(sections)
         self.holes: tuple[Hole, ...] = tuple(found)
         self.hole_ends: tuple[int, ...] = tuple(hole_ends)
+        self.written_splines: tuple[WrittenSpline, ...] = tuple(written_splines)
         self.first_rows: Ints = np.array([section.first for section in sections], np.int64)
 
     def __len__(self) -> int:
@@ -238,6 +258,22 @@ class ExpectedPath:
             for section in self.sections
             for event in section.operation.events
         )
+
+
+def _with_ends_of_splines(
+    operation: Operation, limit: Tolerances, written: Sequence[WrittenSpline], section: int
+) -> tuple[Operation, Tolerances]:
+    """An operation without the rows between start and end of the splines that are written; its limits likewise."""
+    numbers = [spline.number for spline in written if spline.section == section]
+    if not numbers:
+        return operation, limit
+    gone = np.zeros(len(operation.moves), np.bool_)
+    for k in numbers:
+        first, last, _ = operation.splines[k]
+        gone[first:last] = True
+    if limit.deviations is not None:
+        limit = replace(limit, deviations=limit.deviations.without_rows(gone))
+    return without_rows(operation, gone), limit
 
 
 def _by_operation(

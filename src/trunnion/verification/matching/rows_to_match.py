@@ -34,9 +34,14 @@ def workpiece_rows(run: Run) -> RowRanges:
 
 
 def rows_to_match(run: Run, expected: ExpectedPath) -> RowRanges:
-    """Rows of a run that should go to CL points: no hole motions, no approach from home, no exit to home."""
+    """Rows of a run that should go to CL points: no hole motions, no approach from home, no exit to home.
+
+    Of a spline that the CL files have too it is the end alone.
+    """
     rows = workpiece_rows(run)
-    without = np.concatenate((hole_rows(match_holes(run, expected)), approach_rows(run), tool_axis_exit_rows(run)))
+    inside = [np.arange(spline.first, spline.last) for spline in expected.written_splines]
+    holes = hole_rows(match_holes(run, expected))
+    without = np.concatenate((holes, approach_rows(run), tool_axis_exit_rows(run), *inside))
     turns = _plane_changes_at_points(run, expected)
     if not len(without) and not len(turns):
         return rows

@@ -15,10 +15,13 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
+from trunnion.controls.vocabulary import LINES_FOR_SPLINES, SPLINES_SETTING
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families.fanuc.cycles import cycle_lines, dwell_parts, is_valid_shift
+from trunnion.output.families.fanuc.splines import spline_lines as spline_lines
+from trunnion.output.families.fanuc.splines import takes_spline as takes_spline
 from trunnion.output.shared import iso
 from trunnion.output.shared.iso import row_words as row_words
 from trunnion.output.shared.lines import program_stop
@@ -38,11 +41,14 @@ PLANE_COMMANDS: tuple[str, ...] = ("g68_2", "g254")
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "contour": ("none", "G05.1", "G05"),
     "orientation": ("angles", "vector"),
+    SPLINES_SETTING: (LINES_FOR_SPLINES, "nurbs"),
 }
 SETTING_MEANINGS: Mapping[str, str] = {
     "contour": "AI contour control (look-ahead) that is on while an operation cuts: none, G05.1 Q1 or G05 P10000.",
     "orientation": "How the tool axis is programmed with TCP: angles writes rotary words (G43.4), vector writes I J K "
     "(G43.5) for whole operations.",
+    SPLINES_SETTING: "Splines of three-axis operations: linearize writes the lines between their points; nurbs writes "
+    "G06.2, for controls with the option of NURBS interpolation.",
 }
 _PLANE_FIELDS: Final = ("plane_first", "plane_second", "plane_third")
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {"contour": ("contour_on", "contour_off"), "call": ("call_word",)}

@@ -21,6 +21,8 @@ from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
 from trunnion.output.families.heidenhain.cycles import cycle_definition
 from trunnion.output.shared.lines import program_stop, split_text
 from trunnion.output.shared.spindle import dwell_seconds, dwell_text
+from trunnion.output.shared.splines import spline_lines as spline_lines
+from trunnion.output.shared.splines import takes_spline as takes_spline
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 #: With M128 the control offsets by delta values (DR) alone, not by the radius.

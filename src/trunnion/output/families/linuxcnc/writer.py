@@ -20,6 +20,8 @@ from trunnion.output.shared.iso import event_words as event_words
 from trunnion.output.shared.iso import row_words as row_words
 from trunnion.output.shared.lines import program_stop, split_text
 from trunnion.output.shared.spindle import dwell_seconds, dwell_text
+from trunnion.output.shared.splines import spline_lines as spline_lines
+from trunnion.output.shared.splines import takes_spline as takes_spline
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 
 #: Radius compensation works in the working plane, wherever the tool points.

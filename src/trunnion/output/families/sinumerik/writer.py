@@ -14,16 +14,20 @@ from trunnion.controls.vocabulary import (
     ALL_LEFT_ON,
     HOLES_IN_PLANES,
     HOLES_SETTING,
+    LINES_FOR_SPLINES,
     OFFSETS_DIFFER,
     PLANES_USED,
     SAFE_START_CHOICES,
     SAFE_START_SETTING,
+    SPLINES_SETTING,
     TCP_USED,
 )
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
 from trunnion.output.families.sinumerik.cycles import cycle_statement, is_valid_lift
+from trunnion.output.families.sinumerik.splines import spline_lines as spline_lines
+from trunnion.output.families.sinumerik.splines import takes_spline as takes_spline
 from trunnion.output.shared import iso
 from trunnion.output.shared.iso import arc_words as arc_words
 from trunnion.output.shared.iso import event_words as event_words
@@ -46,6 +50,7 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "orientation": ("angles", "vector"),
     HOLES_SETTING: (HOLES_IN_PLANES, "torot", "positions"),
     SAFE_START_SETTING: SAFE_START_CHOICES,
+    SPLINES_SETTING: (LINES_FOR_SPLINES, "polynomial"),
 }
 SETTING_MEANINGS: Mapping[str, str] = {
     "plane": "The command for a tilted plane: CYCLE800, or frames (TRAORI, TRANS, AROT).",
@@ -59,6 +64,8 @@ SETTING_MEANINGS: Mapping[str, str] = {
     SAFE_START_SETTING: "Which planes that an aborted run may have left on the start of every operation cancels: own "
     "cancels those that the program uses itself; all writes CYCLE800(), TOROTOF and TRANS in every program, for "
     "machines that have swivel data.",
+    SPLINES_SETTING: "Splines of three-axis operations: linearize writes the lines between their points; polynomial "
+    "writes POLY, for controls with the option of polynomial interpolation.",
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 _CANCELLING_FIELDS = ("cancel_swivel", "cancel_tool_frame", "cancel_frames")

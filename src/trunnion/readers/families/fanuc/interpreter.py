@@ -14,6 +14,7 @@ from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.fanuc import cycles, words
 from trunnion.readers.families.fanuc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
+from trunnion.readers.families.fanuc.nurbs import NurbsBlocks
 from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import ARITHMETIC
 from trunnion.readers.program.interpreter import ProgramEnd
@@ -35,6 +36,7 @@ class FanucInterpreter(CycleInterpreter):
         # The last H, -1 before the first.
         self._length_number = -1
         self._needs_number = self.control.settings.needs_program_number
+        self._nurbs = NurbsBlocks(self.control)
         self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
 
     @property
@@ -76,10 +78,22 @@ class FanucInterpreter(CycleInterpreter):
             self._note("the program begins without its number: write O and digits first", Severity.ERROR)
         reader = block_reader(text, ARITHMETIC, self._variables)
         if self._flow.accept(active, line, reader):
+            self._nurbs.break_off()
             return
         block = read_block(reader, self._report_repeated_word)
         self._translate(block, self.control.settings.words)
-        self._execute_words(active, line, block)
+        if words.NURBS in block.g or self._nurbs.is_open:
+            self._add_to_nurbs(block)
+        else:
+            self._execute_words(active, line, block)
+
+    def _add_to_nurbs(self, block: Block) -> None:
+        """Execute a block of a NURBS, the first of which has G6.2; no other motion may follow without G0 to G3."""
+        self.motion_code = words.NURBS
+        self._scale_words(block)
+        self._feed_and_speed(block)
+        self._counter.count_blocks(self._nurbs.add(block))
+        self._report_unused_words(block)
 
     def _program_number(self, active: ActiveProgram, line: int, text: str) -> None:
         """Start a program at its O number; if another program runs into it, that one ends."""
@@ -91,7 +105,12 @@ class FanucInterpreter(CycleInterpreter):
             self._end_of_file(active)
         active.begun = True
 
+    def _leave_program(self) -> None:
+        self._nurbs.break_off()
+        super()._leave_program()
+
     def _end_of_file(self, active: ActiveProgram) -> None:
+        self._nurbs.break_off()
         if len(self._stack) < 2:
             raise ProgramEnd
         self._leave_program()
@@ -256,6 +275,8 @@ class FanucInterpreter(CycleInterpreter):
             self._note("rotary words under G43.5, which takes I J K: an alarm (PS5421)", Severity.ERROR)
         if control.plane_of_pose and axes.keys() & set(control.rotary_names):
             self._note("rotary axes turn in the plane of the rotary position: end it first", Severity.ERROR)
+        if self.motion_code == words.NURBS and words.MACHINE not in block.g and (axes or vector is not None):
+            raise BlockError("a position behind the last knot of G6.2, where only G6.2 goes on")
         if self.motion_code in cycles.CYCLES:
             self._cycle(block, axes)
             if axes:

@@ -29,6 +29,8 @@ LENGTH_OFF: Final = 490
 #: AI contour control.
 CONTOUR: Final = 51
 
+NURBS: Final = 62
+
 #: Meanings for which the family has no words, only some of its controls: codes that no program can write.
 PLANE_OF_POSE: Final = -1
 NO_PLANE_OF_POSE: Final = -2
@@ -48,7 +50,6 @@ WITHOUT_PATH_EFFECT: Final = frozenset(
 NOT_SIMULATED: Final = {
     53: ("not simulated", False),
     61: ("a smooth curve is not simulated", True),
-    62: ("NURBS are not simulated", True),
     71: ("cylindrical interpolation is not simulated", True),
     121: ("polar coordinate interpolation is not simulated", True),
     160: ("polar positions are not simulated", True),
@@ -81,7 +82,7 @@ NOT_SIMULATED: Final = {
 TAKEN_AS_LINES: Final = frozenset({310, 330})
 
 #: G codes whose axis words are no positions: their block makes no motion.
-NO_MOTION: Final = frozenset({50, 51, 53, 61, 62, 80, 220, 270, 290, 501, 510, 511, 536, 661, 683, 684, 921})
+NO_MOTION: Final = frozenset({50, 51, 53, 61, 80, 220, 270, 290, 501, 510, 511, 536, 661, 683, 684, 921})
 
 #: Words that belong to a G code and have no effect here.
 WORDS_OF_CODE: Final = {
@@ -89,7 +90,6 @@ WORDS_OF_CODE: Final = {
     51: "QRXYZABC",
     53: "P",
     61: "XYZPR",
-    62: "XYZPKR",
     80: "P",
     71: "ABC",
     220: "XYZIJK",

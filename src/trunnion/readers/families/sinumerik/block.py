@@ -35,7 +35,7 @@ MAX_FEED: Final = 1e9
 
 #: Words without a value that the interpreter executes.
 _MODES: Final = (
-    FRAMES | ORIENTATION | WITHOUT_PATH_EFFECT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "TRAFOOF", "TRAORI"})
+    FRAMES | ORIENTATION | WITHOUT_PATH_EFFECT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "POLY", "TRAFOOF", "TRAORI"})
 )
 
 #: Words with a value that belong to circles and frames.
@@ -64,6 +64,8 @@ class Block:
     vector   A3, B3, C3 by letter
     params   I, J, K, I1, J1, K1, CR, AR, TURN, RPL
     words    words without a value
+    polynomials  the end and the coefficients of each axis with PO[]; the empty name is the denominator
+    interval     of their parameter, PL
     tolerances  within which the control may round off the path
     deltas   what the program adds to length and radius of the tool, other than 0
     """
@@ -73,6 +75,8 @@ class Block:
     params: dict[str, AxisWord] = field(default_factory=dict)
     g: list[int] = field(default_factory=list)
     words: list[str] = field(default_factory=list)
+    polynomials: dict[str, list[float]] = field(default_factory=dict)
+    interval: float | None = None
     m: list[int] = field(default_factory=list)
     h: list[float] = field(default_factory=list)
     calls: list[Call] = field(default_factory=list)
@@ -254,6 +258,10 @@ class BlockReader:
         elif name in _PARAMS and follows == "=":
             value, mode = self._value(reader)
             block.params[name] = _number(value), mode
+        elif name == "PO" and follows == "[":
+            self._polynomial(reader, block)
+        elif name == "PL" and follows == "=":
+            block.interval = _number(self._value(reader)[0])
         elif name in WITHOUT_PATH_EFFECT_VALUES and follows in ("=", "["):
             if follows == "[":
                 _skip(reader, "[", "]")
@@ -284,6 +292,21 @@ class BlockReader:
             raise ExpressionError(f"{name} needs a value")
         else:
             block.calls.append(read_call(reader, name))
+
+    @staticmethod
+    def _polynomial(reader: ExpressionReader, block: Block) -> None:
+        """Read the end and the coefficients of an axis: ``[X]=(end,a2,a3)``."""
+        reader.expect("[")
+        axis = "" if reader.peek() == "]" else reader.peek()
+        reader.at += bool(axis)
+        reader.expect("]")
+        reader.expect("=")
+        if reader.peek() != "(":
+            raise ExpressionError("PO[] takes its values in parentheses")
+        values = reader.arguments()
+        if axis in block.polynomials or not values or any(value is None for value in values):
+            raise ExpressionError(f"PO[{axis}] takes an end and coefficients, once")
+        block.polynomials[axis] = [_number(value) for value in values if value is not None]
 
     @staticmethod
     def _without_path_effect(block: Block, name: str, value: Value) -> None:

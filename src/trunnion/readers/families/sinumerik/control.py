@@ -24,10 +24,13 @@ from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualCont
 from trunnion.readers.families.sinumerik import settings
 from trunnion.readers.scan.letter_blocks import letter_table
 
-#: Motions in force besides rapid and lines: G2, G3 and CIP.
+#: Motions in force besides rapid and lines: G2, G3, CIP.
 CLOCKWISE: Final = 2
 COUNTER_CLOCKWISE: Final = 3
 THROUGH: Final = 4
+
+#: POLY, in whose blocks axes without a polynomial move evenly.
+POLYNOMIAL: Final = 5
 
 
 class SinumerikControl(VirtualControl):
@@ -103,7 +106,7 @@ class SinumerikControl(VirtualControl):
         params   I, J, K, I1, J1, K1, CR, AR, TURN
         axes     as in ``move``
         """
-        if self.motion <= LINEAR:
+        if self.motion <= LINEAR or self.motion == POLYNOMIAL:
             return None
         in_plane = any(name in axes for axis, name in enumerate("XYZ") if axis != self.plane_axis)
         return partial(self._arc, params, in_plane)

@@ -14,12 +14,19 @@ from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.sinumerik import cycles
 from trunnion.readers.families.sinumerik.block import Block, BlockReader, Call
 from trunnion.readers.families.sinumerik.calls import CallInterpreter
-from trunnion.readers.families.sinumerik.control import CLOCKWISE, COUNTER_CLOCKWISE, THROUGH, SinumerikControl
+from trunnion.readers.families.sinumerik.control import (
+    CLOCKWISE,
+    COUNTER_CLOCKWISE,
+    POLYNOMIAL,
+    THROUGH,
+    SinumerikControl,
+)
 from trunnion.readers.families.sinumerik.cycle800 import swivel
 from trunnion.readers.families.sinumerik.cycle832 import smooth
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader, Value
 from trunnion.readers.families.sinumerik.flow import ActiveProgram
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement
+from trunnion.readers.families.sinumerik.polynomials import move_along_polynomials
 from trunnion.readers.families.sinumerik.text import SinumerikText
 from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Token, TokenKind, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
@@ -75,7 +82,10 @@ class SinumerikInterpreter(CallInterpreter):
         return ActiveProgram(source, 0, variables=Variables())
 
     def _may_scan(self, source: SourceText) -> bool:
-        if not self.control.absolute or self._stack[-1].modal is not None or self.control.tool_frame:
+        control = self.control
+        if not control.absolute or self._stack[-1].modal is not None or control.tool_frame:
+            return False
+        if control.motion == POLYNOMIAL:
             return False
         beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH]
         return _PLAIN_START.match(beginning.tobytes()) is not None
@@ -195,6 +205,9 @@ class SinumerikInterpreter(CallInterpreter):
         if frame_words:
             self._frame(frame_words, block)
             return False
+        if block.polynomials or block.interval is not None or (control.motion == POLYNOMIAL and block.params):
+            move_along_polynomials(control, block, self._counter.count_blocks)
+            return True
         has_motion = block.axes or block.vector or (block.params and control.motion > LINEAR)
         if not has_motion or G_NO_MOTION.intersection(block.g):
             return False
@@ -257,6 +270,8 @@ class SinumerikInterpreter(CallInterpreter):
                 control.set_tcp(False)
             case "CIP":
                 control.motion = THROUGH
+            case "POLY":
+                control.motion = POLYNOMIAL
             case "ORIAXES":
                 control.set_orientation(Orientation.ANGLES)
             case "ORIVECT" | "ORIPLANE":

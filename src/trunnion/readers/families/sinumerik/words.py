@@ -169,7 +169,7 @@ WITHOUT_PATH_EFFECT_CALLS: Final = _words("""
 NOT_SIMULATED: Final = _words("""
     ROTS AROTS CROTS CROT CTRANS CSCALE CMIRROR TOFRAMEX TOFRAMEY TOROTX TOROTY PAROT
     TRANSMIT TRACYL TRAANG TRACON
-    BSPLINE ASPLINE CSPLINE POLY INVCW INVCCW CT
+    BSPLINE ASPLINE CSPLINE POLYPATH PW SD INVCW INVCCW CT
     ORIPATH ORIPATHS ORICURVE ORICONCW ORICONCCW ORICONIO ORICONTO ORIVIRT1 ORIVIRT2 ORIRESET
     TCARR CPON MEAS MEAW POS POSA SPOSA FXS COUPON COUPONC COUPOF DRFOF
     REPEATB TOFFON
@@ -197,8 +197,10 @@ TYPES: Final = frozenset({"REAL", "INT", "BOOL", "CHAR", "STRING", "AXIS", "FRAM
 #: Functions that give the mode of a position.
 POSITION_MODES: Final = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 
-#: Other words with an effect: transformation, machine positions, circles, messages.
-ACTIVE: Final = frozenset({"TRAORI", "TRAFOOF", "SUPA", "CIP", "CR", "TURN", "AR", "RPL", "SPOS", "MSG", "SETAL"})
+#: Other words with an effect: transformation, machine positions, circles, polynomials, messages.
+ACTIVE: Final = frozenset(
+    {"TRAORI", "TRAFOOF", "SUPA", "CIP", "CR", "TURN", "AR", "RPL", "POLY", "PO", "PL", "SPOS", "MSG", "SETAL"}
+)
 
 #: Values of predefined names; modes of CYCLE832 as the digits of S_TOLM.
 CONSTANTS: Final = {
