@@ -65,7 +65,7 @@ MILL = Tool("MILL", "R5", 10.0, 1.0, 70.0)
         "rounded ball",
         "bull",
         "taper",
-        "round taper",
+        "round taper", "widest at its corner",
         "taper ball",
         "two cones",
         "two cones with a corner",
