@@ -7,6 +7,7 @@ import pytest
 from trunnion.errors import InputError
 from trunnion.machines import load_machine
 from trunnion.readers import run_program
+from trunnion.readers.program import limits
 from trunnion.readers.program.options import DEFAULT_STEP_LIMIT
 
 KLARTEXT = "0 BEGIN PGM A MM\n"
@@ -59,6 +60,23 @@ def test_what_never_ends_is_ended_with_its_line(name: str, tmp_path: Path) -> No
     with pytest.raises(InputError, match="does it end") as raised:
         run_program(path, load_machine(machine), step_limit=limit)
     assert all(problem.line > 0 for problem in raised.value.problems)
+
+
+@pytest.mark.parametrize("name", ["while", "goto", "jumps", "goto of a Fanuc", "while of LinuxCNC"])
+def test_what_goes_in_circles_is_ended_sooner(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "MOST_BLOCKS_IN_CIRCLES", 1_000)
+    machine, text = ENDLESS[name]
+    path = tmp_path / ("A.H" if machine == "dmu65" else "A.MPF" if machine == "yl569" else "A.NC")
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="goes nowhere new; does it end"):
+        run_program(path, load_machine(machine))
+
+
+def test_a_loop_that_goes_on_is_not_in_circles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "MOST_BLOCKS_IN_CIRCLES", 1_000)
+    path = tmp_path / "A.MPF"
+    path.write_text("G0 X0 Y0\nFOR R1=1 TO 500\nY=.001*R1\nX1\nX0\nENDFOR\nM30\n", encoding="utf-8")
+    assert len(run_program(path, load_machine("yl569"))) == 1501
 
 
 def test_the_limit_is_a_few_seconds_of_blocks() -> None:

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
-from trunnion.arrays import Ints
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.files import WriteProgress
 from trunnion.machines import Machine
@@ -80,7 +82,7 @@ class Interpreter(ABC, Generic[A]):
         self._machine = machine
         self._options = options
         self._subprograms = Subprograms(options.subprograms, self.suffixes, self.prefix)
-        self._counter = StepCounter(options.step_limit, self._open_sources, self._limit_error)
+        self._counter = StepCounter(options.step_limit, self._open_sources, self._limit_error, self._positions_from)
         self._diagnostics: list[Diagnostic] = []
         self._unlisted = 0
         self._comments: list[Comment] = []
@@ -219,6 +221,11 @@ class Interpreter(ABC, Generic[A]):
             self._comments.append(Comment(line, self.control.row, comment, self.control.modal.file.current))
 
     # Limits
+
+    def _positions_from(self, row: int) -> Floats:
+        """X, Y, Z and the rotary words of the rows from one on, (n, 5)."""
+        columns = self.control.columns
+        return np.hstack([columns.xyz[row : columns.n], columns.rotary[row : columns.n]])
 
     def _open_sources(self) -> list[SourceText]:
         return [self._stack[0].source, *(source for source, _ in self._sources.values())]

@@ -3,6 +3,9 @@
 from collections.abc import Callable, Sequence
 from typing import Final
 
+import numpy as np
+
+from trunnion.arrays import Floats
 from trunnion.errors import InputError
 from trunnion.model.run import RunEvent
 from trunnion.readers.program.source_text import SourceText
@@ -21,6 +24,14 @@ SCANNED_BLOCKS_PER_STEP: Final = 16
 BLOCKS_PER_RESOLUTION: Final = 16
 RESOLUTIONS_PER_LINE: Final = 4
 
+#: A program that goes in circles: so many blocks, after its files have been gone through once, without a position at
+#: which it has not been before. It is looked at after so many blocks each time.
+MOST_BLOCKS_IN_CIRCLES: Final = 15_000
+_LOOKED_AT_AFTER: Final = 1_000
+
+#: Positions are the same within this, mm and degrees.
+_SAME_POSITION: Final = 1e-6
+
 #: Subprograms that one program may call.
 MAX_SUBPROGRAMS: Final = 1000
 
@@ -33,16 +44,26 @@ class StepCounter:
 
     Going once through each file is free, and so is everything that a file contains once.
 
-    sources   returns the files that are in use, the program first
-    fail      returns the error of a program that does too much
+    sources    returns the files that are in use, the program first
+    fail       returns the error of a program that does too much
+    positions  returns the positions of the rows so far, (n, k) mm and degrees
     """
 
     def __init__(
-        self, limit: int, sources: Callable[[], Sequence[SourceText]], fail: Callable[[str], InputError]
+        self,
+        limit: int,
+        sources: Callable[[], Sequence[SourceText]],
+        fail: Callable[[str], InputError],
+        positions: Callable[[int], Floats],
     ) -> None:
         self._limit = limit
         self._sources = sources
         self._fail = fail
+        self._positions = positions
+        self._visited: set[bytes] = set()
+        self._row = 0
+        self._look_at = _LOOKED_AT_AFTER
+        self._in_circles = 0
         self._blocks = 0
         self._records = 0
         self._events = 0
@@ -50,6 +71,8 @@ class StepCounter:
     def count_blocks(self, blocks: int, characters: int = 0) -> None:
         """Count executed blocks with so many characters."""
         self._blocks += blocks + max(characters, 0) // CHARACTERS_PER_STEP
+        if self._blocks >= self._look_at:
+            self._check_circles()
         if self._blocks <= self._limit:
             return
         sources = self._sources()
@@ -58,9 +81,25 @@ class StepCounter:
         if self._blocks > allowed:
             raise self._fail(f"executes more than {self._limit} blocks")
 
+    def _check_circles(self) -> None:
+        """Check whether the program has been anywhere new lately, once it repeats blocks of its files."""
+        passed, self._look_at = self._blocks - self._look_at + _LOOKED_AT_AFTER, self._blocks + _LOOKED_AT_AFTER
+        new = self._positions(self._row)
+        self._row += len(new)
+        if self._blocks <= sum(source.known_lines for source in self._sources()):
+            return
+        counts = np.rint(new / _SAME_POSITION)
+        before = len(self._visited)
+        self._visited.update(counts[k].tobytes() for k in range(len(counts)))
+        self._in_circles = self._in_circles + passed if len(self._visited) == before else 0
+        if self._in_circles > MOST_BLOCKS_IN_CIRCLES:
+            raise self._fail(f"has executed {MOST_BLOCKS_IN_CIRCLES} blocks and goes nowhere new")
+
     def check_resolutions(self, resolutions: int) -> None:
         """Check how often the control has worked out its axes, which takes as long as many blocks."""
         least = self._limit // BLOCKS_PER_RESOLUTION
+        if resolutions <= least:
+            return
         if resolutions > least + RESOLUTIONS_PER_LINE * sum(source.known_lines for source in self._sources()):
             raise self._fail(f"makes the control work out its axes more than {least} times")
 
