@@ -77,6 +77,7 @@ class FamilyWriter(Protocol):
     SETTING_MEANINGS: Mapping[str, str]
     SETTING_FIELDS: Mapping[str, tuple[str, ...]]
     TEMPLATE_FIELDS: frozenset[str]
+    LINE_COMMENTS: tuple[str, ...]
 
     def comment(self, text: str) -> list[str]:
         """Return a text as comment lines, whatever characters are in it."""

@@ -20,6 +20,7 @@ PLANE_COMMANDS: tuple[str, ...] = ()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 COMPENSATES_WITH_TCP = True
 SETTING_MEANINGS: Mapping[str, str] = {}
+LINE_COMMENTS: tuple[str, ...] = ("; ",)
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 

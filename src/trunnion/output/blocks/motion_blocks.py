@@ -24,6 +24,7 @@ from trunnion.output.blocks.orientation import OrientationWords
 from trunnion.output.blocks.surface_normals import add_vector_lines, contact_rows
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
 from trunnion.output.program import Program
+from trunnion.output.shared.lines import divided_comment
 
 #: The keys of phase comments in a definition.
 _PHASE_KEYS: Final = {
@@ -162,12 +163,15 @@ class MotionBlockWriter:
     def write_lines(self, lines: Sequence[str]) -> None:
         """Write lines of text, each a block; a line that ends with the continuation sign shares that of the next.
 
+        Comments that are longer than the control can read continue in the next line.
+
         Raises
         ------
         InputError
-            If a line is longer than the control can read.
+            If another line is.
         """
         room = self.control.longest_line - BLOCK_NUMBER_BYTES
+        lines = [piece for line in lines for piece in divided_comment(line, room, self.family.LINE_COMMENTS)]
         for line in lines:
             if len(line.encode()) > room:
                 what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"

@@ -39,6 +39,7 @@ SETTING_MEANINGS: Mapping[str, str] = {
 }
 _CANCELLING_FIELDS: Final = ("cancel_tcp", "cancel_plane")
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: _CANCELLING_FIELDS}
+LINE_COMMENTS: tuple[str, ...] = ()
 TEMPLATE_FIELDS: frozenset[str] = frozenset(_CANCELLING_FIELDS)
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.

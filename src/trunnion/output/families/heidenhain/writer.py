@@ -78,6 +78,7 @@ SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
     "plane_move": ("positioning",),
     "blank": ("blank_low", "blank_high"),
 }
+LINE_COMMENTS: tuple[str, ...] = ("; ", "* - ")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
         "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "blank_low",

@@ -33,6 +33,7 @@ PLANE_COMMANDS: tuple[str, ...] = ()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 SETTING_MEANINGS: Mapping[str, str] = {}
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {}
+LINE_COMMENTS: tuple[str, ...] = ("; ",)
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: Bytes of a text in one line: a line has room for 255, with the block number and what surrounds the text.
