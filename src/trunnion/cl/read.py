@@ -25,8 +25,8 @@ from trunnion.cl.unknown import unknown_statement_remarks
 from trunnion.encoding import EncodingDetector
 from trunnion.model.toolpath import Toolpath
 
-#: Bytes read at a time.
-CHUNK = 4 << 20
+#: Bytes read at a time, with what is made of them no more than the processor keeps near.
+CHUNK = 1 << 20
 _SURVEY_CHUNK = CHUNK
 #: Bytes by which the dialect is recognized.
 _HEAD = 1 << 16
