@@ -47,6 +47,8 @@ class StepColumn:
 
     def part(self, first: int, end: int) -> NDArray[Any]:
         """Return the values of consecutive rows, (end - first,)."""
+        if len(self.rows) == 1:
+            return np.full(end - first, self.values[0])
         low = int(self.rows.searchsorted(first, "right")) - 1
         high = max(int(self.rows.searchsorted(end)), low + 1)
         if high == low + 1:

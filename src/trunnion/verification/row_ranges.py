@@ -10,11 +10,14 @@ from trunnion.arrays import Flags, Ints
 #: Rows that are worked on at a time, so that their columns stay in the processor's cache.
 CHUNK = 8192
 
+#: The same for flags and other columns of a byte.
+_FLAG_CHUNK = 65536
+
 
 def chunk_bounds(count: int) -> Iterator[tuple[int, int]]:
-    """First row and end (exclusive) of the chunks of ``count`` rows, in order."""
-    for start in range(0, count, CHUNK):
-        yield start, min(start + CHUNK, count)
+    """First row and end (exclusive) of the chunks of ``count`` rows, in order, for work on flags."""
+    for start in range(0, count, _FLAG_CHUNK):
+        yield start, min(start + _FLAG_CHUNK, count)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,18 +5,18 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
-from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, rotary_positioning_flags
+from trunnion.verification.kinematics.positioning_moves import (
+    ROTARY_WORDS,
+    first_workpiece_position,
+    rotary_positioning_flags,
+)
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import CHUNK, RowRanges, chunk_bounds
 
 _TITLE: Final = "work offsets"
-
-
-#: A block with one of these words works at the workpiece.
-_POSITION: Final = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.VECTOR)
 
 
 def check_work_offset(context: Context) -> Check:
@@ -34,21 +34,11 @@ def _lost_offsets(context: Context) -> Iterator[Place]:
     events = [event for event in run.events if event.kind == "offset"]
     ends = [*(event.before_row for event in events[1:]), len(run)]
     for event, end in zip(events, ends, strict=True) if events else ():
-        row = _first_working_row(run, event.before_row, end) if event.value == "lost" else None
+        row = first_workpiece_position(run, event.before_row, end) if event.value == "lost" else None
         if row is not None:
             name = _name(context, int(run.state.work_offset[row]))
             what = f"clears {name}, and {context.block_name(row)} works before it is selected again"
             yield context.place_of_event(event, 0.0, f"TRAORI {what}: write {name} after it")
-
-
-def _first_working_row(run: Run, first: int, end: int) -> int | None:
-    """The first of some rows that goes to a position in workpiece coordinates."""
-    for start, stop in chunk_bounds(end - first):
-        rows = slice(first + start, first + stop)
-        works = ((run.programmed[rows] & _POSITION) != 0) & ~run.state.machine_frame.part(rows.start, rows.stop)
-        if works.any():
-            return rows.start + int(np.argmax(works))
-    return None
 
 
 def _check_selected(context: Context) -> Check:

@@ -4,12 +4,14 @@ In:     a run.
 Out:    rows, increasing, or flags of consecutive rows.
 """
 
+from collections.abc import Iterable, Iterator
+
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Ints
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.row_ranges import RowRanges, chunk_bounds
+from trunnion.verification.row_ranges import CHUNK
 
 #: Words that position the tip or the tool axis.
 POSITION_WORDS = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.VECTOR
@@ -21,10 +23,15 @@ ROTARY_WORDS = ProgrammedWord.FIRST | ProgrammedWord.SECOND
 _STRAIGHT = 1e-6
 _SAME_AXIS = 1e-9
 
+#: Rows that are searched at first.
+_FEW = 64
+
 
 def rotary_positioning_flags(run: Run, start: int, end: int) -> Flags:
     """Which of consecutive rows only position rotary axes, at rapid with TCP off, (end - start,) bool."""
     turns = _turns_only(run.programmed[start:end])
+    if not turns.any():
+        return turns
     return np.asarray(turns & ~run.state.tcp.part(start, end) & (run.kind[start:end] == Kind.RAPID))
 
 
@@ -82,13 +89,8 @@ def approach_rows(run: Run) -> Ints:
     """
     starts = {event.before_row for event in run.events if event.kind == "retract"}
     starts.update(row for row in run.state.machine_frame.rows_changing_to(False) if row > 0)
-    rows = RowRanges.from_flags(
-        (first, _positions(run.programmed[first:end]) & ~run.state.machine_frame.part(first, end))
-        for first, end in chunk_bounds(len(run))
-    )
-    following = {rows.count_before(start) for start in starts}
     found = []
-    for row in (rows[k] for k in sorted(following) if k < len(rows)):
+    for row in _rows_that_follow(run, starts):
         if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any() or run.state.machine_frame[row + 1]:
             continue
         if run.state.tcp[row] and int(run.programmed[row]) & int(ROTARY_WORDS):
@@ -97,3 +99,28 @@ def approach_rows(run: Run) -> Ints:
         if not across & ~int(ProgrammedWord.X | ProgrammedWord.Y) and along == int(ProgrammedWord.Z):
             found.append(row)
     return np.array(found, np.int64)
+
+
+def _rows_that_follow(run: Run, starts: Iterable[int]) -> Iterator[int]:
+    """The first row from each start on that goes to a position in workpiece coordinates: each once, ascending."""
+    row = -1
+    for start in sorted(starts):
+        if row >= start:
+            continue
+        found = first_workpiece_position(run, start, len(run))
+        if found is None:
+            return
+        row = found
+        yield row
+
+
+def first_workpiece_position(run: Run, first: int, end: int) -> int | None:
+    """The first of the rows ``first`` to ``end`` (exclusive) that goes to a position in workpiece coordinates."""
+    count = _FEW
+    while first < end:
+        stop = min(first + count, end)
+        goes = _positions(run.programmed[first:stop]) & ~run.state.machine_frame.part(first, stop)
+        if goes.any():
+            return first + int(np.argmax(goes))
+        first, count = stop, min(2 * count, CHUNK)
+    return None

@@ -1,0 +1,71 @@
+"""Searches for motions that position the machine, against what a loop over the rows finds."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from trunnion.model.run import ProgrammedWord
+from trunnion.model.toolpath import Kind
+from trunnion.readers.control.row_buffer import StepColumnBuilder
+from trunnion.verification.kinematics import positioning_moves
+from trunnion.verification.kinematics.positioning_moves import approach_rows, first_workpiece_position
+
+X, Z, FIRST, FEED = (
+    int(word) for word in (ProgrammedWord.X, ProgrammedWord.Z, ProgrammedWord.FIRST, ProgrammedWord.FEED)
+)
+
+#: Rows by the words of their block, whether they are rapids, in the machine frame, and right after a retract.
+ROWS = st.lists(st.tuples(st.sampled_from((0, X, Z, X | Z, FIRST, FEED)), st.booleans(), st.booleans(), st.booleans()))
+
+
+def run_of(rows: list[tuple[int, bool, bool, bool]]) -> Any:
+    """What these searches need of a run."""
+    frame = StepColumnBuilder(False)
+    for row, (_, _, in_frame, _) in enumerate(rows):
+        frame.set(row, in_frame)
+    tcp = StepColumnBuilder(True).steps(len(rows), np.bool_)
+
+    class Run(SimpleNamespace):
+        def __len__(self) -> int:
+            return len(rows)
+
+    return Run(
+        programmed=np.array([words for words, *_ in rows], np.uint8),
+        kind=np.where([rapid for _, rapid, *_ in rows], Kind.RAPID, Kind.LINEAR).astype(np.uint8),
+        state=SimpleNamespace(machine_frame=frame.steps(len(rows), np.bool_), tcp=tcp),
+        events=[SimpleNamespace(kind="retract", before_row=row) for row, each in enumerate(rows) if each[3]],
+    )
+
+
+@pytest.fixture(autouse=True)
+def few_rows_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(positioning_moves, "_FEW", 1)
+    monkeypatch.setattr(positioning_moves, "CHUNK", 4)
+
+
+@given(rows=ROWS, first=st.integers(0, 20), count=st.integers(0, 20))
+def test_the_first_position_in_workpiece_coordinates(
+    rows: list[tuple[int, bool, bool, bool]], first: int, count: int
+) -> None:
+    end = min(first + count, len(rows))
+    goes = [row for row in range(first, end) if rows[row][0] & (X | Z) and not rows[row][2]]
+    assert first_workpiece_position(run_of(rows), first, end) == (goes[0] if goes else None)
+
+
+@given(rows=ROWS)
+def test_an_approach_goes_across_at_rapid_and_down_in_the_next_block(rows: list[tuple[int, bool, bool, bool]]) -> None:
+    after_frame = {row for row in range(1, len(rows)) if rows[row - 1][2] and not rows[row][2]}
+    wanted, retracted = [], False
+    for row, (words, rapid, in_frame, retract) in enumerate(rows):
+        retracted = retracted or retract or row in after_frame
+        if not words & (X | Z) or in_frame:
+            continue
+        down = row + 1 < len(rows) and rows[row + 1][0] & (X | Z) == Z and rows[row + 1][1] and not rows[row + 1][2]
+        if retracted and rapid and words & (X | Z) == X and down:
+            wanted.append(row)
+        retracted = False
+    assert approach_rows(run_of(rows)).tolist() == wanted
