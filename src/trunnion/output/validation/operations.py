@@ -22,14 +22,15 @@ def spindle_problems(program: Program, operation: Operation, turns: bool | None)
     for event, following in pairwise([None, *switches, None]):
         start = event.row if event else 0
         on = turns if event is None else isinstance(event, SpindleOn)
-        cuts = np.flatnonzero(operation.moves.kind[start : following.row if following else None] != Kind.RAPID)
-        if on or not len(cuts):
+        cuts = operation.moves.kind[start : following.row if following else None] != Kind.RAPID
+        if on or not cuts.any():
             continue
         if program.effective_setting("standing_spindle") != "allowed":
             why = "no SPINDL comes before" if event is None and turns is None else "SPINDL/OFF comes before"
             what = f"operation {operation.name} cuts while the spindle stands: {why}"
             cure = "put SPINDL before it, or write setting standing_spindle=allowed for a tool that does not turn"
-            return [Problem(program.file_of(operation), int(operation.moves.line[start + cuts[0]]), what, cure)]
+            line = int(operation.moves.line[start + int(np.argmax(cuts))])
+            return [Problem(program.file_of(operation), line, what, cure)]
         break
     if turns is None and not any(isinstance(event, SpindleOn) for event in switches):
         what = f"operation {operation.name} has no spindle speed"
