@@ -9,12 +9,12 @@ from trunnion.cl import read_cl
 from trunnion.errors import InputError, Problem
 from trunnion.model.toolpath import Tool
 from trunnion.simulation.tool_choice import ClTool, choose_tools, tools_of_toolpaths
-from trunnion.simulation.tool_library import ToolLibrary, UnusableTool
-from trunnion.simulation.tool_shapes import ball, flat
+from trunnion.simulation.tool_library import LibraryTool, ToolLibrary, UnusableTool
+from trunnion.simulation.tool_shapes import ToolKind, ToolSizes, ball, flat
 from trunnion.simulation.tool_text import parse_tool
 
 BALL, FLAT = replace(ball(10.0), number=3), replace(flat(8.0), number=3, name="END_8")
-LIBRARY = ToolLibrary("shop.toml", (FLAT,))
+LIBRARY = ToolLibrary("shop.toml", (LibraryTool(ToolSizes(ToolKind.FLAT, 8.0), 3, "END_8"),))
 MILL = ClTool(3, Tool("MILL", "B6", 6.0, 3.0, 50.0), "part.cls", 7, "clsf")
 
 

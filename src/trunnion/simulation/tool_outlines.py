@@ -14,6 +14,13 @@ def cutter_outline(sizes: ToolSizes) -> tuple[Element, ...]:
     return _OUTLINES[sizes.kind](sizes)
 
 
+def tip_height(sizes: ToolSizes) -> float:
+    """Return the height of the outline of a cutter, without making many teeth for it."""
+    if sizes.kind is ToolKind.THREAD_MILL:
+        return tooth_count(sizes) * sizes.pitch
+    return cutter_outline(sizes)[-1].end[1]
+
+
 def side_slope(sizes: ToolSizes) -> float | None:
     """Return how much the radius grows by mm of height above the outline of a cutter; None if the cutter ends there."""
     if sizes.kind in (ToolKind.LOLLIPOP, ToolKind.T_SLOT, ToolKind.THREAD_MILL, ToolKind.BARREL):

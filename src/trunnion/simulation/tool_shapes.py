@@ -7,7 +7,7 @@ from itertools import accumulate, pairwise
 from typing import Final, TypedDict, Unpack
 
 from trunnion.errors import InputError, argument_problem
-from trunnion.simulation.tool_outlines import cutter_outline, side_slope
+from trunnion.simulation.tool_outlines import cutter_outline, side_slope, tip_height
 from trunnion.simulation.tool_profile import (
     Element,
     Point,
@@ -83,7 +83,7 @@ def shape_faults(sizes: ToolSizes) -> tuple[SizeFault, ...]:
     """Return everything that is impossible about the sizes of a tool; ``tool_shape`` takes those without a fault."""
     if faults := size_faults(sizes):
         return faults
-    tip = cutter_outline(sizes)[-1].end[1]
+    tip = tip_height(sizes)
     if sizes.length and sizes.length < tip * (1.0 - ROUNDING):
         return (SizeFault("length", f"is {sizes.length:g}, but its tip alone is {tip:.6g} high", "write all of it"),)
     return ()

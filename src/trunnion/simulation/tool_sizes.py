@@ -17,7 +17,7 @@ GREATEST: Final = 10_000.0
 ROUNDING: Final = 2e-4
 
 #: Most teeth of a thread mill, one above the other.
-MOST_TEETH: Final = 200
+MOST_TEETH: Final = 100
 
 #: Most pieces of a shank or a holder.
 MOST_PIECES: Final = 100

@@ -468,4 +468,5 @@ JSON = st.recursive(
 def test_odd_values_make_a_tool_unusable_and_nothing_else(tools: list[dict[str, Any]]) -> None:
     library = autodesk(*tools)
     assert len(library.tools) + len(library.unusable) == len(tools)
+    assert all(tool.shape().sections for tool in library.tools)
     assert all(tool.problems for tool in library.unusable)

@@ -51,7 +51,7 @@ def test_a_library_has_tools_by_number_and_by_name(tmp_path: Path) -> None:
     holder = (BodyPiece(40.0, 40.0, 50.0), BodyPiece(40.0, 60.0, 30.0))
     sizes = ToolSizes(ToolKind.BALL, 10.0, flute_length=20.0, length=60.5, shank_diameter=10.0, holder=holder)
     assert found.tool(3) == tool_shape(sizes, 3, "BALL_10", "finishing")
-    assert found.tool(None, "BALL_10") is found.tool(3)
+    assert found.tool(None, "BALL_10") == found.tool(3)
     necked = ToolSizes(
         ToolKind.TAPER, 4.0, side_angle=3.0, flute_length=12.0, length=60.0, neck_diameter=5.0, neck_length=30.0,
         shank=(BodyPiece(5.0, 8.0, 10.0),),

@@ -12,9 +12,8 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.errors import InputError, Problem
 from trunnion.simulation.tool_library.json_text import JsonObject, finite, short_text
-from trunnion.simulation.tool_library.library import ToolLibrary, UnusableTool
-from trunnion.simulation.tool_profile import ToolShape
-from trunnion.simulation.tool_shapes import shape_faults, tool_shape
+from trunnion.simulation.tool_library.library import LibraryTool, ToolLibrary, UnusableTool
+from trunnion.simulation.tool_shapes import shape_faults
 from trunnion.simulation.tool_sizes import (
     ANGLE_LIMITS,
     MOST_PIECES,
@@ -53,21 +52,21 @@ def read_autodesk(file: str, root: Mapping[str, Any]) -> ToolLibrary:
         raise InputError(
             [Problem(file, 0, what, "export the library again, or fewer tools") for what in library.faults]
         )
-    tools: list[ToolShape] = []
+    tools: list[LibraryTool] = []
     unusable: list[UnusableTool] = []
     for tool in entries:
         if tool.values.get("type") == "holder":
             continue
         # Mistakes of one tool are no mistakes of the others.
         found = _read_tool(file, tool.path, JsonObject(tool.values))
-        if isinstance(found, ToolShape):
+        if isinstance(found, LibraryTool):
             tools.append(found)
         else:
             unusable.append(found)
     return ToolLibrary(file, tuple(tools), tuple(unusable))
 
 
-def _read_tool(file: str, place: str, tool: JsonObject) -> ToolShape | UnusableTool:
+def _read_tool(file: str, place: str, tool: JsonObject) -> LibraryTool | UnusableTool:
     number = finite(tool.child("post-process").values.get("number"))
     called = int(number) if number is not None and number >= 0 and number == int(number) else None
     name = short_text(tool.values.get("description")) or short_text(tool.values.get("product-id"))
@@ -80,8 +79,7 @@ def _read_tool(file: str, place: str, tool: JsonObject) -> ToolShape | UnusableT
         problems = (Problem(file, 0, f"{shown} ({place}): {what}", _SAY_IT) for what in tool.faults)
         return UnusableTool(called, name, tuple(problems))
     kind = short_text(tool.values.get("type"))
-    shape = tool_shape(found, called, name, kind)
-    return replace(shape, remarks=(*shape.remarks, *_remarks(kind, tool)))
+    return LibraryTool(found, called, name, kind, tuple(_remarks(kind, tool)))
 
 
 def _remarks(kind: str, tool: JsonObject) -> Iterator[str]:

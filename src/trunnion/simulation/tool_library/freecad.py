@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from trunnion.errors import Problem
 from trunnion.simulation.tool_library.json_text import finite, short_text
-from trunnion.simulation.tool_library.library import ToolLibrary, UnusableTool
-from trunnion.simulation.tool_shapes import shape_faults, tool_shape
+from trunnion.simulation.tool_library.library import LibraryTool, ToolLibrary, UnusableTool
+from trunnion.simulation.tool_shapes import shape_faults
 from trunnion.simulation.tool_sizes import ANGLE_LIMITS, BodyPiece, ToolKind, ToolSizes
 
 #: mm to a unit of length, degrees to a unit of angle; a parameter without a unit is in mm or degrees.
@@ -90,10 +90,9 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
         cure = "state the tool itself: its kind and its sizes"
         problems = tuple(Problem(file, 0, f"tool bit {name}: {what}", cure) for what in whats)
         return ToolLibrary(file, (), (UnusableTool(None, name, problems),))
-    found = tool_shape(sizes, None, name, shape)
     remarks = [f"a tool bit has no holder: all of its length, {sizes.length:g} mm, stands free"] if sizes.length else []
     remarks += ["it is a tap: simulated without its thread"] if known == "tap" else []
-    return ToolLibrary(file, (replace(found, remarks=(*found.remarks, *remarks)),))
+    return ToolLibrary(file, (LibraryTool(sizes, None, name, shape, tuple(remarks)),))
 
 
 def _sizes(shape: str, bit: _Parameters) -> ToolSizes:

@@ -1,10 +1,32 @@
-"""What a tool library holds: tools as bodies, and those that cannot be made one, with the reason."""
+"""What a tool library holds: tools with their sizes, and those that cannot be made a body, with the reason."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from trunnion.errors import InputError, Problem
 from trunnion.simulation.tool_profile import ToolShape
+from trunnion.simulation.tool_shapes import tool_shape
+from trunnion.simulation.tool_sizes import ToolSizes
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryTool:
+    """A tool of a library, whose sizes have no fault; its body is made when a program calls it.
+
+    number   by which programs call it; None if it has none
+    remarks  what was taken for granted besides what ``ToolShape.remarks`` says
+    """
+
+    sizes: ToolSizes
+    number: int | None = None
+    name: str = ""
+    description: str = ""
+    remarks: tuple[str, ...] = ()
+
+    def shape(self) -> ToolShape:
+        """Return its body."""
+        found = tool_shape(self.sizes, self.number, self.name, self.description)
+        return replace(found, remarks=(*found.remarks, *self.remarks))
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +51,12 @@ class ToolLibrary:
     """
 
     file: str
-    tools: tuple[ToolShape, ...] = ()
+    tools: tuple[LibraryTool, ...] = ()
     unusable: tuple[UnusableTool, ...] = ()
     diameters: Mapping[int, float] = field(default_factory=dict)
 
     def find(self, number: int | None = None, name: str = "") -> ToolShape | None:
-        """Return the tool of a number, or if there is none, of a name; None if there is none of both.
+        """Return the body of the tool of a number, or if there is none, of a name; None if there is none of both.
 
         Raises
         ------
@@ -53,11 +75,11 @@ class ToolLibrary:
                 cure = "number and name them apart, or state the tool itself: its kind and its sizes"
                 raise InputError(Problem(self.file, 0, f"{len(found)} tools have the {what} {called}: {same}", cure))
             if found:
-                return found[0]
+                return found[0].shape()
         return None
 
     def tool(self, number: int | None = None, name: str = "") -> ToolShape:
-        """Return the tool of a number, or if there is none, of a name.
+        """Return the body of the tool of a number, or if there is none, of a name.
 
         Raises
         ------

@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from trunnion.definitions import Table, load_table
-from trunnion.simulation.tool_library.library import ToolLibrary
-from trunnion.simulation.tool_profile import ToolShape
-from trunnion.simulation.tool_shapes import shape_faults, tool_shape
+from trunnion.simulation.tool_library.library import LibraryTool, ToolLibrary
+from trunnion.simulation.tool_shapes import shape_faults
 from trunnion.simulation.tool_sizes import ANGLE_LIMITS, GREATEST, OF_BODY, OF_KIND, BodyPiece, ToolKind, ToolSizes
 
 #: Greatest number of a tool.
@@ -26,7 +25,7 @@ def read_toml_library(path: Path) -> ToolLibrary:
         If it cannot be read, with every mistake in it and its line.
     """
     root = load_table(path, files(__package__), kind="tool library")
-    tools: list[ToolShape] = []
+    tools: list[LibraryTool] = []
     taken: dict[int | str, str] = {}
     for table in root.tables("tool", required=True):
         number = table.integer("number", None, at_least=0, at_most=_MOST)
@@ -43,8 +42,8 @@ def read_toml_library(path: Path) -> ToolLibrary:
     return ToolLibrary(str(path), tuple(tools))
 
 
-def _read_tool(table: Table, number: int | None, name: str) -> list[ToolShape]:
-    """The body of a tool; none if there is a mistake in it, which the table then has."""
+def _read_tool(table: Table, number: int | None, name: str) -> list[LibraryTool]:
+    """The tool of a table; none if there is a mistake in it, which the table then has."""
     before = len(table.problems)
     description = table.text("description", "")
     word = table.text("kind", one_of=list(ToolKind))
@@ -68,7 +67,7 @@ def _read_tool(table: Table, number: int | None, name: str) -> list[ToolShape]:
     faults = shape_faults(found)
     for size, what, cure in faults:
         table.add_problem(size if size in _PIECES else _key(size), what, cure)
-    return [] if faults else [tool_shape(found, number, name, description)]
+    return [] if faults else [LibraryTool(found, number, name, description)]
 
 
 def _key(size: str) -> str:
