@@ -1,9 +1,12 @@
 """A tile of rays as sweeps pass through it: material is removed, and what the tool meets is measured.
 
 In:     the material of a tile, the sweeps that reach it in the order of the program, and the pieces of the tool.
-Out:    the material that is left; for each sweep the volume it removed, and the longest stretch of a ray that it
-        removed, that was part of the design, and that a section of the tool which does not cut has met.
+Out:    the material that is left; for each sweep the volume it removed, and the greatest thickness that it removed,
+        that was part of the design, and that a section of the tool which does not cut has met.
 Units:  mm, coordinates (u, v, w) of the tile's bundle.
+
+The thickness at a ray is the length of its stretch times the smaller |n_w| of the surfaces at both ends: for two
+parallel planes their distance, however the ray passes them.
 """
 
 import math
@@ -21,7 +24,7 @@ Rows2: TypeAlias = Annotated[Lines, 2]
 Normals: TypeAlias = Annotated[NDArray[np.int8], 3]
 
 #: Columns of what is measured of each sweep.
-REMOVED, LONGEST, GOUGED, DEEPEST, MET = 0, 1, 2, 3, 4
+REMOVED, CUT_DEPTH, GOUGED, GOUGE_DEPTH, MET = 0, 1, 2, 3, 4
 
 #: Shorter stretches than this do not count as material, mm: rounding of a path that is cut again.
 TRACE = 1e-7
@@ -32,6 +35,7 @@ class Rays(NamedTuple):
 
     design_first  (nu * nv + 1,) the stretches of ray k within the design are design_first[k]:design_first[k + 1]
     design        (2 m,)         their starts and ends along w, mm
+    design_slope  (2 m,)         |n_w| of the design's normals there
     """
 
     u: Floats
@@ -39,6 +43,15 @@ class Rays(NamedTuple):
     area: float
     design_first: Ints
     design: Floats
+    design_slope: Floats
+
+
+class Design(NamedTuple):
+    """The stretches of the design, as in ``Rays``."""
+
+    first: Ints
+    ends: Floats
+    slope: Floats
 
 
 class CutterTable(NamedTuple):
@@ -81,9 +94,9 @@ def cut_tile(
     ends      (r, 2 s)    starts and ends of up to s stretches, ascending
     rows      (r, 2 s)    rows of the run that made them, -1 for the stock itself
     normals   (r, 2 s, 3) unit normals out of the material there, in 127ths
-    measured  (k, 4 + q)  for each sweep: volume removed, longest stretch removed, volume gouged, longest stretch
-                          gouged, longest stretch that section q of the tool met; mm³ and mm
-    places    (k, 4 + q, 3)  (u, v, w) of the longest stretches
+    measured  (k, 4 + q)  for each sweep: volume removed, greatest thickness removed, volume gouged, greatest thickness
+                          gouged, greatest thickness that section q of the tool met; mm³ and mm
+    places    (k, 4 + q, 3)  (u, v, w) of the greatest thicknesses
 
     Returns the index in ``wanted`` at which a ray needs more than s stretches, or their number. The sweep of that
     index has to be made again.
@@ -92,7 +105,8 @@ def cut_tile(
     nu, nv = len(rays.u), len(rays.v)
     step_u = rays.u[1] - low_u if nu > 1 else 1.0
     step_v = rays.v[1] - low_v if nv > 1 else 1.0
-    design_first, design, area = rays.design_first, rays.design, rays.area
+    design = Design(rays.design_first, rays.design, rays.design_slope)
+    area = rays.area
     table = tool.elements
     inside = _material(rays.u, rays.v, count, ends)
     for k in range(begin, len(wanted)):
@@ -137,11 +151,11 @@ def cut_tile(
                         if not found.hit or not _meets(ray, found.low, found.high, count, ends):
                             continue
                         if cutting:
-                            _measure(k, ray, u, v, found, area, design_first, design, count, ends, measured, places)
+                            _measure(k, ray, u, v, found, area, design, count, ends, normals, measured, places)
                             if not _remove(ray, found, row, count, ends, rows, normals):
                                 return k
                         else:
-                            _meet(k, ray, u, v, found, count, ends, measured, places, column)
+                            _meet(k, ray, u, v, found, count, ends, normals, measured, places, column)
     return len(wanted)
 
 
@@ -172,10 +186,10 @@ def _measure(
     v: float,
     found: Ends,
     area: float,
-    design_first: Ints,
-    design: Floats,
+    design: Design,
     count: Lines,
     ends: Floats2,
+    normals: Normals,
     measured: Floats2,
     places: Floats3,
 ) -> None:
@@ -184,13 +198,16 @@ def _measure(
         start, end = max(found.low, ends[ray, 2 * s]), min(found.high, ends[ray, 2 * s + 1])
         if end - start < TRACE:
             continue
+        from_slope, to_slope = _slopes(ray, s, found, ends, normals)
         measured[k, REMOVED] += (end - start) * area
-        _longer(k, u, v, start, end, measured, places, LONGEST)
-        for d in range(design_first[ray], design_first[ray + 1]):
-            inside, outside = max(start, design[2 * d]), min(end, design[2 * d + 1])
+        _thicker(k, u, v, start, end, min(from_slope, to_slope), measured, places, CUT_DEPTH)
+        for m in range(design.first[ray], design.first[ray + 1]):
+            inside, outside = max(start, design.ends[2 * m]), min(end, design.ends[2 * m + 1])
             if outside - inside > TRACE:
                 measured[k, GOUGED] += (outside - inside) * area
-                _longer(k, u, v, inside, outside, measured, places, DEEPEST)
+                one = design.slope[2 * m] if inside > start else from_slope
+                two = design.slope[2 * m + 1] if outside < end else to_slope
+                _thicker(k, u, v, inside, outside, min(one, two), measured, places, GOUGE_DEPTH)
 
 
 @inner
@@ -202,6 +219,7 @@ def _meet(
     found: Ends,
     count: Lines,
     ends: Floats2,
+    normals: Normals,
     measured: Floats2,
     places: Floats3,
     column: int,
@@ -210,16 +228,36 @@ def _meet(
     for s in range(count[ray]):
         start, end = max(found.low, ends[ray, 2 * s]), min(found.high, ends[ray, 2 * s + 1])
         if end - start > TRACE:
-            _longer(k, u, v, start, end, measured, places, column)
+            from_slope, to_slope = _slopes(ray, s, found, ends, normals)
+            _thicker(k, u, v, start, end, min(from_slope, to_slope), measured, places, column)
 
 
 @inner
-def _longer(
-    k: int, u: float, v: float, start: float, end: float, measured: Floats2, places: Floats3, column: int
+def _slopes(ray: int, s: int, found: Ends, ends: Floats2, normals: Normals) -> tuple[float, float]:
+    """|n_w| where what the tool covers of a stretch begins and ends: of the tool, or of the material."""
+    one, two = abs(normals[ray, 2 * s, 2]) / 127.0, abs(normals[ray, 2 * s + 1, 2]) / 127.0
+    if found.low > ends[ray, 2 * s]:
+        one = abs(found.low_w)
+    if found.high < ends[ray, 2 * s + 1]:
+        two = abs(found.high_w)
+    return one, two
+
+
+@inner
+def _thicker(
+    k: int,
+    u: float,
+    v: float,
+    start: float,
+    end: float,
+    slope: float,
+    measured: Floats2,
+    places: Floats3,
+    column: int,
 ) -> None:
-    """Keep a stretch if it is the longest."""
-    if end - start > measured[k, column]:
-        measured[k, column] = end - start
+    """Keep a thickness if it is the greatest."""
+    if (end - start) * slope > measured[k, column]:
+        measured[k, column] = (end - start) * slope
         places[k, column, 0], places[k, column, 1], places[k, column, 2] = u, v, 0.5 * (start + end)
 
 

@@ -7,8 +7,8 @@ Units:  mm, workpiece frame.
 The rows are taken in chunks. For each chunk the sweeps that may reach a tile are listed, and the tiles are cut side by
 side, each by one thread and in the order of the program: the result does not depend on the number of threads.
 
-How deep something is in something else is measured along the rays of all three bundles; the depth is the shortest of
-the three longest stretches, which is at most 1.73 times the depth across the surface.
+How deep something is in something else is measured along the rays of all three bundles; the depth is the smallest of
+the three greatest thicknesses.
 """
 
 import os
@@ -21,9 +21,9 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
 from trunnion.simulation.cut_kernel import (
-    DEEPEST,
+    CUT_DEPTH,
+    GOUGE_DEPTH,
     GOUGED,
-    LONGEST,
     MET,
     REMOVED,
     CutterTable,
@@ -179,7 +179,7 @@ def _rays(stock: Stock, tile: Tile, design: tuple[Spans, Spans, Spans] | None) -
         columns = tile.first_v + np.arange(len(tile.v))
         rays = ((tile.first_u + np.arange(len(tile.u)))[:, None] * width + columns).ravel()
         spans = design[tile.bundle].at(rays)
-    return Rays(tile.u, tile.v, area, spans.first, spans.ends)
+    return Rays(tile.u, tile.v, area, spans.first, spans.ends, np.abs(spans.normals[:, 2]) / 127.0)
 
 
 def _boxes(sweeps: RowSweeps, low: float, high: float, widest: float) -> Floats:
@@ -210,7 +210,7 @@ class _Totals:
         count = sweeps.end - sweeps.first
         self._first, self._tool = sweeps.first, sweeps.tool
         self._sums = np.zeros((count, columns))
-        self._longest = np.zeros((3, count, columns))
+        self._greatest = np.zeros((3, count, columns))
         self._places = np.full((3, count, columns, 3), np.nan)
 
     def add(self, bundle: int, row: Ints, measured: Floats, places: Floats) -> None:
@@ -223,9 +223,9 @@ class _Totals:
             order = np.lexsort((measured[:, column], at))
             last = order[np.concatenate((at[order][1:] != at[order][:-1], [True]))]
             rows = at[last]
-            better = measured[last, column] > self._longest[bundle, rows, column]
+            better = measured[last, column] > self._greatest[bundle, rows, column]
             rows, last = rows[better], last[better]
-            self._longest[bundle, rows, column] = measured[last, column]
+            self._greatest[bundle, rows, column] = measured[last, column]
             self._places[bundle, rows, column] = _from_bundle(bundle, places[last, column])
 
     def result(self, pieces: RevolvedPieces) -> RowsCut:
@@ -236,14 +236,14 @@ class _Totals:
             self._tool,
             self._sums[:, REMOVED] / 3.0,
             self._sums[:, GOUGED] / 3.0,
-            self._depths(LONGEST),
-            self._depths(DEEPEST),
+            self._depths(CUT_DEPTH),
+            self._depths(GOUGE_DEPTH),
             {section: self._depths(MET + section) for section in sections},
         )
 
     def _depths(self, column: int) -> Depths:
-        """The shortest of what the bundles have seen."""
-        lengths = np.where(self._longest[:, :, column] > 0.0, self._longest[:, :, column], np.inf)
+        """The smallest of what the bundles have seen."""
+        lengths = np.where(self._greatest[:, :, column] > 0.0, self._greatest[:, :, column], np.inf)
         bundle = lengths.argmin(axis=0)
         rows = np.arange(lengths.shape[1])
         depth = lengths[bundle, rows]
