@@ -18,6 +18,7 @@ Functions
     verify         NC program against its CL files -> Verification
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
+    simulate       NC programs and stock -> SimulationResult: what is cut, and what is hit
     write_report   Verification -> page or data
     write_plot     ClDescription -> page with the path in space
 
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
     from trunnion.api.reading import read_cl as read_cl
     from trunnion.api.reading import read_program as read_program
     from trunnion.api.reports import write_report as write_report
+    from trunnion.api.simulating import SimulationResult as SimulationResult
+    from trunnion.api.simulating import simulate as simulate
     from trunnion.api.verifying import verify as verify
     from trunnion.errors import InputError as InputError
     from trunnion.errors import Problem as Problem
@@ -92,6 +95,7 @@ _MODULES: Final = {
     "RefusedError": "errors",
     "Run": "model.run",
     "Severity": "errors",
+    "SimulationResult": "api.simulating",
     "Toolpath": "model.toolpath",
     "TrunnionError": "errors",
     "Verification": "verification.results",
@@ -106,6 +110,7 @@ _MODULES: Final = {
     "post": "api.posting",
     "read_cl": "api.reading",
     "read_program": "api.reading",
+    "simulate": "api.simulating",
     "verify": "api.verifying",
     "write_plot": "api.plotting",
     "write_report": "api.reports",
@@ -133,6 +138,7 @@ __all__ = [
     "RefusedError",
     "Run",
     "Severity",
+    "SimulationResult",
     "Toolpath",
     "TrunnionError",
     "Verification",
@@ -148,6 +154,7 @@ __all__ = [
     "post",
     "read_cl",
     "read_program",
+    "simulate",
     "verify",
     "write_plot",
     "write_report",

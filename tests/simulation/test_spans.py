@@ -5,16 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from tests.support.sweeps import CUBE, CUBE_FACES
 from trunnion.arrays import Floats, Ints
 from trunnion.simulation.lattice import Lattice
 from trunnion.simulation.spans import box_spans, cylinder_spans, mesh_spans
 from trunnion.simulation.stock import Stock
-
-CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
-CUBE_FACES = np.array(
-    [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
-     [1, 5, 7], [1, 7, 3]], np.int64,
-)  # fmt: skip
 
 
 def prism(corners: int) -> tuple[Floats, Ints]:

@@ -13,6 +13,13 @@ from trunnion.simulation.sweeps import RowSweeps
 from trunnion.simulation.tool_pieces import revolved_pieces
 from trunnion.simulation.tool_profile import Role, ToolShape
 
+#: A cube of 1 mm: its corners, and its faces, which turn left seen from outside.
+CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+CUBE_FACES = np.array(
+    [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+     [1, 5, 7], [1, 7, 3]], np.int64,
+)  # fmt: skip
+
 
 def block(low: tuple[float, float, float], high: tuple[float, float, float], cell: float) -> Stock:
     """A box of stock."""

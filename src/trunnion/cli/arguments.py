@@ -118,6 +118,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_convert(
         commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
     )
+    _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
@@ -227,6 +228,36 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
         "--force", action="store_true", help="convert what was understood, and write a program that must not run"
     )
     parser.set_defaults(run=_lazy_command("convert", "run"))
+
+
+def _add_simulate(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("files", nargs="+", metavar="NC", help="NC program; several cut the same stock in their order")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs them")
+    parser.add_argument(
+        "--stock", required=True, metavar="STOCK",
+        help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner), cylinder:D,H[,z0], or a mesh file; mm",
+    )  # fmt: skip
+    parser.add_argument("--part", metavar="MESH", help="the finished part, to compare with what is left of the stock")
+    parser.add_argument(
+        "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools",
+        help="a tool, such as 3=ball:10,length=60,flutes=20,shank=12,holder=40x50; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tools", action="append", default=[], metavar="LIBRARY", dest="libraries",
+        help="tool library: TOML, .tools or .json of Autodesk, FreeCAD's .fctb, LinuxCNC's tool.tbl; may be repeated",
+    )  # fmt: skip
+    parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file whose tools these are")
+    _add_subprograms(parser, "they")
+    parser.add_argument("--cell", type=_tolerance, metavar="MM", help="width of the cells; a 200th of the stock's side")
+    parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; a tenth of a cell")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
+    parser.add_argument(
+        "--stop-at", choices=("none", "first"), default="none", help="end after the block of the first finding"
+    )
+    parser.add_argument("--until", metavar="BLOCK", help="N number of the block before which the last program ends")
+    parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
+    parser.set_defaults(run=_lazy_command("simulate", "run"))
 
 
 def _add_info(parser: argparse.ArgumentParser) -> None:

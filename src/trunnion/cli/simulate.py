@@ -1,0 +1,157 @@
+"""``trunnion simulate``: what NC programs leave of the stock, and what they hit."""
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import Final
+
+from trunnion.api.simulating import AirCut, SimulationFinding, SimulationResult, simulate
+from trunnion.cli.cl_files import cl_inputs
+from trunnion.cli.results import as_json, print_result
+from trunnion.cli.terminal import Terminal
+from trunnion.files import atomic_file
+from trunnion.machines.motion_time import format_duration
+from trunnion.simulation.deviation import Excess
+from trunnion.wording import counted, one_line
+
+#: Findings that the text shows of each kind; the data has all.
+_MOST: Final = 20
+
+_DECIMALS: Final = 6
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Simulate programs; 0 if nothing was found, else 1."""
+    found = simulate(
+        arguments.files,
+        machine=arguments.machine,
+        stock=arguments.stock,
+        part=arguments.part,
+        tools=arguments.tools,
+        libraries=arguments.libraries,
+        cl=cl_inputs(arguments.cl),
+        subprograms=arguments.subprograms,
+        cell=arguments.cell,
+        accuracy=arguments.accuracy,
+        zero=arguments.zero or None,
+        tool_length=arguments.tool_length or None,
+        stop_at=arguments.stop_at,
+        until=arguments.until,
+        observer=Terminal(),
+    )
+    if arguments.json == "-":
+        print_result(as_json(simulation_data(found)))
+    else:
+        print_result(*map(one_line, simulation_lines(found)))
+        if arguments.json is not None:
+            with atomic_file(arguments.json, inputs=[*arguments.files, *arguments.cl]) as stream:
+                stream.write((as_json(simulation_data(found)) + "\n").encode())
+    return 0 if found.passed else 1
+
+
+def simulation_lines(found: SimulationResult) -> Iterator[str]:
+    """A simulation in lines."""
+    for operation in found.operations:
+        air = f", {operation.air:.0f} mm in air" if operation.air else ""
+        yield (
+            f"{operation.file}:{operation.line}: tool {operation.tool}: {operation.removed:.1f} mm³ removed"
+            f" in {format_duration(operation.seconds)}{air}"
+        )
+    shown = dict[str, int]()
+    for finding in found.findings:
+        shown[finding.kind] = shown.get(finding.kind, 0) + 1
+        if shown[finding.kind] <= _MOST:
+            yield _finding_line(finding)
+    for kind, count in shown.items():
+        if count > _MOST:
+            yield f"and {count - _MOST} more: {kind}"
+    if found.left is not None:
+        yield _excess_line("left on the part", found.left)
+    if found.gouge is not None:
+        yield _excess_line("missing from the part", found.gouge)
+    cell = " x ".join(f"{width:.4g}" for width in found.cell)
+    yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
+    yield "nothing found" if found.passed else f"{counted(len(found.findings), 'finding')}: the program must not run"
+
+
+def _finding_line(finding: SimulationFinding) -> str:
+    last = f" to line {finding.last_line}" if finding.last_line != finding.line else ""
+    x, y, z = finding.place
+    block = f" N{finding.block}" if finding.block >= 0 else ""
+    return (
+        f"{finding.file}:{finding.line}:{block} {finding.kind}: {finding.between[0]}, {finding.between[1]}:"
+        f" {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}{last}"
+    )
+
+
+def _excess_line(what: str, excess: Excess) -> str:
+    at = excess.places[0].at if excess.places else None
+    where = f" at X{at[0]:.3f} Y{at[1]:.3f} Z{at[2]:.3f}" if at else ""
+    return f"{what}: {excess.largest:.3f} mm at most{where}, {excess.volume:.2f} mm³"
+
+
+def simulation_data(found: SimulationResult) -> dict[str, object]:
+    """A simulation as data; the schema is in ``docs/simulation.md``."""
+    return {
+        "schema": 1,
+        "passed": found.passed,
+        "programs": list(found.programs),
+        "machine": found.machine,
+        "cell_mm": _number(max(found.cell)),
+        "cells_mm": _numbers(found.cell),
+        "accuracy_mm": _number(found.accuracy),
+        "limit_mm": _number(found.limit),
+        "removed_mm3": _number(found.removed),
+        "left": _excess(found.left),
+        "gouge": _excess(found.gouge),
+        "collisions": [_finding(each) for each in found.findings],
+        "near": [],
+        "air": [_air(each) for each in found.air],
+        "operations": [
+            {
+                "file": each.file, "tool": each.tool, "line": each.line, "last_line": each.last_line,
+                "removed_mm3": _number(each.removed), "gouged_mm3": _number(each.gouged),
+                "seconds": _number(each.seconds), "air_mm": _number(each.air), "findings": each.findings,
+            }
+            for each in found.operations
+        ],
+        "remarks": [{key: str(value) if key == "severity" else value for key, value in asdict(each).items()}
+                    for each in found.remarks],
+        "seconds": _number(found.seconds),
+    }  # fmt: skip
+
+
+def _finding(finding: SimulationFinding) -> dict[str, object]:
+    return {
+        "kind": finding.kind, "between": list(finding.between), "file": finding.file, "line": finding.line,
+        "block": _block(finding.block), "last_line": finding.last_line, "last_block": _block(finding.last_block),
+        "cl_line": finding.cl_line or None, "seconds": _number(finding.seconds), "depth_mm": _number(finding.depth),
+        "place": _numbers(finding.place),
+    }  # fmt: skip
+
+
+def _air(each: AirCut) -> dict[str, object]:
+    return {
+        "file": each.file, "line": each.line, "block": _block(each.block), "last_line": each.last_line,
+        "last_block": _block(each.last_block), "length_mm": _number(each.length),
+    }  # fmt: skip
+
+
+def _block(number: int) -> int | None:
+    """An N number; a block without one has none."""
+    return number if number >= 0 else None
+
+
+def _excess(excess: Excess | None) -> dict[str, object] | None:
+    if excess is None:
+        return None
+    places = [{"place": _numbers(each.at), "depth_mm": _number(each.thickness)} for each in excess.places]
+    return {"largest_mm": _number(excess.largest), "volume_mm3": _number(excess.volume), "places": places}
+
+
+def _numbers(values: tuple[float, ...]) -> list[float]:
+    return [_number(value) for value in values]
+
+
+def _number(value: float) -> float:
+    return round(float(value), _DECIMALS) + 0.0

@@ -1,0 +1,96 @@
+"""What a simulation finds: which blocks do what they must not, first and worst of a run of blocks.
+
+In:     what the rows of a run did (``RowsCut``), and the run.
+Out:    ``Finding`` records, in the order of the program.
+Units:  mm, workpiece frame.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.simulation.removal import RowsCut
+from trunnion.simulation.tool_profile import Role, ToolShape
+
+#: Rows without a finding that do not end a run of rows with one.
+_PAUSE: Final = 2
+
+
+class What(StrEnum):
+    """What is wrong."""
+
+    RAPID = "rapid through stock"
+    GOUGE = "gouge"
+    STANDING = "cuts with the spindle off"
+    SHANK = "shank into stock"
+    HOLDER = "holder into stock"
+    BODY = "collision"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing that is wrong, in consecutive rows of a run.
+
+    between   names of the two bodies
+    rows      first and last row of the run
+    worst     the row in which it is deepest
+    depth     there, mm
+    place     there, mm
+    """
+
+    what: What
+    between: tuple[str, str]
+    rows: tuple[int, int]
+    worst: int
+    depth: float
+    place: tuple[float, float, float]
+
+
+def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float) -> Iterator[Finding]:
+    """Yield the findings of consecutive rows with one tool; what is no deeper than ``limit`` mm is none."""
+    name = tool_name(run, rows.tool)
+    first, end = rows.first, rows.first + len(rows.removed)
+    kind, spindle = run.kind[first:end], run.state.spindle.part(first, end)
+    rapid = kind == Kind.RAPID
+    cuts = rows.cut.depth > limit
+    yield from _runs(What.RAPID, (name, "stock"), first, rapid & cuts, rows.cut.depth, rows.cut.place)
+    standing = ~rapid & (spindle == 0) & cuts
+    yield from _runs(What.STANDING, (name, "stock"), first, standing, rows.cut.depth, rows.cut.place)
+    yield from _runs(What.GOUGE, (name, "part"), first, rows.gouge.depth > limit, rows.gouge.depth, rows.gouge.place)
+    for section, met in rows.met.items():
+        role = shape.sections[section].role
+        what = What.HOLDER if role is Role.HOLDER else What.SHANK
+        body = f"{what.name.lower()} of {name}"
+        yield from _runs(what, (body, "stock"), first, met.depth > limit, met.depth, met.place)
+
+
+def tool_name(run: Run, tool: int) -> str:
+    """A tool as messages name it; 0 where the program has called none."""
+    return f"tool {run.tools[tool] or 0}"
+
+
+def _runs(
+    what: What, between: tuple[str, str], first: int, flags: Flags, depth: Floats, place: Floats
+) -> Iterator[Finding]:
+    """Consecutive rows as one finding."""
+    found = np.flatnonzero(flags)
+    if not len(found):
+        return
+    for part in np.split(found, np.flatnonzero(np.diff(found) > 1 + _PAUSE) + 1):
+        worst = int(part[depth[part].argmax()])
+        x, y, z = place[worst].tolist()
+        rows = int(part[0]) + first, int(part[-1]) + first
+        yield Finding(what, between, rows, worst + first, float(depth[worst]), (x, y, z))
+
+
+def air_cuts(run: Run, rows: RowsCut) -> Ints:
+    """Rows at feed that took nothing away."""
+    end = rows.first + len(rows.removed)
+    idle = (run.kind[rows.first : end] != Kind.RAPID) & (rows.removed <= 0.0)
+    return np.flatnonzero(idle) + rows.first

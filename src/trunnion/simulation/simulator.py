@@ -1,0 +1,209 @@
+"""Programs that cut stock one after another, and all that is found.
+
+In:     stock, the design, runs and the bodies of their tools.
+Out:    ``Simulation``: what each operation did, what is wrong, and the stock that is left.
+Units:  mm, seconds, workpiece frame.
+"""
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.model.run import Run
+from trunnion.simulation.deviation import Excess, left_on, missing_from
+from trunnion.simulation.findings import Finding, air_cuts, row_findings
+from trunnion.simulation.removal import cut
+from trunnion.simulation.spans import Spans
+from trunnion.simulation.stock import Stock
+from trunnion.simulation.stock_shapes import StockShape, make_stock
+from trunnion.simulation.tool_pieces import RevolvedPieces, revolved_pieces
+from trunnion.simulation.tool_profile import ToolShape
+
+#: Part of the tolerance that the facets of a tool's round corners take.
+_FACETS: Final = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What is simulated: the solids, the cell, how far motions may be off (``tolerance``), mm."""
+
+    stock: StockShape
+    part: StockShape | None
+    cell: float
+    tolerance: float
+
+    @property
+    def limit(self) -> float:
+        """What is no deeper than this is not told, mm: what motions and tools may be off on both sides."""
+        return 2.0 * self.tolerance
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Job:
+    """A program: its run, the body of each tool by its name in the program, the row at which it ends, and why."""
+
+    run: Run
+    tools: Mapping[str, ToolShape]
+    end: int
+    broken_off: str = ""
+
+
+@dataclass(slots=True, eq=False)
+class OperationCut:
+    """What consecutive rows with one tool did: rows ``first`` to ``end`` (exclusive) of the run of a job."""
+
+    job: int
+    tool: str
+    first: int
+    end: int
+    removed: float = 0.0
+    gouged: float = 0.0
+    air: list[Ints] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Simulation:
+    """What came out.
+
+    error    how far the bodies of tools with round corners may be off, mm
+    left     what the stock has beyond the design; None without a design
+    gouge    what of the design is missing
+    stopped  where it was stopped at the first finding: job and row
+    seconds  of computing
+    """
+
+    setup: Setup
+    operations: tuple[OperationCut, ...]
+    stock: Stock
+    start_volume: float
+    error: float
+    left: Excess | None
+    gouge: Excess | None
+    leaks: int
+    stopped: tuple[int, int] | None
+    seconds: float
+
+
+def simulate(
+    setup: Setup,
+    jobs: Sequence[Job],
+    *,
+    stop_at_first: bool = False,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Simulation:
+    """Cut stock with programs, one after another.
+
+    Parameters
+    ----------
+    setup
+        The solids and the accuracy.
+    jobs
+        The programs in their order.
+    stop_at_first
+        End after the row of the first finding.
+    threads
+        As for ``removal.cut``.
+    progress
+        Is called with rows done and rows in all.
+    """
+    found = _simulate(setup, jobs, threads, progress)
+    if stop_at_first:
+        first = min(((one.job, finding.rows[0]) for one in found.operations for finding in one.findings), default=None)
+        if first is not None:
+            job, row = first
+            kept = [*jobs[:job], Job(jobs[job].run, jobs[job].tools, row + 1, jobs[job].broken_off)]
+            return _simulate(setup, kept, threads, progress, first)
+    return found
+
+
+def _simulate(
+    setup: Setup,
+    jobs: Sequence[Job],
+    threads: int | None,
+    progress: Callable[[int, int], None] | None,
+    stopped: tuple[int, int] | None = None,
+) -> Simulation:
+    begin = time.perf_counter()
+    stock = make_stock(setup.stock, setup.cell)
+    start = stock.spans(0), stock.spans(1), stock.spans(2)
+    design: tuple[Spans, Spans, Spans] | None = None
+    leaks = 0
+    if setup.part is not None:
+        part, lattice = setup.part, stock.lattice
+        design = part.spans(lattice, 0), part.spans(lattice, 1), part.spans(lattice, 2)
+        leaks = sum(spans.leaks for spans in design)
+    start_volume, operations = stock.volume, list[OperationCut]()
+    total, done, error = sum(job.end for job in jobs), 0, 0.0
+    for number, job in enumerate(jobs):
+        pieces, off = _pieces(job, _FACETS * setup.tolerance)
+        error = max(error, off)
+        operations += _cut_job(setup, number, job, pieces, stock, design, threads, _shifted(progress, done, total))
+        done += job.end
+    left = gouge = None
+    if design is not None:
+        left, gouge = left_on(stock, design, setup.limit), missing_from(stock, start, design, setup.limit)
+    seconds = time.perf_counter() - begin
+    return Simulation(setup, tuple(operations), stock, start_volume, error, left, gouge, leaks, stopped, seconds)
+
+
+def _shifted(progress: Callable[[int, int], None] | None, before: int, total: int) -> Callable[[int, int], None] | None:
+    if progress is None:
+        return None
+    return lambda done, _: progress(before + done, total)
+
+
+def _pieces(job: Job, tolerance: float) -> tuple[dict[int, RevolvedPieces], float]:
+    """The pieces of each tool by its index in the run, and how far they are off."""
+    found, error = {}, 0.0
+    for index, name in enumerate(job.run.tools):
+        if name in job.tools:
+            found[index], off = revolved_pieces(job.tools[name], tolerance)
+            error = max(error, off)
+    return found, error
+
+
+def _cut_job(
+    setup: Setup,
+    number: int,
+    job: Job,
+    pieces: Mapping[int, RevolvedPieces],
+    stock: Stock,
+    design: tuple[Spans, Spans, Spans] | None,
+    threads: int | None,
+    progress: Callable[[int, int], None] | None,
+) -> Iterator[OperationCut]:
+    """Yield the operations of a program when each of them has ended."""
+    run, current = job.run, None
+    chunks = cut(stock, run, pieces, setup.tolerance, design=design, end=job.end, threads=threads, progress=progress)
+    for rows in chunks:
+        name = run.tools[rows.tool]
+        if current is None or current.tool != name or current.end != rows.first:
+            if current is not None:
+                yield current
+            current = OperationCut(number, name, rows.first, rows.first)
+        current.end = rows.first + len(rows.removed)
+        current.removed += float(rows.removed.sum())
+        current.gouged += float(rows.gouged.sum())
+        current.findings += row_findings(run, rows, job.tools[name], setup.limit)
+        current.air.append(air_cuts(run, rows))
+    if current is not None:
+        yield current
+
+
+def row_runs(rows: Ints) -> Iterator[tuple[int, int]]:
+    """Consecutive rows as first and last."""
+    if len(rows):
+        for part in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
+            yield int(part[0]), int(part[-1])
+
+
+def tip_lengths(run: Run) -> Floats:
+    """The straight way of the tip in each row, (n,), mm."""
+    steps = np.diff(run.tip, axis=0, prepend=run.tip[:1])
+    return np.asarray(np.linalg.norm(steps, axis=1))

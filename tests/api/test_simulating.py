@@ -1,0 +1,171 @@
+"""``trunnion.simulate``: programs that cut stock, and what they do that they must not."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trunnion
+from tests.support.sweeps import CUBE, CUBE_FACES
+from trunnion.cli import main
+from trunnion.simulation.meshes import TriangleMesh
+
+HEAD = "G21 G90 G17 G40 G49 G80\nT1 M6\nG43 H1\nS1000 M3\nG0 X-20 Y0 Z20\n"
+SLOT = HEAD + "N50 G0 Z-5\nN60 G1 X70 F500\nN70 G0 Z20\nM5\nM30\n"
+STOCK = "box:50,40,10,0,-20,-10"
+TOOL = "1=flat:10,length=60,flutes=20,holder=40x50"
+
+
+def simulate(tmp_path: Path, program: str, **arguments: object) -> trunnion.SimulationResult:
+    nc = tmp_path / "part.ngc"
+    nc.write_text(program)
+    given: dict[str, object] = {"machine": "xyzac_trt", "stock": STOCK, "tools": [TOOL], "cell": 0.5} | arguments
+    return trunnion.simulate(nc, **given)  # type: ignore[arg-type]
+
+
+def cuboid(low: tuple[float, float, float], high: tuple[float, float, float]) -> TriangleMesh:
+    return TriangleMesh(np.array(low) + CUBE * (np.array(high) - np.array(low)), CUBE_FACES)
+
+
+def slotted(depth: float) -> TriangleMesh:
+    """The stock with a slot of 10 mm along X: three boxes that touch."""
+    boxes = [
+        cuboid((0, -20, -10), (50, -5, 0)), cuboid((0, 5, -10), (50, 20, 0)), cuboid((0, -5, -10), (50, 5, -depth)),
+    ]  # fmt: skip
+    vertices = np.concatenate([box.vertices for box in boxes])
+    return TriangleMesh(vertices, np.concatenate([box.faces + 8 * k for k, box in enumerate(boxes)]))
+
+
+def test_a_slot_is_cut_and_nothing_is_wrong(tmp_path: Path) -> None:
+    found = simulate(tmp_path, SLOT)
+    assert found.passed
+    assert found.removed == pytest.approx(2500.0, rel=1e-3)
+    (operation,) = found.operations
+    assert (operation.tool, operation.air, operation.findings) == ("1", 0.0, 0)
+
+
+@pytest.mark.parametrize(
+    ("program", "kind", "block", "depth"),
+    [
+        (SLOT.replace("N60 G1 X70 F500", "N60 G0 X70"), "rapid through stock", 60, 5.0),
+        (SLOT.replace("S1000 M3", "S1000"), "cuts with the spindle off", 60, 5.0),
+        (SLOT.replace("Z-5", "Z-9.5").replace("Z20\nM5", "Z20\nM5"), None, 60, 9.5),
+    ],
+    ids=["rapid", "standing", "sound"],
+)
+def test_what_a_block_must_not_do_is_found(
+    tmp_path: Path, program: str, kind: str | None, block: int, depth: float
+) -> None:
+    found = simulate(tmp_path, program)
+    if kind is None:
+        assert found.passed
+        return
+    (finding,) = found.findings
+    assert (finding.kind, finding.block, finding.line) == (kind, block, 7)
+    assert finding.depth == pytest.approx(depth, abs=0.1)
+    assert not found.passed
+
+
+@pytest.mark.parametrize(
+    ("tool", "kind", "depth"),
+    [
+        ("1=flat:10,length=60,flutes=3", "shank into stock", 2.0),
+        ("1=flat:10,length=4,flutes=4,holder=40x50", "holder into stock", 1.0),
+    ],
+    ids=["flutes", "holder"],
+)
+def test_what_does_not_cut_meets_the_stock(tmp_path: Path, tool: str, kind: str, depth: float) -> None:
+    found = simulate(tmp_path, SLOT, tools=[tool])
+    kinds = {finding.kind: finding for finding in found.findings}
+    assert kinds[kind].block == 60
+    assert kinds[kind].depth == pytest.approx(depth, abs=0.1)
+
+
+def test_the_part_that_comes_out_is_compared_with_the_design(tmp_path: Path) -> None:
+    sound = simulate(tmp_path, SLOT, part=slotted(5.0))
+    assert sound.left is not None
+    assert sound.gouge is not None
+    assert sound.passed
+    assert max(sound.left.largest, sound.gouge.largest) <= sound.limit
+    gouged = simulate(tmp_path, SLOT, part=slotted(4.6))
+    assert gouged.gouge is not None
+    assert gouged.gouge.largest == pytest.approx(0.4, abs=0.01)
+    assert [(one.kind, one.block) for one in gouged.findings] == [("gouge", 60)]
+    assert gouged.findings[0].depth == pytest.approx(0.4, abs=0.01)
+    left = simulate(tmp_path, SLOT, part=slotted(6.0))
+    assert left.left is not None
+    assert left.left.largest == pytest.approx(1.0, abs=0.01)
+    assert left.left.volume == pytest.approx(500.0, rel=0.2)
+    assert left.passed  # a roughing program leaves material
+
+
+def test_it_ends_after_the_first_finding_or_before_a_block(tmp_path: Path) -> None:
+    program = SLOT.replace("N70 G0 Z20", "N70 G0 Y15\nN80 G0 X-20\nN90 G0 Z20")
+    whole = simulate(tmp_path, program)
+    first = simulate(tmp_path, program, stop_at="first")
+    assert [one.block for one in whole.findings] == [80]
+    assert first.simulation.stopped is not None
+    assert first.removed == pytest.approx(whole.removed)
+    before = simulate(tmp_path, program, until="N60")
+    assert before.removed == 0.0
+    with pytest.raises(trunnion.InputError, match="no block N7777"):
+        simulate(tmp_path, program, until="N7777")
+
+
+def test_several_programs_cut_the_same_stock(tmp_path: Path) -> None:
+    one, two = tmp_path / "one.ngc", tmp_path / "two.ngc"
+    one.write_text(SLOT)
+    two.write_text(SLOT.replace("Y0", "Y10"))
+    found = trunnion.simulate([one, two], machine="xyzac_trt", stock=STOCK, tools=[TOOL], cell=0.5)
+    assert found.removed == pytest.approx(5000.0, rel=1e-3)
+    again = trunnion.simulate([one, one], machine="xyzac_trt", stock=STOCK, tools=[TOOL], cell=0.5)
+    assert again.operations[1].removed == pytest.approx(0.0, abs=1e-6)
+    assert again.air[0].length == pytest.approx(90.0)
+
+
+def test_a_program_with_an_error_cuts_up_to_there(tmp_path: Path) -> None:
+    found = simulate(tmp_path, SLOT.replace("N60", "N55 G4711\nN60"))
+    assert not found.passed
+    assert found.removed == 0.0
+    assert "it is cut up to there" in found.remarks[-1].what
+
+
+def test_a_tool_is_never_guessed(tmp_path: Path) -> None:
+    with pytest.raises(trunnion.InputError, match="tool 1"):
+        simulate(tmp_path, SLOT, tools=[])
+    with pytest.raises(trunnion.InputError, match="before it calls a tool"):
+        simulate(tmp_path, SLOT.replace("T1 M6\nG43 H1\n", ""))
+
+
+@pytest.mark.parametrize("stock", ["box:1,2", "box:0,1,1", "box:a,1,1", "cylinder:1,2,3,4", "box:1e9,1,1"])
+def test_stock_that_is_none_is_refused(tmp_path: Path, stock: str) -> None:
+    with pytest.raises(trunnion.InputError, match=r"write box:X,Y,Z"):
+        simulate(tmp_path, SLOT, stock=stock)
+
+
+def test_a_cell_for_which_there_is_no_memory_is_refused_with_one_that_does(tmp_path: Path) -> None:
+    with pytest.raises(trunnion.InputError, match=r"cells of 0\.\d+ mm take less than 3 GB"):
+        simulate(tmp_path, SLOT, cell=0.0001)
+
+
+def test_a_cylinder_is_bored(tmp_path: Path) -> None:
+    program = HEAD.replace("X-20", "X0") + "N60 G1 Z-12 F500\nN70 G0 Z20\nM5\nM30\n"
+    found = simulate(tmp_path, program, stock="cylinder:30,10,-10", cell=0.25)
+    assert found.removed == pytest.approx(250.0 * math.pi, rel=0.01)
+
+
+def test_the_command_says_it_in_text_and_data(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    nc = tmp_path / "part.ngc"
+    nc.write_text(SLOT.replace("N60 G1 X70 F500", "N60 G0 X70"))
+    given = [str(nc), "--machine", "xyzac_trt", "--stock", STOCK, "--tool", TOOL, "--cell", "0.5"]
+    assert main(["simulate", *given, "--json", str(tmp_path / "out.json")]) == 1
+    text = capsys.readouterr().out
+    data = json.loads((tmp_path / "out.json").read_text())
+    assert "part.ngc:7: N60 rapid through stock: tool 1, stock: 5.000 mm deep" in text
+    (collision,) = data["collisions"]
+    assert (collision["between"], collision["block"], collision["line"]) == (["tool 1", "stock"], 60, 7)
+    assert data["removed_mm3"] == pytest.approx(2500.0, rel=1e-3)
+    assert main(["simulate", *given, "--json", "-"]) == 1
+    assert json.loads(capsys.readouterr().out)["removed_mm3"] == data["removed_mm3"]
