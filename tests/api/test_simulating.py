@@ -10,7 +10,7 @@ import pytest
 import trunnion
 from tests.support.sweeps import CUBE, CUBE_FACES
 from trunnion.cli import main
-from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.meshes import TriangleMesh, load_mesh
 
 HEAD = "G21 G90 G17 G40 G49 G80\nT1 M6\nG43 H1\nS1000 M3\nG0 X-20 Y0 Z20\n"
 SLOT = HEAD + "N50 G0 Z-5\nN60 G1 X70 F500\nN70 G0 Z20\nM5\nM30\n"
@@ -166,6 +166,9 @@ def test_the_command_says_it_in_text_and_data(tmp_path: Path, capsys: pytest.Cap
     assert "part.ngc:7: N60 rapid through stock: tool 1, stock: 5.000 mm deep" in text
     (collision,) = data["collisions"]
     assert (collision["between"], collision["block"], collision["line"]) == (["tool 1", "stock"], 60, 7)
+    assert main(["simulate", *given, "--save-stock", str(tmp_path / "left.stl")]) == 1
+    assert load_mesh(tmp_path / "left.stl", closed=True).volume == pytest.approx(17500.0, rel=1e-5)
+    capsys.readouterr()
     assert data["removed_mm3"] == pytest.approx(2500.0, rel=1e-3)
     assert main(["simulate", *given, "--json", "-"]) == 1
     assert json.loads(capsys.readouterr().out)["removed_mm3"] == data["removed_mm3"]

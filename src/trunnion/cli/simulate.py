@@ -6,12 +6,14 @@ from dataclasses import asdict
 from typing import Final
 
 from trunnion.api.simulating import AirCut, SimulationFinding, SimulationResult, simulate
-from trunnion.cli.cl_files import cl_inputs
+from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.files import atomic_file
 from trunnion.machines.motion_time import format_duration
 from trunnion.simulation.deviation import Excess
+from trunnion.simulation.meshes import check_mesh_name, save_mesh
+from trunnion.simulation.surface import stock_surface
 from trunnion.wording import counted, one_line
 
 #: Findings that the text shows of each kind; the data has all.
@@ -22,6 +24,10 @@ _DECIMALS: Final = 6
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate programs; 0 if nothing was found, else 1."""
+    read = [*arguments.files, *named_files(arguments.cl), *arguments.libraries, *arguments.subprograms]
+    read += [mesh for mesh in (arguments.part, arguments.stock) if mesh is not None]
+    if arguments.save_stock is not None:
+        check_mesh_name(arguments.save_stock)
     found = simulate(
         arguments.files,
         machine=arguments.machine,
@@ -39,12 +45,14 @@ def run(arguments: argparse.Namespace) -> int:
         until=arguments.until,
         observer=Terminal(),
     )
+    if arguments.save_stock is not None:
+        save_mesh(stock_surface(found.simulation.stock), arguments.save_stock, inputs=read)
     if arguments.json == "-":
         print_result(as_json(simulation_data(found)))
     else:
         print_result(*map(one_line, simulation_lines(found)))
         if arguments.json is not None:
-            with atomic_file(arguments.json, inputs=[*arguments.files, *arguments.cl]) as stream:
+            with atomic_file(arguments.json, inputs=read) as stream:
                 stream.write((as_json(simulation_data(found)) + "\n").encode())
     return 0 if found.passed else 1
 

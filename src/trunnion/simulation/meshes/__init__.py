@@ -7,7 +7,7 @@ from trunnion.simulation.meshes.findings import MeshFindings, judge_mesh
 from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh, revolved_mesh
 from trunnion.simulation.meshes.reading import MESH_FORMATS, MeshUnit, load_mesh
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
-from trunnion.simulation.meshes.writing import save_mesh
+from trunnion.simulation.meshes.writing import check_mesh_name, save_mesh
 
 __all__ = [
     "MESH_FORMATS",
@@ -15,6 +15,7 @@ __all__ = [
     "MeshUnit",
     "TriangleMesh",
     "box_mesh",
+    "check_mesh_name",
     "cylinder_mesh",
     "judge_mesh",
     "load_mesh",

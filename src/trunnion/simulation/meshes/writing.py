@@ -19,6 +19,14 @@ _GLB_ARRAY: Final = 34962
 _GLB_ELEMENTS: Final = 34963
 
 
+def check_mesh_name(path: str | Path) -> None:
+    """Raise ``InputError`` if the ending of a name says no format that is written."""
+    ending = Path(path).suffix.lower()
+    if ending not in _WRITERS:
+        what = f'ends in "{Path(path).suffix}"' if ending else "has no ending that names a format"
+        raise InputError(Problem(str(path), 0, what, f"end it in one of {', '.join(_WRITERS)}"))
+
+
 def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
     """Write a mesh; the ending of the name says in which format: .stl, .ply, .3mf or .glb.
 
@@ -38,10 +46,8 @@ def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os
     InputError
         If the ending is another, the mesh is empty, or the file cannot be written.
     """
+    check_mesh_name(path)
     ending = Path(path).suffix.lower()
-    if ending not in _WRITERS:
-        what = f'ends in "{Path(path).suffix}"' if ending else "has no ending that names a format"
-        raise InputError(Problem(str(path), 0, what, f"end it in one of {', '.join(_WRITERS)}"))
     if not len(mesh.faces):
         raise InputError(Problem(str(path), 0, "would be empty: nothing is left of the body"))
     data = _WRITERS[ending](mesh)
