@@ -100,6 +100,11 @@ def axes_between(machine: Machine, one: str, other: str) -> tuple[int, ...]:
     return tuple(reversed(range(second, first)))
 
 
+def is_nearer_the_tool(machine: Machine, one: str, other: str) -> bool:
+    """Whether the first of two links is nearer to the tool along the chain."""
+    return _place(machine, one) > _place(machine, other)
+
+
 def _place(machine: Machine, link: str) -> int:
     """How many axes are between the workpiece and a link."""
     name = carrier(machine, link)

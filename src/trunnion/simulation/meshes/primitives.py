@@ -23,13 +23,15 @@ def box_mesh(low: Floats, high: Floats, name: str = "") -> TriangleMesh:
     return TriangleMesh(corners, np.array(faces), name)
 
 
-def cylinder_mesh(diameter: float, low: float, high: float, name: str = "") -> TriangleMesh:
-    """Return a cylinder about Z between two heights; its sides stand out by at most ``ROUND_EXCESS``."""
+def cylinder_mesh(
+    diameter: float, low: float, high: float, name: str = "", excess: float = ROUND_EXCESS
+) -> TriangleMesh:
+    """Return a cylinder about Z between two heights; its sides stand out by at most ``excess``."""
     radius = diameter / 2.0
-    return revolved_mesh(np.array([(0.0, low), (radius, low), (radius, high), (0.0, high)]), name)
+    return revolved_mesh(np.array([(0.0, low), (radius, low), (radius, high), (0.0, high)]), name, excess)
 
 
-def revolved_mesh(outline: Floats, name: str = "") -> TriangleMesh:
+def revolved_mesh(outline: Floats, name: str = "", excess: float = ROUND_EXCESS) -> TriangleMesh:
     """Return a solid of revolution about Z.
 
     Parameters
@@ -38,12 +40,10 @@ def revolved_mesh(outline: Floats, name: str = "") -> TriangleMesh:
         Radii and heights from the axis at the bottom, going up, back to the axis: the first and the last radius are 0.
     name
         Of the mesh.
-
-    Notes
-    -----
-    Its sides touch the round body from outside, and stand out by at most ``ROUND_EXCESS``.
+    excess
+        Its sides touch the round body from outside, and stand out by at most this, mm.
     """
-    sides = _sides(float(outline[:, 0].max()))
+    sides = _sides(float(outline[:, 0].max()), excess)
     about = 2.0 * np.pi * np.arange(sides) / sides
     stretch = 1.0 / math.cos(math.pi / sides)
     circle = np.stack((np.cos(about), np.sin(about)), axis=1) * stretch
@@ -66,9 +66,9 @@ def revolved_mesh(outline: Floats, name: str = "") -> TriangleMesh:
     return TriangleMesh(vertices, np.concatenate(faces), name)
 
 
-def _sides(radius: float) -> int:
+def _sides(radius: float, excess: float) -> int:
     """Number of sides, a multiple of four, that keeps the excess."""
-    if radius <= ROUND_EXCESS:
+    if radius <= excess:
         return _FEWEST_SIDES
-    wanted = math.pi / math.acos(radius / (radius + ROUND_EXCESS))
+    wanted = math.pi / math.acos(radius / (radius + excess))
     return min(max(4 * math.ceil(wanted / 4.0), _FEWEST_SIDES), _MOST_SIDES)

@@ -1,0 +1,102 @@
+"""Checks all pairs of bodies over the whole of a run.
+
+At one pose the distance of two bodies says how far they may move before they can touch; ``clearance`` says when they
+have moved so far; there the distance is asked for again. What cannot touch costs a few questions for thousands of rows.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Final
+
+from trunnion.errors import InputError, Problem
+from trunnion.model.run import Run
+from trunnion.simulation.collisions.bodies import Body, BodyKind, tool_bodies
+from trunnion.simulation.collisions.findings import Collision
+from trunnion.simulation.collisions.motion import axis_pieces
+from trunnion.simulation.collisions.pairs import body_pairs
+from trunnion.simulation.collisions.queries import Solid
+from trunnion.simulation.collisions.watching import PairWatch
+from trunnion.simulation.tool_profile import ToolShape
+
+#: Bodies closer to each other than this are looked at again after moving by so much, mm: what touches and leaves within
+#: it, less than half of it deep, may be missed.
+STEP: Final = 0.5
+
+
+def check_collisions(
+    run: Run,
+    bodies: Sequence[Body],
+    tools: Mapping[str, ToolShape],
+    *,
+    near: float = 0.0,
+    step: float = STEP,
+    progress: Callable[[int], None] | None = None,
+) -> list[Collision]:
+    """Find which bodies touch while a program runs, or come near each other.
+
+    Parameters
+    ----------
+    run
+        The program, read with the workpiece zero of the set-up where bodies of the machine are among the bodies.
+    bodies
+        Of machine, fixtures and part: ``machine_bodies``, ``fixture_body``, ``part_body``.
+    tools
+        The tools in the spindle, by their names in ``run.tools``. A tool without a length has that of the machine.
+    near
+        Distance in mm from which on two bodies are told that do not touch.
+    step
+        Between bodies nearer to each other than this, the motion is looked at in such steps, mm.
+    progress
+        Is told how many rows are done.
+
+    Returns
+    -------
+    list of Collision
+        In the order of the program.
+
+    Raises
+    ------
+    InputError
+        If a tool of the run is not among ``tools``, or the workpiece zero or a tool's length is needed and not known.
+    """
+    lengths = _tool_lengths(run, bodies, tools)
+    everything = list(bodies)
+    for k, length in lengths.items():
+        everything += tool_bodies(tools[run.tools[k]], run.machine, run.tools[k], length)
+    pairs = body_pairs(run.machine, everything).checked
+    solids = {k: Solid(everything[k].mesh) for pair in pairs for k in pair}
+    watches = [
+        PairWatch(run.machine, run.tools, (everything[i], everything[j]), (solids[i], solids[j]), near, step)
+        for i, j in pairs
+    ]
+    for pieces in axis_pieces(run, lengths):
+        for watch in watches:
+            watch.follow(pieces)
+        if progress is not None:
+            progress(pieces.end)
+    found = [collision for watch in watches for collision in watch.findings()]
+    return sorted(found, key=lambda each: (each.row, each.fraction, each.between))
+
+
+def _tool_lengths(run: Run, bodies: Sequence[Body], tools: Mapping[str, ToolShape]) -> dict[int, float]:
+    """Lengths of the tools that move, by their index in ``run.tools``."""
+    machine, file = run.machine, run.files[0] if run.files else ""
+    used = [int(k) for k in run.state.tool.distinct() if run.tools[int(k)] not in ("", "0")]
+    problems = [
+        Problem(file, 0, f"tool {run.tools[k]} is not known: only its number is", "say which tool it is")
+        for k in used
+        if run.tools[k] not in tools
+    ]
+    iron = any(body.kind is BodyKind.MACHINE for body in bodies)
+    if iron and machine.workpiece_zero is None:
+        what = "needs the workpiece zero: without it nobody knows where the part is on the table"
+        problems.append(Problem(file, 0, f"the collision check with the machine {what}", "give the zero of the set-up"))
+    lengths = {}
+    for k in used:
+        if run.tools[k] in tools:
+            lengths[k] = tools[run.tools[k]].length or machine.tool_length or 0.0
+            if iron and not lengths[k]:
+                what = f"the length of tool {run.tools[k]} is not known, from its tip to the gauge point"
+                problems.append(Problem(file, 0, what, "give it: the head stands so far above the part"))
+    if problems:
+        raise InputError(problems)
+    return lengths
