@@ -106,6 +106,7 @@ def read_machine(table: Table, key: str) -> Machine:
         files=tuple(table.files()),
         cl_words=cl_words,
         bodies=bodies,
+        spindle_point_is_stated="gauge_point_mm" in spindle,
     )
 
 

@@ -148,6 +148,7 @@ class Machine:
     files               definition files that the machine comes from
     cl_words            words of the shop's own in its CL files, and the statements of CL files that they are
     bodies              the iron on its links, as the simulation sees it; nothing else looks at it
+    spindle_point_is_stated  the definition states the gauge point; else it is assumed to be in the machine's zero
     """
 
     key: str
@@ -164,6 +165,7 @@ class Machine:
     files: tuple[str, ...] = ()
     cl_words: Mapping[str, str] = field(default_factory=dict)
     bodies: tuple[MachineBody, ...] = ()
+    spindle_point_is_stated: bool = True
 
     @property
     def names(self) -> tuple[str, ...]:

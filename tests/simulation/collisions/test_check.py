@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.support.locations import TESTS
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine, link_transforms, load_machine, shipped_machines
 from trunnion.model.run import Run
 from trunnion.readers import run_program
@@ -161,6 +161,15 @@ def test_a_mesh_beside_the_definition_becomes_a_body(tmp_path: Path) -> None:
     (tmp_path / "guard.stl").unlink()
     with pytest.raises(InputError, match=r"ours\.toml:6: error: body guard: .*guard\.stl file not found"):
         machine_bodies(machine)
+
+
+def test_a_gauge_point_that_is_not_stated_is_told() -> None:
+    said: list[Problem] = []
+    for name in ("yl569", "matsuura_mx330"):
+        machine_bodies(load_machine(name), said.append)
+    assert [str(each).partition(": ")[2].partition(";")[0] for each in said] == [
+        "warning: does not state spindle.gauge_point_mm: the spindle nose is taken to stand in the machine's zero"
+    ]
 
 
 @pytest.mark.parametrize("name", shipped_machines())

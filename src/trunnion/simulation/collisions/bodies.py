@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.definitions.extends import is_within
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, Severity
 from trunnion.machines import BodyBox, BodyCylinder, BodyFile, Machine, MachineBody
 from trunnion.machines.links import SPINDLE, WORKPIECE
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh, load_mesh, revolved_mesh
@@ -66,6 +66,13 @@ class Body:
 def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = None) -> tuple[Body, ...]:
     """Return the bodies of a machine's definition; meshes are read now.
 
+    Parameters
+    ----------
+    machine
+        The machine.
+    warn
+        Takes what is odd about meshes, and that the definition does not say where the spindle nose stands.
+
     Raises
     ------
     InputError
@@ -90,6 +97,10 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
         found.append(Body(body.name, body.link, mesh.moved(pose).named(body.name), BodyKind.MACHINE, line=line))
     if problems:
         raise InputError(problems)
+    if found and warn is not None and not machine.spindle_point_is_stated:
+        what = "does not state spindle.gauge_point_mm: the spindle nose is taken to stand in the machine's zero"
+        cure = "enter where it stands with the slides at zero, before you believe what is said of the head"
+        warn(Problem(machine.files[0] if machine.files else machine.key, 0, what, cure, Severity.WARNING))
     return tuple(found)
 
 
