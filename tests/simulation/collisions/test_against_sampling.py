@@ -72,7 +72,7 @@ def test_no_point_moves_further_than_the_bound(machine: Machine, path: list[list
 
 
 @given(machines(), paths, links, links)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=10, deadline=None)
 def test_what_dense_sampling_finds_is_found(machine: Machine, path: list[list[float]], one: str, other: str) -> None:
     if not axes_between(machine, one, other):
         return

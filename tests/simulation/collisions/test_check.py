@@ -192,7 +192,7 @@ def test_the_bodies_of_shipped_machines_are_free_at_home(name: str) -> None:
 #: Published programs, their machines, and the height of the spindle nose above the crossing of its axes.
 PROGRAMS = [
     ("yl569/3_blade_finish.expected.mpf", "yl569", 450.0, 40.0),
-    ("fanuc/flange.expected.nc", "matsuura_mx330", 670.0, 40.0),
+    ("fanuc/blade.expected.nc", "matsuura_mx330", 670.0, 40.0),
     ("haas/blade.expected.nc", "haas_umc750", 450.0, 40.0),
     ("hs664rt/radial_holes.expected.txt", "hs664rt", 450.0, 40.0),
     ("linuxcnc/blade.expected.ngc", "xyzac_trt", 300.0, 60.0),
