@@ -132,7 +132,7 @@ def _ends(stock: Stock, spans: Spans, inside: NDArray[np.bool_], bundle: int) ->
 
 
 def _vertices(stock: Stock, shape: tuple[int, ...], used: Ints, vertex: Ints, point: Floats, normal: Floats) -> Floats:
-    """The point of each cube that is nearest to the planes of its ends, and to their mean where these leave it open."""
+    """The point of each cube that is nearest to the planes of its ends, and to their mean."""
     count = len(used)
     flat, four = vertex.ravel(), np.repeat(np.arange(len(point)), 4)
     ends = np.bincount(flat, minlength=count).astype(np.float64)
