@@ -1,5 +1,7 @@
 """Settings that all tests share."""
 
+import os
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -16,6 +18,13 @@ settings.register_profile(
     "trunnion", deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much]
 )
 settings.load_profile("trunnion")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have the tests, and the processes that they start, remember their outputs apart from those of the user."""
+    cache = tempfile.TemporaryDirectory(prefix="trunnion-tests-")
+    config.add_cleanup(cache.cleanup)
+    os.environ["LOCALAPPDATA"] = cache.name
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

@@ -102,6 +102,70 @@ def test_no_subprogram_is_written_over_a_cl_file_or_a_report(folder: Path) -> No
     assert contents(folder) == before
 
 
+def test_subprograms_of_another_program_stay(folder: Path) -> None:
+    """Two jobs with operations of one name in one folder: each would run the operations of the other."""
+    settings = {"programs": "operations"}
+    trunnion.post("part.cls", machine="mine.toml", output="one.mpf", settings=settings)
+    before = contents(folder)
+    stays = r"BLADE_FINISH\.spf: error: would be replaced, although two\.mpf has"
+    with pytest.raises(trunnion.InputError, match=stays) as not_its:
+        trunnion.post("part.cls", machine="mine.toml", output="two.mpf", settings=settings)
+    assert "choose a folder for this program alone, or remove the file" in str(not_its.value)
+    assert contents(folder) == before
+    trunnion.post("part.cls", machine="mine.toml", output="one.mpf", settings={**settings, "title": "AGAIN"})
+    Path("BLADE_FINISH.spf").write_bytes(before["BLADE_FINISH.spf"] + b"; mended by hand\n")
+    with pytest.raises(trunnion.InputError, match="would be replaced, although one"):
+        trunnion.post("part.cls", machine="mine.toml", output="one.mpf", settings=settings)
+
+
+def test_numbered_subprograms_can_begin_with_another_number(folder: Path) -> None:
+    settings = {"programs": "operations"}
+    trunnion.post("part.cls", machine="matsuura_mx330", output="one.nc", settings=settings)
+    with pytest.raises(
+        trunnion.InputError, match=r"O1001\.nc: error: .* begin with another number by setting first_number=2001"
+    ):
+        trunnion.post("part.cls", machine="matsuura_mx330", output="two.nc", settings=settings)
+    made = trunnion.post(
+        "part.cls", machine="matsuura_mx330", output="two.nc", settings={**settings, "first_number": 2001}
+    )
+    assert [path.name for path in made.subprograms] == ["O2001.nc"]
+    wrong: dict[str, Any]
+    for wrong in ({"first_number": 2001}, {**settings, "first_number": 20.5}, {**settings, "first_number": 0}):
+        with pytest.raises(trunnion.InputError, match="first_number is"):
+            trunnion.post("part.cls", machine="matsuura_mx330", settings=wrong)
+    with pytest.raises(trunnion.InputError, match="names its subprograms"):
+        trunnion.post("part.cls", machine="mine.toml", output="x.mpf", settings={**settings, "first_number": 2001})
+
+
+def test_a_file_that_nobody_named_is_replaced_only_as_it_was_written(
+    folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A CL file of the CAM, a program of another post, and one that was edited since."""
+    written = "exists, and is not as a command has written it"
+    monkeypatch.chdir(folder / "sub")
+    for name in ("part.cls", "tool.cls"):
+        shutil.copy("../part.cls", name)
+    assert main(["post", "part.cls", "--machine", "yl569"]) == 0
+    assert main(["post", "part.cls", "--machine", "yl569"]) == 0
+    before = contents(folder / "sub")
+    convert = ["convert", "part.mpf", "--machine", "yl569", "--to-cl"]
+    assert main(convert) == 2
+    assert f"part.cls: error: {written}" in capfd.readouterr().err
+    Path("tool.mpf").write_text("N10 M30\n")
+    assert main(["post", "tool.cls", "--machine", "yl569"]) == 2
+    assert f"tool.mpf: error: {written}" in (said := capfd.readouterr().err)
+    assert "--output tool.mpf replaces it, another name keeps it" in said
+    Path("tool.mpf").unlink()
+    assert contents(Path()) == before
+    Path("cl").mkdir()
+    assert main([*convert, "--output", "cl"]) == 0
+    assert main([*convert, "--output", "cl"]) == 0
+    with Path("part.mpf").open("ab") as program:
+        program.write(b"; tried on the machine\n")
+    assert main(["post", "part.cls", "--machine", "yl569"]) == 2
+    assert main(["post", "part.cls", "--machine", "yl569", "--output", "part.mpf"]) == 0
+
+
 def test_a_folder_of_programs_writes_over_none_of_them(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Two programs with an operation of the same name would call the same subprogram."""
     shutil.copy("part.cls", "other.cls")

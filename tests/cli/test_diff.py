@@ -133,7 +133,122 @@ def test_words_that_only_one_program_has_and_nobody_knows_are_a_difference(
     code, out = diff(capfd, tmp_path, TEXT.replace("N560 ;Cutting", "N560 FROBNICATE(1)"))
     assert code == 1
     assert out.startswith("second:56: not understood: ")
-    assert out.count("not understood") == 1
+    assert out.splitlines()[1:] == ["not compared: 1 word not understood; otherwise the same: 150 points"]
+
+
+def test_words_that_both_programs_have_and_nobody_knows_prove_nothing(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """What they do may depend on all that comes before: here on R1."""
+    first = tmp_path / "first.mpf"
+    first.write_text(TEXT.replace("N560 ;Cutting", "R1=1\nFROBNICATE(R1)"), encoding="utf-8")
+    code, out = diff(capfd, tmp_path, first.read_text(encoding="utf-8").replace("R1=1", "R1=9"), first)
+    assert code == 1
+    assert out.splitlines()[-1] == "not compared: 2 words not understood; otherwise the same: 150 points"
+
+
+def test_programs_that_move_nothing_are_not_the_same(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    first = tmp_path / "first.mpf"
+    first.write_text("M30\n", encoding="utf-8")
+    assert diff(capfd, tmp_path, "M30\n", first) == (1, "not compared: neither program moves the tool\n")
+
+
+FANUC = """G21 G17 G40 G80 G90 G94
+T3 M6
+G54
+G0 A0. C0.
+S2000 M3
+G0 X0. Y0.
+G43 H3 Z50.
+G1 Z-5. F100.
+G41 D3 X10.
+X20.
+G40 X30.
+G0 Z50.
+M30
+"""
+
+KLARTEXT = """0 BEGIN PGM PART MM
+1 TOOL CALL 3 Z S2000
+2 CYCL DEF 247 DATUM SETTING ~
+  Q339=+1 ;DATUM NUMBER
+3 CYCL DEF 32.0 TOLERANCE
+4 CYCL DEF 32.1 T0.01
+5 M3
+6 L X+0 Y+0 Z+50 R0 FMAX
+7 L Z-5 F100
+8 L X+10 RL
+9 L X+20
+10 L X+30 R0
+11 L Z+50 FMAX
+12 END PGM PART MM
+"""
+
+LINUXCNC = """G21 G17 G40 G80 G90 G94
+T3 M6
+G54
+G64 P0.01
+S2000 M3
+G0 X0. Y0.
+G43 H3 Z50.
+G1 Z-5. F100.
+X20.
+G0 Z50.
+M2
+"""
+
+REGISTERS = [
+    ("yl569", TEXT, "G54", "G55", "work offset G54 against G55"),
+    ("yl569", TEXT, "S2500 D1 M3", "S2500 D2 M3", "cutting edge D1 against D2"),
+    ("yl569", TEXT, "N420 TRAORI", "TOFFL=5\nTRAORI", "added to the tool: nothing against TOFFL 5 mm"),
+    ("yl569", TEXT.replace("N420", "TOFFL=5\nN420"), "N560 ;", "TOFFL=0 ;", "TOFFL 5 mm against nothing"),
+    ("yl569", TEXT, "CYCLE832(_camtolerance,", "CYCLE832(5,", "tolerance 0.06 mm against 5 mm"),
+    ("matsuura_mx330", FANUC, "H3", "H4", "tool length H3 against H4"),
+    ("matsuura_mx330", FANUC, "D3", "D4", "radius of D3 against D4"),
+    ("matsuura_mx330", FANUC, "G41", "G42", "radius compensation left against right"),
+    ("matsuura_mx330", FANUC, "G41 D3 ", "", "radius compensation left against off"),
+    ("matsuura_mx330", FANUC, "G54", "G54.1 P2", "work offset G54 against G54.1 P2"),
+    ("dmu65", KLARTEXT, "Q339=+1", "Q339=+2", "work offset preset 1 against preset 2"),
+    ("dmu65", KLARTEXT, "S2000", "S2000 DL+5", "added to the tool: nothing against DL 5 mm"),
+    ("dmu65", KLARTEXT, "RL", "RR", "radius compensation left against right"),
+    ("dmu65", KLARTEXT, "T0.01", "T1", "tolerance 0.01 mm against 1 mm"),
+    ("linuxcnc_5axis", LINUXCNC, "G54", "G59.3", "work offset G54 against G59.3"),
+    ("linuxcnc_5axis", LINUXCNC, "H3", "H4", "tool length H3 against H4"),
+    ("linuxcnc_5axis", LINUXCNC, "P0.01", "P5", "tolerance 0.01 mm against 5 mm"),
+]
+
+
+@pytest.mark.parametrize(("machine", "text", "old", "new", "says"), REGISTERS, ids=[case[-1] for case in REGISTERS])
+def test_what_moves_the_tool_off_its_positions_is_compared(
+    machine: str, text: str, old: str, new: str, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    programs = [tmp_path / "first.nc", tmp_path / "second.nc"]
+    assert old in text
+    for program, its in zip(programs, (text, text.replace(old, new, 1)), strict=True):
+        program.write_text(its, encoding="utf-8")
+    assert main(["diff", str(programs[0]), str(programs[0]), "--machine", machine]) == 0, capfd.readouterr().out
+    assert main(["diff", *map(str, programs), "--machine", machine]) == 1
+    assert says in capfd.readouterr().out
+
+
+def test_between_languages_work_offsets_are_compared_by_their_order(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """G54 and the preset 3 may be one place; G54 twice, and 1 and then 2, are not."""
+    fanuc, twice, klartext = (tmp_path / name for name in ("fanuc.nc", "twice.nc", "klartext.h"))
+    body = KLARTEXT.replace("Q339=+1", "Q339=+3").replace(" RL", "").replace("RL", "")
+    klartext.write_text(body, encoding="utf-8")
+    plain = (
+        FANUC.replace("G41 D3 ", "")
+        .replace("G40 X30", "X30")
+        .replace("G0 X0. Y0.\nG43 H3 Z50.", "G43 H3 G0 X0. Y0. Z50.")
+    )
+    fanuc.write_text(plain, encoding="utf-8")
+    twice.write_text(plain.replace("X20.\n", "G55\nX20.\n"), encoding="utf-8")
+    machines = ["--machine", "matsuura_mx330", "--to-machine", "dmu65"]
+    assert main(["diff", str(fanuc), str(klartext), *machines]) == 0, capfd.readouterr().out
+    assert main(["diff", str(twice), str(klartext), *machines]) == 1
+    assert "work offset G55 against preset 3" in capfd.readouterr().out
 
 
 def test_the_worst_difference_is_named_besides_the_first(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -35,6 +36,9 @@ _MODES: Final = {
     "tilted": MachiningMode.TILTED,
     "tcp": MachiningMode.TCP,
 }
+
+#: What gives subprograms other numbers.
+_OTHER_NUMBERS: Final = "begin with another number by setting first_number=2001"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,7 +110,9 @@ class PostJob:
         if path is None:
             cure = "name a file or a folder, or write setting programs=one"
             raise InputError(argument_problem("output", "a program of several files needs a place for them", cure))
-        return SubprogramOutput(path.stem, files.add_file, None if size is None else int(size))
+        numbered = self.control.subprograms.first_number is not None
+        open_file = partial(files.add_file, other_name=_OTHER_NUMBERS) if numbered else files.add_file
+        return SubprogramOutput(path.stem, open_file, None if size is None else int(size))
 
 
 def prepare(
@@ -133,10 +139,36 @@ def prepare(
     check_settings(texts, control, machine)
     if texts.get("numbers") == "off":
         control = replace(control, block_numbers=replace(control.block_numbers, numbered=False))
+    control = _with_first_number(control, texts)
     machine = apply_setup(machine, texts)
     options = parse_plan_options(texts, control, explain or report is not None)
     capabilities = control_capabilities(control, texts)
     return PostJob(machine, control, capabilities, options, texts, force, report, columns or report is not None, own)
+
+
+def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control:
+    """The control with the setting ``first_number``.
+
+    Raises
+    ------
+    InputError
+        If it is no whole number, or if there are no subprograms with numbers.
+    """
+    first = number_setting(settings, "first_number")
+    if first is None:
+        return control
+    naming = control.subprograms
+    if naming is None or naming.first_number is None or settings.get("programs") != "operations":
+        why = f"{control.name} names its subprograms" if naming and not naming.first_number else "there are none"
+        what = "first_number is that of subprograms that have numbers"
+        raise InputError(
+            argument_problem("settings", f"{what}: {why}", "leave it out, or write programs=operations too")
+        )
+    if first != int(first):
+        raise InputError(
+            argument_problem("settings", f"first_number is {settings['first_number']!r}", "write a whole number")
+        )
+    return replace(control, subprograms=replace(naming, first_number=int(first)))
 
 
 def parse_plan_options(settings: Mapping[str, str], control: Control, explain: bool = False) -> PlanOptions:

@@ -118,6 +118,14 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         form="BYTES",
         example="1000000",
     ),
+    "first_number": RunSetting(
+        "Number of the first subprogram, where subprograms have numbers. Programs whose subprograms are in one folder, "
+        "or in one memory, need numbers of their own.",
+        "as the control's definition says",
+        bounds=(1, 9999),
+        form="NUMBER",
+        example="2001",
+    ),
     "rewind": _choice(
         "Insert a retract where a rotary axis must rewind in the cut, or refuse such a program.", "insert", "none"
     ),

@@ -61,7 +61,7 @@ def open_target(
     if isinstance(place, str | os.PathLike):
         found = resolve_output(place)
         path = None if found.is_stream else Path(place)
-        with atomic_output(found, report=beside, inputs=inputs) as files:
+        with atomic_output(found, report=beside, inputs=inputs, is_job=True) as files:
             yield Target(files, found.name, path, report=beside)
         return
     memory = io.BytesIO() if place is None else None

@@ -8,10 +8,11 @@ from typing import Final
 
 from trunnion.api.converting import convert
 from trunnion.api.reading import load_machine
-from trunnion.cli.cl_files import cl_inputs, result_stem
+from trunnion.cli.cl_files import cl_inputs, named_files, result_stem
 from trunnion.cli.results import tell
-from trunnion.cli.terminal import ConversionTerminal, output_folder, output_place
+from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
 from trunnion.controls import load_control
+from trunnion.files import check_outputs
 from trunnion.wording import counted
 
 #: Extensions of CL files by their dialects.
@@ -61,4 +62,7 @@ def _target_file(arguments: argparse.Namespace, extension: str) -> str:
     if folder is None:
         return str(arguments.output)
     stem = Path(arguments.file).stem if arguments.machine else result_stem(arguments.file)
-    return str(folder / (stem + extension))
+    target = str(folder / (stem + extension))
+    check_outputs([target], [*named_files([arguments.file]), *arguments.subprograms])
+    check_unnamed(target)
+    return target

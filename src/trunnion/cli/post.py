@@ -11,7 +11,7 @@ from trunnion.api.posting import post_beside
 from trunnion.api.reading import load_machine
 from trunnion.cli.cl_files import named_files, result_stem
 from trunnion.cli.results import tell
-from trunnion.cli.terminal import Terminal, output_folder, output_place
+from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
 from trunnion.files import check_outputs
@@ -30,6 +30,9 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> 
     read = [*named_files(arguments.files), *definition_files(arguments.machine, machine)]
     report = [] if arguments.report is None else [arguments.report]
     check_outputs([*(target for target in targets if target != "-"), *report], read)
+    if output_folder(arguments.output) is not None:
+        for target in targets:
+            check_unnamed(target, alone=len(targets) == 1)
     toolpaths = _with_dialects(toolpaths)
     written: list[Path] = []
     passed = True

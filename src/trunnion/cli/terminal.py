@@ -12,6 +12,7 @@ from trunnion.cli.progress import progress
 from trunnion.cli.results import tell
 from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.errors import InputError, Problem
+from trunnion.files import EarlierJob, resolve_output
 from trunnion.model.motion import Plan
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 
@@ -80,6 +81,29 @@ def output_place(output: str) -> str | BinaryIO:
         return output
     sys.stdout.flush()
     return sys.stdout.buffer
+
+
+def check_unnamed(target: str, *, alone: bool = True) -> None:
+    """Refuse a default name that is one of somebody else's file, or of one that was changed since a job wrote it.
+
+    Parameters
+    ----------
+    target
+        The file.
+    alone
+        There are no others, so that it can be named as the output.
+
+    Raises
+    ------
+    InputError
+        If it would be replaced, although nobody has named it.
+    """
+    place = resolve_output(target)
+    if place.is_stream or not place.path.exists() or EarlierJob(place.path).wrote(place.path):
+        return
+    what = "exists, and is not as a command has written it: it is replaced only where it is named"
+    named = f"--output {target} replaces it, another name keeps it" if alone else "remove it, or choose another folder"
+    raise InputError(Problem(target, 0, what, named))
 
 
 def output_folder(output: str | None) -> Path | None:

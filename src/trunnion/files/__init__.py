@@ -1,11 +1,13 @@
 """Output files: settled before any work, complete or not there at all, alone or several together."""
 
+from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.output import OutputFiles, atomic_file, atomic_output
 from trunnion.files.places import OutputPlace, check_outputs, file_on_disk, resolve_output
 from trunnion.files.streams import check_stream
 from trunnion.files.write_progress import WriteProgress, WritingStoppedError
 
 __all__ = [
+    "EarlierJob",
     "OutputFiles",
     "OutputPlace",
     "WriteProgress",

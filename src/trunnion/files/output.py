@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 from trunnion.errors import InputError, Problem
+from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.hidden_folders import HiddenFolders, move_all
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.places import Claims, OutputPlace, cannot_write, resolve_output
@@ -45,27 +46,46 @@ class OutputFiles:
     path   path at which it can be read back after ``flush``
     """
 
-    def __init__(self, folder: Path, name: str, place: OutputPlace | None = None, claims: Claims | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        name: str,
+        place: OutputPlace | None = None,
+        claims: Claims | None = None,
+        earlier: EarlierJob | None = None,
+    ) -> None:
         self.path = folder / name
-        self._place, self._claims = place, claims or Claims()
+        self._place, self._claims, self._earlier = place, claims or Claims(), earlier
         self.main: BinaryIO = _open(self.path, place.name if place else name)
         self._subprograms: dict[Path, tuple[BinaryIO, OutputPlace]] = {}
         self._report: tuple[Path, BinaryIO, OutputPlace] | None = None
         self._sync_thread: ThreadPoolExecutor | None = None
 
-    def add_file(self, name: str) -> BinaryIO:
+    def add_file(self, name: str, other_name: str = "") -> BinaryIO:
         """Begin a further file in the same folder, and return its sink.
+
+        Parameters
+        ----------
+        name
+            Of the file.
+        other_name
+            What gives it another name, for the cure where it has that of somebody else's file.
 
         Raises
         ------
         InputError
-            If there cannot be a file of this name beside the first, or if it is one that is read or written already.
+            If there cannot be a file of this name beside the first, or if it is one that is read or written already, or
+            one that exists and that no earlier job of this first file has written.
         """
         assert self._place is not None, "a stream is one file"
         place = resolve_output(Path(self._place.name).with_name(name))
         if place.is_stream:
             raise InputError(Problem(place.name, 0, "a subprogram cannot be written to a device", "remove it"))
         self._claims.write(place)
+        if self._earlier is not None and place.path.exists() and not self._earlier.wrote(place.path):
+            what = f"would be replaced, although {Path(self._place.name).name} has not written it as it is"
+            cure = f"choose a folder for this program alone{other_name and f', or {other_name}'}, or remove the file"
+            raise InputError(Problem(place.name, 0, what, cure))
         path = self.path.parent / name
         self._subprograms[path] = _open(path, place.name), place
         return self._subprograms[path][0]
@@ -152,6 +172,9 @@ class OutputFiles:
                     _send(path, device, place.name)
         if moves:
             move_all(moves, [place for _, place in report])
+        if self._earlier is not None and stream is None:
+            others = {place.path for _, place in report}
+            self._earlier.remember(place.path for _, place in files if place.path not in others)
 
     def sinks(self) -> list[BinaryIO]:
         """Return the sinks of all files of the program, the first file's first; not that of its report."""
@@ -183,6 +206,7 @@ def atomic_output(
     *,
     report: OutputPlace | None = None,
     inputs: Iterable[str | os.PathLike[str]] = (),
+    is_job: bool = False,
 ) -> Iterator[OutputFiles]:
     """Files that reach their places together when the block ends, or not at all if it raises.
 
@@ -194,6 +218,9 @@ def atomic_output(
         A file that will be written as well: none of the others may be it.
     inputs
         Files that are read: none of them is written over.
+    is_job
+        The further files get names that nobody chose: they replace only what earlier jobs of the first file have
+        written, which is remembered.
 
     Raises
     ------
@@ -212,7 +239,7 @@ def atomic_output(
     try:
         try:
             with ExitStack() as opened:
-                yield from _fill_and_publish(place, claims, hidden, opened)
+                yield from _fill_and_publish(place, claims, hidden, opened, is_job)
         finally:
             hidden.remove()
     finally:
@@ -220,7 +247,7 @@ def atomic_output(
 
 
 def _fill_and_publish(
-    place: Destination, claims: Claims, hidden: HiddenFolders, opened: ExitStack
+    place: Destination, claims: Claims, hidden: HiddenFolders, opened: ExitStack, is_job: bool
 ) -> Iterator[OutputFiles]:
     """Yield the files to be filled, and bring them to their places."""
     stream = None if isinstance(place, OutputPlace) else place
@@ -229,7 +256,8 @@ def _fill_and_publish(
         stream = opened.enter_context(open_stream(own))
     folder = hidden.temporary() if stream is not None or own is None else hidden.beside(own)
     name = "stream" if stream is not None or own is None else Path(own.name).name
-    files = OutputFiles(folder, name, own, claims)
+    earlier = EarlierJob(own.path) if is_job and own is not None and stream is None else None
+    files = OutputFiles(folder, name, own, claims, earlier)
     # An interruption of the first closing leaves the second one to do it.
     try:
         try:

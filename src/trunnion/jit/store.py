@@ -11,13 +11,15 @@ import stat
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
 from shutil import rmtree
 from typing import IO, Any
 
 import numba
+
+from trunnion.user_cache import user_cache
 
 if sys.platform == "win32":
     import msvcrt
@@ -58,11 +60,9 @@ def _candidates() -> Iterator[Path]:
     if _config.CACHE_DIR:
         yield Path(_config.CACHE_DIR) / version
     yield Path(__file__).parent / "__pycache__" / version
-    local = os.environ.get("LOCALAPPDATA")
-    with suppress(RuntimeError):  # a user without a home
-        home = Path(local) if local else Path.home()
-        if home.is_dir():  # a service account may name one that does not exist: it is not for us to make it
-            yield (home if local else home / ".cache") / "trunnion" / version
+    cache = user_cache()
+    if cache is not None:
+        yield cache / "trunnion" / version
     temporary = Path(tempfile.gettempdir())
     if sys.platform == "win32":
         yield temporary / "trunnion" / version

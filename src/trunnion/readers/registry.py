@@ -63,7 +63,12 @@ def run_program(
     check_reading(machine)
     options = RunOptions(tuple(subprograms), step_limit, skip, shortest)
     run = reader.interpreter(Path(path), machine, options).run(write_progress)
-    return replace(run, uses_length_numbers=reader.uses_length_numbers, work_offset_name=reader.work_offsets.name)
+    return replace(
+        run,
+        language=FAMILIES[family_of(machine) if family is None else family].reader or "",
+        uses_length_numbers=reader.uses_length_numbers,
+        work_offset_name=reader.work_offsets.name,
+    )
 
 
 def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:

@@ -111,6 +111,7 @@ class RowRecorder:
         self.tools: dict[str, int] = {"": 0}
         self._tool_names = [""]
         self._selected_tool = 0
+        self._tool_deltas: dict[str, float] = {}
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
         self._splines: list[SplineRows] = []
         self._spline_columns: list[Splines] = []
@@ -181,8 +182,16 @@ class RowRecorder:
         self.add_event("tolerance", tolerance)
 
     def add_tool_delta(self, name: str, value: float) -> None:
-        """Record that the program adds to the length or the radius of the tool, mm: the path does not show it."""
+        """Record that the program adds to the length or the radius of the tool, mm: the path does not show it.
+
+        0 takes back what was added before.
+        """
+        if not value and not self._tool_deltas.get(name):
+            return
+        self._tool_deltas[name] = value
         self.add_event("delta", (name, value))
+        if not value:
+            return
         self.note(f"{name} adds {value:g} mm to the tool: the path is that without it", Severity.WARNING)
 
     @property

@@ -79,7 +79,7 @@ def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
         if event.kind != "delta" or not isinstance(event.value, tuple):
             continue
         name, value = str(event.value[0]), float(event.value[1] or 0.0)
-        if not any(abs(value - wanted) <= _DELTA for wanted in context.settings.tool_deltas.get(name, ())):
+        if value and not any(abs(value - wanted) <= _DELTA for wanted in context.settings.tool_deltas.get(name, ())):
             text = f"{name} adds {value:g} mm to the tool, which nothing asks for"
             yield context.place_of_event(event, value, text)
 

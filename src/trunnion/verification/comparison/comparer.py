@@ -9,6 +9,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
+from trunnion.verification.comparison.registers import Registers
 from trunnion.verification.comparison.result import Comparison, Difference
 from trunnion.verification.matching.resync import find_resync
 from trunnion.verification.row_ranges import CHUNK
@@ -43,6 +44,7 @@ class Comparer:
         self._one = MovingRows(one, same_machine, coolants, tools)
         self._two = MovingRows(two, same_machine, coolants, tools)
         self._path_only = path
+        self._registers = Registers(one, two, path=path)
         self._tolerances = PointTolerances(tolerance, float(np.radians(axis_tolerance)))
         self._largest_tip = self._largest_axis = 0.0
         self._points = 0
@@ -101,12 +103,13 @@ class Comparer:
         return np.asarray(same)
 
     def _same_state(self, a: Ints, b: Ints) -> Flags:
-        """In which rows ``a`` and ``b`` feed, spindle, tool and coolant are the same, (k,) bool."""
+        """In which rows ``a`` and ``b`` all that is compared besides positions is the same, (k,) bool."""
+        same = self._registers.same(a, b)
         if self._path_only:
-            return np.ones(len(a), np.bool_)
+            return same
         one, two = self._one, self._two
         feeds = one.feeds(a)
-        same = np.abs(feeds - two.feeds(b)) <= np.maximum(_FEED, 1e-4 * feeds)
+        same &= np.abs(feeds - two.feeds(b)) <= np.maximum(_FEED, 1e-4 * feeds)
         same &= one.run.spindle[a] == two.run.spindle[b]
         same &= (np.abs(one.run.rpm[a] - two.run.rpm[b]) <= _RPM) | (one.run.spindle[a] == 0)
         same &= one.tool[a] == two.tool[b]
@@ -176,6 +179,8 @@ class Comparer:
             return f"{_KINDS[Kind(int(x.kind[a]))]} against {_KINDS[Kind(int(y.kind[b]))]}"
         if one.in_machine(np.array([a]))[0] != two.in_machine(np.array([b]))[0]:
             return "machine coordinates against coordinates of the workpiece, whose zero is not known"
+        if other := self._registers.difference(a, b):
+            return other
         feeds = float(one.feeds(np.array([a]))[0]), float(two.feeds(np.array([b]))[0])
         if abs(feeds[0] - feeds[1]) > max(_FEED, 1e-4 * feeds[0]):
             return f"feed {feeds[0]:g} against {feeds[1]:g} mm/min"
@@ -195,9 +200,7 @@ class Comparer:
 
 
 def _unknown_words(one: Run, two: Run) -> tuple[str, ...]:
-    """Words that are not understood, unless both programs have the same ones."""
-    if sorted(error.text for error in one.errors) == sorted(error.text for error in two.errors):
-        return ()
+    """Words that are not understood: what they do may depend on all that comes before, so that they prove nothing."""
     return tuple(
         f"{error.file}:{error.line}: {_UNKNOWN}{error.text.removeprefix(_UNKNOWN)}"
         for run in (one, two)

@@ -1,8 +1,8 @@
 """Whether two programs make the tool do the same.
 
 In:     two runs, possibly of different machines.
-Out:    whether tip, tool axis, kind of motion, feed, spindle, tool and coolant are the same throughout; the first
-        difference and the worst.
+Out:    whether tip, tool axis, kind of motion, feed, spindle, tool, coolant and the registers of offsets, lengths and
+        radii are the same throughout; the first difference and the worst.
 
 Only what the words do matters: block numbers, modal habits and number formats may differ, and either program may have
 additional points on the path of the other. Motions in the machine frame count if both run on the same machine.

@@ -2,8 +2,12 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from trunnion.wording import counted
+
+#: Words that are not understood which a result names one by one.
+_MOST_NAMED: Final = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +33,7 @@ class Comparison:
     points         how many points are the same
     tip, axis      the largest distances at these points, mm and degrees
     count          how many differences there are, up to a limit
-    unknown_words  words that are not understood, if the programs do not have the same ones: then they cannot be called
-                   the same
+    unknown_words  words of either program that are not understood: then they cannot be called the same
     """
 
     programs: tuple[str, str]
@@ -44,8 +47,8 @@ class Comparison:
 
     @property
     def same(self) -> bool:
-        """Whether both programs make the tool do the same."""
-        return self.count == 0 and not self.unknown_words
+        """Whether both programs make the tool do the same; those that move nothing, or are not understood, do not."""
+        return self.count == 0 and self.points > 0 and not self.unknown_words
 
     def lines(self) -> Iterator[str]:
         """The result for a terminal."""
@@ -53,8 +56,17 @@ class Comparison:
             points = counted(self.points, "point")
             yield f"same: {points}, tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
             return
-        yield from self.unknown_words[:5]
-        yield f"different: {counted(self.count, 'place')}; the same: {counted(self.points, 'point')}"
+        yield from self.unknown_words[:_MOST_NAMED]
+        if len(self.unknown_words) > _MOST_NAMED:
+            yield f"and {counted(len(self.unknown_words) - _MOST_NAMED, 'word')} more that are not understood"
+        points = counted(self.points, "point")
+        if self.count:
+            yield f"different: {counted(self.count, 'place')}; the same: {points}"
+        elif self.unknown_words:
+            words = counted(len(self.unknown_words), "word")
+            yield f"not compared: {words} not understood; otherwise the same: {points}"
+        else:
+            yield "not compared: neither program moves the tool"
         for name, what in (("first", self.first), ("worst", self.worst)):
             if what is not None and (name == "first" or what != self.first):
                 yield f"{name}: {self.programs[0]}:{what.one} against {self.programs[1]}:{what.two}: {what.text}"

@@ -67,7 +67,7 @@ class Block:
     polynomials  the end and the coefficients of each axis with PO[]; the empty name is the denominator
     interval     of their parameter, PL
     tolerances  within which the control may round off the path
-    deltas   what the program adds to length and radius of the tool, other than 0
+    deltas   what the program adds to length and radius of the tool
     """
 
     axes: dict[str, AxisWord] = field(default_factory=dict)
@@ -311,7 +311,7 @@ class BlockReader:
     @staticmethod
     def _without_path_effect(block: Block, name: str, value: Value) -> None:
         """Keep values of words that leave the programmed path as it is, and still move the tool elsewhere."""
-        if name in TOOL_DELTAS and value:
+        if name in TOOL_DELTAS:
             block.deltas[name] = _number(value)
         elif name in TOLERANCES:
             block.tolerances.append(_number(value))

@@ -1,0 +1,74 @@
+"""What the last job at a place has written: all other files there belong to somebody, and nobody has named them.
+
+In:     the place of a job's first file.
+Out:    whether a file there is still what that job wrote.
+
+The record is in the user's cache, a small file for each place. Where it is missing every file is somebody else's.
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+from trunnion.user_cache import user_cache
+
+#: Places that are remembered; of more the oldest are forgotten.
+_MOST_PLACES: Final = 1000
+
+
+class EarlierJob:
+    """The files that jobs whose first file has this path have written, by their digests."""
+
+    def __init__(self, first: Path) -> None:
+        self._folder = first.parent
+        cache = user_cache()
+        name = hashlib.sha256(os.fsencode(os.path.normcase(first))).hexdigest()[:32]
+        self._record = None if cache is None else cache / "trunnion" / "written" / f"{name}.json"
+        self._digests = self._read()
+
+    def wrote(self, file: Path) -> bool:
+        """Whether a file that exists is as one of these jobs has written it."""
+        known = self._digests.get(os.path.normcase(file.name))
+        return known is not None and file.parent == self._folder and _digest(file) == known
+
+    def remember(self, files: Iterable[Path]) -> None:
+        """Record files of the same folder that have been written; it does no harm where that is not possible."""
+        if self._record is None:
+            return
+        digests = {name: known for name, known in self._digests.items() if (self._folder / name).exists()}
+        digests |= {os.path.normcase(file.name): _digest(file) for file in files}
+        text = json.dumps({name: known for name, known in digests.items() if known})
+        part = self._record.with_suffix(f".{os.getpid()}")
+        with suppress(OSError):
+            self._record.parent.mkdir(parents=True, exist_ok=True)
+            part.write_text(text, encoding="utf-8")
+            part.replace(self._record)
+            _forget_oldest(self._record.parent)
+
+    def _read(self) -> dict[str, str]:
+        try:
+            found = json.loads(b"" if self._record is None else self._record.read_bytes())
+        except (OSError, ValueError, RecursionError):
+            return {}
+        return found if isinstance(found, dict) else {}
+
+
+def _digest(file: Path) -> str:
+    """Digest of a file, empty if it cannot be read."""
+    try:
+        with file.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError:
+        return ""
+
+
+def _forget_oldest(folder: Path) -> None:
+    with os.scandir(folder) as entries:
+        ages = [(entry.stat().st_mtime_ns, entry.path) for entry in entries]
+    for _, path in sorted(ages)[:-_MOST_PLACES]:
+        with suppress(OSError):
+            Path(path).unlink()

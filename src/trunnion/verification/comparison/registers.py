@@ -1,0 +1,229 @@
+"""What moves the tool off its programmed path, or lets the control leave it: offsets, lengths, radii, tolerances.
+
+In:     two runs.
+Out:    for each of these registers a column of whole numbers for either run, equal where both are the same.
+
+The positions of a run do not show these, as their values are in the control. Programs of one language are compared by
+what they write. For those of two languages, whose numbers mean other registers, only how many there are and where they
+change can be compared.
+"""
+
+from collections.abc import Callable, Hashable, Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Ints
+from trunnion.model.columns import StepColumn
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+
+#: Tolerances and what is added to tools are the same within this, mm: programs print no more digits; those in inches.
+_LAST_DIGIT: Final = 1e-4
+_LAST_DIGIT_OF_INCHES: Final = 2.6e-3
+
+_SIDES: Final = {1: "left", -1: "right", 0: "off"}
+
+#: Words that add to the length and to the radius of a tool, by what they do.
+_DELTAS: Final = {"DL": "length", "TOFFL": "length", "DR": "radius", "TOFFR": "radius"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Register:
+    """A register of both runs.
+
+    name      what messages call it
+    columns   of the first run and of the second: its values by numbers
+    words     what each run calls a value in a row
+    counts    in which rows of a run it counts
+    of_path   it moves the tool; else it counts for the rest of the comparison only
+    within    values that differ by no more are the same
+    """
+
+    name: str
+    columns: tuple[StepColumn, StepColumn]
+    words: tuple[Callable[[int], str], Callable[[int], str]]
+    counts: Callable[[Run, Ints], Flags]
+    of_path: bool = False
+    within: float = 0.0
+
+
+class Registers:
+    """The registers of two runs."""
+
+    def __init__(self, one: Run, two: Run, *, path: bool) -> None:
+        self._runs = one, two
+        same_words = one.language == two.language
+        self._registers = [each for each in _registers(one, two, same_words) if each.of_path or not path]
+
+    def same(self, a: Ints, b: Ints) -> Flags:
+        """In which rows ``a`` of the first run and ``b`` of the second all of them are the same, (k,) bool."""
+        same = np.ones(len(a), np.bool_)
+        for register in self._registers:
+            same &= self._same(register, a, b)
+        return same
+
+    def difference(self, a: int, b: int) -> str:
+        """What differs between row ``a`` of the first run and row ``b`` of the second; empty if nothing does."""
+        rows = np.array([a]), np.array([b])
+        other = next((each for each in self._registers if not self._same(each, *rows)[0]), None)
+        return "" if other is None else f"{other.name} {other.words[0](a)} against {other.words[1](b)}"
+
+    def _same(self, register: Register, a: Ints, b: Ints) -> Flags:
+        (one, two), (first, second) = self._runs, register.columns
+        values = first.at(a), second.at(b)
+        same = values[0] == values[1]
+        if register.within:
+            with np.errstate(invalid="ignore"):  # inf: no limit
+                same |= np.abs(values[0] - values[1]) <= register.within
+        same |= ~(register.counts(one, a) & register.counts(two, b))
+        return np.asarray(same)
+
+
+def _registers(one: Run, two: Run, same_words: bool) -> Iterator[Register]:
+    """The registers of two runs; ``same_words``: their programs are of one language."""
+    runs = one, two
+    offsets = [run.state.work_offset for run in runs]
+    if not same_words:
+        offsets = [_in_order(column) for column in offsets]
+    yield _register("work offset", runs, offsets, _offset_words, _in_workpiece, of_path=True)
+    sides = [run.state.compensation for run in runs]
+    yield _register("radius compensation", runs, sides, _side_words, _everywhere, of_path=True)
+    numbers: dict[Hashable, int] = {}
+    digit = _LAST_DIGIT_OF_INCHES if any(run.state.inches.values.any() for run in runs) else _LAST_DIGIT
+    deltas = [_delta_column(run, same_words, digit, numbers) for run in runs]
+    yield _register("added to the tool:", runs, deltas, _delta_words, _everywhere, of_path=True)
+    if not same_words:
+        return
+    name = "tool length" if one.uses_length_numbers else "cutting edge"
+    yield _register(name, runs, [run.state.edge for run in runs], _edge_words, _in_workpiece)
+    yield _register("radius of", runs, [run.state.radius for run in runs], _radius_words, _compensated)
+    tolerances = [_tolerance_column(run) for run in runs]
+    yield _register("tolerance", runs, tolerances, _tolerance_words, _cutting, within=digit)
+
+
+def _register(
+    name: str,
+    runs: tuple[Run, Run],
+    columns: list[StepColumn],
+    words: Callable[[Run, int], str],
+    counts: Callable[[Run, Ints], Flags],
+    *,
+    of_path: bool = False,
+    within: float = 0.0,
+) -> Register:
+    one, two = runs
+    first, second = columns
+    calls = (lambda row: words(one, row), lambda row: words(two, row))
+    return Register(name, (first, second), calls, counts, of_path, within)
+
+
+def _in_order(column: StepColumn) -> StepColumn:
+    """Values by the order in which they come, none (0) as it is."""
+    order: dict[int, int] = {0: 0}
+    values = [order.setdefault(int(value), len(order)) for value in column.values]
+    return StepColumn(column.n, column.rows, np.array(values, np.int64))
+
+
+# Where they count
+
+
+def _everywhere(_run: Run, rows: Ints) -> Flags:
+    return np.ones(len(rows), np.bool_)
+
+
+def _in_workpiece(run: Run, rows: Ints) -> Flags:
+    return ~np.asarray(run.state.machine_frame.at(rows), np.bool_)
+
+
+def _compensated(run: Run, rows: Ints) -> Flags:
+    return np.asarray(run.state.compensation.at(rows) != 0)
+
+
+def _cutting(run: Run, rows: Ints) -> Flags:
+    return np.asarray(run.kind[rows] != Kind.RAPID)
+
+
+# Those that only events tell
+
+
+def _delta_column(run: Run, by_name: bool, digit: float, numbers: dict[Hashable, int]) -> StepColumn:
+    """What the program adds to the tool in the spindle; ``numbers`` are those of both runs."""
+    held: dict[str, int] = {}
+
+    def values() -> Iterator[tuple[int, Hashable]]:
+        for event in run.events:
+            if event.kind == "tool_change":
+                held.clear()
+            elif event.kind == "delta" and isinstance(event.value, tuple):
+                name = str(event.value[0])
+                count = round(float(event.value[1] or 0.0) / digit)
+                held[name if by_name else _DELTAS.get(name, name)] = count
+            else:
+                continue
+            yield event.before_row, frozenset((name, count) for name, count in held.items() if count)
+
+    return _steps(run, [(0, frozenset()), *values()], numbers)
+
+
+def _tolerance_column(run: Run) -> StepColumn:
+    """Within which tolerance the control may leave the path, mm; 0: none."""
+    found: list[tuple[int, float]] = [(0, 0.0)]
+    for event in run.events:
+        if event.kind == "tolerance":
+            found.append((event.before_row, float(event.value) if isinstance(event.value, int | float) else 0.0))
+    rows, values = zip(*found, strict=True)
+    return _column(run, list(rows), list(values))
+
+
+def _steps(run: Run, found: list[tuple[int, Hashable]], numbers: dict[Hashable, int]) -> StepColumn:
+    """A column of values by numbers, which both runs share; they are filled in."""
+    rows = [row for row, _ in found]
+    return _column(run, rows, [numbers.setdefault(value, len(numbers)) for _, value in found])
+
+
+def _column(run: Run, rows: list[int], values: list[Any]) -> StepColumn:
+    """A column by its changes; of several before one row the last holds."""
+    last = dict(zip(rows, values, strict=True))
+    return StepColumn(len(run), np.array(list(last), np.int64), np.array(list(last.values())))
+
+
+# What they are called
+
+
+def _offset_words(run: Run, row: int) -> str:
+    code = int(run.state.work_offset[row])
+    return run.work_offset_name(code) if code else "none"
+
+
+def _side_words(run: Run, row: int) -> str:
+    return _SIDES[int(run.state.compensation[row])]
+
+
+def _edge_words(run: Run, row: int) -> str:
+    number = int(run.state.edge[row])
+    return f"{'H' if run.uses_length_numbers else 'D'}{number}" if number >= 0 else "none"
+
+
+def _radius_words(run: Run, row: int) -> str:
+    number = int(run.state.radius[row])
+    return f"D{number}" if number >= 0 else "the tool"
+
+
+def _delta_words(run: Run, row: int) -> str:
+    held: dict[str, float] = {}
+    for event in run.events:
+        if event.before_row > row:
+            break
+        if event.kind == "tool_change":
+            held.clear()
+        elif event.kind == "delta" and isinstance(event.value, tuple):
+            held[str(event.value[0])] = float(event.value[1] or 0.0)
+    return ", ".join(f"{name} {value:g} mm" for name, value in held.items() if value) or "nothing"
+
+
+def _tolerance_words(run: Run, row: int) -> str:
+    found = [event.value for event in run.events if event.kind == "tolerance" and event.before_row <= row]
+    value = float(found[-1]) if found and isinstance(found[-1], int | float) else 0.0
+    return ("any" if np.isinf(value) else f"{value:g} mm") if value else "none"
