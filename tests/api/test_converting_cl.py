@@ -54,7 +54,7 @@ def test_units_are_those_of_the_file_or_of_the_setting(tmp_path: Path) -> None:
         (["--to-cl", "--set", "units=foot"], "--set: error: units is 'foot'; write units=mm or units=inch"),
         (["--to-cl", "--force"], "--force: error: has no meaning for a CL file"),
         (["--to-cl", "--zero", "0,0,0"], "--zero: error: has no meaning for a CL file"),
-        (["--to-machine", "dmu65"], "--machine: error: is None"),
+        (["--to-machine", "dmu65"], "--machine: error: is missing"),
         (
             ["--to-machine", "dmu65", "--machine", "yl569", "--dialect", "ncl"],
             "--dialect: error: is given",
@@ -72,7 +72,7 @@ def test_arguments_about_programs_are_refused(
 def test_a_program_without_its_machine_is_told_so(tmp_path: Path) -> None:
     program = tmp_path / "a.mpf"
     program.write_text("N10 G0 X1\nN20 M30\n")
-    with pytest.raises(trunnion.InputError, match="machine: error: is None, so that the file is a CL file"):
+    with pytest.raises(trunnion.InputError, match="machine: error: is missing, so that the file is read as a CL file"):
         trunnion.convert(program, to_cl=True)
 
 

@@ -129,8 +129,8 @@ def test_numbered_subprograms_can_begin_with_another_number(folder: Path) -> Non
         "part.cls", machine="matsuura_mx330", output="two.nc", settings={**settings, "first_number": 2001}
     )
     assert [path.name for path in made.subprograms] == ["O2001.nc"]
-    wrong: dict[str, Any]
-    for wrong in ({"first_number": 2001}, {**settings, "first_number": 20.5}, {**settings, "first_number": 0}):
+    cases: list[dict[str, Any]] = [{"first_number": 2001}, *({**settings, "first_number": n} for n in (20.5, 0))]
+    for wrong in cases:
         with pytest.raises(trunnion.InputError, match="first_number is"):
             trunnion.post("part.cls", machine="matsuura_mx330", settings=wrong)
     with pytest.raises(trunnion.InputError, match="names its subprograms"):

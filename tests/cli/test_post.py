@@ -1,8 +1,10 @@
 """``trunnion post`` as a user meets it: exit codes, messages, and output that appears whole or not at all."""
 
 import os
+import signal
 import subprocess
 import sys
+import time
 from importlib.resources import files
 from pathlib import Path
 
@@ -214,6 +216,42 @@ def test_a_folder_must_be_there(tmp_path: Path, capfd: pytest.CaptureFixture[str
     (tmp_path / "out").mkdir()
     assert main(["post", *files, "--output", f"{tmp_path / 'out'}/", "--machine", "yl569"]) == 0
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["1_contour_rough.mpf", "2_hub_rough.mpf"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has no signals that a process can handle")
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_command_that_is_ended_leaves_nothing_half_written(name: str, tmp_path: Path) -> None:
+    """It waits for the rest of its CL file, with the hidden folder of its program already there."""
+    command = [sys.executable, "-m", "trunnion", "post", "-", "--machine", "yl569", "--output", str(tmp_path / "p.mpf")]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL) as post:
+        assert post.stdin is not None
+        while post.poll() is None and not list(tmp_path.iterdir()):
+            time.sleep(0.02)
+        post.send_signal(signal.Signals[name])
+        post.stdin.close()
+        assert post.wait() == 128 + signal.Signals[name]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_messages_that_nobody_reads_cost_no_program(tmp_path: Path) -> None:
+    """As with ``2>&1 | head -1``."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    target = tmp_path / "p.mpf"
+    command = ["post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl569", "--output", str(target)]
+    done = subprocess.run([sys.executable, "-m", "trunnion", *command], stdout=writer, stderr=writer, check=False)
+    os.close(writer)
+    assert done.returncode == 0
+    assert target.exists()
+
+
+def test_an_nc_program_is_told_once(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    program = YL569 / "2_hub_rough.expected.mpf"
+    assert main(["post", str(program), "--machine", "yl569", "--output", str(tmp_path / "p.mpf")]) == 2
+    said = capfd.readouterr().err.splitlines()
+    assert len(said) == 2
+    assert "if this is an NC program, verify, diff and convert take it, with its machine" in said[0]
+    assert "begins with a block number, as in an NC program" in said[1]
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")

@@ -46,6 +46,12 @@ def test_options_of_the_setup_are_named_as_they_are(command: list[str], capsys: 
     assert error_of([*command, "--tool-length", "abc"], capsys).startswith("--tool-length: error: is 'abc'; write MM")
 
 
+def test_a_misspelt_option_is_named_before_those_that_are_missing(capsys: pytest.CaptureFixture[str]) -> None:
+    said = error_of(["post", PROGRAM, "--mashine", "yl569"], capsys)
+    assert "trunnion post: error: --mashine is no option of this command" in said
+    assert "required: --machine" in error_of(["post", PROGRAM, "--out", "x.mpf"], capsys)
+
+
 def test_check_takes_every_shipped_control(capsys: pytest.CaptureFixture[str]) -> None:
     for name in shipped_controls():
         assert main(["check", name]) == 0

@@ -252,6 +252,20 @@ def test_checksums_that_are_none_are_damage(compiled: Compiled, kept: Path) -> N
     assert any("was damaged on disk" in line for line in found)
 
 
+@pytest.mark.skipif(sys.platform == "win32" or os.getuid() != 0, reason="makes the folder of another user")
+def test_the_folder_of_another_user_is_passed_over_in_silence(folder: Path) -> None:
+    anothers, own = folder / "anothers", folder / "own"
+    anothers.mkdir(mode=0o755)
+    os.chown(anothers, 12345, 12345)
+    script = f"""
+from pathlib import Path
+from trunnion.jit import store
+store._candidates = lambda: iter([Path({str(anothers)!r}), Path({str(own)!r})])
+print(store.cache_folder())
+"""
+    assert run(folder, script) == [str(own)]
+
+
 def test_without_a_folder_that_can_be_written_to_kernels_are_compiled_and_it_is_said_once(folder: Path) -> None:
     nowhere = folder / "some_inner.py" / "below"
     script = f"""

@@ -9,8 +9,10 @@ from trunnion.machines.loading import shipped_machines
 CL = YL569 / "3_blade_finish.cls"
 
 
-def travel_and_warnings(machine: str, zero: tuple[float, float, float] | None = None) -> tuple[str, list[str]]:
-    result = trunnion.post(CL, machine=machine, settings={"zero": zero} if zero else {}, columns=False)
+def travel_and_warnings(
+    machine: str, zero: tuple[float, float, float] | None = None, length: float | None = None
+) -> tuple[str, list[str]]:
+    result = trunnion.post(CL, machine=machine, settings={"zero": zero, "tool_length": length}, columns=False)
     travel = next(check.summary for check in result.checks if check.key == "travel")
     return travel, [str(problem) for problem in result.problems if problem.file == machine]
 
@@ -41,8 +43,25 @@ def test_a_definition_that_states_everything_is_not_warned_of(machine: str) -> N
 
 def test_a_travel_that_is_only_compared_in_length_is_said() -> None:
     travel, _ = travel_and_warnings("yl569")
-    assert travel.endswith("X, Y, Z: only the length of their travel, the workpiece zero is not known")
-    assert "only" not in travel_and_warnings("yl569", (0.0, 0.0, 0.0))[0]
+    assert travel.endswith("X, Y, Z: only the length of their travel, workpiece zero and tool length are not known")
+    travel, _ = travel_and_warnings("yl569", (0.0, 0.0, 0.0))
+    assert travel.endswith("Z: only the length of its travel, tool length is not known")
+    assert "only" not in travel_and_warnings("yl569", (0.0, 0.0, 0.0), 100.0)[0]
+
+
+def test_where_a_head_turns_the_tool_its_length_moves_all_slides() -> None:
+    travel, _ = travel_and_warnings("generic_head_head_ca", (0.0, 0.0, -500.0))
+    assert travel.endswith("X, Y, Z: only the length of their travel, tool length is not known")
+
+
+def test_over_travel_with_an_unknown_length_names_the_length() -> None:
+    with pytest.raises(trunnion.RefusedError) as beyond:
+        travel_and_warnings("matsuura_mx330", (0.0, 0.0, 50.0))
+    assert " with a tool 0 mm long, below its limit -560 mm" in str(beyond.value)
+    assert "give the length of the tool by setting tool_length=…, shift the workpiece zero or change" in str(
+        beyond.value
+    )
+    assert travel_and_warnings("matsuura_mx330", (0.0, 0.0, 50.0), 150.0)[0].endswith("left")
 
 
 @pytest.mark.parametrize("machine", shipped_machines())

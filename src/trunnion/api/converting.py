@@ -137,7 +137,7 @@ def convert(
     check_observer(observer)
     others = check_paths("subprograms", subprograms)
     if (to_machine is None) is not to_cl:
-        what, cure = "is given with to_cl" if to_cl else "is None", "give either to_machine or to_cl=True"
+        what, cure = "is given with to_cl" if to_cl else "is missing", "give either to_machine or to_cl=True"
         raise InputError(argument_problem("to_machine", what, cure))
     check_choice("dialect", dialect, tuple(WRITERS))
     if machine is None:
@@ -181,7 +181,7 @@ def convert(
 def _refuse_for_cl(**given: object) -> None:
     """Refuse arguments that are about NC programs."""
     if given["to_machine"] is not None:
-        what, cure = "is None", "give the machine that the NC program is for; post writes the program of a CL file"
+        what, cure = "is missing", "give the machine that the NC program is for; post writes the program of a CL file"
         raise InputError(argument_problem("machine", what, cure))
     if name := next((name for name, value in given.items() if value), ""):
         what, cure = "has no meaning for a CL file", "leave it out, or give the machine that the NC program is for"

@@ -54,7 +54,9 @@ def convert_cl(
     except InputError as error:
         if "not a CL file" not in error.problems[0].what:
             raise
-        hint = argument_problem("machine", "is None, so that the file is a CL file", "give it for an NC program")
+        hint = argument_problem(
+            "machine", "is missing, so that the file is read as a CL file", "give it for an NC program"
+        )
         raise InputError((*error.problems, hint)) from None
     observer.problems(toolpath.remarks)
     inch = texts["units"] == "inch" if "units" in texts else toolpath.unit == _INCH

@@ -41,6 +41,11 @@ class Diagnostics:
         self.error(line, what, cure)
         return InputError(self._listed(Severity.ERROR))
 
+    def nothing_known(self, what: str, cure: str) -> InputError:
+        """Return this error of the whole file as an exception, with the first of the others: they are alike."""
+        first = self._listed(Severity.ERROR)[:1]
+        return InputError((Problem(self.file, 0, what, cure, Severity.ERROR), *first))
+
     def raise_errors(self) -> None:
         """Raise the errors, if there are any.
 

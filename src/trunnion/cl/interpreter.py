@@ -23,7 +23,13 @@ _CACHE_SIZE = 4096
 _MAX_UNKNOWN_STATEMENTS = 1000
 
 _NOT_CL = "not a CL file: no statement in it is known"
-_GIVE_CL = "give a CL file: an NX CLSF, APTSOURCE, NCL or other APT CL data"
+_GIVE_CL = (
+    "give a CL file: an NX CLSF, APTSOURCE, NCL or other APT CL data; if this is an NC program, verify, diff and"
+    " convert take it, with its machine"
+)
+
+#: What blocks of NC programs begin with.
+_BLOCK_NUMBER = re.compile(r"/?N\d")
 
 _GIVE_POINTS = (
     "output arcs as CIRCLE/, or in APT as INDIRV and TLON,GOFWD/(CIRCLE/…),ON,(LINE/…), or points in their place"
@@ -124,8 +130,8 @@ class ClInterpreter:
         elif row > state.builder.first:
             state.report_motion_outside()
         if not self._known_statements and not row:
-            self._diagnostics.error(0, _NOT_CL, _GIVE_CL)
-        elif not row and not self._diagnostics.has_errors:
+            raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL)
+        if not row and not self._diagnostics.has_errors:
             self._diagnostics.error(0, "there is no motion in the file", "write out an operation with a tool path")
         if state.builders and state.builder.events:
             # What follows the last operation is done after its last row.
@@ -183,7 +189,7 @@ class ClInterpreter:
             return  # the end mark of a DOS file
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
-            raise self._diagnostics.fatal(0, _NOT_CL, _GIVE_CL)
+            raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL)
         why = acts_on_machine(statement.major, self._words)
         if statement.major.startswith("->") and not why and not self._state.strict:
             what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"
@@ -210,6 +216,8 @@ def _is_system(statement: Statement, *counts: int) -> bool:
 def _refuse_no_word(statement: Statement) -> None:
     """Refuse a statement without a word: it may be a motion."""
     name = statement.major
+    if _BLOCK_NUMBER.match(name):
+        raise StatementError(f"{name[:20]} begins with a block number, as in an NC program", "give the CL file")
     if "=" in name:
         what = f"{name.partition('=')[0]} is defined here: this is an APT part program and not CL data"
         raise StatementError(what, "run it through the APT system, and give its CL data")

@@ -92,6 +92,10 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     Ends the process with exit code 2 and a usage line when they cannot be understood.
     """
     parser, commands = _parsers()
+    if argv and argv[0] in commands:  # before argparse, which first tells what is missing
+        command = commands[argv[0]]
+        if wrong := _unknown_option(argv[1:], command):
+            command.error(_not_expected([wrong], argv[0]))
     arguments, unknown = parser.parse_known_args(list(argv))
     if unknown:
         commands[arguments.command].error(_not_expected(unknown, arguments.command))
@@ -100,6 +104,18 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
             parser.error("--dialect and --set dialect=… are the same: give one of them")
         arguments.settings = [*arguments.settings, ("dialect", arguments.dialect)]
     return arguments
+
+
+def _unknown_option(words: Sequence[str], command: argparse.ArgumentParser) -> str:
+    """The first word that looks like an option and is none, nor the beginning of one; empty if there is none."""
+    known = tuple(command._option_string_actions)  # noqa: SLF001 - there is no other list of them
+    for word in words:
+        name = word.partition("=")[0]
+        if name == "--":
+            break
+        if name.startswith("--") and not any(option.startswith(name) for option in known):
+            return word
+    return ""
 
 
 @cache

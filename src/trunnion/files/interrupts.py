@@ -1,4 +1,4 @@
-"""Ctrl-C that waits where an interruption would leave half of something behind."""
+"""Ctrl-C and other signals that end a command wait where they would leave half of something behind."""
 
 import signal
 from collections.abc import Callable, Iterator
@@ -7,8 +7,10 @@ from threading import current_thread, main_thread
 from types import FrameType
 from typing import Any, Final
 
-#: Signals whose Python handlers may raise an exception at any moment.
-_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
+#: Signals whose Python handlers may raise an exception at any moment; not every system has all of them.
+_SIGNALS: Final = tuple(
+    signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK") if name in signal.Signals.__members__
+)
 
 
 @contextmanager

@@ -45,13 +45,19 @@ def cache_folder() -> Path | None:
     for folder in _candidates():
         try:
             folder.parent.mkdir(parents=True, exist_ok=True)
+            if _is_anothers(folder):
+                continue
             if _is_private(folder):
                 tempfile.TemporaryFile(dir=folder).close()
                 return folder
         except OSError:
             continue
-        _log.warning("%s is not used for compiled kernels: other users can write to it", folder)
-    _log.warning("no folder can be written to: kernels are compiled in every run; NUMBA_CACHE_DIR can name a folder")
+        text = (
+            "warning: %s is not used for compiled kernels: other users can write to it; let only its owner write to it"
+        )
+        _log.warning(text, folder)
+    text = "warning: no folder can be written to: kernels are compiled in every run; NUMBA_CACHE_DIR can name a folder"
+    _log.warning(text)
     return None
 
 
@@ -68,6 +74,13 @@ def _candidates() -> Iterator[Path]:
         yield temporary / "trunnion" / version
     else:
         yield temporary / f"trunnion-{os.getuid()}-{version}"
+
+
+def _is_anothers(folder: Path) -> bool:
+    """Whether a folder belongs to another user, as that of an installation for all: each user has one of their own."""
+    if sys.platform == "win32" or not folder.exists():
+        return False
+    return folder.lstat().st_uid != os.getuid()
 
 
 def _is_private(folder: Path) -> bool:

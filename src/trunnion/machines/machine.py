@@ -16,6 +16,9 @@ from trunnion.definitions import LocatedValue, Table
 from trunnion.machines.bodies import MachineBody
 from trunnion.machines.bodies import Vector as Vector
 
+#: Greatest component along the tool of a slide that is across it.
+_ACROSS = 1e-9
+
 
 class AxisKind(StrEnum):
     """How a joint moves."""
@@ -202,6 +205,21 @@ class Machine:
     def has_rotary_head(self) -> bool:
         """Whether a rotary axis carries the tool, so that the direction of the tool length changes with it."""
         return any(axis.is_rotary and axis.mount is Mount.TOOL for axis in self.axes)
+
+    def is_placed(self, column: int) -> bool:
+        """Whether it is known where an axis stands when the tip is at a point of the workpiece.
+
+        Slides need the workpiece zero for that, and those along the tool its length; all of them where a head turns it.
+        """
+        if self.axes[column].is_rotary:
+            return True
+        return self.workpiece_zero is not None and (self.tool_length is not None or not self.depends_on_length(column))
+
+    def depends_on_length(self, column: int) -> bool:
+        """Whether an axis stands elsewhere with a longer tool, the tip at the same point of the workpiece."""
+        axis = self.axes[column]
+        along = float(np.dot(axis.direction, self.spindle_direction))
+        return not axis.is_rotary and (self.has_rotary_head or abs(along) > _ACROSS)
 
     @property
     def limits(self) -> Floats:

@@ -1,10 +1,15 @@
 """Limits of the axes: what they are, which values are beyond them, and how messages put it."""
 
+from typing import Final
+
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.machines import Machine
 from trunnion.planning.poses.states import LIMIT_TOLERANCE
+
+#: What a tool is taken for whose length is not known.
+NO_LENGTH: Final = "0 mm long"
 
 
 def limits_of(machine: Machine, keep_slide_limits: bool) -> tuple[Floats, Floats]:
@@ -40,7 +45,8 @@ def limit_violation_text(machine: Machine, column: int, value: float) -> str:
     axis = machine.axes[column]
     limit, side = (axis.low, "below") if value < axis.low else (axis.high, "above")
     unit = "degrees" if axis.is_rotary else "mm"
-    return f"axis {axis.name} would go to {value:.5f}, {side} its limit {limit:g} {unit}"
+    tool = f" with a tool {NO_LENGTH}" if _lacks_length(machine, column) else ""
+    return f"axis {axis.name} would go to {value:.5f}{tool}, {side} its limit {limit:g} {unit}"
 
 
 def limit_remedy(machine: Machine, column: int, value: float, remark: str = "") -> str:
@@ -49,4 +55,11 @@ def limit_remedy(machine: Machine, column: int, value: float, remark: str = "") 
     lacking = axis.low - value if value < axis.low else value - axis.high
     if axis.is_rotary:
         return f"tilt the workpiece by {lacking:.3f} degrees{remark}, or post for another machine"
-    return f"{axis.name} exceeds its limit by {lacking:.3f} mm{remark}; shift the workpiece zero or change the clamping"
+    length = "give the length of the tool by setting tool_length=…, " if _lacks_length(machine, column) else ""
+    cure = f"{length}shift the workpiece zero or change the clamping"
+    return f"{axis.name} exceeds its limit by {lacking:.3f} mm{remark}; {cure}"
+
+
+def _lacks_length(machine: Machine, column: int) -> bool:
+    """Whether the position of an axis is that for a tool without length, as nobody has said the length."""
+    return machine.tool_length is None and machine.depends_on_length(column)

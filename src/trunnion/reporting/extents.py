@@ -48,8 +48,8 @@ class TipExtent:
 class AxisExtent:
     """Extremes of an axis, and its limits.
 
-    zero_known  whether values and limits count from the same zero: not for the slides of a machine without a workpiece
-                zero
+    zero_known  whether values and limits count from the same zero: not for slides without a workpiece zero, nor for
+                those that depend on the tool length without that
     margin      distance to the nearer limit, or the part of the travel that is left where the zero is not known;
                 negative if exceeded
     """
@@ -82,7 +82,7 @@ def axis_extent(run: Run, k: int, axis: Axis) -> AxisExtent:
     """The extent of an axis, which is column ``k`` of ``run.joints``."""
     extremes = _extremes(run, run.joints[:, k], travel_rows(run, axis))
     low, high = (value if math.isfinite(value) else None for value in (axis.low, axis.high))
-    zero_known = is_zero_known(run, axis)
+    zero_known = is_zero_known(run, k)
     return AxisExtent(
         name=clean(axis.name),
         unit="°" if axis.is_rotary else "mm",
@@ -95,9 +95,9 @@ def axis_extent(run: Run, k: int, axis: Axis) -> AxisExtent:
     )
 
 
-def is_zero_known(run: Run, axis: Axis) -> bool:
-    """Whether the values of an axis can be compared with its limits: for a slide that takes a workpiece zero."""
-    return axis.is_rotary or run.machine.workpiece_zero is not None
+def is_zero_known(run: Run, k: int) -> bool:
+    """Whether the values of axis ``k`` can be compared with its limits: slides take workpiece zero and tool length."""
+    return run.machine.is_placed(k)
 
 
 def travel_rows(run: Run, axis: Axis) -> Ints:

@@ -144,7 +144,7 @@ def _position_plot(verification: Verification, k: int) -> Plot:
     axis = verification.machine.axes[k]
     limits = () if axis.endless else _finite_values(axis.low, axis.high)
     note = "endless" if axis.endless else "" if limits else "limits not stated"
-    floating = bool(limits) and not is_zero_known(verification.run, axis)
+    floating = bool(limits) and not is_zero_known(verification.run, k)
     if floating:
         limits = _centred_limits(verification, k)
     name = clean(axis.name)

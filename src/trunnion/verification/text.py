@@ -15,10 +15,17 @@ def check_lines(verification: Verification) -> Iterator[str]:
 
 
 def place_lines(verification: Verification, *, failed_only: bool = False, most: int = 5) -> Iterator[str]:
-    """The worst places of each check, failed checks first: ``nc:line (N…), cl:line: text [check]``."""
+    """The worst places of each check, failed checks first: ``nc:line (N…), cl:line: text [check]``.
+
+    A line says where those of checks that passed begin.
+    """
+    tells_passed = False
     for check in sorted(verification.checks, key=lambda check: check.passed):
         if check.passed and failed_only:
             continue
+        if check.passed and check.places and not tells_passed:
+            tells_passed = True
+            yield "passed; the worst places:"
         for place in check.places[:most]:
             yield f"{place_line(verification.program, place)} [{check.key}]"
 

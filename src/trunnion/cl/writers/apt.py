@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from trunnion.cl.writers.checks import rows_with_own_feed
+from trunnion.cl.writers.checks import called, rows_with_own_feed
 from trunnion.cl.writers.half_circles import with_half_circles
 from trunnion.cl.writers.lengths import INCH
 from trunnion.cl.writers.points import number_text
@@ -141,7 +141,8 @@ class AptWriter(ClWriter):
         if "," in tool.name:
             lost.append("name behind the comma")
         if lost:
-            self.remark(operation.line, f"tool {tool.name}: {', '.join(lost)} not carried over", "complete it by hand")
+            what = f"{called(operation)}: {', '.join(lost)} not carried over"
+            self.remark(operation.line, what, "complete it by hand")
 
     def losses(self, operation: Operation) -> Iterator[Problem]:
         """Helices, several turns, and cycles of which the dialect says nothing."""

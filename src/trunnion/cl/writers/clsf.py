@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
+from trunnion.cl.writers.checks import called
 from trunnion.cl.writers.points import number_text
 from trunnion.cl.writers.writer import UNSETTLED_SYSTEM, ClWriter
 from trunnion.errors import Problem
@@ -36,7 +37,7 @@ class ClsfWriter(ClWriter):
             tool = operation.tool
             sizes = {"holder": tool.holder, "extension": tool.extension, "length in the spindle": tool.set_length}
             if lost := [word for word, said in sizes.items() if said]:
-                what = f"tool {tool.name}: {', '.join(lost)} not carried over"
+                what = f"{called(operation)}: {', '.join(lost)} not carried over"
                 self.remark(operation.line, what, f"{self.title} has no words for it")
         return toolpath
 

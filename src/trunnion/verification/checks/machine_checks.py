@@ -52,10 +52,16 @@ def _unchecked_axes(context: Context) -> str:
     """Which axes this check says nothing about, and why; empty if it judges all of them as they stand."""
     machine = context.run.machine
     without = [axis.name for axis in machine.axes if not axis.endless and not axis.has_limits]
-    slides = [axis.name for axis in machine.axes if not axis.is_rotary and axis.has_limits]
     reasons = [f"{', '.join(without)}: not checked, the definition states no travel"] if without else []
-    if slides and machine.workpiece_zero is None:
-        reasons.append(f"{', '.join(slides)}: only the length of their travel, the workpiece zero is not known")
+    unplaced = [axis.name for k, axis in enumerate(machine.axes) if axis.has_limits and not machine.is_placed(k)]
+    if unplaced:
+        missing = [
+            *(["workpiece zero"] if machine.workpiece_zero is None else []),
+            *(["tool length"] if machine.tool_length is None else []),
+        ]
+        their = "their" if len(unplaced) > 1 else "its"
+        unknown = f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} not known"
+        reasons.append(f"{', '.join(unplaced)}: only the length of {their} travel, {unknown}")
     return "; ".join(reasons)
 
 
@@ -64,20 +70,26 @@ def _words(left: float, too_far: bool) -> str:
 
 
 def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
-    """The margin of each axis with limits; without a workpiece zero, slides are compared with their whole travel."""
+    """The margin of each axis with limits.
+
+    Slides that nobody knows the place of, as the workpiece zero or the tool length is missing, are compared with their
+    whole travel; with a zero also with their limits for a tool without length, which they must not leave either.
+    """
     machine = context.run.machine
     for k, axis in enumerate(machine.axes):
         low, high = motion.extremes[k].tolist()
         if low > high or not axis.has_limits:
             continue
         rows = motion.extreme_rows[k].tolist()
-        if not axis.is_rotary and machine.workpiece_zero is None:
+        below, above = low - axis.low, axis.high - high
+        is_placed = machine.is_placed(k)
+        if not is_placed and (machine.workpiece_zero is None or min(below, above) >= -_ROUNDING):
             text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm"
             yield _Margin(axis, (axis.high - axis.low) - (high - low), text, high - low, rows[1])
             continue
-        below, above = low - axis.low, axis.high - high
         value, limit, row = (low, axis.low, rows[0]) if below < above else (high, axis.high, rows[1])
-        text = f"{axis.name} goes to {value:.3f}, its limit is {limit:g} {'deg' if axis.is_rotary else 'mm'}"
+        tool = "" if is_placed else " with a tool 0 mm long"
+        text = f"{axis.name} goes to {value:.3f}{tool}, its limit is {limit:g} {'deg' if axis.is_rotary else 'mm'}"
         yield _Margin(axis, min(below, above), text, value, row)
 
 
