@@ -153,7 +153,8 @@ def test_programs_that_move_nothing_are_not_the_same(tmp_path: Path, capfd: pyte
     assert diff(capfd, tmp_path, "M30\n", first) == (1, "not compared: neither program moves the tool\n")
 
 
-FANUC = """G21 G17 G40 G80 G90 G94
+FANUC = """O0001
+G21 G17 G40 G80 G90 G94
 T3 M6
 G54
 G0 A0. C0.
