@@ -221,14 +221,19 @@ def test_a_folder_must_be_there(tmp_path: Path, capfd: pytest.CaptureFixture[str
 @pytest.mark.skipif(sys.platform == "win32", reason="has no signals that a process can handle")
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
 def test_a_command_that_is_ended_leaves_nothing_half_written(name: str, tmp_path: Path) -> None:
-    """It waits for the rest of its CL file, with the hidden folder of its program already there."""
-    command = [sys.executable, "-m", "trunnion", "post", "-", "--machine", "yl569", "--output", str(tmp_path / "p.mpf")]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL) as post:
-        assert post.stdin is not None
+    """It is stopped where the hidden folder of its program is there: this one plans for ever."""
+    arguments = ["post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl569", "--output", str(tmp_path / "p.mpf")]
+    script = f"""
+import sys, time
+import trunnion.api.posting, trunnion.cli
+trunnion.api.posting.plan_program = lambda *_: time.sleep(600)
+sys.argv[1:] = {arguments!r}
+trunnion.cli.run_and_exit()
+"""
+    with subprocess.Popen([sys.executable, "-c", script]) as post:
         while post.poll() is None and not list(tmp_path.iterdir()):
             time.sleep(0.02)
         post.send_signal(signal.Signals[name])
-        post.stdin.close()
         assert post.wait() == 128 + signal.Signals[name]
     assert list(tmp_path.iterdir()) == []
 

@@ -49,9 +49,6 @@ class _Unread(io.RawIOBase):
     def fileno(self) -> int:
         return self._descriptor
 
-    def isatty(self) -> bool:
-        return self._is_read and os.isatty(self._descriptor)
-
     def write(self, data: Any, /) -> int:
         piece = bytes(data)
         while self._is_read and piece:
@@ -64,6 +61,8 @@ class _Unread(io.RawIOBase):
 
 def let_messages_go() -> None:
     """Have messages on stderr whose reader has gone away, as ``head`` has, end no command: they are dropped."""
-    with suppress(OSError, ValueError, AttributeError):
+    with suppress(OSError, ValueError, AttributeError):  # there may be no stderr at all
+        if sys.stderr.isatty():  # a console takes text, not bytes, and does not go away
+            return
         raw = io.BufferedWriter(_Unread(sys.stderr.fileno()))
         sys.stderr = io.TextIOWrapper(raw, encoding="utf-8", errors="replace", line_buffering=True)

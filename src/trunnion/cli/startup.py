@@ -22,7 +22,8 @@ def run(arguments: argparse.Namespace) -> int:
         from trunnion.api import kernels
 
         trunnion.jit.compile_ahead(kernels.POSTING)
-    with ThreadPoolExecutor(1) as executor:
+    executor = ThreadPoolExecutor(1)
+    try:
         given = dict(arguments.settings)
         coming = read_toolpaths(
             arguments.files, given.get("cl_units"), arguments.strict, executor, given.get("dialect"),
@@ -31,3 +32,5 @@ def run(arguments: argparse.Namespace) -> int:
         from trunnion.cli.post import post
 
         return post(arguments, coming)
+    finally:
+        executor.shutdown(wait=False, cancel_futures=True)  # it may wait for stdin, which nobody needs any more
