@@ -50,7 +50,7 @@ def test_a_travel_that_is_only_compared_in_length_is_said() -> None:
 
 
 def test_where_a_head_turns_the_tool_its_length_moves_all_slides() -> None:
-    travel, _ = travel_and_warnings("generic_head_head_ca", (0.0, 0.0, -500.0))
+    travel, _ = travel_and_warnings("generic_head_head_ca", (0.0, 0.0, -300.0))
     assert travel.endswith("X, Y, Z: only the length of their travel, tool length is not known")
 
 
