@@ -67,16 +67,27 @@ def test_tools_times_and_extents_are_there(page: Page) -> None:
     assert "endless" in page.text
 
 
+#: Of X, Y and Z.
+LIMITS = [[-250, 250], [-150, 150], [-250, 250]]
+
+
 def test_slides_have_their_limits_where_the_workpiece_zero_is_known(tmp_path: Path) -> None:
     verification = blade()
-    machine = replace(verification.machine, workpiece_zero=(0.0, 0.0, 0.0))
+    machine = replace(verification.machine, workpiece_zero=(0.0, 0.0, 0.0), tool_length=0.0)
     known = replace(verification, machine=machine, run=replace(verification.run, machine=machine))
     page = page_of(known, tmp_path)
     plots = json.loads(page.script("report"))["plots"]
-    assert [plot["lines"][0]["limits"] for plot in plots[:3]] == [[-250, 250], [-150, 150], [-250, 250]]
+    assert [plot["lines"][0]["limits"] for plot in plots[:3]] == LIMITS
     assert "−250 … 250" in page.text
     assert "no workpiece zero" not in page.text
     assert "no workpiece zero" in page_of(verification, tmp_path).text
+    machine = replace(machine, tool_length=None)
+    partly = replace(verification, machine=machine, run=replace(verification.run, machine=machine))
+    limits = [
+        plot["lines"][0]["limits"] for plot in json.loads(page_of(partly, tmp_path).script("report"))["plots"][:3]
+    ]
+    assert limits[:2] == [[-250, 250], [-150, 150]]
+    assert limits[2] != [-250, 250]
 
 
 def test_an_axis_beyond_its_travel_has_a_negative_margin(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ MAX_TOOL_MARKS = 100
 
 #: Explains the dotted lines, if there are any.
 FLOATING_NOTE = """ Dotted ones are as far apart as the limits of the slide, but stand around the motion: where the
-limits really are is not known, because the machine's definition has no workpiece zero."""
+limits really are is not known: no workpiece zero is given, or for a slide along the tool no tool length."""
 
 
 def plot_section(series: PlotSeries, levels: Sequence[DetailLevel]) -> str:
